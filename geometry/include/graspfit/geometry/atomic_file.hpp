@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace graspfit::geometry {
+
+/// Writes `content` to `file` so that a reader, a crash or a kill never sees half of it: to a
+/// temporary name in the same folder, flushed, then renamed over `file`.
+/// @throws IoError (file and reason) if that fails; no temporary file stays behind.
+void write_file_atomically(const std::filesystem::path& file, std::string_view content);
+
+/// The whole of a file as bytes. @throws IoError if it cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
+/// SHA-256 of `bytes` as 64 lower-case hexadecimal digits.
+std::string sha256_hex(std::string_view bytes);
+
+/// The shortest decimal text that reads back as exactly `value`, in the C locale whatever the
+/// program's locale is (`std::to_chars`).
+std::string shortest_decimal(double value);
+
+}  // namespace graspfit::geometry

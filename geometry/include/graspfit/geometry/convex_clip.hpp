@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::geometry {
+
+/// The closed half-space { p : normal · p ≤ offset }. `normal` need not be unit.
+struct HalfSpace {
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+};
+
+/// A convex volume as an intersection of half-spaces. Empty and unbounded ones are allowed.
+using ConvexVolume = std::vector<HalfSpace>;
+
+/// A piece of a triangle inside a convex volume: a convex polygon in the order of the triangle.
+struct ClippedPiece {
+  std::vector<Eigen::Vector3d> polygon;  ///< At least three corners [m]; each rounded once.
+  double area = 0.0;                     ///< [m²], > 0.
+  Eigen::Vector3d centroid;              ///< Area centroid [m].
+  std::int32_t face = -1;                ///< Index of the triangle in its mesh.
+};
+
+/// The part of triangle (a, b, c) inside `volume`; no piece if it has no area (touching at a point
+/// or along an edge is empty).
+///
+/// Rounded: which planes cut which edges, and what is empty, are the decisions of real arithmetic on
+/// the given doubles; corner coordinates are rounded once at the end. A triangle that lies *in* a
+/// bounding plane counts as inside (half-spaces are closed).
+std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
+                                 const ConvexVolume& volume);
+
+/// Pieces of the given faces of a mesh inside `volume`, in the order of `faces`, empty ones left out.
+std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
+                               const ConvexVolume& volume);
+
+}  // namespace graspfit::geometry

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::geometry {
+
+/// What is true of a mesh. Combinatorial counts are exact; vertices count as the same only if
+/// they have the same index (weld first).
+struct MeshAnalysis {
+  std::size_t num_vertices = 0;
+  std::size_t num_faces = 0;
+  std::size_t num_parts = 0;               ///< Connected components over shared edges.
+  std::size_t num_unused_vertices = 0;     ///< Vertices of no face.
+  std::size_t num_degenerate_faces = 0;    ///< Repeated index or collinear corners (exact).
+  std::size_t num_doubled_faces = 0;       ///< Faces beyond the first with the same three vertices.
+  std::size_t num_boundary_edges = 0;      ///< Edges with one face.
+  std::size_t num_nonmanifold_edges = 0;   ///< Edges with more than two faces.
+  std::size_t num_inconsistent_edges = 0;  ///< Two-face edges run through in the same direction.
+  std::size_t num_inward_parts = 0;        ///< Closed parts whose signed volume is negative and that
+                                           ///< no other part encloses.
+  std::optional<std::size_t> num_self_intersections;  ///< Crossing pairs of faces (exact); empty if
+                                                      ///< not asked for.
+  Eigen::AlignedBox3d box;                 ///< [m]
+
+  bool is_closed = false;    ///< Every edge has exactly two faces, consistently oriented.
+  bool is_manifold = false;  ///< No edge with more than two faces, no pinched vertex.
+  bool is_outward = false;   ///< Closed, and no part is inside-out.
+};
+
+/// What `analyze` looks at.
+struct MeshAnalysisOptions {
+  bool count_self_intersections = false;  ///< Costs about as much as an AABB tree of the mesh.
+};
+
+/// Analyzes a mesh of any quality. Throws nothing on bad meshes: that is what it is for.
+MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& options = {});
+
+/// What to do with a mesh that is not a closed outward surface.
+enum class RepairMode {
+  Repair,  ///< Mend what the options allow, refuse what remains open.
+  Strict,  ///< Refuse any defect.
+  AsIs,    ///< Change nothing.
+};
+
+/// Limits of `repair_mesh`.
+struct MeshRepairOptions {
+  RepairMode mode = RepairMode::Repair;
+  double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its boundary
+                                     ///< over that of the mesh, in [0, 1]. Half lets a missing base
+                                     ///< plate be closed, not a missing half.
+  void validate() const;             ///< Throws InvalidInput naming the field and its value.
+};
+
+/// One thing that a repair did.
+struct RepairStep {
+  std::string what;       ///< One of "removed degenerate faces", "removed doubled faces",
+                          ///< "removed unused vertices", "split non-manifold vertices",
+                          ///< "turned parts", "filled holes".
+  std::size_t count = 0;  ///< How many of them, > 0.
+  double volume_change = 0.0;  ///< Change of the signed volume by this step [m³].
+};
+
+/// A mesh after repair with everything that was done and what is true of it now.
+struct RepairedMesh {
+  TriangleMesh mesh;
+  MeshAnalysis before;
+  MeshAnalysis after;
+  std::vector<RepairStep> steps;  ///< In order; empty if nothing was changed.
+};
+
+/// Makes a closed, consistently outward mesh of `mesh`, or refuses.
+///
+/// Order: unused vertices, degenerate and doubled faces, non-manifold edges and vertices split,
+/// orientation made consistent and outward per part, holes filled up to the stated size.
+/// Overlapping parts are kept as they are (their union is meant). Self-intersections are reported,
+/// not resolved.
+/// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
+/// large the largest hole is), if `Strict` meets any defect, or if the mesh has no faces.
+/// @throws DegenerateGeometry if the mesh has no volume.
+RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options = {});
+
+}  // namespace graspfit::geometry

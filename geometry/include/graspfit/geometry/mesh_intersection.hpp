@@ -1,0 +1,45 @@
+#pragma once
+
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
+
+namespace graspfit::geometry {
+
+/// Whether two closed solids share a point: their surfaces touch or cross, or one holds the other.
+///
+/// Exact on the vertices of `b` mapped to frame A by `X_AB` and rounded once (exactly the mesh
+/// `transformed(b.mesh(), X_AB)`).
+bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
+
+/// How deep two solids overlap.
+struct Penetration {
+  bool intersects = false;     ///< As `do_intersect`: exact.
+  double depth = 0.0;          ///< [m] Deepest point found; a lower bound of the true depth. Zero if
+                               ///< they do not intersect.
+  double depth_bound = 0.0;    ///< [m] The true depth is at most this.
+  Eigen::Vector3d deepest_point_A = Eigen::Vector3d::Zero();
+};
+
+/// Limits of `penetration`.
+struct PenetrationOptions {
+  double tolerance = 1e-5;  ///< Stop when depth_bound − depth is below this [m], > 0.
+  void validate() const;    ///< Throws InvalidInput naming the field and its value.
+};
+
+/// Depth of the overlap: the larger of the greatest distance to A's surface over the points of B's
+/// surface that lie inside A, and the same with A and B exchanged.
+///
+/// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
+/// does not depend on how finely either mesh is cut. Cost: nothing if the solids do not intersect.
+Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
+                        const PenetrationOptions& options = {});
+
+/// Smallest distance between two surfaces that do not intersect, with witness points [m].
+struct MeshDistance {
+  double distance = 0.0;  ///< Zero if the solids intersect.
+  Eigen::Vector3d point_on_a_A;
+  Eigen::Vector3d point_on_b_A;
+};
+MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
+
+}  // namespace graspfit::geometry

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "graspfit/geometry/convex_clip.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/voxel_grid.hpp"
+
+namespace graspfit::geometry {
+
+/// How the pieces inside one voxel are averaged.
+enum class PatchAveraging {
+  AreaWeighted,  ///< Pieces count by their area (notes A6).
+  Plain,         ///< Every piece counts alike (the paper's words).
+};
+
+/// The paper's S_i: the object's triangles inside one partial voxel, clipped by its six planes.
+///
+/// Tie rule: each bit of surface of positive area belongs to exactly one voxel. A piece that lies in
+/// the plane between two voxels belongs to the one with the higher index on that axis.
+struct SurfacePatch {
+  std::int64_t voxel = -1;     ///< Index in the lattice.
+  double area = 0.0;           ///< [m²], > 0.
+  Eigen::Vector3d centroid;    ///< Mean of the pieces' centroids, projected to the nearest point of
+                               ///< the patch [m].
+  Eigen::Vector3d outward_normal;   ///< Mean of the pieces' normals, unit; zero if !has_normal.
+  bool has_normal = false;     ///< False where the mean normal before scaling is shorter than 0.1
+                               ///< (both sides of a thin part): never a target.
+  std::vector<std::int32_t> faces;  ///< Faces with a piece here, ascending.
+};
+
+/// Options of `surface_patches`.
+struct SurfacePatchOptions {
+  PatchAveraging averaging = PatchAveraging::AreaWeighted;
+};
+
+/// All patches of a mesh, one per partial voxel, ascending by voxel index.
+///
+/// Rounded: which triangle has area in which voxel is decided exactly; areas, centroids and normals
+/// are rounded. Degenerate faces have none. @throws InvalidInput if the mesh leaves the lattice.
+std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
+                                          const SurfacePatchOptions& options = {});
+
+/// The clipped polygons themselves, with the voxel of each, ascending by (voxel, face).
+struct VoxelPiece {
+  std::int64_t voxel = -1;
+  ClippedPiece piece;
+};
+std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice);
+
+}  // namespace graspfit::geometry
