@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "graspfit/geometry/mesh_intersection.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::hands {
+
+/// The link meshes of a hand, prepared once for collision tests.
+class HandCollision {
+ public:
+  explicit HandCollision(const HandModel& model);
+
+  /// A deepest overlap and where it is.
+  struct Result {
+    bool intersects = false;   ///< Exact on the true meshes (see geometry::do_intersect).
+    double depth = 0.0;        ///< Largest depth over all pairs [m]; a lower bound.
+    double depth_bound = 0.0;  ///< The true depth is at most this [m].
+    int link_a = -1;           ///< Link of the deepest overlap.
+    int link_b = -1;           ///< The other link for self-collision; −1 against the object.
+  };
+
+  /// Hand against object, all links. `X_OL` from forward kinematics.
+  Result against_object(const geometry::MeshQuery& object,
+                        const std::vector<RigidTransform>& X_OL) const;
+
+  /// Link against link, exclusions of the model left out.
+  Result against_self(const std::vector<RigidTransform>& X_OL) const;
+
+ private:
+  HandModel model_;
+  std::vector<std::optional<geometry::MeshQuery>> links_;
+};
+
+}  // namespace graspfit::hands

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/convex_clip.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::hands {
+
+using geometry::RigidTransform;
+using geometry::TriangleMesh;
+
+/// Kind of a joint.
+enum class JointType { Revolute, Prismatic };
+
+/// A joint follows another: q = ratio · q[leader] + offset.
+struct Coupling {
+  int leader = -1;      ///< Index of the leading joint.
+  double ratio = 1.0;   ///< [rad/rad], [m/m] or mixed.
+  double offset = 0.0;  ///< [rad] or [m].
+  /// True where a clutch frees the leader when its link is blocked, and this joint goes on closing
+  /// alone up to its own limit (Barrett's TorqueSwitch; notes 22.1).
+  bool breakaway = false;
+};
+
+/// A movable joint between two links.
+struct Joint {
+  std::string name;
+  JointType type = JointType::Revolute;
+  int parent_link = -1;
+  int child_link = -1;
+  RigidTransform X_PJ = RigidTransform::Identity();  ///< Joint frame in the parent link's frame; the
+                                                     ///< child link's frame at q = 0.
+  Eigen::Vector3d axis_J = Eigen::Vector3d::UnitZ();  ///< Unit axis in the joint frame.
+  double lower = 0.0;  ///< [rad] or [m]
+  double upper = 0.0;  ///< [rad] or [m], ≥ lower.
+  /// +1 if growing q closes the hand, −1 if it opens it, 0 if it does neither (spread, abduction).
+  int closing_sign = 0;
+  std::optional<Coupling> coupling;  ///< Empty for an independent joint (an intrinsic DOF).
+};
+
+/// A rigid link. Links joined by fixed joints in the file are links of their own here.
+struct Link {
+  std::string name;
+  int parent_link = -1;   ///< −1 for the root.
+  int parent_joint = -1;  ///< Movable joint to the parent; −1 for the root or a fixed connection.
+  RigidTransform X_PL_fixed = RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
+  TriangleMesh mesh_L;    ///< Closed surface in the link's frame [m]; may have no faces.
+  std::string mesh_file;  ///< Where it came from, relative to the description; empty for primitives.
+};
+
+/// A planar surface meant to touch, on one link.
+///
+/// Pad frame C: origin at the pad's center, z leaving the link toward what it touches, x and y in the
+/// pad's plane.
+struct ContactPad {
+  std::string name;
+  int link = -1;
+  int finger = -1;  ///< Index of its finger; −1 for the palm.
+  RigidTransform X_LC = RigidTransform::Identity();  ///< Pad frame in the link's frame.
+  std::vector<Eigen::Vector2d> outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].
+  /// Explicit thickness of the clip volume [m]; empty: the planner's rule (notes A33).
+  std::optional<double> clip_thickness;
+};
+
+/// An ordered chain of links that closes on the object.
+struct Finger {
+  std::string name;
+  std::vector<int> links;   ///< Proximal to distal.
+  std::vector<int> joints;  ///< Movable joints of the chain, proximal to distal, coupled ones included.
+  int tip_pad = -1;         ///< The pad that precision grasps use.
+  bool is_thumb = false;
+  std::optional<int> swing_joint;  ///< Turns the finger around the palm (spread, abduction).
+};
+
+/// The palm and the hand base frame H.
+struct Palm {
+  int link = -1;                        ///< The root link; its frame is H.
+  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();        ///< Palm center [m].
+  Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();    ///< Unit n_palm: leaves the palm toward the object.
+  int pad = -1;                         ///< Its contact pad; −1 if none.
+};
+
+/// Two links whose collision does not count (neighbors, or always overlapping).
+struct CollisionExclusion {
+  int link_a = -1;
+  int link_b = -1;
+};
+
+/// An articulated hand: kinematic tree, fingers, pads. Never changes while planning; everything that
+/// varies is in HandConfiguration. Links and joints are ordered parents first.
+struct HandModel {
+  std::string name;
+  std::string description_file;    ///< URDF path as given.
+  std::string description_sha256;
+  std::string sidecar_file;
+  std::string sidecar_sha256;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<Finger> fingers;
+  std::vector<ContactPad> pads;
+  Palm palm;
+  std::vector<CollisionExclusion> exclusions;
+
+  /// Number of independent joints.
+  int num_intrinsic_dof() const;
+  /// Index by name; InvalidInput that lists the names there are, if there is none.
+  int finger_index(const std::string& finger_name) const;
+  int joint_index(const std::string& joint_name) const;
+  int link_index(const std::string& link_name) const;
+  /// Index of the thumb; the first finger if none is marked.
+  int thumb() const;
+  /// True if contacts between the two links are to be ignored (also true for a link and itself).
+  bool is_excluded(int link_a, int link_b) const;
+};
+
+/// Throws InvalidInput in one line (hand, item, value) if an index, limit, outline, direction or
+/// coupling of the model makes no sense. The reader calls it.
+void validate(const HandModel& model);
+
+/// Area of the pad's outline [m²].
+double pad_area(const ContactPad& pad);
+
+/// Distance of a point of the pad's plane (in C's x, y) from the outline [m]; 0 outside it.
+double boundary_distance(const ContactPad& pad, const Eigen::Vector2d& point_C);
+
+/// Largest value of `boundary_distance` over the pad: the outline's inradius [m]. Rounded.
+double largest_boundary_distance(const ContactPad& pad);
+
+/// The paper's clip volume in frame C: the prism over the outline from the pad's plane outward to
+/// `thickness` (> 0, else InvalidInput), as half-spaces.
+geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness);
+
+/// The same volume in a frame A in which the pad's frame has pose `X_AC`.
+geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C, const RigidTransform& X_AC);
+
+/// Upper bound of the distance of any point of the hand from the palm center over all
+/// configurations [m]: sum of chain lengths. Sizes the interaction volume (notes A8).
+double largest_reach(const HandModel& model);
+
+}  // namespace graspfit::hands
