@@ -1,0 +1,97 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/grasp/contact.hpp"
+#include "graspfit/grasp/contact_estimation.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+
+namespace graspfit::grasp {
+
+/// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
+struct FittingOptions {
+  double clearance = 0.02;        ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
+  double large_step_at = 2.0;     ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
+  double large_step_limit = 3.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
+  double small_step = 0.2;        ///< Motion of the fastest point in a small step [voxels], > 0 (A30) [R].
+  int max_halvings = 5;           ///< Of a step that would penetrate (A30) [R].
+  int max_iterations = 400;       ///< Of the loop, ≥ 1.
+  double sample_spacing = 0.5;    ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
+  double self_overlap = 0.001;    ///< Overlap of links of different fingers that is tolerated [m] (A40) [R].
+  void validate() const;          ///< Throws InvalidInput naming the field and its value.
+};
+
+/// How an attempt to fit the hand ended.
+enum class FittingStop {
+  Contact,           ///< Every part with a target touches: a formed grasp.
+  InitialCollision,  ///< No starting pose clear of the object was found.
+  MissedContact,     ///< A part with a target reached its limits without touching (A31).
+  SelfCollision,     ///< Links of different fingers overlap (A40).
+  IterationLimit,    ///< Work budget used up.
+};
+
+/// A fitted hand.
+struct FittingResult {
+  FittingStop stop = FittingStop::IterationLimit;
+  hands::HandConfiguration initial;        ///< Where the loop started.
+  hands::HandConfiguration configuration;  ///< Where it ended.
+  std::vector<Contact> contacts;           ///< Of all pads, at the end; is_target set.
+  int iterations = 0;
+  double smallest_distance = 0.0;          ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
+};
+
+/// A hand prepared for fitting to objects of one voxel size: points that cover every link's surface.
+class FittingHand {
+ public:
+  FittingHand(const hands::HandModel& hand, double sample_spacing);  ///< Spacing in meters, > 0.
+  struct LinkSamples {
+    std::vector<Eigen::Vector3d> points_L;  ///< On the link's surface, link frame [m].
+    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();  ///< Of a ball around them.
+    double radius = 0.0;                    ///< Of that ball [m].
+  };
+  const hands::HandModel& model() const { return model_; }
+  const std::vector<LinkSamples>& samples() const { return samples_; }
+
+ private:
+  hands::HandModel model_;
+  std::vector<LinkSamples> samples_;
+};
+
+/// A palm pose to start from: which way the palm looks and how it is turned.
+struct PalmPlacement {
+  Eigen::Vector3d direction_O = Eigen::Vector3d::UnitZ();  ///< n_palm in O, unit.
+};
+
+/// Candidate palm directions for a set of targets (A23): ± the normal of the target triangle, the one
+/// with more room first, or the one within 90° of `approach_O` alone where given; 16 around the axis for
+/// two targets; the least-squares plane's normals for more than three.
+std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
+                                           const std::optional<Eigen::Vector3d>& approach_O);
+
+/// Assigns targets to fingers (A21, A22): the seed to the first of `fingers`, the others by the
+/// permutation with the least angular error around the palm axis.
+TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
+                              const std::vector<int>& fingers, const PalmPlacement& placement);
+
+/// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop of
+/// five steps (section 8) under the penetration guard (section 9).
+///
+/// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0). Penetration of the
+/// true meshes by less than a voxel is possible and is decided elsewhere (hands::HandCollision).
+FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
+                       const TargetContacts& targets, const PalmPlacement& placement,
+                       const ContactEstimationOptions& contact_options,
+                       const FittingOptions& options);
+
+/// Smallest value of the distance map over the voxels that the given link occupies [voxels].
+float smallest_distance(const FittingHand& hand, int link, const geometry::RigidTransform& X_OL,
+                        const geometry::SignedDistanceMap& map);
+
+}  // namespace graspfit::grasp
