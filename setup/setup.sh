@@ -1,0 +1,171 @@
+# Set-up shared by ./quickstart and ./run-tests; sourced by bash, from the repository's root.
+# Safe to repeat: what is there already is found in a second and left alone.
+
+export LC_ALL=C.UTF-8
+
+readonly log_directory=build/logs
+mkdir -p "$log_directory"
+
+say() { printf '%s\n' "$*"; }
+
+fail() {
+  printf '%s: %s\n' "${0##*/}" "$*" >&2
+  exit 1
+}
+
+# run_with_progress LABEL LOG COMMAND...: the command's output goes to LOG; the terminal shows one
+# line with the time and the newest output. Without a terminal, a line every 15 seconds. If the
+# command fails, the end of the log is shown and its exit code returned.
+run_with_progress() {
+  local label=$1 log=$log_directory/$2 start=$SECONDS shown=$SECONDS newest width code=0
+  shift 2
+  "$@" >"$log" 2>&1 </dev/null &
+  local pid=$!
+  while kill -0 "$pid" 2>/dev/null; do
+    newest=$(tail -c 2000 "$log" 2>/dev/null | tr '\r' '\n' | tr -cd '[:print:]\n' |
+      sed '/^ *$/d' | tail -n 1)
+    if [ -t 1 ]; then
+      width=$(($(tput cols 2>/dev/null || echo 80) - 1))
+      newest="$label: $((SECONDS - start)) s  $newest"
+      printf '\r\033[K%s' "${newest:0:width}"
+    elif ((SECONDS - shown >= 15)); then
+      shown=$SECONDS
+      newest="$label: $((SECONDS - start)) s  $newest"
+      printf '%s\n' "${newest:0:120}"
+    fi
+    sleep 0.2
+  done
+  wait "$pid" || code=$?
+  if [ -t 1 ]; then printf '\r\033[K'; fi
+  if ((code != 0)); then
+    tail -n 60 "$log"
+    say "$label: failed after $((SECONDS - start)) s (all of its output: $log)"
+    return "$code"
+  fi
+  say "$label: done in $((SECONDS - start)) s"
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "must run as root, or with sudo installed, to do: $*"
+  fi
+}
+
+# Packages of the given groups that are not installed, one per line.
+missing_packages() {
+  local package wanted
+  wanted=$(for group in "$@"; do
+    awk -v group="$group" '$1 == group { print $2 }' setup/debian-packages.txt
+  done)
+  for package in $wanted; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      printf '%s\n' "$package"
+  done
+}
+
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0 -o Acquire::Retries=3 "$@"
+}
+
+# install_packages GROUP...
+install_packages() {
+  if ! command -v dpkg-query >/dev/null; then
+    say "packages: not a Debian system, so nothing is installed; README.md lists what is needed"
+    return
+  fi
+  local missing
+  missing=$(missing_packages "$@")
+  if [ -z "$missing" ]; then
+    say "packages: all installed"
+    return
+  fi
+  say "packages: installing" $missing
+  as_root true # asks for a password here, not behind the progress line
+  run_with_progress "packages: index" apt-update.log apt_get update ||
+    fail "apt-get update failed"
+  # shellcheck disable=SC2086
+  run_with_progress "packages: install" apt-install.log \
+    apt_get install -y --no-install-recommends $missing || fail "apt-get install failed"
+}
+
+download_demo() {
+  # Root's apt-get would hand the download to a user who may not write here, and warn.
+  apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=3 download libcgal-demo
+}
+
+# Chained by hand: `set -e` does not reach a function whose failure the caller handles.
+unpack_meshes() {
+  local archive
+  cd "$1" || return
+  if ! download_demo; then
+    echo "the package index may be missing or old: updating it"
+    apt_get update && download_demo || return
+  fi
+  dpkg-deb -x libcgal-demo_*.deb unpacked && mkdir meshes || return
+  archive=$(find unpacked -name 'data.tar.gz' | head -n 1)
+  tar -xzf "$archive" -C meshes --strip-components=2 --wildcards 'data/meshes/*.off'
+}
+
+# Sets and exports GRASPFIT_PACKAGED_MESHES: the folder with the meshes of Debian's libcgal-demo.
+# They are unpacked beside it and renamed, so that an interrupted run leaves nothing half done.
+fetch_meshes() {
+  if [ -n "${GRASPFIT_PACKAGED_MESHES:-}" ]; then
+    say "meshes: $GRASPFIT_PACKAGED_MESHES"
+    return
+  fi
+  local cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache}/graspfit work
+  if ! mkdir -p "$cache" 2>/dev/null || ! [ -w "$cache" ]; then
+    cache=$PWD/build/cache
+    mkdir -p "$cache"
+    export CCACHE_DIR=${CCACHE_DIR:-$cache/ccache}
+  fi
+  export GRASPFIT_PACKAGED_MESHES=$cache/meshes
+  if [ -f "$cache/meshes/bunny00.off" ] && [ -f "$cache/meshes/armadillo.off" ]; then
+    say "meshes: $cache/meshes"
+    return
+  fi
+  command -v apt-get >/dev/null ||
+    fail "no apt-get: unpack the meshes of CGAL's data folder and set GRASPFIT_PACKAGED_MESHES"
+  work=$(mktemp -d "$cache/unpacking.XXXXXX")
+  # shellcheck disable=SC2064
+  trap "rm -rf '$work'" EXIT
+  run_with_progress "meshes: libcgal-demo (24 MB)" meshes.log unpack_meshes "$work" ||
+    fail "the meshes of libcgal-demo could not be fetched"
+  [ -f "$work/meshes/bunny00.off" ] || fail "libcgal-demo holds no bunny00.off"
+  rm -rf "$cache/meshes"
+  mv -T "$work/meshes" "$cache/meshes"
+  rm -rf "$work"
+  trap - EXIT
+}
+
+# How many compilers at once: one per processor, but 1.5 GB for each (CGAL's headers are large).
+build_jobs() {
+  local processors memory_kb jobs
+  processors=$(nproc)
+  memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo 2>/dev/null || echo 4000000)
+  jobs=$((memory_kb / 1500000))
+  ((jobs < 1)) && jobs=1
+  ((jobs > processors)) && jobs=$processors
+  echo "${GRASPFIT_JOBS:-$jobs}"
+}
+
+# configure PRESET [CMAKE OPTION...]
+configure() {
+  local preset=$1
+  run_with_progress "configure $preset" "configure-$preset.log" cmake --preset "$@" ||
+    fail "cmake --preset $preset failed"
+}
+
+# build PRESET TARGET...
+build() {
+  local preset=$1
+  shift
+  export NINJA_STATUS='[%f/%t] '
+  run_with_progress "build $preset" "build-$preset.log" \
+    cmake --build --preset "$preset" --parallel "$(build_jobs)" --target "$@" ||
+    fail "the build failed"
+}
