@@ -45,6 +45,8 @@ struct PlannerOptions {
   ScoreOptions score;
   TargetOptions targets;       ///< min_separation 0: one pad width is set by the planner.
   FittingOptions fitting;
+  double self_overlap = 0.001; ///< Overlap of links of different fingers that a formed grasp may have
+                               ///< before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
   QualityOptions quality;      ///< merge_distance 0: a tenth of a voxel is set by the planner.
   void validate() const;       ///< Throws InvalidInput naming the field and its value.
 };

@@ -24,7 +24,6 @@ struct FittingOptions {
   int max_halvings = 5;           ///< Of a step that would penetrate (A30) [R].
   int max_iterations = 400;       ///< Of the loop, ≥ 1.
   double sample_spacing = 0.5;    ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
-  double self_overlap = 0.001;    ///< Overlap of links of different fingers that is tolerated [m] (A40) [R].
   void validate() const;          ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -33,7 +32,6 @@ enum class FittingStop {
   Contact,           ///< Every part with a target touches: a formed grasp.
   InitialCollision,  ///< No starting pose clear of the object was found.
   MissedContact,     ///< A part with a target reached its limits without touching (A31).
-  SelfCollision,     ///< Links of different fingers overlap (A40).
   IterationLimit,    ///< Work budget used up.
 };
 
@@ -47,21 +45,29 @@ struct FittingResult {
   double smallest_distance = 0.0;          ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
 };
 
-/// A hand prepared for fitting to objects of one voxel size: points that cover every link's surface.
+/// A hand prepared for fitting to objects of one voxel size: points that cover every link's surface, in
+/// small clusters so that those far from the object are passed over together.
 class FittingHand {
  public:
-  FittingHand(const hands::HandModel& hand, double sample_spacing);  ///< Spacing in meters, > 0.
-  struct LinkSamples {
-    std::vector<Eigen::Vector3d> points_L;  ///< On the link's surface, link frame [m].
-    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();  ///< Of a ball around them.
-    double radius = 0.0;                    ///< Of that ball [m].
+  /// @throws InvalidInput unless `sample_spacing` is a positive length [m].
+  FittingHand(const hands::HandModel& hand, double sample_spacing);
+
+  /// Neighboring points and a ball around them, in the link's frame [m].
+  struct Cluster {
+    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();
+    double radius = 0.0;
+    std::vector<Eigen::Vector3d> points_L;
   };
   const hands::HandModel& model() const { return model_; }
-  const std::vector<LinkSamples>& samples() const { return samples_; }
+  /// Clusters of link `link`; none for a link without a mesh.
+  const std::vector<Cluster>& clusters(int link) const { return clusters_[link]; }
+  /// Largest distance of a point of the link from the origin of its frame [m].
+  double reach(int link) const { return reach_[link]; }
 
  private:
   hands::HandModel model_;
-  std::vector<LinkSamples> samples_;
+  std::vector<std::vector<Cluster>> clusters_;
+  std::vector<double> reach_;
 };
 
 /// A palm pose to start from: which way the palm looks and how it is turned.
@@ -90,8 +96,10 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        const ContactEstimationOptions& contact_options,
                        const FittingOptions& options);
 
-/// Smallest value of the distance map over the voxels that the given link occupies [voxels].
+/// The paper's d_min: smallest value of the distance map over the voxels that a link's surface occupies
+/// [voxels]. Values above `enough` are not searched further: the result is then a number above it, and no
+/// more than that is known. Approximate: the surface is represented by points at the chosen spacing.
 float smallest_distance(const FittingHand& hand, int link, const geometry::RigidTransform& X_OL,
-                        const geometry::SignedDistanceMap& map);
+                        const geometry::SignedDistanceMap& map, float enough);
 
 }  // namespace graspfit::grasp

@@ -1,0 +1,236 @@
+#include "internal/finger_alignment.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::grasp {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Azimuth error of one assigned finger around its own swing axis's origin, or around the palm center where
+/// it does not swing.
+double finger_error(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
+                    const std::vector<RigidTransform>& X_OL, const TargetContact& target) {
+  const hands::Finger& finger = hand.fingers[target.finger];
+  Vector3d pivot = configuration.X_OH * hand.palm.center_H;
+  if (finger.swing_joint) {
+    const hands::Joint& joint = hand.joints[*finger.swing_joint];
+    pivot = (X_OL[joint.parent_link] * joint.X_PJ).translation();
+  }
+  const Vector3d tip = hands::pad_pose(hand, finger.tip_pad, X_OL).translation();
+  const Vector3d axis = (configuration.X_OH.linear() * hand.palm.direction_H).normalized();
+  return azimuth_error(tip - pivot, target.point_O - pivot, axis);
+}
+
+/// The independent joint behind a swing joint.
+int leader_of(const hands::HandModel& hand, int joint) {
+  while (hand.joints[joint].coupling) joint = hand.joints[joint].coupling->leader;
+  return joint;
+}
+
+}  // namespace
+
+double azimuth_error(const Vector3d& from, const Vector3d& to, const Vector3d& axis) {
+  const Vector3d a = from - from.dot(axis) * axis;
+  const Vector3d b = to - to.dot(axis) * axis;
+  if (a.norm() < 1e-9 || b.norm() < 1e-9) return 0.0;
+  return std::atan2(axis.dot(a.cross(b)), a.dot(b));
+}
+
+RigidTransform turned(const RigidTransform& X_OH, const Vector3d& pivot, const Vector3d& axis,
+                      double angle) {
+  RigidTransform turn = RigidTransform::Identity();
+  turn.translate(pivot);
+  turn.rotate(Eigen::AngleAxisd(angle, axis));
+  turn.translate(-pivot);
+  RigidTransform result = turn * X_OH;
+  // Many small turns must not let the rotation drift.
+  result.linear() = Eigen::Quaterniond(result.linear()).normalized().toRotationMatrix();
+  return result;
+}
+
+Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
+                              const hands::HandConfiguration& configuration,
+                              const TargetContacts& targets) {
+  constexpr int kCoarse = 18;   // samples of the range; the error has one minimum per turn of a finger
+  constexpr int kRefine = 20;   // golden-section steps: the range shrinks by 0.618 each
+  constexpr double kGolden = 0.61803398874989485;
+  hands::HandConfiguration trial = configuration;
+  std::vector<int> leaders;
+  for (const TargetContact& target : targets.contacts) {
+    const hands::Finger& finger = hand.fingers[target.finger];
+    if (!finger.swing_joint) continue;
+    const int leader = leader_of(hand, *finger.swing_joint);
+    if (std::find(leaders.begin(), leaders.end(), leader) == leaders.end()) {
+      leaders.push_back(leader);
+    }
+  }
+  for (const int leader : leaders) {
+    const auto error_at = [&](double position) {
+      trial.q[leader] = position;
+      hands::apply_couplings(hand, trial.q);
+      const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, trial);
+      double sum = 0.0;
+      for (const TargetContact& target : targets.contacts) {
+        const hands::Finger& finger = hand.fingers[target.finger];
+        if (!finger.swing_joint || leader_of(hand, *finger.swing_joint) != leader) continue;
+        const double error = finger_error(hand, trial, X_OL, target);
+        sum += error * error;
+      }
+      return sum;
+    };
+    const double lower = hand.joints[leader].lower;
+    const double width = (hand.joints[leader].upper - lower) / kCoarse;
+    double best = lower;
+    double best_error = std::numeric_limits<double>::infinity();
+    for (int sample = 0; sample <= kCoarse; ++sample) {
+      const double error = error_at(lower + sample * width);
+      if (error < best_error) {
+        best_error = error;
+        best = lower + sample * width;
+      }
+    }
+    double a = std::max(lower, best - width);
+    double b = std::min(hand.joints[leader].upper, best + width);
+    double x1 = b - kGolden * (b - a);
+    double x2 = a + kGolden * (b - a);
+    double f1 = error_at(x1);
+    double f2 = error_at(x2);
+    for (int step = 0; step < kRefine; ++step) {
+      if (f1 <= f2) {
+        b = x2;
+        x2 = x1;
+        f2 = f1;
+        x1 = b - kGolden * (b - a);
+        f1 = error_at(x1);
+      } else {
+        a = x1;
+        x1 = x2;
+        f1 = f2;
+        x2 = a + kGolden * (b - a);
+        f2 = error_at(x2);
+      }
+    }
+    error_at(0.5 * (a + b));  // leaves the joint there
+  }
+  return trial.q;
+}
+
+double swing_error(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
+                   const TargetContacts& targets) {
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
+  double sum = 0.0;
+  for (std::size_t t = 1; t < targets.contacts.size(); ++t) {
+    const double error = finger_error(hand, configuration, X_OL, targets.contacts[t]);
+    sum += error * error;
+  }
+  return sum;
+}
+
+hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
+                                           const TargetContacts& targets,
+                                           const Vector3d& direction_O, double distance) {
+  hands::HandConfiguration configuration = hands::open_configuration(hand);
+  configuration.X_OH.linear() =
+      Eigen::Quaterniond::FromTwoVectors(hand.palm.direction_H, direction_O).toRotationMatrix();
+  const Vector3d palm_center = targets.centroid() - distance * direction_O;
+  configuration.X_OH.translation() =
+      palm_center - configuration.X_OH.linear() * hand.palm.center_H;
+  const TargetContact& seed = targets.contacts.front();
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
+  const Vector3d tip =
+      hands::pad_pose(hand, hand.fingers[seed.finger].tip_pad, X_OL).translation();
+  const double angle = azimuth_error(tip - palm_center, seed.point_O - palm_center, direction_O);
+  configuration.X_OH = turned(configuration.X_OH, palm_center, direction_O, angle);
+  configuration.q = aligned_swing(hand, configuration, targets);
+  return configuration;
+}
+
+TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
+                              const std::vector<int>& fingers, const PalmPlacement& placement) {
+  if (fingers.size() != targets.contacts.size()) {
+    throw geometry::InvalidInput("assign_fingers: " + std::to_string(fingers.size()) +
+                                 " fingers for " + std::to_string(targets.contacts.size()) +
+                                 " targets");
+  }
+  TargetContacts best;
+  double best_error = std::numeric_limits<double>::infinity();
+  std::vector<int> order(fingers.begin() + 1, fingers.end());
+  std::sort(order.begin(), order.end());
+  do {
+    TargetContacts assigned = targets;
+    assigned.contacts.front().finger = fingers.front();
+    for (std::size_t t = 0; t < order.size(); ++t) assigned.contacts[t + 1].finger = order[t];
+    const hands::HandConfiguration start = aligned_open_hand(
+        hand, assigned, placement.direction_O.normalized(), hands::largest_reach(hand));
+    const double error = swing_error(hand, start, assigned);
+    if (error < best_error) {
+      best_error = error;
+      best = std::move(assigned);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
+std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
+                                           const std::optional<Vector3d>& approach_O) {
+  constexpr int kDirectionsAroundAxis = 16;  // for two targets (A23)
+  const Vector3d center = targets.centroid();
+  std::vector<Vector3d> directions;
+  if (targets.contacts.size() == 2) {
+    const Vector3d axis =
+        (targets.contacts[1].point_O - targets.contacts[0].point_O).normalized();
+    const Vector3d first = axis.unitOrthogonal();
+    for (int k = 0; k < kDirectionsAroundAxis; ++k) {
+      directions.push_back(Eigen::AngleAxisd(2.0 * kPi * k / kDirectionsAroundAxis, axis) * first);
+    }
+  } else {
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const TargetContact& target : targets.contacts) {
+      spread += (target.point_O - center) * (target.point_O - center).transpose();
+    }
+    // The eigenvalues come in increasing order: the first vector is the plane's normal.
+    const Vector3d normal =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0).normalized();
+    directions = {normal, -normal};
+  }
+  if (approach_O) {
+    std::erase_if(directions, [&](const Vector3d& d) { return d.dot(*approach_O) <= 0.0; });
+    std::stable_sort(directions.begin(), directions.end(),
+                     [&](const Vector3d& a, const Vector3d& b) {
+                       return a.dot(*approach_O) > b.dot(*approach_O);
+                     });
+  } else {
+    // The palm stands where the object sticks out least from the targets' plane.
+    const auto extent = [&](const Vector3d& direction) {
+      double largest = 0.0;
+      for (const Vector3d& vertex : object.mesh().vertices) {
+        largest = std::max(largest, (center - vertex).dot(direction));
+      }
+      return largest;
+    };
+    std::vector<std::pair<double, Vector3d>> ranked;
+    for (const Vector3d& direction : directions) ranked.emplace_back(extent(direction), direction);
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::transform(ranked.begin(), ranked.end(), directions.begin(),
+                   [](const auto& entry) { return entry.second; });
+  }
+  std::vector<PalmPlacement> placements;
+  for (const Vector3d& direction : directions) placements.push_back({direction});
+  return placements;
+}
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,435 @@
+#include "graspfit/grasp/grasp_planner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::InvalidInput;
+using geometry::shortest_decimal;
+using Clock = std::chrono::steady_clock;
+
+// Nominal terms of an ideal contact: in the middle of its pad, a third of which meets the surface (A10, A48).
+constexpr double kIdealBoundaryDistance = 1.0;
+constexpr double kIdealArea = 0.3;
+
+/// Adds the time since its construction to a counter.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+void require(bool holds, const std::string& field, const std::string& value,
+             const std::string& range) {
+  if (!holds) throw InvalidInput("PlannerOptions: " + field + " = " + value + ", must be " + range);
+}
+
+/// Shorter side of the box around a pad's outline [m].
+double pad_width(const hands::ContactPad& pad) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : pad.outline) box.extend(corner);
+  return box.sizes().minCoeff();
+}
+
+std::string extents_of(const geometry::TriangleMesh& mesh) {
+  const Vector3d size = geometry::bounding_box(mesh).sizes();
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    text += (axis > 0 ? " x " : "") + shortest_decimal(std::round(size[axis] * 1e6) / 1e6);
+  }
+  return text + " m";
+}
+
+/// Refuses objects that no pair of the fingers could hold, whatever their pose.
+void check_size(const ObjectModel& object, const TipDistances& distances,
+                const std::vector<int>& fingers, double smallest_separation,
+                const std::string& hand) {
+  double widest = 0.0;
+  for (const int a : fingers) {
+    for (const int b : fingers) widest = std::max(widest, distances.ranges[a][b].largest);
+  }
+  const double thinnest = geometry::bounding_box(object.mesh()).sizes().minCoeff();
+  const double longest = geometry::longest_extent(object.mesh());
+  const std::string advice =
+      "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
+  if (thinnest > widest) {
+    throw InvalidInput("the object measures " + extents_of(object.mesh()) + ", the fingers of " +
+                       hand + " open to " + shortest_decimal(std::round(widest * 1e4) / 1e4) +
+                       " m" + advice);
+  }
+  if (longest < smallest_separation) {
+    throw InvalidInput("the object measures " + extents_of(object.mesh()) +
+                       ", less than the width of one fingertip of " + hand + " (" +
+                       shortest_decimal(smallest_separation) + " m)" + advice);
+  }
+}
+
+GraspPenetration measure_penetration(const hands::HandCollision& collision,
+                                     const geometry::MeshQuery& object,
+                                     const std::vector<geometry::RigidTransform>& X_OL) {
+  const hands::HandCollision::Result with_object = collision.against_object(object, X_OL);
+  const hands::HandCollision::Result with_self = collision.against_self(X_OL);
+  GraspPenetration result;
+  result.object_intersects = with_object.intersects;
+  result.object_depth = with_object.depth;
+  result.object_depth_bound = with_object.depth_bound;
+  result.object_link = with_object.link_a;
+  result.self_intersects = with_self.intersects;
+  result.self_depth = with_self.depth;
+  result.self_link_a = with_self.link_a;
+  result.self_link_b = with_self.link_b;
+  return result;
+}
+
+/// The run of one planner: what stays the same over all attempts.
+class Run {
+ public:
+  Run(const ObjectModel& object, const hands::HandModel& hand, const PlannerOptions& options)
+      : object_(object), hand_(hand), options_(with_planner_rules(object, hand, options)),
+        fingers_(requested_fingers(hand, options)),
+        fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
+        collision_(hand), distances_(tip_distances(hand)) {
+    context_.center_of_mass_O = object.mass.center_of_mass;
+    context_.normalizing_radius = object.normalizing_radius;
+    context_.hand = &hand_;
+    contact_options_.clip_thickness = clip_thickness(options, object.grid.lattice.voxel_size);
+    contact_options_.averaging = options.averaging;
+    check_size(object, distances_, fingers_, options_.targets.min_separation, hand.name);
+  }
+
+  PlannerResult operator()(const PlannerProgress& progress) {
+    const Clock::time_point start = Clock::now();
+    for (int outcome = 0; outcome <= static_cast<int>(AttemptOutcome::PoorShape); ++outcome) {
+      result_.statistics.outcomes[static_cast<AttemptOutcome>(outcome)] = 0;
+    }
+    for (const char* failure : {"no seed", "no second", "no further"}) {
+      result_.statistics.target_failures[failure] = 0;
+    }
+    result_.stop = PlannerStop::Attempts;
+    for (std::int64_t number = 0; number < options_.max_attempts; ++number) {
+      attempt(number);
+      if (progress) {
+        progress(number + 1, static_cast<std::int64_t>(result_.grasps.size()));
+      }
+      if (static_cast<int>(result_.grasps.size()) >= options_.count) {
+        result_.stop = PlannerStop::Count;
+        break;
+      }
+      const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+      if (options_.wall_clock_limit_s && elapsed > *options_.wall_clock_limit_s) {
+        result_.stop = PlannerStop::WallClock;
+        break;
+      }
+    }
+    std::stable_sort(
+        result_.grasps.begin(), result_.grasps.end(),
+        [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
+    result_.timings.total_s = std::chrono::duration<double>(Clock::now() - start).count();
+    return std::move(result_);
+  }
+
+ private:
+  /// A grasp and how good an end of the attempt it is; smaller outcomes are better.
+  struct Candidate {
+    AttemptOutcome outcome = AttemptOutcome::NoTargets;
+    std::optional<Grasp> grasp;
+  };
+
+  static PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
+                                           PlannerOptions options) {
+    options.validate();
+    const std::vector<int> fingers = requested_fingers(hand, options);
+    if (options.targets.min_separation == 0.0) {
+      for (const int finger : fingers) {
+        options.targets.min_separation =
+            std::max(options.targets.min_separation, pad_width(hand.pads[hand.fingers[finger].tip_pad]));
+      }
+    }
+    if (options.quality.merge_distance == 0.0) {
+      options.quality.merge_distance = 0.1 * object.grid.lattice.voxel_size;
+    }
+    return options;
+  }
+
+  void attempt(std::int64_t number) {
+    PlannerStatistics& statistics = result_.statistics;
+    ++statistics.attempts;
+    geometry::Random random =
+        geometry::Random::stream(options_.seed, static_cast<std::uint64_t>(number));
+    TargetSelection selection;
+    {
+      const Stopwatch watch(result_.timings.targets_s);
+      selection =
+          select_target_contacts(object_, distances_, fingers_, options_.targets, random);
+    }
+    statistics.seeds_tried += selection.seeds_tried;
+    if (!selection.targets) {
+      ++statistics.outcomes[AttemptOutcome::NoTargets];
+      ++statistics.target_failures[selection.failure == TargetFailure::NoSeed     ? "no seed"
+                                   : selection.failure == TargetFailure::NoSecond ? "no second"
+                                                                                  : "no further"];
+      return;
+    }
+    std::optional<Candidate> best;
+    for (const PalmPlacement& placement :
+         palm_placements(object_, *selection.targets, options_.approach_O)) {
+      Candidate candidate = fit(*selection.targets, placement, number);
+      const bool is_better = !best || candidate.outcome < best->outcome;
+      if (is_better) best = std::move(candidate);
+      if (best->grasp && is_accepted(*best->grasp)) break;
+    }
+    // With an approach cone, a triangle whose plane holds the approach has no placement at all.
+    const AttemptOutcome outcome = best ? best->outcome : AttemptOutcome::NoTargets;
+    ++statistics.outcomes[outcome];
+    if (!best) ++statistics.target_failures["no further"];
+    if (best && best->grasp && is_accepted(*best->grasp)) {
+      result_.grasps.push_back(std::move(*best->grasp));
+    }
+  }
+
+  /// One hand fitted to one target set from one side.
+  Candidate fit(const TargetContacts& targets, const PalmPlacement& placement,
+                std::int64_t number) {
+    FittingResult fitted;
+    TargetContacts assigned;
+    {
+      const Stopwatch watch(result_.timings.fitting_s);
+      assigned = assign_fingers(hand_, targets, fingers_, placement);
+      fitted = fit_hand(fitting_hand_, object_, assigned, placement, contact_options_,
+                        options_.fitting);
+    }
+    result_.statistics.fitting_iterations += fitted.iterations;
+    switch (fitted.stop) {
+      case FittingStop::InitialCollision:
+        return {AttemptOutcome::InitialCollision, std::nullopt};
+      case FittingStop::MissedContact:
+        return {AttemptOutcome::MissedContact, std::nullopt};
+      case FittingStop::IterationLimit:
+        return {AttemptOutcome::IterationLimit, std::nullopt};
+      case FittingStop::Contact:
+        break;
+    }
+    Grasp grasp;
+    grasp.configuration = fitted.configuration;
+    grasp.targets = assigned;
+    grasp.contacts = fitted.contacts;
+    grasp.has_all_contacts = true;
+    grasp.attempt = number;
+    grasp.iterations = fitted.iterations;
+    {
+      const Stopwatch watch(result_.timings.estimation_s);
+      grasp.quality = contact_quality(grasp.contacts, context_, options_.quality);
+      grasp.ideal_m = ideal_m(assigned);
+    }
+    if (!grasp.is_usable()) {
+      const bool is_unstable = grasp.quality.stable_pairs.empty();
+      return {is_unstable ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape, std::nullopt};
+    }
+    {
+      const Stopwatch watch(result_.timings.penetration_s);
+      grasp.penetration = measure_penetration(
+          collision_, object_.query, hands::forward_kinematics(hand_, grasp.configuration));
+    }
+    if (grasp.penetration.self_depth > options_.self_overlap) {
+      return {AttemptOutcome::SelfCollision, std::nullopt};
+    }
+    const AttemptOutcome outcome =
+        grasp.is_valid() ? AttemptOutcome::Valid : AttemptOutcome::UsableOnly;
+    return {outcome, std::move(grasp)};
+  }
+
+  double ideal_m(const TargetContacts& targets) const {
+    std::vector<Contact> contacts;
+    for (const TargetContact& target : targets.contacts) {
+      Contact contact;
+      contact.point_O = target.point_O;
+      contact.inward_normal_O = -target.outward_normal_O;
+      contact.finger = target.finger;
+      contacts.push_back(contact);
+    }
+    return ideal_quality(contacts, context_, kIdealBoundaryDistance, kIdealArea, options_.quality)
+        .m;
+  }
+
+  bool is_accepted(const Grasp& grasp) const {
+    switch (options_.acceptance) {
+      case Acceptance::Valid:
+        return grasp.is_valid();
+      case Acceptance::Usable:
+        return grasp.is_usable();
+      case Acceptance::Quality:
+        return grasp.is_usable() && grasp.quality.m >= std::min(0.5 * grasp.ideal_m, 0.6);
+    }
+    return false;
+  }
+
+  const ObjectModel& object_;
+  const hands::HandModel& hand_;
+  const PlannerOptions options_;
+  const std::vector<int> fingers_;
+  const FittingHand fitting_hand_;
+  const hands::HandCollision collision_;
+  const TipDistances distances_;
+  QualityContext context_;
+  ContactEstimationOptions contact_options_;
+  PlannerResult result_;
+};
+
+}  // namespace
+
+void PlannerOptions::validate() const {
+  require(count >= 1, "count", std::to_string(count), ">= 1");
+  require(max_attempts >= 1, "max_attempts", std::to_string(max_attempts), ">= 1");
+  require(!fingers.empty() || num_contacts >= 2, "num_contacts", std::to_string(num_contacts),
+          ">= 2");
+  require(fingers.empty() || fingers.size() >= 2, "fingers", std::to_string(fingers.size()),
+          "at least two names");
+  require(resolution >= 4 && resolution <= 512, "resolution", std::to_string(resolution),
+          "in [4, 512]");
+  if (approach_O) {
+    require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
+            shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
+                shortest_decimal((*approach_O)[2]),
+            "finite and not zero");
+  }
+  if (wall_clock_limit_s) {
+    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", shortest_decimal(*wall_clock_limit_s),
+            "> 0 s");
+  }
+  if (clip_thickness) {
+    require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
+            shortest_decimal(*clip_thickness), "finite and > 0 m");
+  }
+  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap",
+          shortest_decimal(self_overlap), "finite and >= 0 m");
+  score.validate();
+  targets.validate();
+  fitting.validate();
+  quality.validate();
+}
+
+const char* outcome_name(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::Valid:
+      return "valid";
+    case AttemptOutcome::UsableOnly:
+      return "usable but not valid";
+    case AttemptOutcome::NoTargets:
+      return "no target set";
+    case AttemptOutcome::InitialCollision:
+      return "initial collision";
+    case AttemptOutcome::MissedContact:
+      return "missed contact";
+    case AttemptOutcome::SelfCollision:
+      return "self-collision";
+    case AttemptOutcome::IterationLimit:
+      return "iteration limit";
+    case AttemptOutcome::Unstable:
+      return "no stable pair";
+    case AttemptOutcome::PoorShape:
+      return "poor shape";
+  }
+  return "";
+}
+
+std::int64_t PlannerStatistics::usable() const {
+  return valid() + outcomes.at(AttemptOutcome::UsableOnly);
+}
+
+std::int64_t PlannerStatistics::valid() const { return outcomes.at(AttemptOutcome::Valid); }
+
+double clip_thickness(const PlannerOptions& options, double voxel_size) {
+  return options.clip_thickness.value_or(std::max(0.5 * voxel_size, 0.001));
+}
+
+std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOptions& options) {
+  std::vector<int> fingers;
+  if (options.fingers.empty()) {
+    if (options.num_contacts > static_cast<int>(hand.fingers.size())) {
+      throw InvalidInput("hand " + hand.name + " has " + std::to_string(hand.fingers.size()) +
+                         " fingers, " + std::to_string(options.num_contacts) +
+                         " contacts were asked for");
+    }
+    fingers.push_back(hand.thumb());
+    for (int finger = 0; static_cast<int>(fingers.size()) < options.num_contacts; ++finger) {
+      if (finger != hand.thumb()) fingers.push_back(finger);
+    }
+  } else {
+    for (const std::string& name : options.fingers) {
+      const int finger = hand.finger_index(name);
+      if (std::find(fingers.begin(), fingers.end(), finger) != fingers.end()) {
+        throw InvalidInput("finger " + name + " is named twice");
+      }
+      fingers.push_back(finger);
+    }
+  }
+  for (const int finger : fingers) {
+    if (hand.fingers[finger].tip_pad < 0) {
+      throw InvalidInput("finger " + hand.fingers[finger].name + " of hand " + hand.name +
+                         " has no fingertip pad");
+    }
+  }
+  const auto thumb = std::find(fingers.begin(), fingers.end(), hand.thumb());
+  if (thumb != fingers.end()) std::rotate(fingers.begin(), thumb, thumb + 1);
+  return fingers;
+}
+
+ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
+                           const PlannerOptions& options, ObjectModelTimings* timings) {
+  options.validate();
+  ObjectModelOptions object_options;
+  object_options.resolution = options.resolution;
+  object_options.margin = hands::largest_reach(hand);
+  object_options.averaging = options.averaging;
+  object_options.score = options.score;
+  return build_object_model(mesh, object_options, timings);
+}
+
+PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
+                          const PlannerOptions& options, const PlannerProgress& progress) {
+  return Run(object, hand, options)(progress);
+}
+
+Grasp measure_grasp(const hands::HandModel& hand, const hands::HandCollision& collision,
+                    const geometry::MeshQuery& object, const QualityContext& context,
+                    const hands::HandConfiguration& configuration,
+                    const std::vector<int>& requested_fingers,
+                    const ContactEstimationOptions& contact_options,
+                    const QualityOptions& quality_options) {
+  hands::validate(hand, configuration);
+  const std::vector<geometry::RigidTransform> X_OL =
+      hands::forward_kinematics(hand, configuration);
+  Grasp grasp;
+  grasp.configuration = configuration;
+  grasp.contacts = estimate_contacts(hand, X_OL, object, contact_options);
+  grasp.has_all_contacts = true;
+  for (const int finger : requested_fingers) {
+    bool has_contact = false;
+    for (Contact& contact : grasp.contacts) {
+      if (contact.pad == hand.fingers[finger].tip_pad) has_contact = contact.is_target = true;
+    }
+    grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
+  }
+  grasp.quality = contact_quality(grasp.contacts, context, quality_options);
+  grasp.penetration = measure_penetration(collision, object, X_OL);
+  return grasp;
+}
+
+}  // namespace graspfit::grasp
