@@ -13,29 +13,38 @@ fail() {
   exit 1
 }
 
-# run_with_progress LABEL LOG COMMAND...: the command's output goes to LOG; the terminal shows one
-# line with the time and the newest output. Without a terminal, a line every 15 seconds. If the
-# command fails, the end of the log is shown and its exit code returned.
-run_with_progress() {
-  local label=$1 log=$log_directory/$2 start=$SECONDS shown=$SECONDS newest width code=0
-  shift 2
-  "$@" >"$log" 2>&1 </dev/null &
-  local pid=$!
-  while kill -0 "$pid" 2>/dev/null; do
-    newest=$(tail -c 2000 "$log" 2>/dev/null | tr '\r' '\n' | tr -cd '[:print:]\n' |
+# What run_with_progress shows while a command runs: with a terminal one line that is rewritten,
+# without one a line every 15 seconds.
+show_progress() {
+  local label=$1 log=$2 start=$SECONDS shown=$SECONDS line width
+  while kill -0 $$ 2>/dev/null; do # ends with the script, however that ends
+    sleep 0.3
+    [ -t 1 ] || ((SECONDS - shown >= 15)) || continue
+    shown=$SECONDS
+    line=$(tail -c 2000 "$log" 2>/dev/null | tr '\r' '\n' | tr -cd '[:print:]\n' |
       sed '/^ *$/d' | tail -n 1)
+    line="$label: $((SECONDS - start)) s  $line"
     if [ -t 1 ]; then
       width=$(($(tput cols 2>/dev/null || echo 80) - 1))
-      newest="$label: $((SECONDS - start)) s  $newest"
-      printf '\r\033[K%s' "${newest:0:width}"
-    elif ((SECONDS - shown >= 15)); then
-      shown=$SECONDS
-      newest="$label: $((SECONDS - start)) s  $newest"
-      printf '%s\n' "${newest:0:120}"
+      printf '\r\033[K%s' "${line:0:width}"
+    else
+      printf '%s\n' "${line:0:120}"
     fi
-    sleep 0.2
   done
-  wait "$pid" || code=$?
+}
+
+# run_with_progress LABEL LOG COMMAND...: runs the command with its output in LOG. If it fails, the
+# end of the log is shown and its exit code returned. (`set -e` does not reach into a function whose
+# failure the caller handles, so COMMAND must chain its own steps.)
+run_with_progress() {
+  local label=$1 log=$log_directory/$2 start=$SECONDS watcher code=0
+  shift 2
+  : >"$log"
+  show_progress "$label" "$log" &
+  watcher=$!
+  ("$@") >"$log" 2>&1 </dev/null || code=$?
+  kill "$watcher" 2>/dev/null || true
+  wait "$watcher" 2>/dev/null || true
   if [ -t 1 ]; then printf '\r\033[K'; fi
   if ((code != 0)); then
     tail -n 60 "$log"
@@ -97,7 +106,6 @@ download_demo() {
   apt-get -q -o APT::Sandbox::User=root -o Acquire::Retries=3 download libcgal-demo
 }
 
-# Chained by hand: `set -e` does not reach a function whose failure the caller handles.
 unpack_meshes() {
   local archive
   cd "$1" || return
@@ -114,6 +122,8 @@ unpack_meshes() {
 # They are unpacked beside it and renamed, so that an interrupted run leaves nothing half done.
 fetch_meshes() {
   if [ -n "${GRASPFIT_PACKAGED_MESHES:-}" ]; then
+    [ -f "$GRASPFIT_PACKAGED_MESHES/bunny00.off" ] ||
+      fail "GRASPFIT_PACKAGED_MESHES=$GRASPFIT_PACKAGED_MESHES: no bunny00.off there"
     say "meshes: $GRASPFIT_PACKAGED_MESHES"
     return
   fi
