@@ -1,4 +1,5 @@
-# Installs the build into an empty folder, then builds and runs a project that knows that folder only.
+# Installs the build into an empty folder, then builds and runs a project that knows that folder
+# only. What the project's program prints goes to OUTPUT.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
@@ -8,8 +9,11 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
+file(MAKE_DIRECTORY ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/consumer)
+run(${WORK_DIR}/build/${PROGRAM} OUTPUT_FILE ${WORK_DIR}/output.txt)
+file(READ ${WORK_DIR}/output.txt output)
+message("${output}")
