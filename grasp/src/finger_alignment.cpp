@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Azimuth error of one assigned finger around its own swing axis's origin, or around the palm center where
-/// it does not swing.
+/// Azimuth error of one assigned finger around its own swing axis's origin, or around the palm
+/// center where it does not swing.
 double finger_error(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
                     const std::vector<RigidTransform>& X_OL, const TargetContact& target) {
   const hands::Finger& finger = hand.fingers[target.finger];
@@ -64,8 +64,9 @@ RigidTransform turned(const RigidTransform& X_OH, const Vector3d& pivot, const V
 Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const hands::HandConfiguration& configuration,
                               const TargetContacts& targets) {
-  constexpr int kCoarse = 18;   // samples of the range; the error has one minimum per turn of a finger
-  constexpr int kRefine = 20;   // golden-section steps: the range shrinks by 0.618 each
+  constexpr int kCoarse =
+      18;  // samples of the range; the error has one minimum per turn of a finger
+  constexpr int kRefine = 20;  // golden-section steps: the range shrinks by 0.618 each
   constexpr double kGolden = 0.61803398874989485;
   hands::HandConfiguration trial = configuration;
   std::vector<int> leaders;
@@ -146,12 +147,10 @@ hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
   configuration.X_OH.linear() =
       Eigen::Quaterniond::FromTwoVectors(hand.palm.direction_H, direction_O).toRotationMatrix();
   const Vector3d palm_center = targets.centroid() - distance * direction_O;
-  configuration.X_OH.translation() =
-      palm_center - configuration.X_OH.linear() * hand.palm.center_H;
+  configuration.X_OH.translation() = palm_center - configuration.X_OH.linear() * hand.palm.center_H;
   const TargetContact& seed = targets.contacts.front();
   const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
-  const Vector3d tip =
-      hands::pad_pose(hand, hand.fingers[seed.finger].tip_pad, X_OL).translation();
+  const Vector3d tip = hands::pad_pose(hand, hand.fingers[seed.finger].tip_pad, X_OL).translation();
   const double angle = azimuth_error(tip - palm_center, seed.point_O - palm_center, direction_O);
   configuration.X_OH = turned(configuration.X_OH, palm_center, direction_O, angle);
   configuration.q = aligned_swing(hand, configuration, targets);
@@ -190,8 +189,7 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
   const Vector3d center = targets.centroid();
   std::vector<Vector3d> directions;
   if (targets.contacts.size() == 2) {
-    const Vector3d axis =
-        (targets.contacts[1].point_O - targets.contacts[0].point_O).normalized();
+    const Vector3d axis = (targets.contacts[1].point_O - targets.contacts[0].point_O).normalized();
     const Vector3d first = axis.unitOrthogonal();
     for (int k = 0; k < kDirectionsAroundAxis; ++k) {
       directions.push_back(Eigen::AngleAxisd(2.0 * kPi * k / kDirectionsAroundAxis, axis) * first);

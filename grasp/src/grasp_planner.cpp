@@ -10,6 +10,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "internal/stopwatch.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -19,22 +20,10 @@ using geometry::InvalidInput;
 using geometry::shortest_decimal;
 using Clock = std::chrono::steady_clock;
 
-// Nominal terms of an ideal contact: in the middle of its pad, a third of which meets the surface (A10, A48).
+// Nominal terms of an ideal contact: in the middle of its pad, a third of which meets the surface
+// (A10, A48).
 constexpr double kIdealBoundaryDistance = 1.0;
 constexpr double kIdealArea = 0.3;
-
-/// Adds the time since its construction to a counter.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  Clock::time_point start_ = Clock::now();
-};
 
 void require(bool holds, const std::string& field, const std::string& value,
              const std::string& range) {
@@ -57,28 +46,43 @@ std::string extents_of(const geometry::TriangleMesh& mesh) {
   return text + " m";
 }
 
-/// Refuses objects that no pair of the fingers could hold, whatever their pose.
-void check_size(const ObjectModel& object, const TipDistances& distances,
-                const std::vector<int>& fingers, double smallest_separation,
-                const std::string& hand) {
+/// Width of the widest fingertip pad among `fingers` [m].
+double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fingers) {
+  double width = 0.0;
+  for (const int finger : fingers) {
+    width = std::max(width, pad_width(hand.pads[hand.fingers[finger].tip_pad]));
+  }
+  return width;
+}
+
+/// Refuses objects that could not be held whatever their pose: smaller than one fingertip, or
+/// thicker than the fingers open (`widest`).
+void check_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
+                const std::vector<int>& fingers, double widest) {
+  const auto in_tenths_of_millimeters = [](double length) {
+    return shortest_decimal(std::round(length * 1e4) / 1e4) + " m";
+  };
+  const std::string advice =
+      "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
+  if (geometry::bounding_box(mesh).sizes().minCoeff() > widest) {
+    throw InvalidInput("the object measures " + extents_of(mesh) + ", hand " + hand.name +
+                       " spans at most " + in_tenths_of_millimeters(widest) + advice);
+  }
+  const double smallest = fingertip_width(hand, fingers);
+  if (geometry::longest_extent(mesh) < smallest) {
+    throw InvalidInput("the object measures " + extents_of(mesh) +
+                       ", less than one fingertip of hand " + hand.name + " (" +
+                       in_tenths_of_millimeters(smallest) + ")" + advice);
+  }
+}
+
+/// Largest distance between two of the fingertips [m].
+double widest_opening(const TipDistances& distances, const std::vector<int>& fingers) {
   double widest = 0.0;
   for (const int a : fingers) {
     for (const int b : fingers) widest = std::max(widest, distances.ranges[a][b].largest);
   }
-  const double thinnest = geometry::bounding_box(object.mesh()).sizes().minCoeff();
-  const double longest = geometry::longest_extent(object.mesh());
-  const std::string advice =
-      "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
-  if (thinnest > widest) {
-    throw InvalidInput("the object measures " + extents_of(object.mesh()) + ", the fingers of " +
-                       hand + " open to " + shortest_decimal(std::round(widest * 1e4) / 1e4) +
-                       " m" + advice);
-  }
-  if (longest < smallest_separation) {
-    throw InvalidInput("the object measures " + extents_of(object.mesh()) +
-                       ", less than the width of one fingertip of " + hand + " (" +
-                       shortest_decimal(smallest_separation) + " m)" + advice);
-  }
+  return widest;
 }
 
 GraspPenetration measure_penetration(const hands::HandCollision& collision,
@@ -102,16 +106,19 @@ GraspPenetration measure_penetration(const hands::HandCollision& collision,
 class Run {
  public:
   Run(const ObjectModel& object, const hands::HandModel& hand, const PlannerOptions& options)
-      : object_(object), hand_(hand), options_(with_planner_rules(object, hand, options)),
+      : object_(object),
+        hand_(hand),
+        options_(with_planner_rules(object, hand, options)),
         fingers_(requested_fingers(hand, options)),
         fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
-        collision_(hand), distances_(tip_distances(hand)) {
+        collision_(hand),
+        distances_(tip_distances(hand)) {
     context_.center_of_mass_O = object.mass.center_of_mass;
     context_.normalizing_radius = object.normalizing_radius;
     context_.hand = &hand_;
     contact_options_.clip_thickness = clip_thickness(options, object.grid.lattice.voxel_size);
     contact_options_.averaging = options.averaging;
-    check_size(object, distances_, fingers_, options_.targets.min_separation, hand.name);
+    check_size(object.mesh(), hand, fingers_, widest_opening(distances_, fingers_));
   }
 
   PlannerResult operator()(const PlannerProgress& progress) {
@@ -138,9 +145,8 @@ class Run {
         break;
       }
     }
-    std::stable_sort(
-        result_.grasps.begin(), result_.grasps.end(),
-        [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
+    std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
+                     [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
     result_.timings.total_s = std::chrono::duration<double>(Clock::now() - start).count();
     return std::move(result_);
   }
@@ -157,10 +163,7 @@ class Run {
     options.validate();
     const std::vector<int> fingers = requested_fingers(hand, options);
     if (options.targets.min_separation == 0.0) {
-      for (const int finger : fingers) {
-        options.targets.min_separation =
-            std::max(options.targets.min_separation, pad_width(hand.pads[hand.fingers[finger].tip_pad]));
-      }
+      options.targets.min_separation = fingertip_width(hand, fingers);
     }
     if (options.quality.merge_distance == 0.0) {
       options.quality.merge_distance = 0.1 * object.grid.lattice.voxel_size;
@@ -176,8 +179,7 @@ class Run {
     TargetSelection selection;
     {
       const Stopwatch watch(result_.timings.targets_s);
-      selection =
-          select_target_contacts(object_, distances_, fingers_, options_.targets, random);
+      selection = select_target_contacts(object_, distances_, fingers_, options_.targets, random);
     }
     statistics.seeds_tried += selection.seeds_tried;
     if (!selection.targets) {
@@ -212,10 +214,11 @@ class Run {
     {
       const Stopwatch watch(result_.timings.fitting_s);
       assigned = assign_fingers(hand_, targets, fingers_, placement);
-      fitted = fit_hand(fitting_hand_, object_, assigned, placement, contact_options_,
-                        options_.fitting);
+      fitted =
+          fit_hand(fitting_hand_, object_, assigned, placement, contact_options_, options_.fitting);
     }
     result_.statistics.fitting_iterations += fitted.iterations;
+    result_.timings.contact_tests_s += fitted.contact_tests_s;
     switch (fitted.stop) {
       case FittingStop::InitialCollision:
         return {AttemptOutcome::InitialCollision, std::nullopt};
@@ -234,7 +237,7 @@ class Run {
     grasp.attempt = number;
     grasp.iterations = fitted.iterations;
     {
-      const Stopwatch watch(result_.timings.estimation_s);
+      const Stopwatch watch(result_.timings.measure_s);
       grasp.quality = contact_quality(grasp.contacts, context_, options_.quality);
       grasp.ideal_m = ideal_m(assigned);
     }
@@ -394,6 +397,9 @@ std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOp
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
                            const PlannerOptions& options, ObjectModelTimings* timings) {
   options.validate();
+  // Before the voxels: a coin-sized object at 30 voxels would fill the hand's reach with billions
+  // of them.
+  check_size(mesh, hand, requested_fingers(hand, options), 2.0 * hands::largest_reach(hand));
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
   object_options.margin = hands::largest_reach(hand);
@@ -414,8 +420,7 @@ Grasp measure_grasp(const hands::HandModel& hand, const hands::HandCollision& co
                     const ContactEstimationOptions& contact_options,
                     const QualityOptions& quality_options) {
   hands::validate(hand, configuration);
-  const std::vector<geometry::RigidTransform> X_OL =
-      hands::forward_kinematics(hand, configuration);
+  const std::vector<geometry::RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
   Grasp grasp;
   grasp.configuration = configuration;
   grasp.contacts = estimate_contacts(hand, X_OL, object, contact_options);

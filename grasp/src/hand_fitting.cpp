@@ -11,6 +11,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/finger_alignment.hpp"
+#include "internal/stopwatch.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -28,8 +29,8 @@ void require(bool holds, const std::string& field, const std::string& value,
   if (!holds) throw InvalidInput("FittingOptions: " + field + " = " + value + ", must be " + range);
 }
 
-/// Points on the surface of a mesh, no farther than `spacing` from each other within a face: vertices, and a
-/// barycentric lattice in faces that are longer.
+/// Points on the surface of a mesh, no farther than `spacing` from each other within a face:
+/// vertices, and a barycentric lattice in faces that are longer.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
   std::vector<Vector3d> points = mesh.vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -75,9 +76,10 @@ struct Part {
   int finger = -1;
   int pad = -1;
   int tip_link = -1;
-  std::size_t target = 0;      ///< Index into the target set.
-  int closing_joint = -1;      ///< The proximal joint; the distal one after a breakaway.
-  int breakaway_joint = -1;    ///< The joint that goes on when the proximal link is blocked; −1 if none.
+  std::size_t target = 0;  ///< Index into the target set.
+  int closing_joint = -1;  ///< The proximal joint; the distal one after a breakaway.
+  int breakaway_joint =
+      -1;  ///< The joint that goes on when the proximal link is blocked; −1 if none.
   std::vector<int> distal_joints;  ///< Independent joints beyond the proximal one (step 5).
   State state = State::Free;
 };
@@ -87,8 +89,12 @@ class Loop {
  public:
   Loop(const FittingHand& hand, const ObjectModel& object, const TargetContacts& targets,
        const ContactEstimationOptions& contact_options, const FittingOptions& options)
-      : hand_(hand), model_(hand.model()), object_(object), targets_(targets),
-        contact_options_(contact_options), options_(options),
+      : hand_(hand),
+        model_(hand.model()),
+        object_(object),
+        targets_(targets),
+        contact_options_(contact_options),
+        options_(options),
         voxel_size_(object.grid.lattice.voxel_size) {
     for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
       moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
@@ -174,8 +180,8 @@ class Loop {
     for (const int link : all_links_) link_distance_[link] = distance_of(link, X_OL_[link]);
   }
 
-  /// The paper's initial configuration (section 7): fingers open, palm facing the targets, clear of the
-  /// object. False if no distance is clear.
+  /// The paper's initial configuration (section 7): fingers open, palm facing the targets, clear of
+  /// the object. False if no distance is clear.
   bool place(const PalmPlacement& placement) {
     const Vector3d direction = placement.direction_O.normalized();
     const Vector3d center = targets_.centroid();
@@ -233,19 +239,19 @@ class Loop {
     return true;
   }
 
-  std::optional<Contact> contact_of(const Part& part,
-                                    const std::vector<RigidTransform>& X_OL) const {
+  std::optional<Contact> contact_of(const Part& part, const std::vector<RigidTransform>& X_OL) {
+    const Stopwatch watch(contact_tests_s_);
     return estimate_contact(model_, part.pad, hands::pad_pose(model_, part.pad, X_OL),
                             object_.query, contact_options_);
   }
 
   /// Section 10: the clip test is made once the tip link shares a voxel with the surface.
-  bool touches(const Part& part) const {
+  bool touches(const Part& part) {
     return link_distance_[part.tip_link] == 0.0F && contact_of(part, X_OL_).has_value();
   }
 
-  /// Distance of the farthest point that joint `joint` moves from its origin, enlarged by what coupled
-  /// joints add: bounds the motion per radian [m/rad].
+  /// Distance of the farthest point that joint `joint` moves from its origin, enlarged by what
+  /// coupled joints add: bounds the motion per radian [m/rad].
   double lever(int joint) const {
     if (model_.joints[joint].type == hands::JointType::Prismatic) return 1.0;
     const Vector3d origin =
@@ -289,7 +295,8 @@ class Loop {
     for (int halving = 0; halving <= options_.max_halvings; ++halving, step /= 2) {
       if (try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint])) return;
     }
-    // Blocked at the tip means done; blocked farther back lets the clutch free the distal joint (A27).
+    // Blocked at the tip means done; blocked farther back lets the clutch free the distal joint
+    // (A27).
     const bool is_tip = blocking_link_ == part.tip_link;
     if (is_tip || !break_away(part)) {
       part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
@@ -303,8 +310,8 @@ class Loop {
     return true;
   }
 
-  /// Tries a motion of the whole hand, its length bounded by the guard; `make(share)` gives the pose for a
-  /// share of the motion wanted, `length` is that of the fastest point.
+  /// Tries a motion of the whole hand, its length bounded by the guard; `make(share)` gives the
+  /// pose for a share of the motion wanted, `length` is that of the fastest point.
   template <typename MakePose>
   void move_hand(double length, MakePose make) {
     if (length < 1e-9) return;
@@ -347,8 +354,8 @@ class Loop {
     });
   }
 
-  /// Step 4: fingers that can swing around the palm toward their targets. Fingers that share a joint take
-  /// the angle with the least sum of squared errors (A26).
+  /// Step 4: fingers that can swing around the palm toward their targets. Fingers that share a
+  /// joint take the angle with the least sum of squared errors (A26).
   void swing_to_targets() {
     const Eigen::VectorXd wanted = aligned_swing(model_, configuration_, targets_);
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
@@ -363,7 +370,8 @@ class Loop {
     }
   }
 
-  /// Step 5: distal joints turn so that the reversed normal of the fingertip agrees with the target's.
+  /// Step 5: distal joints turn so that the reversed normal of the fingertip agrees with the
+  /// target's.
   void align_distal(const Part& part) {
     for (const int joint : part.distal_joints) {
       const Vector3d pad_normal =
@@ -384,7 +392,11 @@ class Loop {
   void finish(FittingResult& result) {
     result.configuration = configuration_;
     result.smallest_distance = distance_over(all_links_);
-    result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_);
+    {
+      const Stopwatch watch(contact_tests_s_);
+      result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_);
+    }
+    result.contact_tests_s = contact_tests_s_;
     bool has_all = true;
     for (const Part& part : parts_) {
       bool has_contact = false;
@@ -410,9 +422,10 @@ class Loop {
   std::vector<Part> parts_;  ///< One per target, the seed's first.
   hands::HandConfiguration configuration_;
   std::vector<RigidTransform> X_OL_;
-  std::vector<float> link_distance_;   ///< d_min of every link [voxels].
+  std::vector<float> link_distance_;  ///< d_min of every link [voxels].
   std::vector<float> trial_distance_;
   int blocking_link_ = -1;
+  double contact_tests_s_ = 0.0;
 };
 
 }  // namespace
@@ -454,8 +467,10 @@ float smallest_distance(const FittingHand& hand, int link, const RigidTransform&
   const double voxel_size = map.lattice.voxel_size;
   float smallest = std::numeric_limits<float>::infinity();
   for (const FittingHand::Cluster& cluster : hand.clusters(link)) {
-    // Values change by at most one per voxel between voxel centers, and a point is within √3/2 of its own.
-    const double bound = map.at(Vector3d(X_OL * cluster.center_L)) - cluster.radius / voxel_size - kSqrt3;
+    // Values change by at most one per voxel between voxel centers, and a point is within √3/2 of
+    // its own.
+    const double bound =
+        map.at(Vector3d(X_OL * cluster.center_L)) - cluster.radius / voxel_size - kSqrt3;
     if (bound >= smallest || bound > enough) {
       smallest = std::min(smallest, static_cast<float>(std::max<double>(bound, enough + 0.5)));
       continue;
@@ -479,10 +494,9 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
   }
   for (const TargetContact& target : targets.contacts) {
     if (target.finger < 0 || target.finger >= static_cast<int>(hand.model().fingers.size())) {
-      throw InvalidInput("fit_hand: a target is assigned to finger " +
-                         std::to_string(target.finger) + " of " +
-                         std::to_string(hand.model().fingers.size()) +
-                         "; call assign_fingers first");
+      throw InvalidInput(
+          "fit_hand: a target is assigned to finger " + std::to_string(target.finger) + " of " +
+          std::to_string(hand.model().fingers.size()) + "; call assign_fingers first");
     }
   }
   return Loop(hand, object, targets, contact_options, options).run(placement);

@@ -42,7 +42,10 @@ class Selection {
  public:
   Selection(const ObjectModel& object, const TipDistances& distances,
             const std::vector<int>& fingers, const TargetOptions& options, geometry::Random& random)
-      : object_(object), distances_(distances), fingers_(fingers), options_(options),
+      : object_(object),
+        distances_(distances),
+        fingers_(fingers),
+        options_(options),
         random_(random) {
     for (std::size_t p = 0; p < object.patches.size(); ++p) {
       if (object.patches[p].has_normal && object.scores.scores[p] > options.score_threshold) {
@@ -82,8 +85,8 @@ class Selection {
   const Vector3d& point(std::int32_t patch) const { return object_.patches[patch].centroid; }
   Vector3d inward(std::int32_t patch) const { return -object_.patches[patch].outward_normal; }
 
-  /// Whether some pair of fingers, not yet ruled out, reaches `distance` between target `earlier` and
-  /// the next one. The seed's finger is known; the others are assigned later.
+  /// Whether some pair of fingers, not yet ruled out, reaches `distance` between target `earlier`
+  /// and the next one. The seed's finger is known; the others are assigned later.
   bool in_reach(double distance, std::size_t earlier) const {
     const std::size_t first_a = earlier == 0 ? 0 : 1;
     const std::size_t last_a = earlier == 0 ? 1 : fingers_.size();
@@ -125,9 +128,8 @@ class Selection {
     const std::size_t size = chosen_.size() + 1;
     double centroid_error = 0.0;
     if (size == fingers_.size()) {
-      centroid_error =
-          (sum / static_cast<double>(size) - object_.mass.center_of_mass).norm() /
-          object_.normalizing_radius;
+      centroid_error = (sum / static_cast<double>(size) - object_.mass.center_of_mass).norm() /
+                       object_.normalizing_radius;
       if (centroid_error > options_.centroid_limit_rel * relaxation_) return std::nullopt;
     }
     if (!is_stable_with(patch, chosen_[0])) return std::nullopt;
@@ -139,8 +141,8 @@ class Selection {
     return edge_error + centroid_error;
   }
 
-  /// One of the best-ranked candidates for the next target. The second of three or more has nothing to be
-  /// ranked by yet and is drawn from all.
+  /// One of the best-ranked candidates for the next target. The second of three or more has nothing
+  /// to be ranked by yet and is drawn from all.
   std::optional<std::int32_t> draw_next() {
     candidates_.clear();
     for (const std::int32_t patch : pool_) {
@@ -153,8 +155,9 @@ class Selection {
       const auto share =
           static_cast<std::size_t>(std::ceil(options_.pool_fraction * static_cast<double>(size)));
       size = std::min(size, std::max<std::size_t>(share, options_.pool_minimum));
-      std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(size),
-                        candidates_.end(), [](const Candidate& a, const Candidate& b) {
+      std::partial_sort(candidates_.begin(),
+                        candidates_.begin() + static_cast<std::ptrdiff_t>(size), candidates_.end(),
+                        [](const Candidate& a, const Candidate& b) {
                           return a.rank != b.rank ? a.rank < b.rank : a.patch < b.patch;
                         });
     }
@@ -231,18 +234,18 @@ TipDistances tip_distances(const hands::HandModel& hand, int samples_per_joint) 
         std::int64_t digits = sample;
         for (const int joint : joints) {
           const hands::Joint& limits = hand.joints[joint];
-          const double share = is_grid ? static_cast<double>(digits % samples_per_joint) /
-                                             (samples_per_joint - 1)
-                                       : random.uniform();
+          const double share =
+              is_grid ? static_cast<double>(digits % samples_per_joint) / (samples_per_joint - 1)
+                      : random.uniform();
           digits /= samples_per_joint;
           configuration.q[joint] = limits.lower + share * (limits.upper - limits.lower);
         }
         // Positions that a breakaway joint kept from the sample before are not wanted here.
         for (std::size_t joint = 0; joint < hand.joints.size(); ++joint) {
           if (hand.joints[joint].coupling) {
-            configuration.q[static_cast<Eigen::Index>(joint)] =
-                hand.joints[joint].closing_sign < 0 ? hand.joints[joint].upper
-                                                    : hand.joints[joint].lower;
+            configuration.q[static_cast<Eigen::Index>(joint)] = hand.joints[joint].closing_sign < 0
+                                                                    ? hand.joints[joint].upper
+                                                                    : hand.joints[joint].lower;
           }
         }
         hands::apply_couplings(hand, configuration.q);

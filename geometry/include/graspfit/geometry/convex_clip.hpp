@@ -30,13 +30,14 @@ struct ClippedPiece {
 /// The part of triangle (a, b, c) inside `volume`; no piece if it has no area (touching at a point
 /// or along an edge is empty).
 ///
-/// Rounded: which planes cut which edges, and what is empty, are the decisions of real arithmetic on
-/// the given doubles; corner coordinates are rounded once at the end. A triangle that lies *in* a
-/// bounding plane counts as inside (half-spaces are closed).
+/// Rounded: which planes cut which edges, and what is empty, are the decisions of real arithmetic
+/// on the given doubles; corner coordinates are rounded once at the end. A triangle that lies *in*
+/// a bounding plane counts as inside (half-spaces are closed).
 std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const ConvexVolume& volume);
 
-/// Pieces of the given faces of a mesh inside `volume`, in the order of `faces`, empty ones left out.
+/// Pieces of the given faces of a mesh inside `volume`, in the order of `faces`, empty ones left
+/// out.
 std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
                                const ConvexVolume& volume);
 

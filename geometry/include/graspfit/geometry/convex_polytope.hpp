@@ -11,26 +11,26 @@ using HullFacet = std::vector<std::size_t>;
 
 /// The convex hull of points in space, of whatever dimension the points span.
 struct ConvexHull3 {
-  int rank = -1;                 ///< Dimension spanned: −1 no points, 0 one, 1 line, 2 plane, 3 space.
+  int rank = -1;  ///< Dimension spanned: −1 no points, 0 one, 1 line, 2 plane, 3 space.
   std::vector<std::size_t> vertices;  ///< Extreme points, ascending. rank 2: in order around.
   std::vector<HullFacet> facets;      ///< rank 3: triangles; coplanar ones not merged. rank 2: the
                                       ///< polygon once. Otherwise empty.
-  double measure = 0.0;          ///< Length, area or volume by rank [m, m², m³]. Rounded.
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< Of that measure [m]; of one point itself.
+  double measure = 0.0;               ///< Length, area or volume by rank [m, m², m³]. Rounded.
+  Eigen::Vector3d centroid =
+      Eigen::Vector3d::Zero();  ///< Of that measure [m]; of one point itself.
 };
 
 /// Thresholds below which a spread counts as none. Zero asks for the exact rank.
 struct HullOptions {
   double collinear_rel = 0.0;  ///< Second over first singular value of the centered points, ≥ 0.
   double planar_rel = 0.0;     ///< Thickness over extent (range along the third / first principal
-                               ///< axis), ≥ 0. Planar points are projected to their best-fit plane
-                               ///< before the polygon is taken.
+                            ///< axis), ≥ 0. Planar points are projected to their best-fit plane
+                            ///< before the polygon is taken.
   double merge_distance = 0.0;  ///< Points closer than this to an earlier one are dropped [m].
 };
 
-/// Hull, its measure and centroid. With zero thresholds the combinatorics are exact (CGAL predicates);
-/// measure and centroid are rounded. Equal points: the first counts.
+/// Hull, its measure and centroid. With zero thresholds the combinatorics are exact (CGAL
+/// predicates); measure and centroid are rounded. Equal points: the first counts.
 ConvexHull3 convex_hull(std::span<const Eigen::Vector3d> points, const HullOptions& options = {});
-
 
 }  // namespace graspfit::geometry

@@ -20,11 +20,11 @@ struct MeshAnalysis {
   std::size_t num_boundary_edges = 0;      ///< Edges with one face.
   std::size_t num_nonmanifold_edges = 0;   ///< Edges with more than two faces.
   std::size_t num_inconsistent_edges = 0;  ///< Two-face edges run through in the same direction.
-  std::size_t num_inward_parts = 0;        ///< Closed parts whose signed volume is negative and that
-                                           ///< no other part encloses.
+  std::size_t num_inward_parts = 0;  ///< Closed parts whose signed volume is negative and that
+                                     ///< no other part encloses.
   std::optional<std::size_t> num_self_intersections;  ///< Crossing pairs of faces (exact); empty if
                                                       ///< not asked for.
-  Eigen::AlignedBox3d box;                 ///< [m]
+  Eigen::AlignedBox3d box;                            ///< [m]
 
   bool is_closed = false;    ///< Every edge has exactly two faces, consistently oriented.
   bool is_manifold = false;  ///< No edge with more than two faces, no pinched vertex.
@@ -49,18 +49,18 @@ enum class RepairMode {
 /// Limits of `repair_mesh`.
 struct MeshRepairOptions {
   RepairMode mode = RepairMode::Repair;
-  double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its boundary
-                                     ///< over that of the mesh, in [0, 1]. Half lets a missing base
-                                     ///< plate be closed, not a missing half.
-  void validate() const;             ///< Throws InvalidInput naming the field and its value.
+  double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
+                                     ///< boundary over that of the mesh, in [0, 1]. Half lets a
+                                     ///< missing base plate be closed, not a missing half.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One thing that a repair did.
 struct RepairStep {
-  std::string what;       ///< One of "removed degenerate faces", "removed doubled faces",
-                          ///< "removed unused vertices", "split non-manifold vertices",
-                          ///< "turned parts", "filled holes".
-  std::size_t count = 0;  ///< How many of them, > 0.
+  std::string what;            ///< One of "removed degenerate faces", "removed doubled faces",
+                               ///< "removed unused vertices", "split non-manifold vertices",
+                               ///< "turned parts", "filled holes".
+  std::size_t count = 0;       ///< How many of them, > 0.
   double volume_change = 0.0;  ///< Change of the signed volume by this step [m³].
 };
 

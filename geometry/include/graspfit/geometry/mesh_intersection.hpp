@@ -13,10 +13,10 @@ bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& 
 
 /// How deep two solids overlap.
 struct Penetration {
-  bool intersects = false;     ///< As `do_intersect`: exact.
-  double depth = 0.0;          ///< [m] Deepest point found; a lower bound of the true depth. Zero if
-                               ///< they do not intersect.
-  double depth_bound = 0.0;    ///< [m] The true depth is at most this.
+  bool intersects = false;   ///< As `do_intersect`: exact.
+  double depth = 0.0;        ///< [m] Deepest point found; a lower bound of the true depth. Zero if
+                             ///< they do not intersect.
+  double depth_bound = 0.0;  ///< [m] The true depth is at most this.
   Eigen::Vector3d deepest_point_A = Eigen::Vector3d::Zero();
 };
 

@@ -15,11 +15,11 @@ struct MeshReadOptions {
 
 /// What a mesh file held and what reading did to it.
 struct MeshFileReport {
-  std::string format;                  ///< Lower-case extension that chose the reader, e.g. "off".
-  std::size_t num_file_vertices = 0;   ///< Vertices as stored (after the importer's own expansion).
-  std::size_t num_file_polygons = 0;   ///< Polygons as stored, triangles included.
+  std::string format;                 ///< Lower-case extension that chose the reader, e.g. "off".
+  std::size_t num_file_vertices = 0;  ///< Vertices as stored (after the importer's own expansion).
+  std::size_t num_file_polygons = 0;  ///< Polygons as stored, triangles included.
   std::size_t num_polygons_triangulated = 0;  ///< Polygons with more than three corners.
-  std::size_t num_vertices_welded = 0;        ///< Vertices dropped since another has the same position.
+  std::size_t num_vertices_welded = 0;  ///< Vertices dropped since another has the same position.
 };
 
 /// A mesh read from a file, welded and triangulated but not repaired.

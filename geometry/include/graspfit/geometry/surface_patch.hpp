@@ -18,16 +18,16 @@ enum class PatchAveraging {
 
 /// The paper's S_i: the object's triangles inside one partial voxel, clipped by its six planes.
 ///
-/// Tie rule: each bit of surface of positive area belongs to exactly one voxel. A piece that lies in
-/// the plane between two voxels belongs to the one with the higher index on that axis.
+/// Tie rule: each bit of surface of positive area belongs to exactly one voxel. A piece that lies
+/// in the plane between two voxels belongs to the one with the higher index on that axis.
 struct SurfacePatch {
-  std::int64_t voxel = -1;     ///< Index in the lattice.
-  double area = 0.0;           ///< [m²], > 0.
-  Eigen::Vector3d centroid;    ///< Mean of the pieces' centroids, projected to the nearest point of
-                               ///< the patch [m].
-  Eigen::Vector3d outward_normal;   ///< Mean of the pieces' normals, unit; zero if !has_normal.
-  bool has_normal = false;     ///< False where the mean normal before scaling is shorter than 0.1
-                               ///< (both sides of a thin part): never a target.
+  std::int64_t voxel = -1;   ///< Index in the lattice.
+  double area = 0.0;         ///< [m²], > 0.
+  Eigen::Vector3d centroid;  ///< Mean of the pieces' centroids, projected to the nearest point of
+                             ///< the patch [m].
+  Eigen::Vector3d outward_normal;  ///< Mean of the pieces' normals, unit; zero if !has_normal.
+  bool has_normal = false;  ///< False where the mean normal before scaling is shorter than 0.1
+                            ///< (both sides of a thin part): never a target.
   std::vector<std::int32_t> faces;  ///< Faces with a piece here, ascending.
 };
 

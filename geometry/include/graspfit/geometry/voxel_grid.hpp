@@ -21,9 +21,7 @@ struct VoxelLattice {
   Eigen::Vector3i counts = Eigen::Vector3i::Zero();  ///< Voxels per axis.
 
   double plane(int axis, int i) const { return origin[axis] + voxel_size * i; }
-  std::int64_t num_voxels() const {
-    return std::int64_t{counts[0]} * counts[1] * counts[2];
-  }
+  std::int64_t num_voxels() const { return std::int64_t{counts[0]} * counts[1] * counts[2]; }
   std::int64_t index(const Eigen::Vector3i& voxel) const {
     return voxel[0] + counts[0] * (voxel[1] + std::int64_t{counts[1]} * voxel[2]);
   }
@@ -44,13 +42,15 @@ struct VoxelLattice {
 
 /// Where the lattice's resolution and extent come from.
 struct LatticeOptions {
-  int resolution = 30;  ///< Voxels along the longest extent of the box, in [4, 512]. The paper's 30.
-  double margin = 0.0;  ///< Room added on every side [m], ≥ 0, rounded up to whole voxels (at least 1).
+  int resolution =
+      30;  ///< Voxels along the longest extent of the box, in [4, 512]. The paper's 30.
+  double margin =
+      0.0;  ///< Room added on every side [m], ≥ 0, rounded up to whole voxels (at least 1).
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// A lattice with `resolution` voxels along the longest extent of `box`, the box centered in it, grown
-/// by the margin on each side (paper section 3; notes A8).
+/// A lattice with `resolution` voxels along the longest extent of `box`, the box centered in it,
+/// grown by the margin on each side (paper section 3; notes A8).
 /// @throws DegenerateGeometry if the box is empty or has no extent.
 /// @throws InvalidInput if it would hold more than 2^31 − 1 voxels.
 VoxelLattice lattice_around(const Eigen::AlignedBox3d& box, const LatticeOptions& options);
@@ -74,8 +74,8 @@ struct VoxelGrid {
 /// Classifies every voxel. `patches` are those of the same mesh and lattice.
 ///
 /// Exact: a voxel is partial iff it has a patch (see SurfacePatch for the tie rule); the others
-/// form 6-connected regions that the surface does not cross, and each region is full or empty by the
-/// exact containment of one of its voxel centers.
+/// form 6-connected regions that the surface does not cross, and each region is full or empty by
+/// the exact containment of one of its voxel centers.
 VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
                    const std::vector<SurfacePatch>& patches);
 

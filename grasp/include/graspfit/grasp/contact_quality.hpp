@@ -12,8 +12,9 @@ namespace graspfit::grasp {
 
 /// Units of d and A in M1 and of D in M3 (notes A9–A11).
 enum class MeasureUnits {
-  Normalized,  ///< d over the pad's largest d, A over the pad's area, D over the normalizing radius.
-  Centimeters, ///< d, D in cm, A in cm².
+  Normalized,   ///< d over the pad's largest d, A over the pad's area, D over the normalizing
+                ///< radius.
+  Centimeters,  ///< d, D in cm, A in cm².
 };
 
 /// Definition of the regularity R (notes 18.3–18.4).
@@ -25,37 +26,39 @@ enum class Regularity {
 
 /// Which centroid D is measured from (notes A15).
 enum class HullCentroid {
-  Measure,  ///< Of the hull's area or volume.
-  Vertices, ///< Mean of the hull's vertices.
+  Measure,   ///< Of the hull's area or volume.
+  Vertices,  ///< Mean of the hull's vertices.
 };
 
-/// Parameters of the paper's measure M (section 4). Defaults are the paper's values [P] and the notes'
-/// readings [R].
+/// Parameters of the paper's measure M (section 4). Defaults are the paper's values [P] and the
+/// notes' readings [R].
 struct QualityOptions {
   double alpha = 2.0;  ///< Weight of contact area against boundary distance, ≥ 0 [P].
   double beta = 0.3;   ///< Weight of the centroid distance, ≥ 0 [P].
   double w1 = 1.0;     ///< Exponent of M1, ≥ 0 [P].
   double w2 = 1.0;     ///< Exponent of M2, ≥ 0 [P].
   double w3 = 0.5;     ///< Exponent of M3, ≥ 0 [P].
-  double theta_max = 0.78539816339744831;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
-  MeasureUnits units = MeasureUnits::Normalized;      ///< [R] A9–A11.
-  Regularity regularity = Regularity::Combined;       ///< [R] A13.
-  HullCentroid centroid = HullCentroid::Measure;      ///< [R] A15.
+  double theta_max =
+      0.78539816339744831;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
+  MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
+  Regularity regularity = Regularity::Combined;   ///< [R] A13.
+  HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
   double merge_distance = 0.0;  ///< Contacts closer than this count as one hull point [m], ≥ 0; the
                                 ///< planner sets 0.1 voxel (notes 18.4).
-  void validate() const;        ///< Throws InvalidInput naming the field and its value.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// What of the object and the hand M depends on.
 struct QualityContext {
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
-  double normalizing_radius = 0.0;  ///< Half the diagonal of the object's bounding box [m] (A11), > 0.
+  double normalizing_radius =
+      0.0;  ///< Half the diagonal of the object's bounding box [m] (A11), > 0.
   const hands::HandModel* hand = nullptr;  ///< For pad areas and largest d; not null.
 };
 
 /// A pair of contacts of different fingers whose line lies in both friction cones.
 struct StablePair {
-  int first = -1;   ///< Indices of contacts, first < second.
+  int first = -1;  ///< Indices of contacts, first < second.
   int second = -1;
   double angle = 0.0;  ///< Mean of the two line-to-normal angles [rad] (paper: theta_l).
 };
@@ -71,10 +74,10 @@ struct SustainabilityTerm {
 struct ContactQuality {
   double m1 = 0.0;
   double m2 = 0.0;
-  double m3 = 0.0;  ///< May be negative; M is then 0 (A12).
-  double m = 0.0;   ///< 0: unusable.
-  double regularity = 0.0;         ///< R in (0, 1]; 0 if there are fewer than two contacts.
-  double centroid_distance = 0.0;  ///< D [m].
+  double m3 = 0.0;                        ///< May be negative; M is then 0 (A12).
+  double m = 0.0;                         ///< 0: unusable.
+  double regularity = 0.0;                ///< R in (0, 1]; 0 if there are fewer than two contacts.
+  double centroid_distance = 0.0;         ///< D [m].
   double scaled_centroid_distance = 0.0;  ///< D in the units chosen.
   std::vector<SustainabilityTerm> terms;  ///< One per contact.
   std::vector<StablePair> stable_pairs;
@@ -97,14 +100,15 @@ ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityCon
                              const QualityOptions& options = {});
 
 /// The line between two contacts against both cones (paper section 4.2; notes 20): the mean angle
-/// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9 m.
+/// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9
+/// m.
 std::optional<double> stable_pair_angle(const Eigen::Vector3d& point_a,
                                         const Eigen::Vector3d& inward_normal_a,
                                         const Eigen::Vector3d& point_b,
                                         const Eigen::Vector3d& inward_normal_b, double theta_max);
 
-/// R of the hull of `points` by notes 18.4: 1 for N = 2 and for regular polygons and polyhedra, 1e-3 for
-/// collinear points.
+/// R of the hull of `points` by notes 18.4: 1 for N = 2 and for regular polygons and polyhedra,
+/// 1e-3 for collinear points.
 double regularity(std::span<const Eigen::Vector3d> points, Regularity definition,
                   double merge_distance = 0.0);
 

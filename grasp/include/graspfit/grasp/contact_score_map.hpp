@@ -7,11 +7,12 @@
 
 namespace graspfit::grasp {
 
-/// How raw scores become comparable with the threshold 0.6 (notes A1, the most important ambiguity).
+/// How raw scores become comparable with the threshold 0.6 (notes A1, the most important
+/// ambiguity).
 enum class ScoreNormalization {
   FloorMedian,  ///< x floored at 0.05, 1/x, mean filter, min(1, score / (1.25 · median)) [R].
-  Max,          ///< Divided by the largest score, x floored at 0.05 so that planes do not give infinity.
-  Raw,          ///< As the formula stands; unbounded (infinite on planes).
+  Max,  ///< Divided by the largest score, x floored at 0.05 so that planes do not give infinity.
+  Raw,  ///< As the formula stands; unbounded (infinite on planes).
 };
 
 /// Signed or unsigned distances to the oriented plane (notes A2).
@@ -24,27 +25,30 @@ enum class PlaneDistance {
 struct ScoreOptions {
   int neighborhood = 5;      ///< Edge of the cubic window in voxels, odd, ≥ 3 [P].
   double gamma_deg = 180.0;  ///< Normalizer of the mean normal angle, > 0 [P].
-  double length_voxels = 5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 (A3) [R].
+  double length_voxels =
+      5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 (A3) [R].
   ScoreNormalization normalization = ScoreNormalization::FloorMedian;  ///< A1.
   PlaneDistance plane_distance = PlaneDistance::Unsigned;              ///< A2.
-  int mean_filter_radius = 1;  ///< Voxels: 1 is a 3×3×3 window, self included (A5), ≥ 0.
-  int mean_filter_passes = 1;  ///< ≥ 0 (A5).
-  double floor = 0.05;         ///< Smallest C_d/L + C_a/gamma (FloorMedian, Max), > 0.
-  double median_factor = 1.25; ///< Score 1 at this multiple of the median (FloorMedian), > 0.
-  void validate() const;       ///< Throws InvalidInput naming the field and its value.
+  int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included (A5), ≥ 0.
+  int mean_filter_passes = 1;   ///< ≥ 0 (A5).
+  double floor = 0.05;          ///< Smallest C_d/L + C_a/gamma (FloorMedian, Max), > 0.
+  double median_factor = 1.25;  ///< Score 1 at this multiple of the median (FloorMedian), > 0.
+  void validate() const;        ///< Throws InvalidInput naming the field and its value.
 };
 
-/// Suitability of every partial voxel for a contact: [0, 1] for FloorMedian and Max, [0, ∞] for Raw.
+/// Suitability of every partial voxel for a contact: [0, 1] for FloorMedian and Max, [0, ∞] for
+/// Raw.
 struct ContactScoreMap {
-  std::vector<double> scores;   ///< One per patch, in the order of the patches.
-  std::vector<double> mean_plane_distance;  ///< C_d [voxels], per patch.
+  std::vector<double> scores;                 ///< One per patch, in the order of the patches.
+  std::vector<double> mean_plane_distance;    ///< C_d [voxels], per patch.
   std::vector<double> mean_normal_angle_deg;  ///< C_a [degrees], per patch.
 };
 
-/// The paper's contact score map. Neighbors are all other partial voxels with a normal in the window,
-/// connected or not (A4). A patch without a normal or without neighbors scores 0.
+/// The paper's contact score map. Neighbors are all other partial voxels with a normal in the
+/// window, connected or not (A4). A patch without a normal or without neighbors scores 0.
 ///
-/// Independent of the voxels' order; rotating the lattice by 90° permutes the scores up to rounding.
+/// Independent of the voxels' order; rotating the lattice by 90° permutes the scores up to
+/// rounding.
 /// @throws InvalidInput for bad options.
 ContactScoreMap contact_score_map(const std::vector<geometry::SurfacePatch>& patches,
                                   const geometry::VoxelLattice& lattice,

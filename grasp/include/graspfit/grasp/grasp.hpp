@@ -13,12 +13,12 @@ namespace graspfit::grasp {
 
 /// How deep a grasp cuts into things, on the true meshes.
 struct GraspPenetration {
-  bool object_intersects = false;  ///< Exact: some link and the object share a point.
-  double object_depth = 0.0;       ///< Deepest overlap of a link and the object found [m].
-  double object_depth_bound = 0.0; ///< The true depth is at most this [m].
-  int object_link = -1;            ///< The deepest link.
-  bool self_intersects = false;    ///< Exact: two links that are not excluded share a point.
-  double self_depth = 0.0;         ///< [m]
+  bool object_intersects = false;   ///< Exact: some link and the object share a point.
+  double object_depth = 0.0;        ///< Deepest overlap of a link and the object found [m].
+  double object_depth_bound = 0.0;  ///< The true depth is at most this [m].
+  int object_link = -1;             ///< The deepest link.
+  bool self_intersects = false;     ///< Exact: two links that are not excluded share a point.
+  double self_depth = 0.0;          ///< [m]
   int self_link_a = -1;
   int self_link_b = -1;
 };
@@ -31,11 +31,12 @@ struct Grasp {
   TargetContacts targets;
   std::vector<Contact> contacts;
   ContactQuality quality;
-  double ideal_m = 0.0;           ///< M of the targets themselves (A36).
+  double ideal_m = 0.0;  ///< M of the targets themselves (A36).
   GraspPenetration penetration;
   bool has_all_contacts = false;  ///< Every requested finger/palm has a contact.
-  std::int64_t attempt = -1;      ///< Number of the attempt that made it; seeds it together with the run's seed.
-  int iterations = 0;             ///< Of the adjustment loop.
+  std::int64_t attempt =
+      -1;  ///< Number of the attempt that made it; seeds it together with the run's seed.
+  int iterations = 0;  ///< Of the adjustment loop.
 
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }

@@ -17,14 +17,17 @@ namespace graspfit::grasp {
 
 /// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
 struct FittingOptions {
-  double clearance = 0.02;        ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
-  double large_step_at = 2.0;     ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
-  double large_step_limit = 3.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
-  double small_step = 0.2;        ///< Motion of the fastest point in a small step [voxels], > 0 (A30) [R].
-  int max_halvings = 5;           ///< Of a step that would penetrate (A30) [R].
-  int max_iterations = 400;       ///< Of the loop, ≥ 1.
-  double sample_spacing = 0.5;    ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
-  void validate() const;          ///< Throws InvalidInput naming the field and its value.
+  double clearance = 0.02;  ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
+  double large_step_at = 2.0;  ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
+  double large_step_limit =
+      3.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
+  double small_step =
+      0.2;               ///< Motion of the fastest point in a small step [voxels], > 0 (A30) [R].
+  int max_halvings = 5;  ///< Of a step that would penetrate (A30) [R].
+  int max_iterations = 400;  ///< Of the loop, ≥ 1.
+  double sample_spacing =
+      0.5;                ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// How an attempt to fit the hand ended.
@@ -42,11 +45,13 @@ struct FittingResult {
   hands::HandConfiguration configuration;  ///< Where it ended.
   std::vector<Contact> contacts;           ///< Of all pads, at the end; is_target set.
   int iterations = 0;
-  double smallest_distance = 0.0;          ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
+  double contact_tests_s = 0.0;  ///< Time spent on contact estimation; not part of the result.
+  double smallest_distance =
+      0.0;  ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
 };
 
-/// A hand prepared for fitting to objects of one voxel size: points that cover every link's surface, in
-/// small clusters so that those far from the object are passed over together.
+/// A hand prepared for fitting to objects of one voxel size: points that cover every link's
+/// surface, in small clusters so that those far from the object are passed over together.
 class FittingHand {
  public:
   /// @throws InvalidInput unless `sample_spacing` is a positive length [m].
@@ -75,9 +80,9 @@ struct PalmPlacement {
   Eigen::Vector3d direction_O = Eigen::Vector3d::UnitZ();  ///< n_palm in O, unit.
 };
 
-/// Candidate palm directions for a set of targets (A23): ± the normal of the target triangle, the one
-/// with more room first, or the one within 90° of `approach_O` alone where given; 16 around the axis for
-/// two targets; the least-squares plane's normals for more than three.
+/// Candidate palm directions for a set of targets (A23): ± the normal of the target triangle, the
+/// one with more room first, or the one within 90° of `approach_O` alone where given; 16 around the
+/// axis for two targets; the least-squares plane's normals for more than three.
 std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
                                            const std::optional<Eigen::Vector3d>& approach_O);
 
@@ -86,19 +91,21 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const std::vector<int>& fingers, const PalmPlacement& placement);
 
-/// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop of
-/// five steps (section 8) under the penetration guard (section 9).
+/// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
+/// of five steps (section 8) under the penetration guard (section 9).
 ///
-/// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0). Penetration of the
-/// true meshes by less than a voxel is possible and is decided elsewhere (hands::HandCollision).
+/// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0). Penetration
+/// of the true meshes by less than a voxel is possible and is decided elsewhere
+/// (hands::HandCollision).
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        const TargetContacts& targets, const PalmPlacement& placement,
                        const ContactEstimationOptions& contact_options,
                        const FittingOptions& options);
 
-/// The paper's d_min: smallest value of the distance map over the voxels that a link's surface occupies
-/// [voxels]. Values above `enough` are not searched further: the result is then a number above it, and no
-/// more than that is known. Approximate: the surface is represented by points at the chosen spacing.
+/// The paper's d_min: smallest value of the distance map over the voxels that a link's surface
+/// occupies [voxels]. Values above `enough` are not searched further: the result is then a number
+/// above it, and no more than that is known. Approximate: the surface is represented by points at
+/// the chosen spacing.
 float smallest_distance(const FittingHand& hand, int link, const geometry::RigidTransform& X_OL,
                         const geometry::SignedDistanceMap& map, float enough);
 

@@ -13,8 +13,8 @@ namespace graspfit::grasp {
 
 /// How an object is prepared for planning.
 struct ObjectModelOptions {
-  int resolution = 30;   ///< Voxels along the object's longest extent, in [4, 512] [P].
-  double margin = 0.0;   ///< Room around the object for the hand [m] (A8), ≥ 0.
+  int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
+  double margin = 0.0;  ///< Room around the object for the hand [m] (A8), ≥ 0.
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
@@ -22,14 +22,14 @@ struct ObjectModelOptions {
 
 /// All that is computed once per object, in the object frame O (the mesh's own frame, in meters).
 struct ObjectModel {
-  geometry::MeshQuery query;                      ///< The mesh with its box tree.
-  geometry::MassProperties mass;                  ///< Center of mass at uniform density.
-  double normalizing_radius = 0.0;                ///< Half the bounding box diagonal [m] (A11).
-  geometry::VoxelGrid grid;                       ///< The interaction volume.
-  std::vector<geometry::SurfacePatch> patches;    ///< The paper's S_i.
-  std::vector<std::int32_t> patch_of_voxel;       ///< Index into patches, −1 where not partial.
+  geometry::MeshQuery query;                    ///< The mesh with its box tree.
+  geometry::MassProperties mass;                ///< Center of mass at uniform density.
+  double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m] (A11).
+  geometry::VoxelGrid grid;                     ///< The interaction volume.
+  std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
+  std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.
   geometry::SignedDistanceMap distance;
-  ContactScoreMap scores;                         ///< Parallel to patches.
+  ContactScoreMap scores;  ///< Parallel to patches.
 
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
@@ -43,9 +43,10 @@ struct ObjectModelTimings {
   double scores_s = 0.0;
 };
 
-/// Builds the model of a closed outward mesh. @throws InvalidInput, DegenerateGeometry for a mesh that
-/// is empty or has no volume.
-ObjectModel build_object_model(const geometry::TriangleMesh& mesh, const ObjectModelOptions& options,
+/// Builds the model of a closed outward mesh. @throws InvalidInput, DegenerateGeometry for a mesh
+/// that is empty or has no volume.
+ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
+                               const ObjectModelOptions& options,
                                ObjectModelTimings* timings = nullptr);
 
 }  // namespace graspfit::grasp

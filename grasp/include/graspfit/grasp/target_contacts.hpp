@@ -34,25 +34,30 @@ TipDistances tip_distances(const hands::HandModel& hand, int samples_per_joint =
 /// Parameters of target selection (paper section 6; notes A17–A20).
 struct TargetOptions {
   double score_threshold = 0.6;  ///< Every target's score must exceed it, in [0, 1) [P].
-  double theta_max = 0.78539816339744831;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
-  PairRule pair_rule = PairRule::Seed;     ///< A17.
-  double edge_tolerance_rel = 0.25;   ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 (A19) [R].
-  double centroid_limit_rel = 0.6;    ///< Largest centroid-to-CoM distance over the normalizing radius (A19) [R].
-  double pool_fraction = 0.2;         ///< Share of the ranked candidates drawn from, in (0, 1] (A19, A20) [R].
-  int pool_minimum = 5;               ///< Candidates drawn from at least, if there are so many (A20) [R].
-  int max_seeds = 200;                ///< Seeds tried per set, ≥ 1 (A20) [R].
-  int relax_after_seeds = 50;         ///< Failed seeds after which edge and centroid limits grow by half (A19) [R].
-  double min_separation = 0.0;        ///< Between targets of different fingers [m], ≥ 0; the planner sets one pad width.
-  void validate() const;              ///< Throws InvalidInput naming the field and its value.
+  double theta_max =
+      0.78539816339744831;              ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
+  PairRule pair_rule = PairRule::Seed;  ///< A17.
+  double edge_tolerance_rel = 0.25;  ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 (A19) [R].
+  double centroid_limit_rel =
+      0.6;  ///< Largest centroid-to-CoM distance over the normalizing radius (A19) [R].
+  double pool_fraction =
+      0.2;               ///< Share of the ranked candidates drawn from, in (0, 1] (A19, A20) [R].
+  int pool_minimum = 5;  ///< Candidates drawn from at least, if there are so many (A20) [R].
+  int max_seeds = 200;   ///< Seeds tried per set, ≥ 1 (A20) [R].
+  int relax_after_seeds =
+      50;  ///< Failed seeds after which edge and centroid limits grow by half (A19) [R].
+  double min_separation =
+      0.0;  ///< Between targets of different fingers [m], ≥ 0; the planner sets one pad width.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One contact to reach.
 struct TargetContact {
   Eigen::Vector3d point_O = Eigen::Vector3d::Zero();           ///< Patch centroid [m].
   Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Patch normal, unit.
-  std::int32_t patch = -1;  ///< Index into ObjectModel::patches.
-  double score = 0.0;       ///< Of that patch.
-  int finger = -1;          ///< Assigned finger of the hand; −1 until assigned.
+  std::int32_t patch = -1;                                     ///< Index into ObjectModel::patches.
+  double score = 0.0;                                          ///< Of that patch.
+  int finger = -1;  ///< Assigned finger of the hand; −1 until assigned.
 };
 
 /// A set of targets, the seed first.
@@ -66,9 +71,9 @@ struct TargetContacts {
 
 /// Why no set was found.
 enum class TargetFailure {
-  NoSeed,       ///< No voxel exceeds the score threshold.
-  NoSecond,     ///< No seed tried had a stable partner in reach.
-  NoFurther,    ///< Pairs were found, but never all the further contacts.
+  NoSeed,     ///< No voxel exceeds the score threshold.
+  NoSecond,   ///< No seed tried had a stable partner in reach.
+  NoFurther,  ///< Pairs were found, but never all the further contacts.
 };
 
 /// Outcome of one selection.
@@ -78,16 +83,16 @@ struct TargetSelection {
   int seeds_tried = 0;
 };
 
-/// Picks targets by the paper's randomized greedy search (section 6): a random seed above the threshold;
-/// a second contact in tip distance and in both cones; further contacts with edges close to the first and
-/// a centroid close to the center of mass; each drawn at random from the best-ranked feasible candidates;
-/// a new seed where one has none.
+/// Picks targets by the paper's randomized greedy search (section 6): a random seed above the
+/// threshold; a second contact in tip distance and in both cones; further contacts with edges close
+/// to the first and a centroid close to the center of mass; each drawn at random from the
+/// best-ranked feasible candidates; a new seed where one has none.
 ///
-/// `fingers` are the fingers to serve, the seed's first (the thumb where it is among them, A22). The
-/// selection uses, for each further contact, the union of the ranges of the fingers not yet served;
-/// assignment follows in `assign_fingers`. @throws InvalidInput for fewer than two fingers.
+/// `fingers` are the fingers to serve, the seed's first (the thumb where it is among them, A22).
+/// The selection uses, for each further contact, the union of the ranges of the fingers not yet
+/// served; assignment follows in `assign_fingers`. @throws InvalidInput for fewer than two fingers.
 TargetSelection select_target_contacts(const ObjectModel& object, const TipDistances& distances,
-                                       const std::vector<int>& fingers, const TargetOptions& options,
-                                       geometry::Random& random);
+                                       const std::vector<int>& fingers,
+                                       const TargetOptions& options, geometry::Random& random);
 
 }  // namespace graspfit::grasp

@@ -7,8 +7,8 @@
 
 namespace graspfit::hands {
 
-/// Pose of every link in the frame in which the configuration's palm pose is given (O), in link order.
-/// Rounded. Cost: linear in the links.
+/// Pose of every link in the frame in which the configuration's palm pose is given (O), in link
+/// order. Rounded. Cost: linear in the links.
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration);
 

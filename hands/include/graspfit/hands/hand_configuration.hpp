@@ -13,19 +13,19 @@ struct HandConfiguration {
   Eigen::VectorXd q;  ///< One position per joint of the model, coupled ones included [rad or m].
 };
 
-/// Every joint at the limit that opens the hand (`closing_sign`), neutral ones (spread, abduction) at
-/// the value nearest zero; coupled joints follow.
+/// Every joint at the limit that opens the hand (`closing_sign`), neutral ones (spread, abduction)
+/// at the value nearest zero; coupled joints follow.
 HandConfiguration open_configuration(const HandModel& model);
 
-/// Sets every coupled joint from its leader, clamped to its own limits, except that a breakaway joint
-/// keeps a position that is further closed than its coupling asks for.
+/// Sets every coupled joint from its leader, clamped to its own limits, except that a breakaway
+/// joint keeps a position that is further closed than its coupling asks for.
 void apply_couplings(const HandModel& model, Eigen::VectorXd& q);
 
 /// Clamps every joint to its limits.
 void clamp_to_limits(const HandModel& model, Eigen::VectorXd& q);
 
-/// Throws InvalidInput (joint, value, limits) if sizes differ or a joint leaves its limits by more than
-/// 1e-9.
+/// Throws InvalidInput (joint, value, limits) if sizes differ or a joint leaves its limits by more
+/// than 1e-9.
 void validate(const HandModel& model, const HandConfiguration& configuration);
 
 }  // namespace graspfit::hands

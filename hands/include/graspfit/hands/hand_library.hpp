@@ -11,8 +11,8 @@ namespace graspfit::hands {
 /// Names of the shipped hands, sorted: the folders of the hand library that hold `<name>.urdf`.
 std::vector<std::string> shipped_hands();
 
-/// The URDF of a shipped hand. @throws InvalidInput that lists the shipped hands, if there is none of
-/// that name.
+/// The URDF of a shipped hand. @throws InvalidInput that lists the shipped hands, if there is none
+/// of that name.
 std::filesystem::path shipped_hand_file(const std::string& name);
 
 /// A hand by the name of a shipped one ("barrett") or by the path of a URDF file; shipped hands are

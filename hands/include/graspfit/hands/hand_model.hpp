@@ -33,11 +33,11 @@ struct Joint {
   JointType type = JointType::Revolute;
   int parent_link = -1;
   int child_link = -1;
-  RigidTransform X_PJ = RigidTransform::Identity();  ///< Joint frame in the parent link's frame; the
-                                                     ///< child link's frame at q = 0.
+  RigidTransform X_PJ = RigidTransform::Identity();  ///< Joint frame in the parent link's frame;
+                                                     ///< the child link's frame at q = 0.
   Eigen::Vector3d axis_J = Eigen::Vector3d::UnitZ();  ///< Unit axis in the joint frame.
-  double lower = 0.0;  ///< [rad] or [m]
-  double upper = 0.0;  ///< [rad] or [m], ≥ lower.
+  double lower = 0.0;                                 ///< [rad] or [m]
+  double upper = 0.0;                                 ///< [rad] or [m], ≥ lower.
   /// +1 if growing q closes the hand, −1 if it opens it, 0 if it does neither (spread, abduction).
   int closing_sign = 0;
   std::optional<Coupling> coupling;  ///< Empty for an independent joint (an intrinsic DOF).
@@ -48,21 +48,24 @@ struct Link {
   std::string name;
   int parent_link = -1;   ///< −1 for the root.
   int parent_joint = -1;  ///< Movable joint to the parent; −1 for the root or a fixed connection.
-  RigidTransform X_PL_fixed = RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
-  TriangleMesh mesh_L;    ///< Closed surface in the link's frame [m]; may have no faces.
-  std::string mesh_file;  ///< Where it came from, relative to the description; empty for primitives.
+  RigidTransform X_PL_fixed =
+      RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
+  TriangleMesh mesh_L;             ///< Closed surface in the link's frame [m]; may have no faces.
+  std::string
+      mesh_file;  ///< Where it came from, relative to the description; empty for primitives.
 };
 
 /// A planar surface meant to touch, on one link.
 ///
-/// Pad frame C: origin at the pad's center, z leaving the link toward what it touches, x and y in the
-/// pad's plane.
+/// Pad frame C: origin at the pad's center, z leaving the link toward what it touches, x and y in
+/// the pad's plane.
 struct ContactPad {
   std::string name;
   int link = -1;
-  int finger = -1;  ///< Index of its finger; −1 for the palm.
+  int finger = -1;                                   ///< Index of its finger; −1 for the palm.
   RigidTransform X_LC = RigidTransform::Identity();  ///< Pad frame in the link's frame.
-  std::vector<Eigen::Vector2d> outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].
+  std::vector<Eigen::Vector2d>
+      outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].
   /// Explicit thickness of the clip volume [m]; empty: the planner's rule (notes A33).
   std::optional<double> clip_thickness;
 };
@@ -70,19 +73,21 @@ struct ContactPad {
 /// An ordered chain of links that closes on the object.
 struct Finger {
   std::string name;
-  std::vector<int> links;   ///< Proximal to distal.
-  std::vector<int> joints;  ///< Movable joints of the chain, proximal to distal, coupled ones included.
-  int tip_pad = -1;         ///< The pad that precision grasps use.
+  std::vector<int> links;  ///< Proximal to distal.
+  std::vector<int>
+      joints;        ///< Movable joints of the chain, proximal to distal, coupled ones included.
+  int tip_pad = -1;  ///< The pad that precision grasps use.
   bool is_thumb = false;
   std::optional<int> swing_joint;  ///< Turns the finger around the palm (spread, abduction).
 };
 
 /// The palm and the hand base frame H.
 struct Palm {
-  int link = -1;                        ///< The root link; its frame is H.
-  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();        ///< Palm center [m].
-  Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();    ///< Unit n_palm: leaves the palm toward the object.
-  int pad = -1;                         ///< Its contact pad; −1 if none.
+  int link = -1;                                       ///< The root link; its frame is H.
+  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();  ///< Palm center [m].
+  Eigen::Vector3d direction_H =
+      Eigen::Vector3d::UnitZ();  ///< Unit n_palm: leaves the palm toward the object.
+  int pad = -1;                  ///< Its contact pad; −1 if none.
 };
 
 /// Two links whose collision does not count (neighbors, or always overlapping).
@@ -91,11 +96,11 @@ struct CollisionExclusion {
   int link_b = -1;
 };
 
-/// An articulated hand: kinematic tree, fingers, pads. Never changes while planning; everything that
-/// varies is in HandConfiguration. Links and joints are ordered parents first.
+/// An articulated hand: kinematic tree, fingers, pads. Never changes while planning; everything
+/// that varies is in HandConfiguration. Links and joints are ordered parents first.
 struct HandModel {
   std::string name;
-  std::string description_file;    ///< URDF path as given.
+  std::string description_file;  ///< URDF path as given.
   std::string description_sha256;
   std::string sidecar_file;
   std::string sidecar_sha256;
@@ -136,7 +141,8 @@ double largest_boundary_distance(const ContactPad& pad);
 geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness);
 
 /// The same volume in a frame A in which the pad's frame has pose `X_AC`.
-geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C, const RigidTransform& X_AC);
+geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C,
+                                   const RigidTransform& X_AC);
 
 /// Upper bound of the distance of any point of the hand from the palm center over all
 /// configurations [m]: sum of chain lengths. Sizes the interaction volume (notes A8).
