@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::grasp {
+
+/// How an object's file becomes a solid in meters.
+struct ObjectReadOptions {
+  double meters_per_file_unit = 1.0;     ///< > 0 and finite; not used if `longest_extent` is given.
+  std::optional<double> longest_extent;  ///< Scale so that the longest edge of the bounding box has
+                                         ///< this length [m], > 0.
+  geometry::MeshRepairOptions repair;
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+};
+
+/// Where an object came from and what was done to it before planning: enough to do it again.
+struct ObjectRecord {
+  std::string file;    ///< As given.
+  std::string sha256;  ///< Of that file's bytes.
+  double meters_per_file_unit = 1.0;
+  geometry::MeshRepairOptions repair;
+  geometry::MeshAnalysis analysis;  ///< After repair.
+  std::vector<geometry::RepairStep> repairs;
+  Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]; zero if there is no volume.
+  double volume = 0.0;              ///< [m³]; zero for a mesh left as it is that has none.
+  double normalizing_radius = 0.0;  ///< Half the bounding box's diagonal [m].
+};
+
+/// An object read from a file.
+struct ObjectFile {
+  geometry::TriangleMesh mesh;  ///< Scaled and repaired, in frame O (the file's own frame) [m].
+  ObjectRecord record;
+  geometry::MeshFileReport report;  ///< What reading did.
+  geometry::MeshAnalysis before;    ///< After scaling, before repair.
+};
+
+/// Reads, scales and repairs an object.
+///
+/// The scale multiplies every coordinate once, after welding, so that a mesh read again by its
+/// record has the same bits whichever way the scale was given the first time.
+/// @throws IoError, InvalidInput, DegenerateGeometry as `read_mesh` and `repair_mesh`; all messages
+/// name the file.
+ObjectFile read_object_file(const std::filesystem::path& file,
+                            const ObjectReadOptions& options = {});
+
+/// The object of a record, read, scaled and repaired as it says, from `file` (empty: where the
+/// record says).
+/// @throws IoError if the file is missing or its SHA-256 is another one.
+geometry::TriangleMesh read_object(const ObjectRecord& record,
+                                   const std::filesystem::path& file = {});
+
+}  // namespace graspfit::grasp

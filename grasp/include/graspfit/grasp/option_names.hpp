@@ -1,0 +1,84 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/surface_patch.hpp"
+#include "graspfit/grasp/contact_quality.hpp"
+#include "graspfit/grasp/contact_score_map.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+
+/// \file
+/// What the choices of the planner are called in grasp files and on the command line.
+
+namespace graspfit::grasp {
+
+/// One value of an enumeration and its name, such as "floor-median".
+template <class Enum>
+struct NamedValue {
+  Enum value;
+  std::string_view name;
+};
+
+/// All values of an enumeration of the planner's options, in their order of declaration. Defined
+/// for the types listed below; no others link.
+template <class Enum>
+std::span<const NamedValue<Enum>> named_values();
+
+template <>
+std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>();
+template <>
+std::span<const NamedValue<Acceptance>> named_values<Acceptance>();
+template <>
+std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
+template <>
+std::span<const NamedValue<ScoreNormalization>> named_values<ScoreNormalization>();
+template <>
+std::span<const NamedValue<PlaneDistance>> named_values<PlaneDistance>();
+template <>
+std::span<const NamedValue<PairRule>> named_values<PairRule>();
+template <>
+std::span<const NamedValue<MeasureUnits>> named_values<MeasureUnits>();
+template <>
+std::span<const NamedValue<Regularity>> named_values<Regularity>();
+template <>
+std::span<const NamedValue<HullCentroid>> named_values<HullCentroid>();
+template <>
+std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>();
+template <>
+std::span<const NamedValue<geometry::RepairMode>> named_values<geometry::RepairMode>();
+
+/// The name of a value; empty for a value that the enumeration does not have.
+template <class Enum>
+std::string_view name_of(Enum value) {
+  for (const NamedValue<Enum>& named : named_values<Enum>()) {
+    if (named.value == value) return named.name;
+  }
+  return {};
+}
+
+/// The value of a name, if there is one.
+template <class Enum>
+std::optional<Enum> value_named(std::string_view name) {
+  for (const NamedValue<Enum>& named : named_values<Enum>()) {
+    if (named.name == name) return named.value;
+  }
+  return std::nullopt;
+}
+
+/// All names as "a|b|c", for messages.
+template <class Enum>
+std::string names_of() {
+  std::string names;
+  for (const NamedValue<Enum>& named : named_values<Enum>()) {
+    if (!names.empty()) names += '|';
+    names += named.name;
+  }
+  return names;
+}
+
+}  // namespace graspfit::grasp

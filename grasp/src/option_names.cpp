@@ -1,0 +1,97 @@
+#include "graspfit/grasp/option_names.hpp"
+
+#include <array>
+
+namespace graspfit::grasp {
+
+using geometry::PatchAveraging;
+using geometry::RepairMode;
+
+template <>
+std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>() {
+  static constexpr std::array names = {NamedValue<GraspStyle>{GraspStyle::Precision, "precision"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<Acceptance>> named_values<Acceptance>() {
+  static constexpr std::array names = {NamedValue<Acceptance>{Acceptance::Valid, "valid"},
+                                       NamedValue<Acceptance>{Acceptance::Usable, "usable"},
+                                       NamedValue<Acceptance>{Acceptance::Quality, "quality"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PatchAveraging>> named_values<PatchAveraging>() {
+  static constexpr std::array names = {
+      NamedValue<PatchAveraging>{PatchAveraging::AreaWeighted, "area-weighted"},
+      NamedValue<PatchAveraging>{PatchAveraging::Plain, "plain"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ScoreNormalization>> named_values<ScoreNormalization>() {
+  static constexpr std::array names = {
+      NamedValue<ScoreNormalization>{ScoreNormalization::FloorMedian, "floor-median"},
+      NamedValue<ScoreNormalization>{ScoreNormalization::Max, "max"},
+      NamedValue<ScoreNormalization>{ScoreNormalization::Raw, "raw"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PlaneDistance>> named_values<PlaneDistance>() {
+  static constexpr std::array names = {
+      NamedValue<PlaneDistance>{PlaneDistance::Unsigned, "unsigned"},
+      NamedValue<PlaneDistance>{PlaneDistance::SignedMean, "signed-mean"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PairRule>> named_values<PairRule>() {
+  static constexpr std::array names = {NamedValue<PairRule>{PairRule::Seed, "seed"},
+                                       NamedValue<PairRule>{PairRule::AllPairs, "all-pairs"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<MeasureUnits>> named_values<MeasureUnits>() {
+  static constexpr std::array names = {
+      NamedValue<MeasureUnits>{MeasureUnits::Normalized, "normalized"},
+      NamedValue<MeasureUnits>{MeasureUnits::Centimeters, "centimeters"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<Regularity>> named_values<Regularity>() {
+  static constexpr std::array names = {NamedValue<Regularity>{Regularity::Combined, "combined"},
+                                       NamedValue<Regularity>{Regularity::AngleOnly, "angle-only"},
+                                       NamedValue<Regularity>{Regularity::EdgeOnly, "edge-only"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<HullCentroid>> named_values<HullCentroid>() {
+  static constexpr std::array names = {
+      NamedValue<HullCentroid>{HullCentroid::Measure, "measure"},
+      NamedValue<HullCentroid>{HullCentroid::Vertices, "vertices"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>() {
+  static constexpr std::array names = {
+      NamedValue<PlannerStop>{PlannerStop::Count, "count"},
+      NamedValue<PlannerStop>{PlannerStop::Attempts, "attempts"},
+      NamedValue<PlannerStop>{PlannerStop::WallClock, "wall-clock"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<RepairMode>> named_values<RepairMode>() {
+  static constexpr std::array names = {NamedValue<RepairMode>{RepairMode::Repair, "repair"},
+                                       NamedValue<RepairMode>{RepairMode::Strict, "strict"},
+                                       NamedValue<RepairMode>{RepairMode::AsIs, "as-is"}};
+  return names;
+}
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,85 @@
+#include "internal/planner_readings.hpp"
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/grasp/option_names.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using geometry::shortest_decimal;
+
+std::string text(std::string_view name) { return std::string(name); }
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerOptions& options) {
+  const ScoreOptions& score = options.score;
+  const TargetOptions& targets = options.targets;
+  const FittingOptions& fitting = options.fitting;
+  const QualityOptions& quality = options.quality;
+  const std::string averaging = text(name_of(options.averaging));
+  const std::string units = text(name_of(quality.units));
+
+  return {
+      {"A1", text(name_of(score.normalization))},
+      {"A2", text(name_of(score.plane_distance))},
+      {"A3", "L = " + shortest_decimal(score.length_voxels) + " voxels"},
+      {"A4", "all other partial voxels of the window, connected or not"},
+      {"A5", "mean filter of radius " + std::to_string(score.mean_filter_radius) + " voxels, " +
+                 std::to_string(score.mean_filter_passes) + " passes, self included"},
+      {"A6", averaging},
+      {"A7", "projected to the nearest point of the patch"},
+      {"A8",
+       "resolution along the object's own longest extent; margin of the hand's largest reach"},
+      {"A9", units},
+      {"A10", units},
+      {"A11", units},
+      {"A12", "unusable"},
+      {"A13", text(name_of(quality.regularity))},
+      {"A14", "regularity 1, centroid at the midpoint"},
+      {"A15", text(name_of(quality.centroid))},
+      {"A16", "the palm is a finger of its own; links of one finger do not pair"},
+      {"A17", text(name_of(targets.pair_rule))},
+      {"A18", "per pair of fingers, by sampling forward kinematics"},
+      {"A19", "edges within " + shortest_decimal(targets.edge_tolerance_rel) +
+                  ", centroid within " + shortest_decimal(targets.centroid_limit_rel) +
+                  " of the normalizing radius, ranked; relaxed by half after " +
+                  std::to_string(targets.relax_after_seeds) + " seeds"},
+      {"A20", "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +
+                  std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
+                  " seeds per set"},
+      {"A21", "assignment of least angular error around the palm axis"},
+      {"A22", "the thumb if requested, else the first finger"},
+      {"A23", options.approach_O
+                  ? "normal of the targets within 90 degrees of the approach direction"
+                  : "both normals of the targets, more room first"},
+      {"A24", "clear of the object by " + shortest_decimal(fitting.clearance) + " m"},
+      {"A25", "joint limits that open; spread aligned with the targets"},
+      {"A26", "least sum of squared angular errors of the fingers that share a joint"},
+      {"A27", "coupled, with breakaway"},
+      {"A29", "whole-hand motion after the first contact only if no contact is lost"},
+      {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
+                  " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
+                  shortest_decimal(fitting.small_step)},
+      {"A31", "missed contact: the attempt fails"},
+      {"A32", "small steps until contact or penetration"},
+      {"A33", options.clip_thickness
+                  ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
+                  : "clip volume max(0.5 voxel, 1 mm) thick"},
+      {"A34", averaging},
+      {"A35", "contacts of all pads count"},
+      {"A36", text(name_of(options.acceptance))},
+      {"A37", "unknown: counts as not weak"},
+      {"A40", "overlap of different fingers above " + shortest_decimal(fitting.self_overlap) +
+                  " m ends the attempt"},
+      {"A41", "volume integral over the closed mesh"},
+      {"A42", "outline of the pad"},
+      {"A43", "Euclidean"},
+      {"A46", "repaired or refused; see object.repair"},
+      {"A47",
+       targets.theta_max == quality.theta_max ? "one angle for targets and measure" : "two angles"},
+      {"A48", "measure not used in target selection"},
+  };
+}
+
+}  // namespace graspfit::grasp::internal
