@@ -119,7 +119,7 @@ PlannerOptions read_options(const JsonNode& planner) {
   options.fitting.max_halvings = fitting.at("max_halvings").small_integer();
   options.fitting.max_iterations = fitting.at("max_iterations").small_integer();
   options.fitting.sample_spacing = fitting.at("sample_spacing_voxels").number();
-  options.fitting.self_overlap = fitting.at("self_overlap_m").number();
+  options.self_overlap = node.at("self_overlap_m").number();
 
   const JsonNode quality = node.at("quality");
   options.quality.alpha = quality.at("alpha").number();
@@ -149,8 +149,8 @@ class GraspReader {
     for (const JsonNode& contact : node.at("contacts").items()) {
       grasp.contacts.push_back(read_contact(contact));
     }
-    grasp.quality = read_quality(node.at("quality"), grasp.contacts.size());
-    grasp.ideal_m = node.at("quality").at("ideal_m").number();
+    grasp.quality = read_quality(node, grasp.contacts.size());
+    grasp.ideal_m = node.at("ideal_m").number();
     grasp.penetration = read_penetration(node.at("penetration"));
     grasp.targets = read_targets(node.at("targets"));
     grasp.attempt = node.at("attempt").integer();
@@ -219,7 +219,7 @@ class GraspReader {
     quality.regularity = node.at("regularity").number();
     quality.centroid_distance = node.at("centroid_distance_m").number();
     quality.scaled_centroid_distance = node.at("scaled_centroid_distance").number();
-    for (const JsonNode& term : node.at("terms").items()) {
+    for (const JsonNode& term : node.at("sustainability_terms").items()) {
       quality.terms.push_back({term.at("boundary_distance").number(), term.at("area").number(),
                                term.at("strength").number()});
     }
@@ -300,7 +300,8 @@ PlannerTimings read_timings(const JsonNode& node) {
   timings.object.scores_s = object.at("scores_s").number();
   timings.targets_s = node.at("targets_s").number();
   timings.fitting_s = node.at("fitting_s").number();
-  timings.estimation_s = node.at("estimation_s").number();
+  timings.contact_tests_s = node.at("contact_tests_s").number();
+  timings.measure_s = node.at("measure_s").number();
   timings.penetration_s = node.at("penetration_s").number();
   timings.total_s = node.at("total_s").number();
   return timings;

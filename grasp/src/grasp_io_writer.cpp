@@ -56,7 +56,8 @@ Json conventions() {
       {"m",
        "m1^w1 * m2^w2 * m3^w3; 0 if there are fewer than two contacts, no stable pair, or m3 <= 0"},
       {"m1",
-       "mean over contacts of (boundary_distance + alpha * area) * strength, the listed terms"},
+       "mean over contacts of (boundary_distance + alpha * area) * strength, the listed "
+       "sustainability_terms"},
       {"m2", "sum over stable pairs of 1 - angle_rad / theta_max"},
       {"m3", "regularity - beta * scaled_centroid_distance"},
       {"stable_pair",
@@ -253,8 +254,8 @@ Json options_json(const PlannerOptions& options) {
             {"small_step_voxels", fitting.small_step},
             {"max_halvings", fitting.max_halvings},
             {"max_iterations", fitting.max_iterations},
-            {"sample_spacing_voxels", fitting.sample_spacing},
-            {"self_overlap_m", fitting.self_overlap}}},
+            {"sample_spacing_voxels", fitting.sample_spacing}}},
+          {"self_overlap_m", options.self_overlap},
           {"quality",
            {{"alpha", quality.alpha},
             {"beta", quality.beta},
@@ -312,7 +313,8 @@ Json contact_json(const hands::HandModel& hand, const Contact& contact) {
           {"target", contact.is_target}};
 }
 
-Json quality_json(const ContactQuality& quality, double ideal_m) {
+/// Adds the measure and every term it came from to a grasp's object.
+void add_quality(const ContactQuality& quality, Json& grasp) {
   Json terms = Json::array();
   for (const SustainabilityTerm& term : quality.terms) {
     terms.push_back({{"boundary_distance", term.boundary_distance},
@@ -324,16 +326,15 @@ Json quality_json(const ContactQuality& quality, double ideal_m) {
     pairs.push_back(
         {{"contacts", Json::array({pair.first, pair.second})}, {"angle_rad", pair.angle}});
   }
-  return {{"m", quality.m},
-          {"m1", quality.m1},
-          {"m2", quality.m2},
-          {"m3", quality.m3},
-          {"regularity", quality.regularity},
-          {"centroid_distance_m", quality.centroid_distance},
-          {"scaled_centroid_distance", quality.scaled_centroid_distance},
-          {"terms", terms},
-          {"stable_pairs", pairs},
-          {"ideal_m", ideal_m}};
+  grasp["m"] = quality.m;
+  grasp["m1"] = quality.m1;
+  grasp["m2"] = quality.m2;
+  grasp["m3"] = quality.m3;
+  grasp["regularity"] = quality.regularity;
+  grasp["centroid_distance_m"] = quality.centroid_distance;
+  grasp["scaled_centroid_distance"] = quality.scaled_centroid_distance;
+  grasp["sustainability_terms"] = terms;
+  grasp["stable_pairs"] = pairs;
 }
 
 Json penetration_json(const hands::HandModel& hand, const GraspPenetration& penetration) {
@@ -368,23 +369,25 @@ Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t ra
   for (std::size_t i = 0; i < hand.links.size(); ++i) links[hand.links[i].name] = to_json(X_OL[i]);
   Json contacts = Json::array();
   for (const Contact& contact : grasp.contacts) contacts.push_back(contact_json(hand, contact));
-  return {{"rank", rank},
-          {"usable", grasp.is_usable()},
-          {"valid", grasp.is_valid()},
-          {"has_all_contacts", grasp.has_all_contacts},
-          {"X_OH", to_json(grasp.configuration.X_OH)},
-          {"joints", joints_json(hand, grasp.configuration.q)},
-          {"X_OL", links},
-          {"contacts", contacts},
-          {"quality", quality_json(grasp.quality, grasp.ideal_m)},
-          {"largest_penetration_m", largest_penetration(grasp)},
-          {"largest_contact_gap_m", largest_contact_gap(grasp)},
-          {"penetration", penetration_json(hand, grasp.penetration)},
-          {"targets", targets_json(hand, grasp.targets)},
-          {"attempt", grasp.attempt},
-          {"iterations", grasp.iterations},
-          {"pre_grasp", configuration_json(hand, grasp.pre_grasp)},
-          {"squeeze", configuration_json(hand, grasp.squeeze)}};
+  Json json = {{"rank", rank},
+               {"usable", grasp.is_usable()},
+               {"valid", grasp.is_valid()},
+               {"has_all_contacts", grasp.has_all_contacts}};
+  add_quality(grasp.quality, json);
+  json["ideal_m"] = grasp.ideal_m;
+  json["largest_penetration_m"] = largest_penetration(grasp);
+  json["largest_contact_gap_m"] = largest_contact_gap(grasp);
+  json["X_OH"] = to_json(grasp.configuration.X_OH);
+  json["joints"] = joints_json(hand, grasp.configuration.q);
+  json["X_OL"] = links;
+  json["contacts"] = contacts;
+  json["penetration"] = penetration_json(hand, grasp.penetration);
+  json["targets"] = targets_json(hand, grasp.targets);
+  json["attempt"] = grasp.attempt;
+  json["iterations"] = grasp.iterations;
+  json["pre_grasp"] = configuration_json(hand, grasp.pre_grasp);
+  json["squeeze"] = configuration_json(hand, grasp.squeeze);
+  return json;
 }
 
 Json results_json(const GraspFile& file) {
@@ -419,7 +422,8 @@ Json timings_json(const PlannerTimings& timings) {
             {"scores_s", timings.object.scores_s}}},
           {"targets_s", timings.targets_s},
           {"fitting_s", timings.fitting_s},
-          {"estimation_s", timings.estimation_s},
+          {"contact_tests_s", timings.contact_tests_s},
+          {"measure_s", timings.measure_s},
           {"penetration_s", timings.penetration_s},
           {"total_s", timings.total_s}};
 }

@@ -70,7 +70,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A35", "contacts of all pads count"},
       {"A36", text(name_of(options.acceptance))},
       {"A37", "unknown: counts as not weak"},
-      {"A40", "overlap of different fingers above " + shortest_decimal(fitting.self_overlap) +
+      {"A40", "overlap of different fingers above " + shortest_decimal(options.self_overlap) +
                   " m ends the attempt"},
       {"A41", "volume integral over the closed mesh"},
       {"A42", "outline of the pad"},
