@@ -1,0 +1,139 @@
+#include "graspfit/grasp/contact_estimation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "graspfit/geometry/convex_clip.hpp"
+#include "internal/option_check.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
+
+/// Box in O of the prism over the pad's outline, grown by more than the rounding of its
+/// half-spaces.
+Eigen::AlignedBox3d prism_box_O(const hands::ContactPad& pad, double thickness,
+                                const RigidTransform& X_OC) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector2d& corner : pad.outline) {
+    for (const double height : {0.0, thickness}) {
+      box.extend(X_OC * Vector3d(corner.x(), corner.y(), height));
+    }
+  }
+  constexpr double kRoundingRel = 1e-12;
+  const double slack =
+      kRoundingRel *
+      (box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + box.sizes().maxCoeff());
+  return {box.min().array() - slack, box.max().array() + slack};
+}
+
+/// True only if the triangle lies wholly outside one half-space of the volume, with room for
+/// rounding: spares the exact clip the triangles that merely share the prism's box.
+bool is_surely_outside(const std::array<Vector3d, 3>& triangle,
+                       const geometry::ConvexVolume& volume) {
+  for (const geometry::HalfSpace& half_space : volume) {
+    double lowest = std::numeric_limits<double>::infinity();
+    double magnitude = std::abs(half_space.offset);
+    for (const Vector3d& corner : triangle) {
+      lowest = std::min(lowest, half_space.normal.dot(corner));
+      magnitude = std::max(magnitude, half_space.normal.cwiseAbs().dot(corner.cwiseAbs()));
+    }
+    // Five roundings of terms no larger than `magnitude`, doubled.
+    if (lowest - half_space.offset > 10 * std::numeric_limits<double>::epsilon() * magnitude) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void ContactEstimationOptions::validate() const {
+  internal::require(clip_thickness > 0.0 && std::isfinite(clip_thickness),
+                    "ContactEstimationOptions", "clip_thickness", clip_thickness,
+                    "finite and above 0");
+}
+
+std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_index,
+                                        const RigidTransform& X_OC,
+                                        const geometry::MeshQuery& object,
+                                        const ContactEstimationOptions& options) {
+  options.validate();
+  internal::require(pad_index >= 0 && pad_index < static_cast<int>(hand.pads.size()),
+                    "estimate_contact", "pad", pad_index,
+                    "an index into the pads of hand " + hand.name);
+  const hands::ContactPad& pad = hand.pads[pad_index];
+  const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
+
+  std::vector<std::int32_t> faces = object.faces_near(prism_box_O(pad, thickness, X_OC));
+  if (faces.empty()) return std::nullopt;
+  const geometry::ConvexVolume volume_O =
+      hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
+  std::erase_if(faces, [&](std::int32_t face) {
+    return is_surely_outside(geometry::corners(object.mesh(), face), volume_O);
+  });
+  const std::vector<geometry::ClippedPiece> pieces = geometry::clip(object.mesh(), faces, volume_O);
+
+  // Means over the pieces, by area or plain; heights along the pad's z.
+  const RigidTransform X_CO = X_OC.inverse();
+  double area = 0.0;
+  double total_weight = 0.0;
+  double gap = std::numeric_limits<double>::infinity();
+  Vector3d centroid_O = Vector3d::Zero();
+  Vector3d outward_normal_O = Vector3d::Zero();
+  for (const geometry::ClippedPiece& piece : pieces) {
+    const double weight =
+        options.averaging == geometry::PatchAveraging::AreaWeighted ? piece.area : 1.0;
+    area += piece.area;
+    total_weight += weight;
+    centroid_O += weight * piece.centroid;
+    outward_normal_O += weight * geometry::face_normal(object.mesh(), piece.face);
+    for (const Vector3d& corner_O : piece.polygon) {
+      gap = std::min(gap, (X_CO * corner_O).z());
+    }
+  }
+  if (!(area > 0.0)) return std::nullopt;
+  centroid_O /= total_weight;
+  outward_normal_O /= total_weight;
+  if (outward_normal_O.norm() < kSmallestMeanNormal) return std::nullopt;
+
+  Contact contact;
+  contact.point_O = object.closest_point(centroid_O).point;
+  contact.inward_normal_O = -outward_normal_O.normalized();
+  contact.area = area;
+  contact.pad_boundary_distance = hands::boundary_distance(pad, (X_CO * contact.point_O).head<2>());
+  contact.gap = std::max(0.0, gap);  // corners are rounded and may lie a little behind the pad
+  contact.link = pad.link;
+  contact.pad = pad_index;
+  contact.finger = pad.finger;
+  return contact;
+}
+
+std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
+                                       const std::vector<RigidTransform>& X_OL,
+                                       const geometry::MeshQuery& object,
+                                       const ContactEstimationOptions& options) {
+  options.validate();
+  if (X_OL.size() != hand.links.size()) {
+    throw geometry::InvalidInput("estimate_contacts: " + std::to_string(X_OL.size()) +
+                                 " link poses for the " + std::to_string(hand.links.size()) +
+                                 " links of hand " + hand.name);
+  }
+  std::vector<Contact> contacts;
+  for (int pad = 0; pad < static_cast<int>(hand.pads.size()); ++pad) {
+    if (const auto contact =
+            estimate_contact(hand, pad, hands::pad_pose(hand, pad, X_OL), object, options)) {
+      contacts.push_back(*contact);
+    }
+  }
+  return contacts;
+}
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <string_view>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// Throws InvalidInput "<where>: <field> = <value>, must be <rule>" unless `is_met`. Write the
+/// condition so that NaN does not meet it.
+template <typename Number>
+void require(bool is_met, std::string_view where, std::string_view field, Number value,
+             std::string_view rule) {
+  if (is_met) return;
+  std::string message(where);
+  message.append(": ").append(field).append(" = ");
+  if constexpr (std::integral<Number>) {
+    message.append(std::to_string(value));
+  } else {
+    message.append(geometry::shortest_decimal(value));
+  }
+  message.append(", must be ").append(rule);
+  throw geometry::InvalidInput(message);
+}
+
+}  // namespace graspfit::grasp::internal
