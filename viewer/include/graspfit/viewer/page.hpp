@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+#include "graspfit/grasp/grasp.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::viewer {
+
+/// What a page shows. All positions in the object frame O, in meters.
+struct PageInput {
+  std::string title;                 ///< Heading and window title, plain text in UTF-8.
+  geometry::TriangleMesh object_O;   ///< With at least one face.
+  hands::HandModel hand;             ///< Link meshes are stored once, poses per grasp.
+  std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
+  /// Voxels, patches and scores; without it the page has no voxel and score map layers.
+  const grasp::ObjectModel* model = nullptr;
+  double clip_thickness =
+      0.0;  ///< Of clip volumes whose pad states none [m]; 0: those are not drawn.
+  /// Drawn where given; empty: the model's, or none without a model.
+  std::optional<Eigen::Vector3d> center_of_mass_O;
+};
+
+/// The page's text: one HTML document with everything in it, for any browser with WebGL 2, from
+/// disk
+/// (`file://`) and without a network. Same input, same bytes.
+///
+/// About 48 bytes per vertex of the object (coordinates are rounded to float, relative 6e-8;
+/// nothing is decimated), and 60 KB of page: 2 MB for 40 000 vertices.
+/// @throws InvalidInput if the object has no faces or an index of it is out of range, if a grasp
+/// does not fit the hand (number of joints, indices of contacts), or for a negative or NaN
+/// thickness.
+std::string page_html(const PageInput& input);
+
+/// Writes `page_html` atomically. @throws IoError if that fails; InvalidInput as `page_html`.
+void write_page(const std::filesystem::path& file, const PageInput& input);
+
+}  // namespace graspfit::viewer

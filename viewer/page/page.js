@@ -1,0 +1,1259 @@
+'use strict';
+// The page: reads the data element, draws the scene with WebGL 2, fills the lists.
+// Frames and units are those of the library: object frame O, meters, radians.
+(() => {
+
+const data = JSON.parse(document.getElementById('data').textContent);
+const byId = (id) => document.getElementById(id);
+
+// ---------------------------------------------------------------------------------------- numbers
+
+function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes.buffer;  // little-endian, as every machine with WebGL is
+}
+const floats = (base64) => new Float32Array(bytesOf(base64));
+const integers = (base64) => new Uint32Array(bytesOf(base64));
+const shorts = (base64) => new Uint16Array(bytesOf(base64));
+
+const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) =>
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const length = (a) => Math.hypot(a[0], a[1], a[2]);
+const unit = (a) => {
+  const l = length(a);
+  return l > 0 ? times(a, 1 / l) : [0, 0, 1];
+};
+
+// 4x4 matrices are column-major arrays of 16.
+function multiply(a, b) {
+  const c = new Array(16).fill(0);
+  for (let j = 0; j < 4; ++j) {
+    for (let i = 0; i < 4; ++i) {
+      for (let k = 0; k < 4; ++k) c[4 * j + i] += a[4 * k + i] * b[4 * j + k];
+    }
+  }
+  return c;
+}
+const kIdentity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const rotated = (X, v) => [0, 1, 2].map((i) => X[i] * v[0] + X[4 + i] * v[1] + X[8 + i] * v[2]);
+const mapped = (X, p) => add(rotated(X, p), [X[12], X[13], X[14]]);
+
+function anyPerpendicular(v) {
+  const a = v.map(Math.abs);
+  const axis = a[0] <= a[1] && a[0] <= a[2] ? [1, 0, 0] : a[1] <= a[2] ? [0, 1, 0] : [0, 0, 1];
+  return unit(cross(v, axis));
+}
+// Maps the unit shape along z to one of this radius and length from `from` along `direction`.
+function alongZ(from, direction, radius, extent) {
+  const z = unit(direction);
+  const x = anyPerpendicular(z);
+  const y = cross(z, x);
+  return [...times(x, radius), 0, ...times(y, radius), 0, ...times(z, extent), 0, ...from, 1];
+}
+const placed = (center, size) =>
+    [size, 0, 0, 0, 0, size, 0, 0, 0, 0, size, 0, ...center, 1];
+
+// ----------------------------------------------------------------------------------------- colors
+
+const hex = (text, alpha = 1) =>
+    [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16) / 255).concat(alpha);
+const kColors = {
+  object: '#d9cfbf', hand: '#6f8fae', contact: '#d3302a', stable: '#2f8f57', edge: '#8a9097',
+  palm: '#7b4bb3', center: '#20242a', target: '#e08a00', clip: '#139aa5', voxel: '#9fb3c4',
+  x: '#c8382f', y: '#3b8f3f', z: '#2f5fb5',
+};
+const kRamp = ['#c8392b', '#e8803a', '#f3cf5b', '#9cc45b', '#2f8f4e'];
+function rampColor(score) {
+  const t = Math.min(Math.max(score, 0), 1) * (kRamp.length - 1);
+  const i = Math.min(Math.floor(t), kRamp.length - 2);
+  const a = hex(kRamp[i]);
+  const b = hex(kRamp[i + 1]);
+  return a.map((value, k) => value + (b[k] - value) * (t - i));
+}
+
+// --------------------------------------------------------------------------------------- surfaces
+
+// Corners with a normal each: the mean over the faces around a vertex that bend less than 40 degrees
+// away, so that edges of links stay sharp and scanned surfaces look smooth.
+function surface(vertices, faces) {
+  const numFaces = faces.length / 3;
+  const numVertices = vertices.length / 3;
+  const areas = new Float32Array(3 * numFaces);
+  const units = new Float32Array(3 * numFaces);
+  const first = new Uint32Array(numVertices + 1);
+  for (let f = 0; f < numFaces; ++f) {
+    const [a, b, c] = [0, 1, 2].map((k) => 3 * faces[3 * f + k]);
+    const ux = vertices[b] - vertices[a], uy = vertices[b + 1] - vertices[a + 1],
+          uz = vertices[b + 2] - vertices[a + 2];
+    const vx = vertices[c] - vertices[a], vy = vertices[c + 1] - vertices[a + 1],
+          vz = vertices[c + 2] - vertices[a + 2];
+    const n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const l = length(n);
+    for (let k = 0; k < 3; ++k) {
+      areas[3 * f + k] = n[k];
+      units[3 * f + k] = l > 0 ? n[k] / l : 0;
+      ++first[faces[3 * f + k] + 1];
+    }
+  }
+  for (let v = 0; v < numVertices; ++v) first[v + 1] += first[v];
+  const next = first.slice();
+  const around = new Uint32Array(3 * numFaces);
+  for (let i = 0; i < 3 * numFaces; ++i) around[next[faces[i]]++] = Math.floor(i / 3);
+
+  const cosine = Math.cos(40 * Math.PI / 180);
+  const position = new Float32Array(9 * numFaces);
+  const normal = new Float32Array(9 * numFaces);
+  for (let i = 0; i < 3 * numFaces; ++i) {
+    const f = 3 * Math.floor(i / 3);
+    const v = faces[i];
+    let x = 0, y = 0, z = 0;
+    for (let k = first[v]; k < first[v + 1]; ++k) {
+      const g = 3 * around[k];
+      if (units[f] * units[g] + units[f + 1] * units[g + 1] + units[f + 2] * units[g + 2] >= cosine) {
+        x += areas[g], y += areas[g + 1], z += areas[g + 2];
+      }
+    }
+    const l = Math.hypot(x, y, z) || 1;
+    position.set([vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]], 3 * i);
+    normal.set([x / l, y / l, z / l], 3 * i);
+  }
+  return {position, normal};
+}
+
+// Solid of revolution around z of a polyline (radius, z), normals of each band from its slope unless
+// the shape is a ball.
+function revolved(profile, segments, isBall) {
+  const position = [];
+  const normal = [];
+  for (let b = 0; b + 1 < profile.length; ++b) {
+    const [[r0, z0], [r1, z1]] = [profile[b], profile[b + 1]];
+    const slope = [z1 - z0, r0 - r1];
+    const size = Math.hypot(...slope) || 1;
+    const corner = (r, z, angle) => {
+      const [c, s] = [Math.cos(angle), Math.sin(angle)];
+      position.push(r * c, r * s, z);
+      if (isBall) {
+        normal.push(r * c, r * s, z);
+      } else {
+        normal.push(slope[0] / size * c, slope[0] / size * s, slope[1] / size);
+      }
+    };
+    for (let i = 0; i < segments; ++i) {
+      const [a0, a1] = [i, i + 1].map((k) => 2 * Math.PI * k / segments);
+      corner(r0, z0, a0), corner(r0, z0, a1), corner(r1, z1, a1);
+      corner(r0, z0, a0), corner(r1, z1, a1), corner(r1, z1, a0);
+    }
+  }
+  return {position: new Float32Array(position), normal: new Float32Array(normal)};
+}
+const kBands = 14;
+const ballProfile = Array.from({length: kBands + 1}, (_, i) => {
+  const angle = -Math.PI / 2 + Math.PI * i / kBands;
+  return [Math.cos(angle), Math.sin(angle)];
+});
+const shapes = {
+  ball: revolved(ballProfile, 24, true),
+  tube: revolved([[0, 0], [1, 0], [1, 1], [0, 1]], 14, false),
+  cone: revolved([[0, 0], [1, 0], [0, 1]], 20, false),
+  cube: (() => {
+    const position = [];
+    const normal = [];
+    for (let axis = 0; axis < 3; ++axis) {
+      for (const side of [-1, 1]) {
+        const at = (u, v) => {
+          const p = [0, 0, 0];
+          p[axis] = side / 2, p[(axis + 1) % 3] = u / 2, p[(axis + 2) % 3] = side * v / 2;
+          const n = [0, 0, 0];
+          n[axis] = side;
+          position.push(...p), normal.push(...n);
+        };
+        at(-1, -1), at(1, -1), at(1, 1), at(-1, -1), at(1, 1), at(-1, 1);
+      }
+    }
+    return {position: new Float32Array(position), normal: new Float32Array(normal)};
+  })(),
+};
+
+// Edges of the convex hull of a few points, as index pairs. A pair is an edge if a plane through it and
+// a third point has all others on one side.
+function hullEdges(points) {
+  const edges = [];
+  const n = points.length;
+  for (let i = 0; i < n; ++i) {
+    for (let j = i + 1; j < n; ++j) {
+      let isEdge = n <= 3;
+      for (let k = 0; k < n && !isEdge; ++k) {
+        if (k === i || k === j) continue;
+        const normal = cross(subtract(points[j], points[i]), subtract(points[k], points[i]));
+        let above = 0, below = 0;
+        for (let l = 0; l < n; ++l) {
+          if (l === i || l === j || l === k) continue;
+          if (dot(normal, subtract(points[l], points[i])) > 0) ++above; else ++below;
+        }
+        isEdge = above === 0 || below === 0;
+      }
+      if (isEdge) edges.push([i, j]);
+    }
+  }
+  return edges;
+}
+
+// ------------------------------------------------------------------------------------------ scene
+
+const object = {
+  vertices: floats(data.object.vertices),
+  faces: integers(data.object.faces),
+};
+function boundsOf(vertices) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < vertices.length; i += 3) {
+    for (let k = 0; k < 3; ++k) {
+      low[k] = Math.min(low[k], vertices[i + k]);
+      high[k] = Math.max(high[k], vertices[i + k]);
+    }
+  }
+  return {low, high};
+}
+const objectBounds = boundsOf(object.vertices);
+const objectSize = length(subtract(objectBounds.high, objectBounds.low));
+const links = data.hand.links.map((link) => {
+  const vertices = floats(link.mesh.vertices);
+  return {name: link.name, vertices, faces: integers(link.mesh.faces), bounds: boundsOf(vertices)};
+});
+const voxels = data.voxels && {
+  origin: data.voxels.origin,
+  size: data.voxels.size,
+  indices: shorts(data.voxels.indices),
+  scores: floats(data.voxels.scores),
+};
+
+// Scores are in [0, 1] unless the raw formula was chosen; then the ramp ends where 95 % of them do.
+let scoreTop = 1;
+if (voxels) {
+  const finite = Array.from(voxels.scores).filter(Number.isFinite).sort((a, b) => a - b);
+  if (finite.length > 0 && finite[finite.length - 1] > 1) {
+    scoreTop = finite[Math.floor(0.95 * (finite.length - 1))] || 1;
+  }
+}
+const relativeScore = (i) => Math.min(voxels.scores[i] / scoreTop, 1);
+
+// Best M first; equal ones in the order of the file.
+const order = data.grasps.map((_, i) => i);
+order.sort((a, b) => (data.grasps[b].quality.m - data.grasps[a].quality.m) || (a - b));
+let selected = 0;       // position in `order`
+let highlighted = -1;   // contact under the pointer in the table
+const current = () => data.grasps[order[selected]];
+
+const layers = {
+  object: true, hand: true, contacts: true, polygon: true, palm: true, center: true,
+  targets: false, clips: false, voxels: false, scores: false,
+};
+let handOpacity = 0.8;
+
+function palmOf(grasp) {
+  const X = grasp.X_OL[data.hand.palm.link];
+  return {
+    center: mapped(X, data.hand.palm.center),
+    direction: unit(rotated(X, data.hand.palm.direction)),
+  };
+}
+
+// Balls, tubes and cones that mark things, in O.
+function marksOf(grasp) {
+  const marks = {ball: [], tube: [], cone: []};
+  const s = objectSize;
+  const ball = (center, radius, color) =>
+      marks.ball.push({matrix: placed(center, radius), color: hex(color)});
+  const tube = (a, b, radius, color) => marks.tube.push(
+      {matrix: alongZ(a, subtract(b, a), radius, length(subtract(b, a))), color: hex(color)});
+  const arrow = (from, direction, extent, radius, color) => {
+    const head = Math.min(5 * radius, 0.5 * extent);
+    const neck = add(from, times(unit(direction), extent - head));
+    tube(from, neck, radius, color);
+    marks.cone.push({matrix: alongZ(neck, direction, 2.4 * radius, head), color: hex(color)});
+  };
+
+  if (layers.center && data.center_of_mass) ball(data.center_of_mass, 0.013 * s, kColors.center);
+  if (!grasp) return marks;
+  if (layers.contacts) {
+    grasp.contacts.forEach((contact, i) => {
+      const scale = i === highlighted ? 1.6 : 1;
+      ball(contact.point, 0.0125 * s * scale, kColors.contact);
+      arrow(contact.point, contact.normal, 0.12 * s, 0.0035 * s * scale, kColors.contact);
+    });
+  }
+  if (layers.polygon) {
+    const points = grasp.contacts.map((contact) => contact.point);
+    const isStable = (i, j) => grasp.quality.stable_pairs.some(
+        (pair) => pair.first === Math.min(i, j) && pair.second === Math.max(i, j));
+    const edges = hullEdges(points);
+    for (let i = 0; i < points.length; ++i) {
+      for (let j = i + 1; j < points.length; ++j) {
+        const stable = isStable(i, j);
+        if (!stable && !edges.some((edge) => edge[0] === i && edge[1] === j)) continue;
+        tube(points[i], points[j], (stable ? 0.0038 : 0.0026) * s,
+             stable ? kColors.stable : kColors.edge);
+      }
+    }
+  }
+  if (layers.palm) {
+    const palm = palmOf(grasp);
+    arrow(palm.center, palm.direction, 0.25 * s, 0.005 * s, kColors.palm);
+  }
+  if (layers.targets) {
+    for (const target of grasp.targets) {
+      ball(target.point, 0.0115 * s, kColors.target);
+      arrow(target.point, target.normal, 0.1 * s, 0.003 * s, kColors.target);
+    }
+  }
+  if (layers.clips) {
+    for (const prism of prismsOf(grasp)) {
+      const n = prism.length / 2;
+      for (let i = 0; i < n; ++i) {
+        const j = (i + 1) % n;
+        tube(prism[i], prism[j], 0.0014 * s, kColors.clip);
+        tube(prism[n + i], prism[n + j], 0.0014 * s, kColors.clip);
+        tube(prism[i], prism[n + i], 0.0014 * s, kColors.clip);
+      }
+    }
+  }
+  return marks;
+}
+
+// Corners of each pad's clip volume: those on the pad, then those above them.
+function prismsOf(grasp) {
+  const prisms = [];
+  for (const pad of data.hand.pads) {
+    if (!(pad.thickness > 0)) continue;
+    const X_OC = multiply(grasp.X_OL[pad.link], pad.X_LC);
+    prisms.push([0, pad.thickness].flatMap(
+        (z) => pad.outline.map((corner) => mapped(X_OC, [...corner, z]))));
+  }
+  return prisms;
+}
+
+// Faces seen through: the contact polygon of three contacts, the sides of clip volumes.
+function sheetsOf(grasp) {
+  const position = [];
+  const normal = [];
+  const color = [];
+  const triangle = (a, b, c, rgba) => {
+    const n = unit(cross(subtract(b, a), subtract(c, a)));
+    for (const p of [a, b, c]) position.push(...p), normal.push(...n), color.push(...rgba);
+  };
+  if (grasp && layers.polygon && grasp.contacts.length === 3) {
+    triangle(...grasp.contacts.map((contact) => contact.point), hex(kColors.stable, 0.16));
+  }
+  if (grasp && layers.clips) {
+    const rgba = hex(kColors.clip, 0.28);
+    for (const prism of prismsOf(grasp)) {
+      const n = prism.length / 2;
+      for (let i = 0; i < n; ++i) {
+        const j = (i + 1) % n;
+        triangle(prism[i], prism[j], prism[n + j], rgba);
+        triangle(prism[i], prism[n + j], prism[n + i], rgba);
+        if (i > 0 && i + 1 < n) {
+          triangle(prism[0], prism[i + 1], prism[i], rgba);
+          triangle(prism[n], prism[n + i], prism[n + i + 1], rgba);
+        }
+      }
+    }
+  }
+  return {position: new Float32Array(position), normal: new Float32Array(normal),
+          color: new Float32Array(color)};
+}
+
+// ----------------------------------------------------------------------------------------- camera
+
+const kFieldOfView = 28 * Math.PI / 180;
+const camera = {azimuth: 0.6, elevation: 0.25, target: [0, 0, 0], distance: 1, up: 1};
+
+function cameraAxes() {
+  const up = [0, 0, 0];
+  up[camera.up] = 1;
+  const e1 = [0, 0, 0];
+  e1[(camera.up + 1) % 3] = 1;
+  const e2 = cross(up, e1);
+  const [ca, sa] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth)];
+  const [ce, se] = [Math.cos(camera.elevation), Math.sin(camera.elevation)];
+  const level = add(times(e1, ca), times(e2, sa));
+  const back = add(times(level, ce), times(up, se));     // from the target to the eye
+  const right = add(times(e1, -sa), times(e2, ca));
+  return {right, up: cross(back, right), back};
+}
+function lookAlong(back) {
+  const up = camera.up;
+  const [a, b] = [back[(up + 1) % 3], back[(up + 2) % 3]];
+  camera.elevation = Math.asin(Math.min(Math.max(back[up], -1), 1));
+  if (Math.hypot(a, b) > 1e-6) camera.azimuth = Math.atan2(b, a);
+}
+function boundsOfScene() {
+  const low = objectBounds.low.slice();
+  const high = objectBounds.high.slice();
+  if (data.grasps.length > 0 && layers.hand) {
+    links.forEach((link, i) => {
+      if (link.vertices.length === 0) return;
+      for (let corner = 0; corner < 8; ++corner) {
+        const p = mapped(current().X_OL[i],
+                         [0, 1, 2].map((k) => (corner >> k & 1 ? link.bounds.high : link.bounds.low)[k]));
+        for (let k = 0; k < 3; ++k) {
+          low[k] = Math.min(low[k], p[k]);
+          high[k] = Math.max(high[k], p[k]);
+        }
+      }
+    });
+  }
+  return {low, high};
+}
+function fit() {
+  const {low, high} = boundsOfScene();
+  camera.target = times(add(low, high), 0.5);
+  // The corners of the box must lie inside the frustum.
+  const {right, up, back} = cameraAxes();
+  const slope = Math.tan(kFieldOfView / 2);
+  const aspect = Math.max(canvas.clientWidth, 1) / Math.max(canvas.clientHeight, 1);
+  let distance = 0;
+  for (let corner = 0; corner < 8; ++corner) {
+    const p = subtract([0, 1, 2].map((k) => (corner >> k & 1 ? high : low)[k]), camera.target);
+    const depth = dot(p, back);
+    distance = Math.max(distance, depth + Math.abs(dot(p, up)) / slope,
+                        depth + Math.abs(dot(p, right)) / (slope * aspect));
+  }
+  camera.distance = distance * 1.06;
+}
+// Contact polygon's normal (for two contacts, across their line and the palm direction).
+function polygonNormal(grasp) {
+  const points = grasp.contacts.map((contact) => contact.point);
+  const palm = palmOf(grasp);
+  if (points.length < 2) return anyPerpendicular(palm.direction);
+  const along = subtract(points[1], points[0]);
+  const normal = points.length === 2 ? cross(along, palm.direction)
+                                     : cross(along, subtract(points[2], points[0]));
+  return length(normal) > 0 ? unit(normal) : anyPerpendicular(palm.direction);
+}
+function view(name) {
+  if (name !== 'fit' && data.grasps.length > 0) {
+    const palm = palmOf(current());
+    const normal = polygonNormal(current());
+    if (name === 'front') lookAlong(palm.direction);
+    if (name === 'behind') lookAlong(times(palm.direction, -1));
+    if (name === 'polygon') {
+      // From the side that the palm does not cover.
+      lookAlong(dot(normal, palm.direction) < 0 ? times(normal, -1) : normal);
+    }
+    if (name === 'side') {
+      const across = [0, 1, 2].map((k) => normal[k] - dot(normal, palm.direction) * palm.direction[k]);
+      let best = length(across) > 0.2 ? unit(across) : anyPerpendicular(palm.direction);
+      // Of the directions across the palm's, one that is close to level and shows the polygon.
+      const other = cross(palm.direction, best);
+      let bestScore = -Infinity;
+      const start = best;
+      for (let i = 0; i < 48; ++i) {
+        const angle = 2 * Math.PI * i / 48;
+        const candidate = add(times(start, Math.cos(angle)), times(other, Math.sin(angle)));
+        const score = Math.abs(dot(candidate, normal)) - 0.8 * Math.abs(candidate[camera.up] - 0.2);
+        if (score > bestScore + 1e-9) bestScore = score, best = candidate;
+      }
+      lookAlong(best);
+    }
+  }
+  fit();
+  draw();
+}
+
+// ------------------------------------------------------------------------------------------ WebGL
+
+const canvas = byId('scene');
+const gl = canvas.getContext('webgl2', {antialias: true, alpha: false});
+
+const kVertexShader = `#version 300 es
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+layout(location = 3) in mat4 model;
+uniform mat4 view_projection;
+out vec3 p;
+out vec3 n;
+out vec3 local;
+out vec4 rgba;
+void main() {
+  vec4 world = model * vec4(position, 1.0);
+  // Inverse transpose of a rotation times a scaling along the axes.
+  vec3 squares = vec3(dot(model[0], model[0]), dot(model[1], model[1]), dot(model[2], model[2]));
+  n = mat3(model) * (normal / squares);
+  p = world.xyz;
+  local = position;
+  rgba = color;
+  gl_Position = view_projection * world;
+}`;
+const kFragmentShader = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler3D;
+in vec3 p;
+in vec3 n;
+in vec3 local;
+in vec4 rgba;
+uniform vec3 eye;
+uniform vec3 lamp;             // unit, toward the main light
+uniform float opacity;
+uniform float shininess;       // strength of the highlight
+uniform bool has_cube_edges;
+uniform bool has_scores;
+uniform sampler3D scores;      // per voxel: 0 without a patch, else 1/255 + 254/255 score
+uniform ivec3 lowest;          // voxel of the first texel
+uniform vec3 origin;
+uniform float voxel_size;
+uniform vec3 ramp[5];
+out vec4 fragment;
+void main() {
+  vec3 base = rgba.rgb;
+  if (has_scores) {
+    // A thousandth of a voxel up: surface in the plane between two voxels belongs to the upper one.
+    ivec3 voxel = ivec3(floor((p - origin) / voxel_size + 1e-3));
+    ivec3 texel = voxel - lowest;
+    ivec3 size = textureSize(scores, 0);
+    float value = all(greaterThanEqual(texel, ivec3(0))) && all(lessThan(texel, size))
+        ? texelFetch(scores, texel, 0).r : 0.0;
+    if (value > 0.0) {
+      float t = clamp((value * 255.0 - 1.0) / 254.0, 0.0, 1.0) * 4.0;
+      int i = min(int(t), 3);
+      base = mix(ramp[i], ramp[i + 1], t - float(i));
+    } else {
+      base = vec3(0.72);
+    }
+    vec3 change = fwidth(vec3(texel));
+    if (change.x + change.y + change.z > 0.5) base *= 0.82;
+  }
+  if (has_cube_edges) {
+    vec3 a = abs(local);
+    float largest = max(a.x, max(a.y, a.z));
+    float second = a.x + a.y + a.z - largest - min(a.x, min(a.y, a.z));
+    base *= mix(1.0, 0.72, smoothstep(0.44, 0.47, second));
+  }
+  vec3 to_eye = normalize(eye - p);
+  vec3 m = normalize(n);
+  if (dot(m, to_eye) < 0.0) m = -m;
+  float main_light = max(dot(m, lamp), 0.0);
+  float head_light = max(dot(m, to_eye), 0.0);
+  float highlight = pow(max(dot(m, normalize(lamp + to_eye)), 0.0), 48.0) * shininess;
+  vec3 lit = base * (0.34 + 0.46 * main_light + 0.26 * head_light) + highlight;
+  fragment = vec4(lit, rgba.a * opacity);
+}`;
+
+const scene = {};  // what was made for the graphics card
+
+function program() {
+  const made = gl.createProgram();
+  for (const [type, text] of [[gl.VERTEX_SHADER, kVertexShader],
+                              [gl.FRAGMENT_SHADER, kFragmentShader]]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
+      throw new Error(gl.getShaderInfoLog(shader));
+    }
+    gl.attachShader(made, shader);
+  }
+  gl.linkProgram(made);
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
+    throw new Error(gl.getProgramInfoLog(made));
+  }
+  const uniforms = {};
+  for (const name of ['view_projection', 'eye', 'lamp', 'opacity', 'shininess', 'has_cube_edges',
+                      'has_scores', 'scores', 'lowest', 'origin', 'voxel_size', 'ramp']) {
+    uniforms[name] = gl.getUniformLocation(made, name);
+  }
+  return {made, uniforms};
+}
+function attribute(location, size, values, usage) {
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, values, usage);
+  gl.enableVertexAttribArray(location);
+  gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
+  return buffer;
+}
+function upload(mesh) {
+  const vertexArray = gl.createVertexArray();
+  gl.bindVertexArray(vertexArray);
+  attribute(0, 3, mesh.position, gl.STATIC_DRAW);
+  attribute(1, 3, mesh.normal, gl.STATIC_DRAW);
+  return {vertexArray, count: mesh.position.length / 3};
+}
+// A shape drawn many times, each with its own color and matrix.
+function uploadInstanced(mesh) {
+  const made = upload(mesh);
+  made.colors = attribute(2, 4, new Float32Array(4), gl.DYNAMIC_DRAW);
+  gl.vertexAttribDivisor(2, 1);
+  made.matrices = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, made.matrices);
+  for (let column = 0; column < 4; ++column) {
+    gl.enableVertexAttribArray(3 + column);
+    gl.vertexAttribPointer(3 + column, 4, gl.FLOAT, false, 64, 16 * column);
+    gl.vertexAttribDivisor(3 + column, 1);
+  }
+  made.instances = 0;
+  return made;
+}
+function setInstances(shape, colors, matrices) {
+  gl.bindBuffer(gl.ARRAY_BUFFER, shape.colors);
+  gl.bufferData(gl.ARRAY_BUFFER, colors, gl.DYNAMIC_DRAW);
+  gl.bindBuffer(gl.ARRAY_BUFFER, shape.matrices);
+  gl.bufferData(gl.ARRAY_BUFFER, matrices, gl.DYNAMIC_DRAW);
+  shape.instances = colors.length / 4;
+}
+// The score of every voxel with a patch, as a 3D texture over the voxels' box.
+function scoreTexture() {
+  const {indices, scores} = voxels;
+  const low = [65535, 65535, 65535];
+  const high = [0, 0, 0];
+  for (let i = 0; i < indices.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3], indices[i]);
+    high[i % 3] = Math.max(high[i % 3], indices[i]);
+  }
+  const size = [0, 1, 2].map((k) => high[k] - low[k] + 1);
+  if (scores.length === 0 || Math.max(...size) > gl.getParameter(gl.MAX_3D_TEXTURE_SIZE)) return null;
+  const texels = new Uint8Array(size[0] * size[1] * size[2]);
+  for (let i = 0; i < scores.length; ++i) {
+    if (Number.isNaN(scores[i])) continue;
+    const [x, y, z] = [0, 1, 2].map((k) => indices[3 * i + k] - low[k]);
+    texels[x + size[0] * (y + size[1] * z)] = 1 + Math.round(254 * relativeScore(i));
+  }
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_3D, texture);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.R8, ...size, 0, gl.RED, gl.UNSIGNED_BYTE, texels);
+  gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  return {texture, lowest: low};
+}
+function placeholderTexture() {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_3D, texture);
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.R8, 1, 1, 1, 0, gl.RED, gl.UNSIGNED_BYTE, new Uint8Array(1));
+  gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  return texture;
+}
+function makeScene() {
+  Object.assign(scene, program());
+  scene.object = upload(surface(object.vertices, object.faces));
+  scene.links = links.map((link) => upload(surface(link.vertices, link.faces)));
+  for (const name of ['ball', 'tube', 'cone', 'cube']) scene[name] = uploadInstanced(shapes[name]);
+  scene.sheets = upload({position: new Float32Array(9), normal: new Float32Array(9)});
+  scene.scoreTexture = voxels && scoreTexture();
+  scene.placeholder = placeholderTexture();
+  scene.voxelsShown = '';
+  gl.bindVertexArray(null);
+}
+function updateMarks() {
+  if (!gl) return;
+  const grasp = data.grasps.length > 0 ? current() : null;
+  const marks = marksOf(grasp);
+  for (const name of ['ball', 'tube', 'cone']) {
+    setInstances(scene[name], new Float32Array(marks[name].flatMap((mark) => mark.color)),
+                 new Float32Array(marks[name].flatMap((mark) => mark.matrix)));
+  }
+  const sheets = sheetsOf(grasp);
+  gl.deleteVertexArray(scene.sheets.vertexArray);
+  for (const buffer of scene.sheets.buffers || []) gl.deleteBuffer(buffer);
+  const vertexArray = gl.createVertexArray();
+  gl.bindVertexArray(vertexArray);
+  const buffers = [attribute(0, 3, sheets.position, gl.DYNAMIC_DRAW),
+                   attribute(1, 3, sheets.normal, gl.DYNAMIC_DRAW),
+                   attribute(2, 4, sheets.color, gl.DYNAMIC_DRAW)];
+  gl.bindVertexArray(null);
+  scene.sheets = {vertexArray, buffers, count: sheets.position.length / 3};
+}
+function updateVoxels() {
+  const wanted = layers.voxels ? (layers.scores ? 'scores' : 'plain') : '';
+  if (!voxels || scene.voxelsShown === wanted) return;
+  scene.voxelsShown = wanted;
+  const count = wanted ? voxels.scores.length : 0;
+  const colors = new Float32Array(4 * count);
+  const matrices = new Float32Array(16 * count);
+  const plain = hex(kColors.voxel);
+  for (let i = 0; i < count; ++i) {
+    const center = [0, 1, 2].map(
+        (k) => voxels.origin[k] + voxels.size * (voxels.indices[3 * i + k] + 0.5));
+    const hasScore = wanted === 'scores' && !Number.isNaN(voxels.scores[i]);
+    colors.set(hasScore ? rampColor(relativeScore(i)) : plain, 4 * i);
+    matrices.set(placed(center, voxels.size), 16 * i);
+  }
+  setInstances(scene.cube, colors, matrices);
+}
+
+function constantColor(color, matrix) {
+  gl.vertexAttrib4fv(2, color);
+  for (let column = 0; column < 4; ++column) {
+    gl.vertexAttrib4fv(3 + column, matrix.slice(4 * column, 4 * column + 4));
+  }
+}
+function drawMesh(mesh) {
+  if (mesh.count === 0) return;
+  gl.bindVertexArray(mesh.vertexArray);
+  gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+}
+function drawInstances(shape) {
+  if (shape.instances === 0) return;
+  gl.bindVertexArray(shape.vertexArray);
+  gl.drawArraysInstanced(gl.TRIANGLES, 0, shape.count, shape.instances);
+}
+function drawMarks() {
+  for (const name of ['ball', 'tube', 'cone']) drawInstances(scene[name]);
+}
+function drawHand() {
+  links.forEach((_, i) => {
+    constantColor(hex(kColors.hand), current().X_OL[i]);
+    drawMesh(scene.links[i]);
+  });
+}
+
+// Projection times view, for a frustum or (scale given) a parallel view of that half height.
+function viewProjection(aspect, axes, eye, near, far, halfHeight) {
+  const {right, up, back} = axes;
+  const toCamera = [
+    right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
+    -dot(right, eye), -dot(up, eye), -dot(back, eye), 1];
+  const projection = new Array(16).fill(0);
+  if (halfHeight) {
+    projection[0] = 1 / (halfHeight * aspect);
+    projection[5] = 1 / halfHeight;
+    projection[10] = -2 / (far - near);
+    projection[14] = -(far + near) / (far - near);
+    projection[15] = 1;
+  } else {
+    const f = 1 / Math.tan(kFieldOfView / 2);
+    projection[0] = f / aspect;
+    projection[5] = f;
+    projection[10] = (far + near) / (near - far);
+    projection[11] = -1;
+    projection[14] = 2 * far * near / (near - far);
+  }
+  return multiply(projection, toCamera);
+}
+
+let isDrawPending = false;
+function draw() {
+  if (!gl || isDrawPending) return;
+  isDrawPending = true;
+  requestAnimationFrame(() => {
+    isDrawPending = false;
+    if (!gl.isContextLost()) render();
+  });
+}
+
+function render() {
+  const ratio = Math.min(window.devicePixelRatio || 1, 2);
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (width === 0 || height === 0) return;
+  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== w || canvas.height !== h) canvas.width = w, canvas.height = h;
+
+  const axes = cameraAxes();
+  const eye = add(camera.target, times(axes.back, camera.distance));
+  const bounds = boundsOfScene();
+  const reach = length(subtract(bounds.high, bounds.low)) + length(subtract(camera.target, bounds.low));
+  const far = camera.distance + 2 * reach;
+  const near = Math.max(camera.distance - 2 * reach, far * 2e-3);
+  const matrix = viewProjection(width / height, axes, eye, near, far);
+  const lamp = unit(add(add(times(axes.back, 0.7), times(axes.up, 0.6)), times(axes.right, -0.45)));
+
+  gl.viewport(0, 0, w, h);
+  gl.clearColor(...hex('#f4f5f4'));
+  gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  gl.enable(gl.DEPTH_TEST);
+  gl.depthFunc(gl.LEQUAL);
+  gl.depthMask(true);
+  gl.disable(gl.BLEND);
+  gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  gl.useProgram(scene.made);
+  const u = scene.uniforms;
+  gl.uniformMatrix4fv(u.view_projection, false, matrix);
+  gl.uniform3fv(u.eye, eye);
+  gl.uniform3fv(u.lamp, lamp);
+  gl.uniform1f(u.opacity, 1);
+  gl.uniform1f(u.shininess, 0.06);
+  gl.uniform1i(u.has_cube_edges, 0);
+  gl.uniform1i(u.has_scores, 0);
+  gl.uniform1i(u.scores, 0);
+  gl.activeTexture(gl.TEXTURE0);
+  gl.bindTexture(gl.TEXTURE_3D, scene.scoreTexture ? scene.scoreTexture.texture : scene.placeholder);
+
+  if (layers.object) {
+    const showScores = layers.scores && scene.scoreTexture;
+    if (showScores) {
+      gl.uniform1i(u.has_scores, 1);
+      gl.uniform3iv(u.lowest, scene.scoreTexture.lowest);
+      gl.uniform3fv(u.origin, voxels.origin);
+      gl.uniform1f(u.voxel_size, voxels.size);
+      gl.uniform3fv(u.ramp, kRamp.flatMap((color) => hex(color).slice(0, 3)));
+    }
+    constantColor(hex(kColors.object), kIdentity);
+    drawMesh(scene.object);
+    gl.uniform1i(u.has_scores, 0);
+  }
+  updateVoxels();
+  if (layers.voxels && voxels) {
+    gl.uniform1i(u.has_cube_edges, 1);
+    drawInstances(scene.cube);
+    gl.uniform1i(u.has_cube_edges, 0);
+  }
+  gl.uniform1f(u.shininess, 0.15);
+  drawMarks();
+  if (layers.hand && data.grasps.length > 0 && handOpacity > 0) {
+    gl.uniform1f(u.shininess, 0.12);
+    if (handOpacity < 1) {
+      // Depth first, so that of the hand only its nearest surface is blended.
+      gl.colorMask(false, false, false, false);
+      drawHand();
+      gl.colorMask(true, true, true, true);
+      gl.enable(gl.BLEND);
+      gl.uniform1f(u.opacity, handOpacity);
+    }
+    drawHand();
+    gl.uniform1f(u.opacity, 1);
+    gl.disable(gl.BLEND);
+  }
+  // Marks that something hides shine through.
+  gl.enable(gl.BLEND);
+  gl.depthMask(false);
+  gl.depthFunc(gl.GREATER);
+  gl.uniform1f(u.opacity, 0.38);
+  drawMarks();
+  gl.depthFunc(gl.LEQUAL);
+  gl.uniform1f(u.opacity, 1);
+  gl.uniform1f(u.shininess, 0);
+  for (let column = 0; column < 4; ++column) {
+    gl.vertexAttrib4fv(3 + column, kIdentity.slice(4 * column, 4 * column + 4));
+  }
+  drawMesh(scene.sheets);
+  gl.depthMask(true);
+  gl.disable(gl.BLEND);
+
+  const labels = drawAxes(axes, ratio, h);
+  placeLabels(matrix, width, height, labels);
+  placeScale(height);
+}
+
+// The axes of O in the lower left corner.
+function drawAxes(axes, ratio, h) {
+  const size = 96;
+  const halfHeight = 1.35;
+  gl.viewport(Math.round(6 * ratio), Math.round(6 * ratio), Math.round(size * ratio), Math.round(size * ratio));
+  gl.enable(gl.SCISSOR_TEST);
+  gl.scissor(Math.round(6 * ratio), Math.round(6 * ratio), Math.round(size * ratio), Math.round(size * ratio));
+  gl.clear(gl.DEPTH_BUFFER_BIT);
+  gl.disable(gl.SCISSOR_TEST);
+  const u = scene.uniforms;
+  const eye = times(axes.back, 5);
+  gl.uniformMatrix4fv(u.view_projection, false, viewProjection(1, axes, eye, 1, 10, halfHeight));
+  gl.uniform3fv(u.eye, times(axes.back, 100));
+  const labels = [];
+  ['x', 'y', 'z'].forEach((name, k) => {
+    const direction = [0, 0, 0];
+    direction[k] = 1;
+    // Shapes without their instance arrays: the constants of constantColor apply.
+    constantColor(hex(kColors[name]), alongZ([0, 0, 0], direction, 0.045, 0.75));
+    drawMesh(scene.axisTube);
+    constantColor(hex(kColors[name]), alongZ(times(direction, 0.72), direction, 0.12, 0.28));
+    drawMesh(scene.axisCone);
+    const tip = times(direction, 1.2);
+    labels.push({text: name, kind: 'axis', color: kColors[name],
+                 x: 6 + size / 2 * (1 + dot(tip, axes.right) / halfHeight),
+                 y: h / ratio - 6 - size / 2 * (1 + dot(tip, axes.up) / halfHeight)});
+  });
+  return labels;
+}
+
+function placeLabels(matrix, width, height, labels) {
+  const project = (p) => {
+    const c = [0, 1, 3].map(
+        (i) => matrix[i] * p[0] + matrix[4 + i] * p[1] + matrix[8 + i] * p[2] + matrix[12 + i]);
+    return {x: (c[0] / c[2] + 1) / 2 * width, y: (1 - c[1] / c[2]) / 2 * height};
+  };
+  if (data.grasps.length > 0 && layers.contacts) {
+    current().contacts.forEach((contact, i) => {
+      const {x, y} = project(contact.point);
+      labels.push({text: i === highlighted ? `${i + 1} ${contact.finger}` : `${i + 1}`, kind: '',
+                   x: x + 14, y: y - 14});
+    });
+  }
+  if (layers.center && data.center_of_mass) {
+    const {x, y} = project(data.center_of_mass);
+    labels.push({text: 'CoM', kind: 'note', x: x + 18, y: y + 12});
+  }
+  const box = byId('labels');
+  while (box.children.length < labels.length) box.append(document.createElement('span'));
+  while (box.children.length > labels.length) box.lastChild.remove();
+  labels.forEach((label, i) => {
+    const span = box.children[i];
+    span.textContent = label.text;
+    span.className = label.kind;
+    span.style.color = label.color || '';
+    span.style.transform =
+        `translate(${label.x.toFixed(1)}px, ${label.y.toFixed(1)}px) translate(-50%, -50%)`;
+  });
+}
+
+function placeScale(height) {
+  const metersPerPixel = 2 * camera.distance * Math.tan(kFieldOfView / 2) / height;
+  const wanted = 110 * metersPerPixel;
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const size = [5, 2, 1].map((k) => k * power).find((value) => value <= wanted) || power;
+  byId('scale-bar').style.width = `${(size / metersPerPixel).toFixed(1)}px`;
+  byId('scale-text').textContent =
+      size >= 1 ? `${size.toPrecision(1)} m` : size >= 0.0099 ? `${Math.round(size * 100)} cm`
+      : size >= 0.00099 ? `${Math.round(size * 1000)} mm` : `${(size * 1000).toPrecision(1)} mm`;
+  byId('scale').title = 'In the plane through the center of view';
+}
+
+// ------------------------------------------------------------------------------------------ input
+
+function listenToPointers() {
+  const pointers = new Map();
+  const pan = (dx, dy) => {
+    const {right, up} = cameraAxes();
+    const s = 2 * camera.distance * Math.tan(kFieldOfView / 2) / canvas.clientHeight;
+    camera.target = add(camera.target, add(times(right, -dx * s), times(up, dy * s)));
+  };
+  const zoom = (factor) => {
+    camera.distance = Math.min(Math.max(camera.distance * factor, 0.02 * objectSize), 40 * objectSize);
+  };
+  canvas.addEventListener('pointerdown', (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    pointers.set(event.pointerId, {x: event.clientX, y: event.clientY});
+    canvas.classList.add('dragging');
+  });
+  const release = (event) => {
+    pointers.delete(event.pointerId);
+    if (pointers.size === 0) canvas.classList.remove('dragging');
+  };
+  canvas.addEventListener('pointerup', release);
+  canvas.addEventListener('pointercancel', release);
+  canvas.addEventListener('pointermove', (event) => {
+    const last = pointers.get(event.pointerId);
+    if (!last) return;
+    const now = {x: event.clientX, y: event.clientY};
+    const [dx, dy] = [now.x - last.x, now.y - last.y];
+    if (pointers.size === 2) {
+      const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+      const before = Math.hypot(last.x - other.x, last.y - other.y);
+      const after = Math.hypot(now.x - other.x, now.y - other.y);
+      if (after > 1) zoom(before / after);
+      pan(dx / 2, dy / 2);
+    } else if (event.shiftKey || event.ctrlKey || event.buttons & 6) {
+      pan(dx, dy);
+    } else {
+      camera.azimuth -= 0.008 * dx;
+      camera.elevation =
+          Math.min(Math.max(camera.elevation + 0.008 * dy, -Math.PI / 2), Math.PI / 2);
+    }
+    pointers.set(event.pointerId, now);
+    draw();
+  });
+  canvas.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    const pixels = event.deltaY * (event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1);
+    zoom(Math.exp(0.0012 * Math.min(Math.max(pixels, -400), 400)));
+    draw();
+  }, {passive: false});
+  canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+}
+
+function listenToKeys() {
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target.matches('select, input[type=range]')) return;
+    const step = {ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1}[event.key];
+    if (step && data.grasps.length > 0) {
+      select(Math.min(Math.max(selected + step, 0), order.length - 1));
+      event.preventDefault();
+    } else if (event.key === 'Home' && data.grasps.length > 0) {
+      select(0);
+    } else if (event.key === 'End' && data.grasps.length > 0) {
+      select(order.length - 1);
+    } else if (event.key === 'f' || event.key === 'F') {
+      view('fit');
+    }
+  });
+}
+
+// ----------------------------------------------------------------------------------- lists, tables
+
+// element('td', {className: 'text'}, 'children', ...)
+function element(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
+const fixed = (value, digits) => isNumber(value) ? value.toFixed(digits) : '–';
+const millimeters = (meters, digits = 2) => isNumber(meters) ? (1000 * meters).toFixed(digits) : '–';
+const degrees = (radians) => isNumber(radians) ? (radians * 180 / Math.PI).toFixed(1) : '–';
+const kind = (grasp) => grasp.is_valid ? 'valid' : grasp.is_usable ? 'usable' : 'unusable';
+const kKinds = {
+  valid: 'M > 0, penetrates nothing, every requested finger touches',
+  usable: 'M > 0, but it penetrates or misses a requested contact',
+  unusable: 'M = 0',
+};
+const badge = (grasp) => element(
+    'span', {className: `badge ${kind(grasp)}`, title: kKinds[kind(grasp)]}, kind(grasp));
+
+function makeList() {
+  const list = byId('list');
+  order.forEach((index, position) => {
+    const grasp = data.grasps[index];
+    const {m, m1, m2, m3} = grasp.quality;
+    const row = element('div', {id: `grasp-${index + 1}`},
+        element('span', {className: 'number'}, `#${index + 1}`),
+        element('span', {className: 'm'}, `M ${fixed(m, 3)}`),
+        badge(grasp),
+        element('span', {className: 'parts'},
+                `M1 ${fixed(m1, 3)}   M2 ${fixed(m2, 3)}   M3 ${fixed(m3, 3)}`));
+    row.setAttribute('role', 'option');
+    row.addEventListener('click', () => select(position));
+    list.append(row);
+  });
+  if (order.length === 0) list.append(element('p', {className: 'soft'}, 'No grasps.'));
+  const valid = data.grasps.filter((grasp) => grasp.is_valid).length;
+  const usable = data.grasps.filter((grasp) => grasp.is_usable).length;
+  const size = subtract(objectBounds.high, objectBounds.low).map((s) => (1000 * s).toFixed(0));
+  byId('summary').textContent =
+      `${data.hand.name} hand · ${order.length} grasp${order.length === 1 ? '' : 's'}, ` +
+      `${usable} usable, ${valid} valid · object ${size.join(' × ')} mm`;
+}
+
+function makeToggles() {
+  const without = voxels ? '' : 'This page was written without voxels and scores';
+  const rows = [
+    ['object', 'Object', kColors.object, ''],
+    ['hand', 'Hand', kColors.hand, ''],
+    ['contacts', 'Contacts, inward normals', kColors.contact, '', 'round'],
+    ['polygon', 'Contact polygon', null, ''],
+    ['palm', 'Palm direction', kColors.palm, ''],
+    ['center', 'Center of mass (CoM)', kColors.center, '', 'round'],
+    ['targets', 'Targets, outward normals', kColors.target, '', 'round'],
+    ['clips', 'Clip volumes of pads', kColors.clip, ''],
+    ['voxels', 'Voxels with surface', kColors.voxel, without],
+    ['scores', 'Score map', 'ramp', without],
+  ];
+  for (const [key, name, color, missing, shape] of rows) {
+    const box = element('input', {type: 'checkbox', id: `show-${key}`, checked: layers[key]});
+    box.disabled = missing !== '';
+    const row = element('label', {className: missing ? 'toggle off' : 'toggle', title: missing}, box);
+    if (color === 'ramp') {
+      row.append(element('span', {className: 'name'}, name));
+      row.append(element('span', {className: 'range'}, '0'));
+      const ramp = element('span', {className: 'ramp'});
+      ramp.style.background = `linear-gradient(to right, ${kRamp.join(', ')})`;
+      row.append(ramp);
+      row.append(element('span', {className: 'range'}, scoreTop === 1 ? '1' : `≥ ${scoreTop.toPrecision(3)}`));
+      row.title = missing || 'Suitability of each surface patch for a contact: red low, green high';
+    } else {
+      const swatch = element('span', {className: `swatch ${shape || ''}`});
+      swatch.style.background =
+          color || `linear-gradient(135deg, ${kColors.stable} 50%, ${kColors.edge} 50%)`;
+      row.append(swatch, element('span', {className: 'name'}, name));
+      if (key === 'polygon') {
+        row.title = 'Green edge: stable pair, its line lies inside both friction cones. Gray: other edges';
+        row.append(element('span', {className: 'range'}, 'green: stable pair'));
+      }
+    }
+    box.addEventListener('change', () => {
+      layers[key] = box.checked;
+      updateMarks();
+      draw();
+    });
+    if (key === 'hand') {
+      const slider = element('input', {type: 'range', id: 'opacity', min: 0.1, max: 1, step: 0.05,
+                                       value: handOpacity, title: 'Opacity of the hand'});
+      slider.addEventListener('input', () => {
+        handOpacity = Number(slider.value);
+        draw();
+      });
+      row.append(slider);
+    }
+    byId('toggles').append(row);
+  }
+}
+
+function measureRow(name, explanation, value, measureUnit) {
+  return element('tr', {},
+      element('th', {scope: 'row'}, name, element('small', {}, explanation)),
+      element('td', {}, measureUnit ? `${value} ${measureUnit}` : value));
+}
+
+function showMeasures() {
+  const panel = byId('right');
+  panel.replaceChildren();
+  if (data.grasps.length === 0) {
+    panel.append(element('p', {className: 'soft'}, 'No grasp was found; the object is shown alone.'));
+    return;
+  }
+  const grasp = current();
+  const {quality, penetration} = grasp;
+  panel.append(element('h2', {}, `Grasp #${order[selected] + 1}`));
+  panel.append(element('div', {className: 'headline', title: kKinds[kind(grasp)]},
+      element('span', {className: 'value', id: 'm'}, `M ${fixed(quality.m, 4)}`), badge(grasp)));
+  panel.append(element('p', {className: 'soft'}, kKinds[kind(grasp)]));
+
+  const rows = element('tbody', {},
+      measureRow('M1 sustainability', 'single contacts: far from pad edges, large area', fixed(quality.m1, 4)),
+      measureRow('M2 stability', 'pairs: lines well inside both friction cones', fixed(quality.m2, 4)),
+      measureRow('M3 shape', 'whole set: regular and around the CoM', fixed(quality.m3, 4)),
+      measureRow('R regularity', 'of the contact polygon, 1 is regular', fixed(quality.regularity, 4)),
+      measureRow('D centroid distance', 'contact polygon’s centroid to CoM', millimeters(quality.centroid_distance), 'mm'),
+      measureRow('D as in M3', 'in the units chosen for the measure', fixed(quality.scaled_centroid_distance, 4)),
+      measureRow('M of the targets', 'what the planner aimed for', fixed(grasp.ideal_m, 4)));
+  panel.append(element('h2', {}, 'Measures'), element('table', {id: 'measures'}, rows));
+
+  panel.append(element('h2', {}, 'Contacts'));
+  const contacts = element('tbody');
+  grasp.contacts.forEach((contact, i) => {
+    const notes = [contact.target ? '' : 'no target', contact.weak ? 'weak' : ''].filter(Boolean);
+    const row = element('tr', {className: 'contact', title: `link ${contact.link}`},
+        element('td', {}, `${i + 1} ${contact.finger}`,
+                ...notes.map((note) => element('small', {className: 'soft'}, ` ${note}`))),
+        element('td', {}, millimeters(contact.gap)),
+        element('td', {}, fixed(contact.area * 1e6, 1)),
+        element('td', {}, millimeters(contact.d)),
+        element('td', {}, contact.term ? fixed(contact.term.s, 0) : '–'));
+    row.addEventListener('mouseenter', () => highlight(i));
+    row.addEventListener('mouseleave', () => highlight(-1));
+    contacts.append(row);
+  });
+  panel.append(element('table', {id: 'contacts'},
+      element('thead', {}, element('tr', {},
+          element('th', {scope: 'col'}, 'Finger'),
+          element('th', {scope: 'col', title: 'Smallest height of the surface over the pad'}, 'gap mm'),
+          element('th', {scope: 'col', title: 'Object surface inside the pad’s clip volume'}, 'area mm²'),
+          element('th', {scope: 'col', title: 'From the contact point to the pad’s edge'}, 'd mm'),
+          element('th', {scope: 'col', title: 'Strength: 0 on a weak feature of the object, else 1'}, 'S'))),
+      contacts));
+  if (grasp.contacts.length === 0) panel.append(element('p', {className: 'soft'}, 'None.'));
+
+  panel.append(element('h2', {}, 'Stable pairs'));
+  const pairs = element('tbody');
+  for (const pair of quality.stable_pairs) {
+    const name = (i) => `${i + 1} ${grasp.contacts[i].finger}`;
+    pairs.append(element('tr', {}, element('td', {}, `${name(pair.first)} – ${name(pair.second)}`),
+                         element('td', {}, `${degrees(pair.angle)}°`)));
+  }
+  panel.append(quality.stable_pairs.length === 0
+      ? element('p', {className: 'soft'}, 'None: nothing opposes anything.')
+      : element('table', {id: 'pairs', title: 'Mean angle between the line and the contact normals'}, pairs));
+
+  panel.append(element('h2', {}, 'Penetration'));
+  const depth = (value, bound) => bound > value
+      ? `${millimeters(value)} to ${millimeters(bound)} mm` : `${millimeters(value)} mm`;
+  panel.append(element('table', {id: 'penetration'}, element('tbody', {},
+      measureRow('Hand and object', penetration.object_link ? `deepest: ${penetration.object_link}` : '',
+                 penetration.object ? depth(penetration.object_depth, penetration.object_depth_bound) : 'none'),
+      measureRow('Hand and itself',
+                 penetration.self_link_a ? `${penetration.self_link_a}, ${penetration.self_link_b}` : '',
+                 penetration.self ? `${millimeters(penetration.self_depth)} mm` : 'none'),
+      measureRow('Requested contacts', '', grasp.has_all_contacts ? 'all there' : 'some missing'))));
+
+  const joints = element('tbody');
+  data.hand.joints.forEach((joint, i) => joints.append(measureRow(
+      joint.name, joint.is_coupled ? 'coupled' : '',
+      joint.is_angle ? degrees(grasp.q[i]) : millimeters(grasp.q[i]), joint.is_angle ? '°' : 'mm')));
+  const X_OH = grasp.X_OL[data.hand.palm.link];
+  const terms = element('tbody');
+  grasp.contacts.forEach((contact, i) => contact.term && terms.append(measureRow(
+      `${i + 1} ${contact.finger}`, '', `${fixed(contact.term.d, 4)}   ${fixed(contact.term.a, 4)}`)));
+  panel.append(element('details', {}, element('summary', {}, 'Hand pose and joints'),
+      element('table', {}, element('tbody', {},
+          measureRow('Palm position in O', 'x, y, z',
+                     X_OH.slice(12, 15).map((value) => millimeters(value, 1)).join(', '), 'mm'),
+          measureRow('Palm direction in O', 'x, y, z',
+                     palmOf(grasp).direction.map((value) => fixed(value, 3)).join(', '))), joints)));
+  panel.append(element('details', {}, element('summary', {}, 'Terms of M1, planner'),
+      element('p', {className: 'soft'}, 'd and A of each contact in the units of the measure'),
+      element('table', {}, terms, element('tbody', {},
+          measureRow('Attempt', 'number of the target set', grasp.attempt >= 0 ? `${grasp.attempt}` : '–'),
+          measureRow('Iterations', 'of the fitting loop', `${grasp.iterations}`)))));
+}
+
+function highlight(contact) {
+  highlighted = contact;
+  updateMarks();
+  draw();
+}
+
+function select(position) {
+  selected = position;
+  highlighted = -1;
+  const list = byId('list');
+  [...list.children].forEach((row, i) => {
+    row.setAttribute('aria-selected', String(i === position));
+    if (i === position) {
+      list.setAttribute('aria-activedescendant', row.id);
+      row.scrollIntoView({block: 'nearest'});
+    }
+  });
+  const open = [...document.querySelectorAll('#right details')].map((details) => details.open);
+  showMeasures();
+  [...document.querySelectorAll('#right details')].forEach((details, i) => details.open = open[i]);
+  updateMarks();
+  draw();
+}
+
+// ------------------------------------------------------------------------------------------ start
+
+function say(text) {
+  byId('message').textContent = text;
+  byId('message').hidden = text === '';
+}
+
+makeList();
+makeToggles();
+listenToKeys();
+if (gl) {
+  const start = () => {
+    makeScene();
+    scene.axisTube = upload(shapes.tube);
+    scene.axisCone = upload(shapes.cone);
+    gl.bindVertexArray(null);
+  };
+  start();
+  listenToPointers();
+  canvas.addEventListener('webglcontextlost', (event) => {
+    event.preventDefault();
+    say('The graphics card was reset; the picture comes back when it is ready.');
+  });
+  canvas.addEventListener('webglcontextrestored', () => {
+    say('');
+    start();
+    updateMarks();
+    draw();
+  });
+  new ResizeObserver(draw).observe(byId('stage'));
+  for (const button of document.querySelectorAll('#views button')) {
+    button.addEventListener('click', () => view(button.dataset.view));
+  }
+  byId('up').addEventListener('change', (event) => {
+    camera.up = event.target.selectedIndex;
+    view('side');
+  });
+} else {
+  say('This browser does not offer WebGL 2, so there is no picture; all numbers are here.');
+}
+if (data.grasps.length > 0) {
+  select(0);
+} else {
+  showMeasures();
+  updateMarks();
+}
+if (gl) view('side');
+
+})();

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "graspfit/viewer/page.hpp"
+
+namespace graspfit::viewer {
+
+// All that the page shows, as JSON. Large arrays are base64 of little-endian numbers. Contains no
+// "</", so that it can stand in a script element.
+std::string page_data(const PageInput& input);
+
+}  // namespace graspfit::viewer
