@@ -505,6 +505,7 @@ uniform vec3 eye;
 uniform vec3 lamp;             // unit, toward the main light
 uniform float opacity;
 uniform float shininess;       // strength of the highlight
+uniform float flatness;        // 0: shaded, 1: its color wherever the light is
 uniform bool has_cube_edges;
 uniform bool has_scores;
 uniform sampler3D scores;      // per voxel: 0 without a patch, else 1/255 + 254/255 score
@@ -529,8 +530,11 @@ void main() {
     } else {
       base = vec3(0.72);
     }
-    vec3 change = fwidth(vec3(texel));
-    if (change.x + change.y + change.z > 0.5) base *= 0.82;
+    // Lines where the voxels' planes cut the surface; none where it lies in such a plane.
+    vec3 q = (p - origin) / voxel_size + 1e-3;
+    vec3 to_plane = abs(q - round(q));
+    vec3 width = fwidth(q);
+    if (any(lessThan(to_plane, 0.6 * width)) && max(width.x, max(width.y, width.z)) < 0.25) base *= 0.84;
   }
   if (has_cube_edges) {
     vec3 a = abs(local);
@@ -544,7 +548,7 @@ void main() {
   float main_light = max(dot(m, lamp), 0.0);
   float head_light = max(dot(m, to_eye), 0.0);
   float highlight = pow(max(dot(m, normalize(lamp + to_eye)), 0.0), 48.0) * shininess;
-  vec3 lit = base * (0.34 + 0.46 * main_light + 0.26 * head_light) + highlight;
+  vec3 lit = base * mix(0.40 + 0.42 * main_light + 0.24 * head_light, 1.0, flatness) + highlight;
   fragment = vec4(lit, rgba.a * opacity);
 }`;
 
@@ -567,7 +571,7 @@ function program() {
     throw new Error(gl.getProgramInfoLog(made));
   }
   const uniforms = {};
-  for (const name of ['view_projection', 'eye', 'lamp', 'opacity', 'shininess', 'has_cube_edges',
+  for (const name of ['view_projection', 'eye', 'lamp', 'opacity', 'shininess', 'flatness', 'has_cube_edges',
                       'has_scores', 'scores', 'lowest', 'origin', 'voxel_size', 'ramp']) {
     uniforms[name] = gl.getUniformLocation(made, name);
   }
@@ -781,7 +785,8 @@ function render() {
   gl.uniform3fv(u.eye, eye);
   gl.uniform3fv(u.lamp, lamp);
   gl.uniform1f(u.opacity, 1);
-  gl.uniform1f(u.shininess, 0.06);
+  gl.uniform1f(u.shininess, layers.scores ? 0 : 0.06);
+  gl.uniform1f(u.flatness, layers.scores ? 0.5 : 0);  // colors must match the legend
   gl.uniform1i(u.has_cube_edges, 0);
   gl.uniform1i(u.has_scores, 0);
   gl.uniform1i(u.scores, 0);
@@ -808,7 +813,9 @@ function render() {
     gl.uniform1i(u.has_cube_edges, 0);
   }
   gl.uniform1f(u.shininess, 0.15);
+  gl.uniform1f(u.flatness, 0.35);
   drawMarks();
+  gl.uniform1f(u.flatness, 0);
   if (layers.hand && data.grasps.length > 0 && handOpacity > 0) {
     gl.uniform1f(u.shininess, 0.12);
     if (handOpacity < 1) {
@@ -827,7 +834,8 @@ function render() {
   gl.enable(gl.BLEND);
   gl.depthMask(false);
   gl.depthFunc(gl.GREATER);
-  gl.uniform1f(u.opacity, 0.38);
+  gl.uniform1f(u.opacity, 0.42);
+  gl.uniform1f(u.flatness, 0.5);
   drawMarks();
   gl.depthFunc(gl.LEQUAL);
   gl.uniform1f(u.opacity, 1);
