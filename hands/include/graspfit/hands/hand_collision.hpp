@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "graspfit/geometry/mesh_intersection.hpp"
@@ -31,7 +33,8 @@ class HandCollision {
 
  private:
   HandModel model_;
-  std::vector<std::optional<geometry::MeshQuery>> links_;
+  std::vector<std::optional<geometry::MeshQuery>> links_;  ///< Empty for links without faces.
+  std::vector<Eigen::AlignedBox3d> boxes_;                 ///< Of the link meshes, in L.
 };
 
 }  // namespace graspfit::hands

@@ -1,0 +1,100 @@
+#include "graspfit/hands/hand_library.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/hand_io.hpp"
+
+namespace graspfit::hands {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Folder of the running program; empty where the system does not say.
+fs::path program_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path() : program.parent_path();
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const fs::path relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+/// The folder of the hand library. A program of the build tree uses the sources' hands, so that a
+/// change there counts at once; an installed one those beside it, wherever it was moved.
+fs::path library_folder() {
+  std::error_code error;
+  if (const char* setting = std::getenv("GRASPFIT_HANDS"); setting != nullptr && *setting != '\0') {
+    if (!fs::is_directory(setting, error)) {
+      throw geometry::InvalidInput("GRASPFIT_HANDS: " + std::string(setting) + " is not a folder");
+    }
+    return setting;
+  }
+  const fs::path program = program_folder();
+  std::vector<fs::path> candidates;
+  if (!program.empty()) {
+    candidates.push_back(program.parent_path() / "share/graspfit/hands");
+    if (lies_in(program, GRASPFIT_BUILD_FOLDER)) candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
+  }
+  candidates.emplace_back(GRASPFIT_INSTALLED_HANDS);
+  candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_directory(candidate, error)) return candidate;
+  }
+  throw geometry::InvalidInput("no folder of shipped hands (looked in " +
+                               candidates.front().string() + " and " + GRASPFIT_INSTALLED_HANDS +
+                               "); set GRASPFIT_HANDS");
+}
+
+std::vector<std::string> hands_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (fs::is_regular_file(entry.path() / (name + ".urdf"), error)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+std::vector<std::string> shipped_hands() { return hands_in(library_folder()); }
+
+fs::path shipped_hand_file(const std::string& name) {
+  const fs::path folder = library_folder();
+  const std::vector<std::string> names = hands_in(folder);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    throw geometry::InvalidInput("no shipped hand named " + name + "; there are " + list(names));
+  }
+  return folder / name / (name + ".urdf");
+}
+
+HandModel find_hand(const std::string& name_or_file) {
+  const fs::path path = name_or_file;
+  std::error_code error;
+  const bool is_file_name = path.has_parent_path() || path.has_extension();
+  if (!is_file_name) {
+    const std::vector<std::string> names = shipped_hands();
+    if (std::find(names.begin(), names.end(), name_or_file) != names.end()) {
+      return read_hand_model(shipped_hand_file(name_or_file));
+    }
+    if (!fs::exists(path, error)) {
+      throw geometry::InvalidInput("no hand " + name_or_file + ": shipped hands are " + list(names) +
+                                   "; or give the path of a URDF file");
+    }
+  }
+  return read_hand_model(path);
+}
+
+}  // namespace graspfit::hands

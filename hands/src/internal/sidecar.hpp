@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "graspfit/geometry/rigid_transform.hpp"
+
+namespace graspfit::hands::internal {
+
+/// The sidecar as the file says it (schema: hands/models/hand_sidecar.schema.json): names not yet
+/// resolved, meaning not yet checked.
+struct SidecarFinger {
+  std::string name;
+  bool is_thumb = false;
+  std::vector<std::string> links;
+  std::vector<std::string> joints;
+  std::optional<std::string> swing_joint;
+  std::optional<std::string> tip_pad;
+};
+
+struct SidecarPad {
+  std::string name;
+  std::string link;
+  std::string finger;  ///< A finger's name or "palm".
+  geometry::RigidTransform X_LC = geometry::RigidTransform::Identity();
+  std::vector<Eigen::Vector2d> outline;
+  std::optional<double> clip_thickness;
+};
+
+struct SidecarPalm {
+  std::string link;
+  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();  ///< Unit.
+  std::optional<std::string> pad;
+};
+
+struct SidecarCoupling {
+  std::string joint;
+  std::string leader;
+  double ratio = 1.0;
+  double offset = 0.0;
+  bool breakaway = false;
+};
+
+struct Sidecar {
+  std::vector<SidecarFinger> fingers;
+  std::vector<SidecarPad> pads;
+  SidecarPalm palm;
+  std::map<std::string, int> closing;
+  std::vector<SidecarCoupling> couplings;
+  std::vector<std::pair<std::string, std::string>> exclusions;
+};
+
+/// Parses the text of a sidecar: structure, types and ranges of single values.
+/// @throws IoError or InvalidInput, prefixed by `file` and the item.
+Sidecar parse_sidecar(const std::string& text, const std::string& file);
+
+}  // namespace graspfit::hands::internal

@@ -1,0 +1,235 @@
+#include "internal/sidecar.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::hands::internal {
+
+namespace {
+
+using geometry::InvalidInput;
+using geometry::IoError;
+using nlohmann::json;
+
+constexpr const char* kFormat = "graspfit hand sidecar";
+constexpr int kVersion = 1;
+
+/// A value of the file and where it stands, so that every complaint names both.
+class Item {
+ public:
+  Item(const json& value, std::string file, std::string path)
+      : value_(value), file_(std::move(file)), path_(std::move(path)) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InvalidInput(file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what);
+  }
+
+  /// Refuses fields that the format does not know: most are misspelled.
+  void require_fields(const std::vector<std::string>& known) const {
+    if (!value_.is_object()) fail("is not an object {...}");
+    for (const auto& [key, unused] : value_.items()) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      std::string list;
+      for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+      fail("unknown field " + key + "; known are " + list);
+    }
+  }
+
+  Item at(const std::string& key) const {
+    const std::string inner = path_.empty() ? key : path_ + "." + key;
+    if (!value_.is_object()) fail("is not an object {...}");
+    const auto found = value_.find(key);
+    if (found == value_.end()) fail("no field " + key);
+    return {*found, file_, inner};
+  }
+
+  /// The field unless it is missing or null.
+  std::optional<Item> find(const std::string& key) const {
+    if (!value_.is_object()) fail("is not an object {...}");
+    const auto found = value_.find(key);
+    if (found == value_.end() || found->is_null()) return std::nullopt;
+    return at(key);
+  }
+
+  std::vector<Item> array() const {
+    if (!value_.is_array()) fail("is not a list [...]");
+    std::vector<Item> items;
+    for (std::size_t i = 0; i < value_.size(); ++i) {
+      items.emplace_back(value_[i], file_, path_ + "[" + std::to_string(i) + "]");
+    }
+    return items;
+  }
+
+  std::vector<std::pair<std::string, Item>> entries() const {
+    if (!value_.is_object()) fail("is not an object {...}");
+    std::vector<std::pair<std::string, Item>> result;
+    for (const auto& [key, value] : value_.items()) {
+      result.emplace_back(key, Item(value, file_, path_ + "." + key));
+    }
+    return result;
+  }
+
+  std::string name() const {
+    if (!value_.is_string() || value_.get_ref<const std::string&>().empty()) {
+      fail("is not a name (a text that is not empty)");
+    }
+    return value_.get<std::string>();
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> result;
+    for (const Item& item : array()) result.push_back(item.name());
+    return result;
+  }
+
+  double number() const {
+    if (!value_.is_number()) fail("is not a number");
+    const double value = value_.get<double>();
+    if (!std::isfinite(value)) fail("is not finite");
+    return value;
+  }
+
+  bool boolean() const {
+    if (!value_.is_boolean()) fail("is neither true nor false");
+    return value_.get<bool>();
+  }
+
+  template <int Size>
+  Eigen::Matrix<double, Size, 1> vector() const {
+    const std::vector<Item> items = array();
+    if (items.size() != Size) {
+      fail("has " + std::to_string(items.size()) + " of " + std::to_string(Size) + " numbers");
+    }
+    Eigen::Matrix<double, Size, 1> result;
+    for (int i = 0; i < Size; ++i) result[i] = items[static_cast<std::size_t>(i)].number();
+    return result;
+  }
+
+ private:
+  const json& value_;
+  std::string file_;
+  std::string path_;
+};
+
+void check_format(const Item& root) {
+  const Item format = root.at("format");
+  format.require_fields({"name", "version"});
+  if (format.at("name").name() != kFormat) {
+    format.fail("name is not \"" + std::string(kFormat) + "\"");
+  }
+  const double version = format.at("version").number();
+  if (version != kVersion) {
+    format.fail("version is not " + std::to_string(kVersion) + ", the one this program reads");
+  }
+}
+
+SidecarFinger finger(const Item& item) {
+  item.require_fields({"name", "thumb", "links", "joints", "swing_joint", "tip_pad"});
+  SidecarFinger result;
+  result.name = item.at("name").name();
+  if (const auto thumb = item.find("thumb")) result.is_thumb = thumb->boolean();
+  result.links = item.at("links").names();
+  result.joints = item.at("joints").names();
+  if (const auto swing = item.find("swing_joint")) result.swing_joint = swing->name();
+  if (const auto pad = item.find("tip_pad")) result.tip_pad = pad->name();
+  return result;
+}
+
+SidecarPad pad(const Item& item) {
+  item.require_fields({"name", "link", "finger", "frame", "outline_m", "clip"});
+  SidecarPad result;
+  result.name = item.at("name").name();
+  result.link = item.at("link").name();
+  result.finger = item.at("finger").name();
+  const Item frame = item.at("frame");
+  frame.require_fields({"translation_m", "rotation_wxyz"});
+  result.X_LC.translation() = frame.at("translation_m").vector<3>();
+  const Item rotation = frame.at("rotation_wxyz");
+  const Eigen::Vector4d q = rotation.vector<4>();
+  // A person may type 0.7071: normalize, and refuse only what is no rotation at all.
+  if (std::abs(q.norm() - 1.0) > 1e-3) rotation.fail("is not a unit quaternion");
+  result.X_LC.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  for (const Item& corner : item.at("outline_m").array()) {
+    result.outline.push_back(corner.vector<2>());
+  }
+  if (const auto clip = item.find("clip")) {
+    clip->require_fields({"kind", "thickness_m"});
+    if (clip->at("kind").name() != "prism") clip->at("kind").fail("is not \"prism\"");
+    if (const auto thickness = clip->find("thickness_m")) {
+      result.clip_thickness = thickness->number();
+      if (*result.clip_thickness <= 0.0) thickness->fail("is not positive");
+    }
+  }
+  return result;
+}
+
+SidecarPalm palm(const Item& item) {
+  item.require_fields({"link", "center_m", "direction", "pad"});
+  SidecarPalm result;
+  result.link = item.at("link").name();
+  result.center_H = item.at("center_m").vector<3>();
+  const Item direction = item.at("direction");
+  result.direction_H = direction.vector<3>();
+  if (result.direction_H.norm() == 0.0) direction.fail("is zero");
+  result.direction_H.normalize();
+  if (const auto its_pad = item.find("pad")) result.pad = its_pad->name();
+  return result;
+}
+
+SidecarCoupling coupling(const Item& item) {
+  item.require_fields({"joint", "leader", "ratio", "offset", "breakaway"});
+  SidecarCoupling result;
+  result.joint = item.at("joint").name();
+  result.leader = item.at("leader").name();
+  if (const auto ratio = item.find("ratio")) result.ratio = ratio->number();
+  if (const auto offset = item.find("offset")) result.offset = offset->number();
+  if (const auto breakaway = item.find("breakaway")) result.breakaway = breakaway->boolean();
+  return result;
+}
+
+/// What the parser said, without its own prefix "[json.exception.parse_error.101] ".
+std::string plain(const json::exception& error) {
+  const std::string what = error.what();
+  const std::size_t end = what.find("] ");
+  return end == std::string::npos ? what : what.substr(end + 2);
+}
+
+}  // namespace
+
+Sidecar parse_sidecar(const std::string& text, const std::string& file) {
+  json document;
+  try {
+    document = json::parse(text);
+  } catch (const json::exception& error) {
+    throw IoError(file + ": not JSON: " + plain(error));
+  }
+  const Item root(document, file, "");
+  root.require_fields({"format", "hand", "description", "conventions", "fingers", "pads", "palm",
+                       "closing", "couplings", "exclusions"});
+  check_format(root);
+
+  Sidecar sidecar;
+  for (const Item& item : root.at("fingers").array()) sidecar.fingers.push_back(finger(item));
+  for (const Item& item : root.at("pads").array()) sidecar.pads.push_back(pad(item));
+  sidecar.palm = palm(root.at("palm"));
+  for (const auto& [joint, item] : root.at("closing").entries()) {
+    const double sign = item.number();
+    if (sign != -1.0 && sign != 0.0 && sign != 1.0) item.fail("is none of -1, 0, 1");
+    sidecar.closing[joint] = static_cast<int>(sign);
+  }
+  for (const Item& item : root.at("couplings").array()) {
+    sidecar.couplings.push_back(coupling(item));
+  }
+  for (const Item& item : root.at("exclusions").array()) {
+    const std::vector<std::string> pair = item.names();
+    if (pair.size() != 2) item.fail("is not a pair of links");
+    sidecar.exclusions.emplace_back(pair[0], pair[1]);
+  }
+  return sidecar;
+}
+
+}  // namespace graspfit::hands::internal
