@@ -1,5 +1,7 @@
 #include "graspfit/hands/hand_collision.hpp"
 
+#include <algorithm>
+
 #include "graspfit/geometry/errors.hpp"
 
 namespace graspfit::hands {
