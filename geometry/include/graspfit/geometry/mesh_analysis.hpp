@@ -52,7 +52,7 @@ struct MeshRepairOptions {
   double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
-  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+  void validate() const;             ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One thing that a repair did.
@@ -74,10 +74,11 @@ struct RepairedMesh {
 
 /// Makes a closed, consistently outward mesh of `mesh`, or refuses.
 ///
-/// Order: unused vertices, degenerate and doubled faces, non-manifold edges and vertices split,
-/// orientation made consistent and outward per part, holes filled up to the stated size.
-/// Overlapping parts are kept as they are (their union is meant). Self-intersections are reported,
-/// not resolved.
+/// Order: faces with a repeated vertex, doubled faces (opposite ones cancel), unused vertices,
+/// orientation made consistent, non-manifold edges and vertices split (solids that touch along an
+/// edge come apart), holes filled up to the stated size, inside-out parts turned. Collinear faces
+/// stay: they carry the connection between their neighbors. Overlapping parts are kept as they are
+/// (their union is meant). Self-intersections are reported, not resolved.
 /// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
 /// large the largest hole is), if `Strict` meets any defect, or if the mesh has no faces.
 /// @throws DegenerateGeometry if the mesh has no volume.
