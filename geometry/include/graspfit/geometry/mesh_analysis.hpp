@@ -58,8 +58,8 @@ struct MeshRepairOptions {
 /// One thing that a repair did.
 struct RepairStep {
   std::string what;            ///< One of "removed degenerate faces", "removed doubled faces",
-                               ///< "removed unused vertices", "split non-manifold vertices",
-                               ///< "turned parts", "filled holes".
+                               ///< "removed unused vertices", "turned faces",
+                               ///< "split non-manifold vertices", "filled holes", "turned parts".
   std::size_t count = 0;       ///< How many of them, > 0.
   double volume_change = 0.0;  ///< Change of the signed volume by this step [m³].
 };
