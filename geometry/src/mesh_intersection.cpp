@@ -1,0 +1,335 @@
+#include "graspfit/geometry/mesh_intersection.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "internal/box_tree.hpp"
+#include "internal/mesh_query_impl.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using internal::BoxTree;
+using Corners = std::array<Vector3d, 3>;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// A node of B's tree seen from frame A: a box that holds it, rounding included.
+struct SeenBox {
+  Vector3d lower;
+  Vector3d upper;
+};
+
+SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
+  const Vector3d center = X_AB * Vector3d(0.5 * (node.lower + node.upper));
+  const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (node.upper - node.lower));
+  // Generous against the few ulps that the two products and the mapped vertices are off.
+  const double slack =
+      1e-14 * (center.cwiseAbs().sum() + half.sum() + X_AB.translation().cwiseAbs().sum() +
+               node.lower.cwiseAbs().sum() + node.upper.cwiseAbs().sum());
+  const Vector3d reach = half.array() + slack;
+  return {center - reach, center + reach};
+}
+
+bool overlap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
+  return (lower_a.array() <= b.upper.array()).all() && (b.lower.array() <= upper_a.array()).all();
+}
+
+double squared_gap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
+  return (lower_a - b.upper).cwiseMax(b.lower - upper_a).cwiseMax(0.0).squaredNorm();
+}
+
+Corners mapped(const Corners& corners, const RigidTransform& X_AB) {
+  return {X_AB * corners[0], X_AB * corners[1], X_AB * corners[2]};
+}
+
+Kernel::Triangle_3 to_cgal(const Corners& c) {
+  const auto point = [](const Vector3d& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
+  return {point(c[0]), point(c[1]), point(c[2])};
+}
+
+/// Exact, degenerate triangles included as the segments or points that they are.
+bool triangles_intersect(const Corners& a, const Corners& b) {
+  const Kernel::Triangle_3 first = to_cgal(a);
+  const Kernel::Triangle_3 second = to_cgal(b);
+  // CGAL's test needs proper triangles. A degenerate face bounds nothing that its neighbors do not.
+  if (first.is_degenerate() || second.is_degenerate()) return false;
+  return CGAL::do_intersect(first, second);
+}
+
+/// Whether the surfaces share a point.
+bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform& X_AB) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> open = {{0, 0}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    const BoxTree::Node& node_a = a.nodes[i];
+    const BoxTree::Node& node_b = b.nodes[j];
+    if (!overlap(node_a.lower, node_a.upper, seen_from(node_b, X_AB))) continue;
+    const bool is_leaf_a = node_a.count > 0;
+    const bool is_leaf_b = node_b.count > 0;
+    if (is_leaf_a && is_leaf_b) {
+      for (std::int32_t t = 0; t < node_b.count; ++t) {
+        const Corners triangle_b = mapped(b.triangles[node_b.first + t].corners, X_AB);
+        for (std::int32_t s = 0; s < node_a.count; ++s) {
+          if (triangles_intersect(a.triangles[node_a.first + s].corners, triangle_b)) return true;
+        }
+      }
+      continue;
+    }
+    const bool split_a =
+        !is_leaf_a && (is_leaf_b || (node_a.upper - node_a.lower).squaredNorm() >=
+                                        (node_b.upper - node_b.lower).squaredNorm());
+    if (split_a) {
+      open.emplace_back(i + 1, j);
+      open.emplace_back(node_a.first, j);
+    } else {
+      open.emplace_back(i, j + 1);
+      open.emplace_back(i, node_b.first);
+    }
+  }
+  return false;
+}
+
+/// Whether some part of `inner` (surfaces do not cross) lies inside `outer`, both in one frame.
+bool holds_a_part(const MeshQuery& outer, const std::vector<Vector3d>& part_points) {
+  return std::any_of(part_points.begin(), part_points.end(), [&](const Vector3d& point) {
+    return outer.impl().box.contains(point) && outer.containment(point) != Containment::Outside;
+  });
+}
+
+std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& X) {
+  std::vector<Vector3d> points;
+  for (const std::int32_t vertex : query.impl().part_vertices) {
+    points.push_back(X * query.mesh().vertices[vertex]);
+  }
+  return points;
+}
+
+/// Best-first search for the point of one surface that is deepest inside another solid.
+class DeepestPoint {
+ public:
+  DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface, double tolerance)
+      : solid_(solid), X_(X_solid_surface), tolerance_(tolerance) {}
+
+  double depth = 0.0;                 ///< Deepest point found.
+  double bound = 0.0;                 ///< No point is deeper.
+  Vector3d point = Vector3d::Zero();  ///< In the solid's frame.
+
+  void search(const BoxTree& surface) {
+    push_node(surface, 0);
+    // Ties over a wide flat overlap would be cut forever; the bound says honestly how far this got.
+    constexpr int kLargestWork = 50000;
+    for (int work = 0; work < kLargestWork && !open_.empty(); ++work) {
+      if (open_.top().bound <= depth + tolerance_) break;
+      const Item item = open_.top();
+      open_.pop();
+      if (item.node >= 0) {
+        const BoxTree::Node& node = surface.nodes[item.node];
+        if (node.count == 0) {
+          push_node(surface, item.node + 1);
+          push_node(surface, node.first);
+        } else {
+          for (std::int32_t t = 0; t < node.count; ++t) {
+            push_triangle(mapped(surface.triangles[node.first + t].corners, X_));
+          }
+        }
+      } else {
+        const auto& [a, b, c] = item.corners;
+        const Vector3d ab = 0.5 * (a + b);
+        const Vector3d bc = 0.5 * (b + c);
+        const Vector3d ca = 0.5 * (c + a);
+        push_triangle({a, ab, ca});
+        push_triangle({ab, b, bc});
+        push_triangle({ca, bc, c});
+        push_triangle({ab, bc, ca});
+      }
+    }
+    bound = std::max(depth, open_.empty() ? 0.0 : open_.top().bound);
+  }
+
+ private:
+  struct Item {
+    double bound;
+    std::int32_t node;  ///< −1 for a triangle.
+    Corners corners;    ///< In the solid's frame.
+    bool operator<(const Item& other) const { return bound < other.bound; }
+  };
+
+  void push(double item_bound, std::int32_t node, const Corners& corners) {
+    if (item_bound > depth) open_.push({item_bound, node, corners});
+  }
+
+  void push_node(const BoxTree& surface, std::int32_t index) {
+    const BoxTree::Node& node = surface.nodes[index];
+    const SeenBox box = seen_from(node, X_);
+    const Eigen::AlignedBox3d& solid_box = solid_.impl().box;
+    if (!overlap(solid_box.min(), solid_box.max(), box)) return;
+    const Vector3d center = 0.5 * (box.lower + box.upper);
+    const double radius = 0.5 * (node.upper - node.lower).norm();
+    // The distance to a surface changes by at most the distance gone.
+    push(radius - solid_.signed_distance(center), index, {});
+  }
+
+  void push_triangle(const Corners& corners) {
+    const Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
+    double radius = 0.0;
+    for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
+    const ClosestPoint closest = solid_.closest_point(center);
+    const double distance = std::sqrt(closest.squared_distance);
+    // A point outside is at most `radius` − distance deep anywhere on the triangle.
+    if (radius + distance <= depth) return;
+    const bool is_inside = solid_.containment(center) == Containment::Inside;
+    if (is_inside && distance > depth) {
+      depth = distance;
+      point = center;
+    }
+    // Nor can any point be farther from the surface than from the one face nearest to the center,
+    // and that distance, convex, is largest at a corner.
+    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(closest.face));
+    double to_face = 0.0;
+    for (const Vector3d& corner : corners) {
+      to_face = std::max(to_face, (corner - internal::closest_on_triangle(corner, face)).norm());
+    }
+    push(std::min(to_face, is_inside ? radius + distance : radius - distance), -1, corners);
+  }
+
+  const MeshQuery& solid_;
+  const RigidTransform X_;
+  const double tolerance_;
+  std::priority_queue<Item> open_;
+};
+
+/// Nearest points of two segments (p0, p1) and (q0, q1).
+std::pair<Vector3d, Vector3d> closest_on_segments(const Vector3d& p0, const Vector3d& p1,
+                                                  const Vector3d& q0, const Vector3d& q1) {
+  const Vector3d u = p1 - p0;
+  const Vector3d v = q1 - q0;
+  const Vector3d w = p0 - q0;
+  const double a = u.squaredNorm();
+  const double b = u.dot(v);
+  const double c = v.squaredNorm();
+  const double d = u.dot(w);
+  const double e = v.dot(w);
+  const double denominator = a * c - b * b;
+  double s = denominator > 0.0 ? std::clamp((b * e - c * d) / denominator, 0.0, 1.0) : 0.0;
+  double t = c > 0.0 ? (b * s + e) / c : 0.0;
+  if (t < 0.0 || t > 1.0) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = a > 0.0 ? std::clamp((b * t - d) / a, 0.0, 1.0) : 0.0;
+  }
+  return {p0 + s * u, q0 + t * v};
+}
+
+/// Improves `best` by the nearest points of two triangles that do not cross: a corner against a
+/// triangle, or an edge against an edge.
+void improve(const Corners& a, const Corners& b, MeshDistance& best) {
+  const auto offer = [&](const Vector3d& on_a, const Vector3d& on_b) {
+    const double distance = (on_a - on_b).norm();
+    if (distance < best.distance) best = {distance, on_a, on_b};
+  };
+  for (int i = 0; i < 3; ++i) {
+    offer(a[i], internal::closest_on_triangle(a[i], b));
+    offer(internal::closest_on_triangle(b[i], a), b[i]);
+    for (int j = 0; j < 3; ++j) {
+      const auto [on_a, on_b] = closest_on_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
+      offer(on_a, on_b);
+    }
+  }
+}
+
+}  // namespace
+
+void PenetrationOptions::validate() const {
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) {
+    throw InvalidInput("PenetrationOptions: tolerance = " + shortest_decimal(tolerance) +
+                       ", must be finite and > 0 m");
+  }
+}
+
+bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
+  if (surfaces_intersect(a.impl().tree, b.impl().tree, X_AB)) return true;
+  const SeenBox box_b = seen_from(b.impl().tree.nodes.front(), X_AB);
+  const Eigen::AlignedBox3d& box_a = a.impl().box;
+  if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
+  if (holds_a_part(a, part_points(b, X_AB))) return true;
+  // A inside B: only with B as it was rounded to frame A is the answer exact.
+  std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
+  std::erase_if(points_a, [&](const Vector3d& p) { return !overlap(p, p, box_b); });
+  return !points_a.empty() && holds_a_part(MeshQuery(transformed(b.mesh(), X_AB)), points_a);
+}
+
+Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
+                        const PenetrationOptions& options) {
+  options.validate();
+  Penetration result;
+  result.intersects = do_intersect(a, b, X_AB);
+  if (!result.intersects) return result;
+  DeepestPoint in_a(a, X_AB, options.tolerance);
+  in_a.search(b.impl().tree);
+  DeepestPoint in_b(b, X_AB.inverse(), options.tolerance);
+  in_b.search(a.impl().tree);
+  const bool is_in_a = in_a.depth >= in_b.depth;
+  result.depth = std::max(in_a.depth, in_b.depth);
+  result.depth_bound = std::max(in_a.bound, in_b.bound) + options.tolerance;
+  result.deepest_point_A = is_in_a ? in_a.point : Vector3d(X_AB * in_b.point);
+  return result;
+}
+
+MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
+  MeshDistance best{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero()};
+  if (do_intersect(a, b, X_AB)) return {0.0, Vector3d::Zero(), Vector3d::Zero()};
+  const BoxTree& tree_a = a.impl().tree;
+  const BoxTree& tree_b = b.impl().tree;
+  struct Pair {
+    double squared_gap;
+    std::int32_t node_a;
+    std::int32_t node_b;
+    bool operator<(const Pair& other) const { return squared_gap > other.squared_gap; }
+  };
+  std::priority_queue<Pair> open;
+  const auto push = [&](std::int32_t i, std::int32_t j) {
+    const double gap =
+        squared_gap(tree_a.nodes[i].lower, tree_a.nodes[i].upper, seen_from(tree_b.nodes[j], X_AB));
+    if (gap < best.distance * best.distance) open.push({gap, i, j});
+  };
+  push(0, 0);
+  while (!open.empty()) {
+    const Pair pair = open.top();
+    open.pop();
+    if (pair.squared_gap >= best.distance * best.distance) break;
+    const BoxTree::Node& node_a = tree_a.nodes[pair.node_a];
+    const BoxTree::Node& node_b = tree_b.nodes[pair.node_b];
+    if (node_a.count > 0 && node_b.count > 0) {
+      for (std::int32_t t = 0; t < node_b.count; ++t) {
+        const Corners triangle_b = mapped(tree_b.triangles[node_b.first + t].corners, X_AB);
+        for (std::int32_t s = 0; s < node_a.count; ++s) {
+          improve(tree_a.triangles[node_a.first + s].corners, triangle_b, best);
+        }
+      }
+      continue;
+    }
+    const bool split_a =
+        node_a.count == 0 && (node_b.count > 0 || (node_a.upper - node_a.lower).squaredNorm() >=
+                                                      (node_b.upper - node_b.lower).squaredNorm());
+    if (split_a) {
+      push(pair.node_a + 1, pair.node_b);
+      push(node_a.first, pair.node_b);
+    } else {
+      push(pair.node_a, pair.node_b + 1);
+      push(pair.node_a, node_b.first);
+    }
+  }
+  return best;
+}
+
+}  // namespace graspfit::geometry
