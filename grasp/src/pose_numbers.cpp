@@ -1,5 +1,7 @@
 #include "internal/pose_numbers.hpp"
 
+#include <algorithm>
+
 namespace graspfit::grasp::internal {
 
 std::array<double, 4> rotation_wxyz(const geometry::RigidTransform& X_AB) {
@@ -11,7 +13,10 @@ std::array<double, 4> rotation_wxyz(const geometry::RigidTransform& X_AB) {
     sign = component < 0.0 ? -1.0 : 1.0;
     break;
   }
-  for (double& component : wxyz) component = component == 0.0 ? 0.0 : sign * component;
+  for (double& component : wxyz) {
+    // No negative zero, and no component that rounding brought above one.
+    component = component == 0.0 ? 0.0 : std::clamp(sign * component, -1.0, 1.0);
+  }
   return wxyz;
 }
 

@@ -1,0 +1,137 @@
+#include "command_line.hpp"
+
+#include <boost/program_options/parsers.hpp>
+#include <boost/program_options/positional_options.hpp>
+#include <boost/program_options/value_semantic.hpp>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <system_error>
+
+namespace graspfit::app {
+namespace {
+
+namespace po = boost::program_options;
+
+const char* const kPositional = "argument without a flag";
+
+template <class Number>
+Number parse_number(const std::string& name, const std::string& text, const char* kind) {
+  Number value{};
+  const char* first = text.data();
+  const char* last = first + text.size();
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++first;
+  const auto [end, error] = std::from_chars(first, last, value);
+  const std::string given = "--" + name + " \"" + text + "\"";
+  if (error == std::errc::result_out_of_range) {
+    throw UsageError(given + " is out of range");
+  }
+  bool is_finite = true;
+  if constexpr (std::is_floating_point_v<Number>) is_finite = std::isfinite(value);
+  if (error != std::errc() || end != last || !is_finite) {
+    const bool has_comma = text.find(',') != std::string::npos;
+    throw UsageError(given + " is not " + kind +
+                     (has_comma ? " (decimals are written with a point)" : ""));
+  }
+  return value;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  if (!text.empty() && text.back() == ',') parts.emplace_back();
+  return parts;
+}
+
+}  // namespace
+
+void add_option(po::options_description& options, const std::string& name,
+                const std::string& value_name, const std::optional<std::string>& fallback,
+                const std::string& description) {
+  auto* value = po::value<std::string>()->value_name(value_name);
+  if (fallback) value->default_value(*fallback);
+  options.add_options()(name.c_str(), value, description.c_str());
+}
+
+void add_switch(po::options_description& options, const std::string& name,
+                const std::string& description) {
+  options.add_options()(name.c_str(), description.c_str());
+}
+
+Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
+    : positional_name_(command.positional) {
+  po::options_description all;
+  all.add(command.options);
+  all.add_options()("help,h", "")(kPositional, po::value<std::string>());
+  po::positional_options_description positional;
+  positional.add(kPositional, 1);
+  // No guessing: an abbreviation that works today may be ambiguous tomorrow.
+  const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
+  try {
+    po::store(
+        po::command_line_parser(arguments).options(all).positional(positional).style(style).run(),
+        values_);
+  } catch (const po::unknown_option& error) {
+    throw UsageError("unknown option " + error.get_option_name());
+  } catch (const po::too_many_positional_options_error&) {
+    throw UsageError("more than one " + positional_name_ + " given");
+  } catch (const po::error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+const std::string& Flags::positional() const {
+  if (!has(kPositional)) throw UsageError("no " + positional_name_ + " given");
+  return text(kPositional);
+}
+
+const std::string& Flags::text(const std::string& name) const {
+  return values_[name].as<std::string>();
+}
+
+double Flags::number(const std::string& name) const {
+  return parse_number<double>(name, text(name), "a number");
+}
+
+std::optional<double> Flags::optional_number(const std::string& name) const {
+  return has(name) ? std::optional(number(name)) : std::nullopt;
+}
+
+int Flags::integer(const std::string& name) const {
+  return parse_number<int>(name, text(name), "an integer");
+}
+
+std::uint64_t Flags::unsigned_integer(const std::string& name) const {
+  return parse_number<std::uint64_t>(name, text(name), "an integer from 0");
+}
+
+std::vector<std::string> Flags::words(const std::string& name) const {
+  const std::vector<std::string> words = split_at_commas(text(name));
+  for (const std::string& word : words) {
+    if (word.empty()) throw UsageError("--" + name + " \"" + text(name) + "\" has an empty name");
+  }
+  return words;
+}
+
+std::vector<double> Flags::numbers(const std::string& name) const {
+  std::vector<double> numbers;
+  for (const std::string& part : split_at_commas(text(name))) {
+    numbers.push_back(parse_number<double>(name, part, "a number"));
+  }
+  return numbers;
+}
+
+std::string help_text(const Command& command) {
+  std::ostringstream text;
+  text << "Usage: graspfit " << command.name << ' ' << command.positional << " [options]\n\n"
+       << command.summary << '\n'
+       << command.options << "\n  -h [ --help ]  print this text\n";
+  if (!command.epilog.empty()) text << '\n' << command.epilog;
+  text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
+          "line says why,\nnothing is written); 3 no grasp found; 4 evaluate: M differs.\n";
+  return text.str();
+}
+
+}  // namespace graspfit::app

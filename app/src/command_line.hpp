@@ -1,0 +1,75 @@
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exit_codes.hpp"
+#include "graspfit/grasp/option_names.hpp"
+
+namespace graspfit::app {
+
+/// A command of the program: what it is called with and what its help says.
+struct Command {
+  std::string name;        ///< "plan"
+  std::string positional;  ///< What the one argument without a flag is, for example "OBJECT".
+  std::string summary;     ///< One or more sentences for --help.
+  boost::program_options::options_description options;
+  std::string epilog;  ///< Printed after the options.
+};
+
+/// An option with a text as its value; `fallback` is its default, shown by --help.
+void add_option(boost::program_options::options_description& options, const std::string& name,
+                const std::string& value_name, const std::optional<std::string>& fallback,
+                const std::string& description);
+
+/// An option that is there or not.
+void add_switch(boost::program_options::options_description& options, const std::string& name,
+                const std::string& description);
+
+/// The values of a command's options as texts, converted when asked for.
+///
+/// Numbers are read in the C locale to their last character: "abc", "1.5x" and "1,5" are errors,
+/// and so are infinities and NaN. All members throw UsageError.
+class Flags {
+ public:
+  /// @throws UsageError for unknown options, missing values, repeated options, too many arguments.
+  Flags(const Command& command, const std::vector<std::string>& arguments);
+
+  bool wants_help() const { return has("help"); }
+  /// The argument without a flag; it must be there.
+  const std::string& positional() const;
+
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
+  bool is_default(const std::string& name) const { return values_[name].defaulted(); }
+  const std::string& text(const std::string& name) const;
+  double number(const std::string& name) const;
+  std::optional<double> optional_number(const std::string& name) const;
+  int integer(const std::string& name) const;
+  std::uint64_t unsigned_integer(const std::string& name) const;
+  std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
+  std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.
+
+  /// The value of an enumeration by its name.
+  template <class Enum>
+  Enum choice(const std::string& name) const {
+    const auto value = grasp::value_named<Enum>(text(name));
+    if (!value) {
+      throw UsageError("--" + name + " \"" + text(name) + "\" is not one of " +
+                       grasp::names_of<Enum>());
+    }
+    return *value;
+  }
+
+ private:
+  std::string positional_name_;
+  boost::program_options::variables_map values_;
+};
+
+/// Usage, options with their defaults, exit codes.
+std::string help_text(const Command& command);
+
+}  // namespace graspfit::app

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exit_codes.hpp"
+
+namespace graspfit::app {
+
+/// The commands. Each takes what stands after its name, prints results on standard output, and
+/// throws UsageError or a geometry::Error for what it cannot use.
+ExitCode run_plan(const std::vector<std::string>& arguments);
+ExitCode run_inspect(const std::vector<std::string>& arguments);
+ExitCode run_evaluate(const std::vector<std::string>& arguments);
+
+/// The program's version and those of the compiler and the libraries it was built with.
+std::string version_text();
+
+}  // namespace graspfit::app

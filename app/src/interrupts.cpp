@@ -1,0 +1,97 @@
+#include "interrupts.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+extern char** environ;
+
+namespace graspfit::app {
+namespace {
+
+/// What the thread that waits for signals does when one comes.
+struct InterruptState {
+  std::mutex mutex;
+  std::function<void()> cleanup;
+  pid_t child = -1;
+};
+
+InterruptState& state() {
+  // Never destroyed: the waiting thread outlives main's statics.
+  static auto* const instance = new InterruptState;
+  return *instance;
+}
+
+}  // namespace
+
+void watch_interrupts() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    sigaction(signal, nullptr, &action);
+    // nohup and shells without job control start programs with these ignored; so they stay.
+    if (action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  state();
+  std::thread([signals] {
+    int signal = 0;
+    if (sigwait(&signals, &signal) != 0) return;
+    // Held to the end: whoever waits for it does not go on.
+    state().mutex.lock();
+    if (state().child > 0) kill(state().child, SIGTERM);
+    if (state().cleanup) state().cleanup();
+    _exit(128 + signal);
+  }).detach();
+}
+
+CleanupOnInterrupt::CleanupOnInterrupt(std::function<void()> cleanup) {
+  const std::lock_guard lock(state().mutex);
+  state().cleanup = std::move(cleanup);
+}
+
+CleanupOnInterrupt::~CleanupOnInterrupt() {
+  const std::lock_guard lock(state().mutex);
+  state().cleanup = nullptr;
+}
+
+void without_interrupts(const std::function<void()>& work) {
+  const std::lock_guard lock(state().mutex);
+  work();
+}
+
+int run_program(const std::vector<std::string>& arguments) {
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  pid_t child = -1;
+  int error = 0;
+  without_interrupts([&] {
+    error = posix_spawnp(&child, argv[0], nullptr, &attributes, argv.data(), environ);
+    if (error == 0) state().child = child;
+  });
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) return 127;
+
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  without_interrupts([] { state().child = -1; });
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace graspfit::app

@@ -1,0 +1,84 @@
+#include "object_loading.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::app {
+namespace {
+
+using geometry::shortest_decimal;
+
+constexpr std::array<std::pair<const char*, double>, 4> kMeshUnits = {
+    {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
+
+double meters_per(const std::string& unit) {
+  for (const auto& [name, meters] : kMeshUnits) {
+    if (unit == name) return meters;
+  }
+  throw UsageError("--mesh-unit \"" + unit + "\" is not one of m|cm|mm|in");
+}
+
+}  // namespace
+
+boost::program_options::options_description object_options() {
+  boost::program_options::options_description options("Object");
+  add_option(options, "mesh-unit", "m|cm|mm|in", std::nullopt,
+             "unit of the numbers in the file; without this and --longest they are meters");
+  add_option(options, "longest", "LENGTH_M", std::nullopt,
+             "instead of a unit: scale the object so that its bounding box's longest edge is this "
+             "long [m]");
+  const geometry::MeshRepairOptions repair;
+  add_option(
+      options, "repair", "repair|strict|as-is", std::string(grasp::name_of(repair.mode)),
+      "mend a mesh that is not a closed outward surface, or refuse what remains open; refuse "
+      "any defect; change nothing [R, A46]");
+  add_option(options, "max-hole", "SHARE", shortest_decimal(repair.max_hole_extent_rel),
+             "largest hole that repair fills: its extent over the object's, 0 to 1 [R, A46]");
+  return options;
+}
+
+grasp::ObjectReadOptions object_read_options(const Flags& flags) {
+  if (flags.has("mesh-unit") && flags.has("longest")) {
+    throw UsageError("--mesh-unit and --longest exclude each other");
+  }
+  grasp::ObjectReadOptions options;
+  if (flags.has("mesh-unit")) options.meters_per_file_unit = meters_per(flags.text("mesh-unit"));
+  options.longest_extent = flags.optional_number("longest");
+  if (options.longest_extent && !(*options.longest_extent > 0.0)) {
+    throw UsageError("--longest " + flags.text("longest") + " is not a length above 0 m");
+  }
+  options.repair.mode = flags.choice<geometry::RepairMode>("repair");
+  options.repair.max_hole_extent_rel = flags.number("max-hole");
+  options.validate();
+  return options;
+}
+
+grasp::ObjectFile load_object(const Flags& flags) {
+  return grasp::read_object_file(flags.positional(), object_read_options(flags));
+}
+
+void require_solid(const grasp::ObjectFile& object) {
+  const geometry::MeshAnalysis& mesh = object.record.analysis;
+  if (mesh.is_closed && mesh.is_outward) return;
+  throw geometry::InvalidInput(
+      object.record.file + ": is " +
+      (mesh.is_closed ? "inside-out"
+                      : "open (" + std::to_string(mesh.num_boundary_edges) + " boundary edges)") +
+      "; --repair repair mends what it can");
+}
+
+std::string extents_text(const geometry::TriangleMesh& mesh) {
+  const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) text += " x ";
+    text += shortest_decimal(std::round(size[axis] * 1e6) / 1e6);
+  }
+  return text + " m";
+}
+
+}  // namespace graspfit::app

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <cstdio>
+#include <iomanip>
+#include <optional>
+#include <regex>
+#include <sstream>
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "graspfit/viewer/page.hpp"
+#include "object_loading.hpp"
+#include "output_folder.hpp"
+#include "pictures.hpp"
+#include "planner_flags.hpp"
+#include "progress_bar.hpp"
+#include "text_table.hpp"
+
+namespace graspfit::app {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+Command plan_command() {
+  po::options_description output("Output");
+  add_option(output, "out", "DIR", std::nullopt,
+             "write grasps.json, grasps.csv and every grasp as grasp_NNN.obj and .ply there; "
+             "without it only the table is printed");
+  add_switch(output, "pictures", "also grasp_NNN.png (needs python3-vtk9)");
+  add_switch(output, "page", "also grasps.html, a page that any browser opens from disk");
+  add_switch(output, "quiet", "no progress bar and no table");
+
+  Command command{
+      "plan", "OBJECT",
+      "Plans grasps of OBJECT (OFF, OBJ, PLY, STL, glTF or GLB) with a hand.\n"
+      "[P]: stated by the paper; [R]: a reading of what it leaves open, by its number in "
+      "REPRODUCTION.md.\n",
+      po::options_description(100, 50),
+      "Lengths are meters and directions are in the object's own frame unless a flag's "
+      "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
+      "true meshes, every requested finger touches.\n"};
+  command.options.add(object_options()).add(planner_options()).add(score_map_options()).add(output);
+  return command;
+}
+
+/// "missed contact 300, no stable pair 88": outcomes that are not grasps, most frequent first.
+std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
+  std::vector<std::pair<std::int64_t, std::string>> counts;
+  for (const auto& [outcome, count] : statistics.outcomes) {
+    if (count > 0) counts.emplace_back(-count, grasp::outcome_name(outcome));
+  }
+  for (const auto& [reason, count] : statistics.target_failures) {
+    if (count > 0) counts.emplace_back(-count, "of these " + reason);
+  }
+  std::sort(counts.begin(), counts.end());
+  std::string text;
+  for (const auto& [count, name] : counts) {
+    text += (text.empty() ? "" : ", ") + name + ' ' + std::to_string(-count);
+  }
+  return text;
+}
+
+std::string table_of(const std::vector<grasp::Grasp>& grasps) {
+  std::vector<std::vector<std::string>> rows = {
+      {"rank", "M", "M1", "M2", "M3", "contacts", "gap_mm", "penetration_mm", "valid"}};
+  for (const grasp::Grasp& grasp : grasps) {
+    rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
+                    fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
+                    fixed_decimal(grasp.quality.m3, 4), std::to_string(grasp.contacts.size()),
+                    fixed_decimal(1000.0 * grasp::largest_contact_gap(grasp), 3),
+                    fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
+                    grasp.is_valid() ? "yes" : "no"});
+  }
+  return text_table(rows);
+}
+
+std::string grasp_name(std::size_t rank) {
+  std::ostringstream name;
+  name << "grasp_" << std::setw(3) << std::setfill('0') << rank;
+  return name.str();
+}
+
+bool is_plan_file(const std::string& name) {
+  static const std::regex pattern(R"(grasps\.(json|csv|html)|grasp_\d{3,}\.(obj|ply|png))");
+  return std::regex_match(name, pattern);
+}
+
+void write_files(const grasp::GraspFile& file, const grasp::ObjectModel& object, const Flags& flags,
+                 OutputFolder& out, ProgressBar& progress) {
+  const fs::path& folder = out.staging();
+  progress.show("writing files");
+  grasp::write_grasps(folder / "grasps.json", file);
+  geometry::write_file_atomically(folder / "grasps.csv", grasp::to_csv(file));
+  for (std::size_t i = 0; i < file.grasps.size(); ++i) {
+    const hands::HandConfiguration& configuration = file.grasps[i].configuration;
+    const std::string name = grasp_name(i + 1);
+    geometry::write_file_atomically(
+        folder / (name + ".obj"), grasp::posed_scene_obj(object.mesh(), file.hand, configuration));
+    geometry::write_mesh(folder / (name + ".ply"),
+                         grasp::posed_scene(object.mesh(), file.hand, configuration));
+  }
+  if (flags.has("page")) {
+    progress.show("writing page");
+    viewer::PageInput page;
+    page.title = fs::path(file.object.file).stem().string() + ", " + file.hand.name + " hand";
+    page.object_O = object.mesh();
+    page.hand = file.hand;
+    page.grasps = file.grasps;
+    page.model = &object;
+    page.clip_thickness = file.clip_thickness;
+    viewer::write_page(folder / "grasps.html", page);
+  }
+  if (flags.has("pictures")) {
+    progress.show("drawing pictures");
+    draw_pictures(folder);
+  }
+  out.commit("grasps.json");
+}
+
+}  // namespace
+
+ExitCode run_plan(const std::vector<std::string>& arguments) {
+  const Command command = plan_command();
+  const Flags flags(command, arguments);
+  if (flags.wants_help()) {
+    std::fputs(help_text(command).c_str(), stdout);
+    return kSuccess;
+  }
+  const grasp::PlannerOptions options = read_planner_flags(flags);
+  const hands::HandModel hand = hands::find_hand(flags.text("hand"));
+  grasp::requested_fingers(hand, options);  // what the hand cannot do is said before any work
+  std::optional<OutputFolder> out;
+  if (flags.has("out")) {
+    out.emplace(flags.text("out"), is_plan_file);
+  } else if (flags.has("pictures") || flags.has("page")) {
+    throw UsageError("--pictures and --page need --out DIR");
+  }
+  if (flags.has("pictures")) require_pictures();
+
+  ProgressBar progress(!flags.has("quiet"));
+  progress.show("reading " + flags.positional());
+  const grasp::ObjectFile object_file = load_object(flags);
+  require_solid(object_file);
+  progress.show("voxels and contact scores");
+  grasp::ObjectModelTimings object_timings;
+  const grasp::ObjectModel object =
+      grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
+  grasp::PlannerResult result =
+      grasp::plan_grasps(object, hand, options, [&](std::int64_t attempts, std::int64_t grasps) {
+        progress.show(grasps, options.count,
+                      std::to_string(grasps) + " of " + std::to_string(options.count) +
+                          " grasps, attempt " + std::to_string(attempts) + " of at most " +
+                          std::to_string(options.max_attempts));
+      });
+  result.timings.object = object_timings;
+  progress.clear();
+
+  if (result.grasps.empty()) {
+    const std::string accepted(grasp::name_of(options.acceptance));
+    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s in %lld attempts: %s\n",
+                 flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
+                 static_cast<long long>(result.statistics.attempts),
+                 outcomes_text(result.statistics).c_str());
+    return kNoGrasp;
+  }
+  const grasp::GraspFile file =
+      grasp::make_grasp_file(object_file.record, hand, options, object, result);
+  if (out) write_files(file, object, flags, *out, progress);
+  progress.clear();
+  if (!flags.has("quiet")) {
+    std::printf("%s%zu of %d grasps in %lld attempts: %s\n", table_of(file.grasps).c_str(),
+                file.grasps.size(), options.count,
+                static_cast<long long>(result.statistics.attempts),
+                outcomes_text(result.statistics).c_str());
+    if (out) std::printf("written to %s\n", out->target().c_str());
+  }
+  return kSuccess;
+}
+
+}  // namespace graspfit::app

@@ -1,0 +1,34 @@
+#include "text_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace graspfit::app {
+
+std::string text_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) text += "  ";
+      text += std::string(widths[i] - row[i].size(), ' ') + row[i];
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string fixed_decimal(double value, int decimals) {
+  // 309 digits before the point of the largest double, its sign, the point and the decimals.
+  std::array<char, 400> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
+                                          std::chars_format::fixed, std::min(decimals, 20));
+  return {text.data(), end};
+}
+
+}  // namespace graspfit::app

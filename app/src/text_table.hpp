@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace graspfit::app {
+
+/// Rows of cells as lines of text: columns as wide as their widest cell, aligned to the right, two
+/// spaces apart.
+std::string text_table(const std::vector<std::vector<std::string>>& rows);
+
+/// `value` with `decimals` digits after the point, in the C locale. Not for files.
+std::string fixed_decimal(double value, int decimals);
+
+}  // namespace graspfit::app
