@@ -165,6 +165,8 @@ class DeepestPoint {
     bool operator<(const Item& other) const { return bound < other.bound; }
   };
 
+  inline static const Corners kNoCorners = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+
   void push(double item_bound, std::int32_t node, const Corners& corners) {
     if (item_bound > depth) open_.push({item_bound, node, corners});
   }
@@ -177,7 +179,7 @@ class DeepestPoint {
     const Vector3d center = 0.5 * (box.lower + box.upper);
     const double radius = 0.5 * (node.upper - node.lower).norm();
     // The distance to a surface changes by at most the distance gone.
-    push(radius - solid_.signed_distance(center), index, {});
+    push(radius - solid_.signed_distance(center), index, kNoCorners);
   }
 
   void push_triangle(const Corners& corners) {
