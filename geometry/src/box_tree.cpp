@@ -1,0 +1,191 @@
+#include "internal/box_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace graspfit::geometry::internal {
+namespace {
+
+constexpr std::int32_t kLeafSize = 4;
+constexpr int kNumBins = 16;
+
+struct Item {
+  Eigen::Vector3d lower;
+  Eigen::Vector3d upper;
+  Eigen::Vector3d middle;  // Twice the box's center.
+  std::int32_t face;
+};
+
+struct Bounds {
+  Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d upper = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+  std::int32_t count = 0;
+
+  void extend(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    lower = lower.cwiseMin(low);
+    upper = upper.cwiseMax(high);
+  }
+  double half_area() const {
+    const Eigen::Vector3d d = upper - lower;
+    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+  }
+};
+
+class Builder {
+ public:
+  Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes) : nodes_(nodes) {
+    items_.reserve(mesh.faces.size());
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+      const auto [a, b, c] = corners(mesh, face);
+      Item item;
+      item.lower = a.cwiseMin(b).cwiseMin(c);
+      item.upper = a.cwiseMax(b).cwiseMax(c);
+      item.middle = item.lower + item.upper;
+      item.face = static_cast<std::int32_t>(face);
+      items_.push_back(item);
+    }
+    nodes_.reserve(items_.size());
+    build(0, static_cast<std::int32_t>(items_.size()), 0);
+  }
+
+  const std::vector<Item>& items() const { return items_; }
+
+ private:
+  void build(std::int32_t begin, std::int32_t end, int depth) {
+    const std::size_t index = nodes_.size();
+    nodes_.emplace_back();
+    Bounds box;
+    Bounds middles;
+    for (std::int32_t i = begin; i < end; ++i) {
+      box.extend(items_[i].lower, items_[i].upper);
+      middles.extend(items_[i].middle, items_[i].middle);
+    }
+    nodes_[index].lower = box.lower;
+    nodes_[index].upper = box.upper;
+    if (end - begin <= kLeafSize) {
+      nodes_[index].first = begin;
+      nodes_[index].count = end - begin;
+      return;
+    }
+    const std::int32_t middle = split(begin, end, middles, depth);
+    build(begin, middle, depth + 1);
+    nodes_[index].first = static_cast<std::int32_t>(nodes_.size());
+    build(middle, end, depth + 1);
+  }
+
+  // Splits where the surface area heuristic is least among equal bins of the longest axis; halves
+  // where that gives nothing, and below a depth that only contrived input reaches.
+  std::int32_t split(std::int32_t begin, std::int32_t end, const Bounds& middles, int depth) {
+    int axis = 0;
+    const Eigen::Vector3d extent = middles.upper - middles.lower;
+    extent.maxCoeff(&axis);
+    const double low = middles.lower[axis];
+    const double scale = kNumBins / extent[axis];
+    if (depth < 48 && extent[axis] > 0.0 && scale < 1e300) {
+      const auto bin = [&](const Item& item) {
+        return std::min(kNumBins - 1, static_cast<int>((item.middle[axis] - low) * scale));
+      };
+      std::array<Bounds, kNumBins> bins;
+      for (std::int32_t i = begin; i < end; ++i) {
+        Bounds& b = bins[bin(items_[i])];
+        b.extend(items_[i].lower, items_[i].upper);
+        ++b.count;
+      }
+      std::array<double, kNumBins> cost_right{};
+      Bounds right;
+      for (int i = kNumBins - 1; i > 0; --i) {
+        if (bins[i].count > 0) right.extend(bins[i].lower, bins[i].upper);
+        right.count += bins[i].count;
+        cost_right[i] = right.count > 0 ? right.count * right.half_area() : 0.0;
+      }
+      Bounds left;
+      int best = -1;
+      double best_cost = std::numeric_limits<double>::infinity();
+      for (int i = 0; i + 1 < kNumBins; ++i) {
+        if (bins[i].count > 0) left.extend(bins[i].lower, bins[i].upper);
+        left.count += bins[i].count;
+        if (left.count == 0 || left.count == end - begin) continue;
+        const double cost = left.count * left.half_area() + cost_right[i + 1];
+        if (cost < best_cost) {
+          best_cost = cost;
+          best = i;
+        }
+      }
+      if (best >= 0) {
+        const auto at = std::partition(items_.begin() + begin, items_.begin() + end,
+                                       [&](const Item& item) { return bin(item) <= best; });
+        return static_cast<std::int32_t>(at - items_.begin());
+      }
+    }
+    const std::int32_t half = begin + (end - begin) / 2;
+    std::nth_element(items_.begin() + begin, items_.begin() + half, items_.begin() + end,
+                     [axis](const Item& p, const Item& q) {
+                       return p.middle[axis] != q.middle[axis] ? p.middle[axis] < q.middle[axis]
+                                                               : p.face < q.face;
+                     });
+    return half;
+  }
+
+  std::vector<BoxTree::Node>& nodes_;
+  std::vector<Item> items_;
+};
+
+Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
+                                   const Eigen::Vector3d& b) {
+  const Eigen::Vector3d ab = b - a;
+  const double squared = ab.squaredNorm();
+  const double t = squared > 0.0 ? std::clamp((point - a).dot(ab) / squared, 0.0, 1.0) : 0.0;
+  return a + t * ab;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const TriangleMesh& mesh) {
+  const Builder builder(mesh, nodes);
+  triangles.reserve(mesh.faces.size());
+  for (const Item& item : builder.items()) {
+    triangles.push_back({corners(mesh, item.face), item.face});
+  }
+}
+
+Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& point,
+                                    const std::array<Eigen::Vector3d, 3>& corners) {
+  // The Voronoi regions of the corners, edges and inside in turn [Ericson 2005, 5.1.5].
+  const auto& [a, b, c] = corners;
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const Eigen::Vector3d ap = point - a;
+  const double d1 = ab.dot(ap);
+  const double d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  const Eigen::Vector3d bp = point - b;
+  const double d3 = ab.dot(bp);
+  const double d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 - d3 > 0.0) return a + d1 / (d1 - d3) * ab;
+  const Eigen::Vector3d cp = point - c;
+  const double d5 = ab.dot(cp);
+  const double d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 - d6 > 0.0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  const double along = (d4 - d3) + (d5 - d6);
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 && along > 0.0) {
+    return b + (d4 - d3) / along * (c - b);
+  }
+  const double sum = va + vb + vc;
+  if (sum > 0.0 && va >= 0.0 && vb >= 0.0 && vc >= 0.0) {
+    return a + vb / sum * ab + vc / sum * ac;
+  }
+  // Rounding has the last word in a sliver: the nearest of its edges is then as near as the inside.
+  Eigen::Vector3d best = closest_on_segment(point, a, b);
+  for (const Eigen::Vector3d& candidate :
+       {closest_on_segment(point, b, c), closest_on_segment(point, c, a)}) {
+    if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace graspfit::geometry::internal

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+
+/// \file
+/// Exact signs on doubles: a floating-point filter with a proven error bound [Shewchuk 1997],
+/// rationals where it fails. They are right for all finite input whose exact value a rational can
+/// hold.
+
+namespace graspfit::geometry::internal {
+
+/// Sign of det(b − a, c − a, d − a): positive if d is on the side to which the normal of the
+/// triangle (a, b, c) points; zero if the four are coplanar.
+int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                const Eigen::Vector3d& d);
+
+/// Sign of the area of (a, b, c) in the plane of the coordinates `u` and `v`: positive if
+/// counter-clockwise with u to the right and v up.
+int orientation_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                   int u, int v);
+
+/// Whether the three points lie on one line.
+bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+/// Whether `point` lies in the closed triangle (a, b, c), which may be degenerate.
+bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
+                    const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+}  // namespace graspfit::geometry::internal
