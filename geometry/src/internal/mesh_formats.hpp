@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::geometry::internal {
+
+/// What a mesh file holds: points and polygons of three or more corners, indices checked.
+struct PolygonSoup {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::int32_t> corners;       ///< Of all polygons, one after the other.
+  std::vector<std::size_t> polygon_begin;  ///< First corner of each polygon.
+
+  std::size_t num_polygons() const { return polygon_begin.size(); }
+};
+
+/// Readers of one format each. They throw IoError with a text that lacks only the file's name.
+///
+/// OFF, OBJ, PLY and STL are read here and not by assimp, which keeps coordinates in single
+/// precision and lets some broken files through.
+PolygonSoup parse_off(std::string_view content);
+PolygonSoup parse_obj(std::string_view content);
+PolygonSoup parse_ply(std::string_view content);
+PolygonSoup parse_stl(std::string_view content);
+
+/// glTF and GLB, by assimp: it resolves buffers in other files, and the format has single precision
+/// anyway.
+PolygonSoup import_gltf(const std::filesystem::path& file);
+
+std::string format_off(const TriangleMesh& mesh);
+std::string format_obj(const TriangleMesh& mesh);
+std::string format_ply(const TriangleMesh& mesh);
+std::string format_stl(const TriangleMesh& mesh);
+
+}  // namespace graspfit::geometry::internal

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::geometry::internal {
+
+/// Words and numbers of a text, line by line, in the C locale. Errors name the line.
+class TextScanner {
+ public:
+  explicit TextScanner(std::string_view text) : rest_(text) {}
+
+  /// Goes to the next line that is neither empty nor only a comment; false at the end.
+  /// `comment` starts a comment that runs to the end of its line; 0 for none.
+  bool next_line(char comment = '#') {
+    while (!rest_.empty()) {
+      const std::size_t end = rest_.find_first_of("\r\n");
+      line_ = rest_.substr(0, end);
+      if (end == std::string_view::npos) {
+        rest_ = {};
+      } else {
+        const bool is_pair = rest_.substr(end, 2) == "\r\n";
+        rest_.remove_prefix(end + (is_pair ? 2 : 1));
+      }
+      ++line_number_;
+      if (comment != 0) line_ = line_.substr(0, line_.find(comment));
+      skip_spaces();
+      if (!line_.empty()) return true;
+    }
+    line_ = {};
+    return false;
+  }
+
+  bool line_is_empty() const { return line_.empty(); }
+  int line_number() const { return line_number_; }
+
+  /// What follows the current line.
+  std::string_view rest() const { return rest_; }
+
+  /// The next word of the line; empty at its end.
+  std::string_view word() {
+    const std::size_t end = line_.find_first_of(kSpaces);
+    const std::string_view result = line_.substr(0, end);
+    line_.remove_prefix(result.size());
+    skip_spaces();
+    return result;
+  }
+
+  /// A coordinate of the line: any finite number.
+  double coordinate() {
+    const std::string_view text = word();
+    double value = 0.0;
+    if (!parse(text, value)) fail("expected a number, found " + quoted(text));
+    if (!std::isfinite(value)) fail("coordinate " + std::string(text) + " is not finite");
+    return value;
+  }
+
+  std::int64_t integer(const char* what) {
+    const std::string_view text = word();
+    std::int64_t value = 0;
+    if (!parse(text, value)) {
+      fail(std::string("expected ") + what + ", found " + quoted(text));
+    }
+    return value;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw IoError("line " + std::to_string(line_number_) + ": " + what);
+  }
+
+  /// The whole of `text` as a number. Too large ones become infinite, too small ones zero.
+  static bool parse(std::string_view text, double& value) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ptr != end || text.empty()) return false;
+    if (result.ec == std::errc::result_out_of_range) {
+      value = std::strtod(std::string(text).c_str(), nullptr);
+      return true;
+    }
+    return result.ec == std::errc();
+  }
+  static bool parse(std::string_view text, std::int64_t& value) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    return result.ec == std::errc() && result.ptr == end && !text.empty();
+  }
+
+  /// A word for a message: short and printable.
+  static std::string quoted(std::string_view text) {
+    if (text.empty()) return "the end of the line";
+    std::string result = "'";
+    for (const char c : text.substr(0, 24)) result += c >= ' ' && c <= '~' ? c : '?';
+    return result + (text.size() > 24 ? "...'" : "'");
+  }
+
+ private:
+  static constexpr const char* kSpaces = " \t\v\f";
+
+  void skip_spaces() {
+    const std::size_t start = line_.find_first_not_of(kSpaces);
+    line_ = start == std::string_view::npos ? std::string_view() : line_.substr(start);
+  }
+
+  std::string_view rest_;
+  std::string_view line_;
+  int line_number_ = 0;
+};
+
+}  // namespace graspfit::geometry::internal
