@@ -12,8 +12,8 @@ namespace graspfit::grasp {
 
 /// Units of d and A in M1 and of D in M3 (notes A9–A11).
 enum class MeasureUnits {
-  Normalized,   ///< d over the pad's largest d, A over the pad's area, D over the normalizing
-                ///< radius.
+  Normalized,  ///< d over the pad's largest d and A over its area, both cut at 1 (rough surface can
+               ///< have more area than the pad); D over the normalizing radius.
   Centimeters,  ///< d, D in cm, A in cm².
 };
 
@@ -43,8 +43,9 @@ struct QualityOptions {
   MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
   Regularity regularity = Regularity::Combined;   ///< [R] A13.
   HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
-  double merge_distance = 0.0;  ///< Contacts closer than this count as one hull point [m], ≥ 0; the
-                                ///< planner sets 0.1 voxel (notes 18.4).
+  double merge_distance =
+      0.0;  ///< Contacts linked by distances below this count as one hull point,
+  ///< their mean [m], ≥ 0; the planner sets 0.1 voxel (notes 18.4).
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -88,13 +89,21 @@ struct ContactQuality {
 /// M1, M2, M3 and M of a set of contacts (paper section 4). Pairs are formed between contacts of
 /// different fingers only; the palm is a finger of its own (A16).
 ///
-/// m = 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0.
-/// Independent of the order of contacts up to rounding. @throws InvalidInput for bad options.
+/// m = 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0,
+/// whatever the exponents. Independent of the order of contacts and of rigid motions up to
+/// rounding; in normalized units also of scaling hand and object together. Rounded.
+/// @throws InvalidInput for bad options, a null hand, a pad that the hand does not have, a normal
+/// that is not unit within 1e-6, and numbers that are not finite.
 ContactQuality contact_quality(std::span<const Contact> contacts, const QualityContext& context,
                                const QualityOptions& options = {});
 
-/// The same from target contacts alone (no pads): d and A taken as given terms for every contact.
-/// Used for the ideal M of a target set (A36, A48). `finger` of each contact must differ.
+/// The same from target contacts alone (no pads): d and A taken as given terms for every contact,
+/// in [0, 1], as shares of the pad's largest d and of its area. Used for the ideal M of a target
+/// set (A36, A48).
+///
+/// The hand may be null in normalized units; in centimeters the shares are of the contact's pad, or
+/// else of its finger's tip pad. @throws InvalidInput as `contact_quality`, and if two contacts
+/// have the same finger.
 ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityContext& context,
                              double boundary_distance_rel, double area_rel,
                              const QualityOptions& options = {});
@@ -102,13 +111,28 @@ ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityCon
 /// The line between two contacts against both cones (paper section 4.2; notes 20): the mean angle
 /// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9
 /// m.
+///
+/// The lengths of the normals do not matter. The comparison is of rounded angles (a few 1e-16): a
+/// pair at `theta_max` itself may fall to either side, and adds next to nothing to M2 if both of
+/// its angles are there.
 std::optional<double> stable_pair_angle(const Eigen::Vector3d& point_a,
                                         const Eigen::Vector3d& inward_normal_a,
                                         const Eigen::Vector3d& point_b,
                                         const Eigen::Vector3d& inward_normal_b, double theta_max);
 
-/// R of the hull of `points` by notes 18.4: 1 for N = 2 and for regular polygons and polyhedra,
-/// 1e-3 for collinear points.
+/// R of the hull of `points` by notes 18.4, in [1e-3, 1]: 1 for regular polygons and polyhedra.
+///
+///     N < 2                                       0 (undefined)
+///     N = 2                                       1
+///     collinear: 2nd/1st singular value < 1e-3    1e-3, also if merging leaves fewer than three
+///     planar: thickness/extent < 0.1              polygon in its best-fit plane
+///     otherwise                                   polyhedron; triangles within 5° are one face
+///
+/// Combined is sqrt(angles · edges), where angles is 1 − Q of the polygon, or its mean over the
+/// faces, and edges is the shortest over the longest edge. Points inside the hull do not matter. R
+/// jumps where a case changes, most between planar and solid. Points linked by distances below
+/// `merge_distance` are one, their mean. @throws InvalidInput for a negative `merge_distance` or
+/// points that are not finite.
 double regularity(std::span<const Eigen::Vector3d> points, Regularity definition,
                   double merge_distance = 0.0);
 

@@ -45,11 +45,14 @@ struct ContactScoreMap {
 };
 
 /// The paper's contact score map. Neighbors are all other partial voxels with a normal in the
-/// window, connected or not (A4). A patch without a normal or without neighbors scores 0.
+/// window, connected or not (A4): the far side of a thin part is what marks it as thin. A patch
+/// without a normal or without neighbors scores 0, after the mean filter too, and counts as 0 in
+/// the mean of others. The median of FloorMedian is taken over the scored ones, after the mean
+/// filter.
 ///
-/// Independent of the voxels' order; rotating the lattice by 90° permutes the scores up to
-/// rounding.
-/// @throws InvalidInput for bad options.
+/// Rounded. Reordering the patches or rotating the lattice by 90° permutes the scores up to
+/// rounding. Cost: linear in the patches, plus one array over the box of partial voxels.
+/// @throws InvalidInput for bad options, or a patch whose voxel is not in the lattice.
 ContactScoreMap contact_score_map(const std::vector<geometry::SurfacePatch>& patches,
                                   const geometry::VoxelLattice& lattice,
                                   const ScoreOptions& options = {});

@@ -17,7 +17,7 @@ struct ObjectModelOptions {
   int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
   double margin = 0.0;  ///< Room around the object for the hand [m] (A8), ≥ 0.
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
-  ScoreOptions score;
+  ScoreOptions score = {};
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -44,8 +44,9 @@ struct ObjectModelTimings {
   double scores_s = 0.0;
 };
 
-/// Builds the model of a closed outward mesh. @throws InvalidInput, DegenerateGeometry for a mesh
-/// that is empty or has no volume.
+/// Builds the model of a closed outward mesh (`geometry::repair_mesh` makes or refuses one; a mesh
+/// with holes is not noticed here and gets wrong classes behind them). @throws InvalidInput for bad
+/// options or a mesh without faces, DegenerateGeometry for one without positive volume.
 ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
                                const ObjectModelOptions& options,
                                ObjectModelTimings* timings = nullptr);

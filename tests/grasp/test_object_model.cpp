@@ -1,0 +1,95 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "support/catch.hpp"
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+using Catch::Matchers::Contains;
+using Eigen::Vector3d;
+
+TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
+  geometry::TriangleMesh mesh = geometry::box({0.06, 0.08, 0.10});
+  const Vector3d center(0.3, -0.2, 0.1);
+  for (Vector3d& vertex : mesh.vertices) vertex += center;
+  ObjectModelTimings timings;
+  const ObjectModel object =
+      build_object_model(mesh, {.resolution = 20, .margin = 0.012}, &timings);
+
+  CHECK(object.mesh() == mesh);
+  CHECK((object.mass.center_of_mass - center).norm() < 1e-14);
+  CHECK(object.mass.volume == Approx(0.06 * 0.08 * 0.10).epsilon(1e-12));
+  // Half of sqrt(6² + 8² + 10²) cm.
+  CHECK(object.normalizing_radius == Approx(std::sqrt(0.02) / 2).epsilon(1e-12));
+
+  // 20 voxels of 5 mm along z, and 12 mm of room are 3 voxels on each side.
+  const geometry::VoxelLattice& lattice = object.grid.lattice;
+  CHECK(lattice.voxel_size == Approx(0.005).epsilon(1e-12));
+  CHECK(lattice.counts.z() == 26);
+  CHECK(object.distance.lattice == lattice);
+
+  REQUIRE(object.patch_of_voxel.size() == static_cast<std::size_t>(lattice.num_voxels()));
+  REQUIRE(object.scores.scores.size() == object.patches.size());
+  std::size_t num_partial = 0;
+  for (std::int64_t voxel = 0; voxel < lattice.num_voxels(); ++voxel) {
+    const std::int32_t patch = object.patch_of_voxel[voxel];
+    const bool is_partial = object.grid.classes[voxel] == geometry::VoxelClass::Partial;
+    CHECK((patch >= 0) == is_partial);
+    CHECK((object.distance.values[voxel] == 0.0f) == is_partial);
+    if (patch < 0) continue;
+    ++num_partial;
+    CHECK(object.patches[patch].voxel == voxel);
+  }
+  CHECK(num_partial == object.patches.size());
+
+  CHECK(timings.query_s >= 0.0);
+  CHECK(timings.patches_s > 0.0);
+  CHECK(timings.voxels_s > 0.0);
+  CHECK(timings.distance_s > 0.0);
+  CHECK(timings.scores_s > 0.0);
+}
+
+TEST_CASE("Options reach the parts they are for", "[grasp][object_model]") {
+  const geometry::TriangleMesh ball = geometry::ball(0.05, 4);
+  const ObjectModel normalized = build_object_model(ball, {.resolution = 12});
+  const ObjectModel raw = build_object_model(
+      ball, {.resolution = 12, .score = {.normalization = ScoreNormalization::Raw}});
+  REQUIRE(normalized.patches.size() == raw.patches.size());
+  for (const double score : normalized.scores.scores) CHECK(score <= 1.0);
+  for (const double score : raw.scores.scores) CHECK(score > 1.0);
+  const ObjectModel plain =
+      build_object_model(ball, {.resolution = 12, .averaging = geometry::PatchAveraging::Plain});
+  bool differs = false;
+  for (std::size_t i = 0; i < plain.patches.size(); ++i) {
+    differs = differs || plain.patches[i].outward_normal != raw.patches[i].outward_normal;
+  }
+  CHECK(differs);
+}
+
+TEST_CASE("Objects without faces or volume are refused", "[grasp][object_model]") {
+  CHECK_THROWS_AS(build_object_model({}, {}), geometry::InvalidInput);
+  CHECK_THROWS_WITH(build_object_model({}, {}), Contains("no faces"));
+  geometry::TriangleMesh inside_out = geometry::ball(0.05, 2);
+  for (geometry::Face& face : inside_out.faces) std::swap(face[1], face[2]);
+  CHECK_THROWS_AS(build_object_model(inside_out, {}), geometry::DegenerateGeometry);
+  geometry::TriangleMesh flat = geometry::box({0.1, 0.1, 0.1});
+  for (Vector3d& vertex : flat.vertices) vertex.z() = 0.0;
+  CHECK_THROWS_AS(build_object_model(flat, {}), geometry::DegenerateGeometry);
+}
+
+TEST_CASE("Object model options out of range are refused by field and value",
+          "[grasp][object_model]") {
+  const geometry::TriangleMesh ball = geometry::ball(0.05, 1);
+  CHECK_NOTHROW(ObjectModelOptions{}.validate());
+  CHECK_THROWS_WITH(build_object_model(ball, {.resolution = 3}),
+                    Contains("ObjectModelOptions") && Contains("resolution = 3"));
+  CHECK_THROWS_WITH(build_object_model(ball, {.resolution = 513}), Contains("resolution = 513"));
+  CHECK_THROWS_WITH(build_object_model(ball, {.margin = -0.5}), Contains("margin = -0.5"));
+  CHECK_THROWS_WITH(build_object_model(ball, {.margin = std::nan("")}), Contains("margin = nan"));
+  CHECK_THROWS_WITH(build_object_model(ball, {.score = {.neighborhood = 2}}),
+                    Contains("neighborhood = 2"));
+}
