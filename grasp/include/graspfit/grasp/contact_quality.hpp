@@ -43,9 +43,9 @@ struct QualityOptions {
   MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
   Regularity regularity = Regularity::Combined;   ///< [R] A13.
   HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
-  double merge_distance =
-      0.0;  ///< Contacts linked by distances below this count as one hull point,
-  ///< their mean [m], ≥ 0; the planner sets 0.1 voxel (notes 18.4).
+  /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; the
+  /// planner sets 0.1 voxel (notes 18.4).
+  double merge_distance = 0.0;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
