@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -38,7 +39,7 @@ class DisjointSets {
   }
   /// The smaller representative wins, so that sets are named independently of the order of merging.
   void unite(std::size_t i, std::size_t j) {
-    const auto [low, high] = std::minmax(find(i), find(j));
+    const auto [low, high] = std::minmax({find(i), find(j)});
     parents_[high] = low;
   }
 
@@ -146,8 +147,10 @@ class HullFaces {
         edges.add((points_[a] - points_[b]).norm());
       }
       if (groups_[f] != f) continue;  // a face is counted at the triangle that names its group
+      const std::optional<std::vector<std::size_t>> corners = outline(f);
+      assert(corners);
       Polygon polygon;
-      for (const std::size_t vertex : *outline(f)) polygon.push_back(points_[vertex]);
+      for (const std::size_t vertex : *corners) polygon.push_back(points_[vertex]);
       Vector3d area = Vector3d::Zero();
       for (std::size_t g = 0; g < facets_.size(); ++g) {
         if (groups_[g] == f) area += twice_vector_area(g);
