@@ -373,7 +373,8 @@ function sheetsOf(grasp) {
 // ----------------------------------------------------------------------------------------- camera
 
 const kFieldOfView = 28 * Math.PI / 180;
-const camera = {azimuth: 0.6, elevation: 0.25, target: [0, 0, 0], distance: 1, up: 1};
+// `isFitted` until the user pans or zooms: then another grasp is brought into view as well.
+const camera = {azimuth: 0.6, elevation: 0.25, target: [0, 0, 0], distance: 1, up: 1, isFitted: true};
 
 function cameraAxes() {
   const up = [0, 0, 0];
@@ -427,6 +428,7 @@ function fit() {
                         depth + Math.abs(dot(p, right)) / (slope * aspect));
   }
   camera.distance = distance * 1.06;
+  camera.isFitted = true;
 }
 // Contact polygon's normal (for two contacts, across their line and the palm direction).
 function polygonNormal(grasp) {
@@ -929,11 +931,13 @@ function placeScale(height) {
 function listenToPointers() {
   const pointers = new Map();
   const pan = (dx, dy) => {
+    camera.isFitted = false;
     const {right, up} = cameraAxes();
     const s = 2 * camera.distance * Math.tan(kFieldOfView / 2) / canvas.clientHeight;
     camera.target = add(camera.target, add(times(right, -dx * s), times(up, dy * s)));
   };
   const zoom = (factor) => {
+    camera.isFitted = false;
     camera.distance = Math.min(Math.max(camera.distance * factor, 0.02 * objectSize), 40 * objectSize);
   };
   canvas.addEventListener('pointerdown', (event) => {
@@ -1213,6 +1217,7 @@ function select(position) {
   showMeasures();
   [...document.querySelectorAll('#right details')].forEach((details, i) => details.open = open[i]);
   updateMarks();
+  if (camera.isFitted) fit();
   draw();
 }
 
@@ -1245,7 +1250,10 @@ if (gl) {
     updateMarks();
     draw();
   });
-  new ResizeObserver(draw).observe(byId('stage'));
+  new ResizeObserver(() => {
+    if (camera.isFitted) fit();
+    draw();
+  }).observe(byId('stage'));
   for (const button of document.querySelectorAll('#views button')) {
     button.addEventListener('click', () => view(button.dataset.view));
   }

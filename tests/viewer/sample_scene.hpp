@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "graspfit/grasp/grasp.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::testing {
+
+/// A ball of 40 mm radius around the origin of O and a hand that holds it, built in code: three
+/// straight fingers around a palm, each with one joint at its root. At joint position 0 the fingers
+/// stand along the palm direction and their pads touch the ball's equator.
+struct SampleScene {
+  geometry::TriangleMesh object_O;
+  hands::HandModel hand;
+  /// #1 valid (M 0.4), #2 usable but penetrating (M 0.6), #3 with two contacts of three and M 0.
+  std::vector<grasp::Grasp> grasps;
+};
+SampleScene sample_scene();
+
+}  // namespace graspfit::testing

@@ -1,0 +1,274 @@
+#!/usr/bin/python3
+"""Opens sample pages in headless Chromium: test_page_in_browser.py FOLDER [--keep-pictures FOLDER].
+
+FOLDER holds what write_sample_pages wrote. No test needs a network, and a page that asked for one would
+be refused by its own security policy and so fail for its console message.
+"""
+
+import io
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+PACKAGES = "apt-get install chromium chromium-driver python3-selenium python3-pil"
+os.environ["NO_PROXY"] = os.environ["no_proxy"] = "localhost,127.0.0.1"  # the driver is local
+
+try:
+    from PIL import Image, ImageChops
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError as error:
+    print(f"SKIPPED: {error}; {PACKAGES}")
+    sys.exit(0)
+
+PAGES = None
+PICTURES = None
+
+
+def start_browser(chromium, chromedriver, profile):
+    options = Options()
+    options.binary_location = chromium
+    for flag in (
+        "--headless=new",
+        "--no-sandbox",  # tests may run as root in a container
+        "--disable-dev-shm-usage",
+        "--use-angle=swiftshader",  # WebGL without a graphics card
+        "--enable-unsafe-swiftshader",
+        "--ignore-gpu-blocklist",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--no-first-run",
+        "--no-proxy-server",
+        "--force-device-scale-factor=1",
+        "--window-size=1000,700",
+        f"--user-data-dir={profile}",
+    ):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(chromedriver), options=options)
+
+
+class PageInBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.profile = tempfile.TemporaryDirectory(prefix="graspfit_browser_", ignore_cleanup_errors=True)
+        cls.browser = start_browser(CHROMIUM, CHROMEDRIVER, cls.profile.name)
+        cls.browser.set_script_timeout(30)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+        cls.profile.cleanup()
+
+    def open(self, name):
+        self.browser.get((PAGES / name).resolve().as_uri())
+        self.settle()
+
+    def tearDown(self):
+        messages = [entry["message"] for entry in self.browser.get_log("browser")]
+        self.assertEqual(messages, [], "messages in the console")
+
+    def settle(self):
+        """Until what was asked for is drawn: the page draws in the next animation frame."""
+        self.browser.execute_async_script(
+            "const done = arguments[0];"
+            "requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)));"
+        )
+
+    def element(self, name):
+        return self.browser.find_element(By.ID, name)
+
+    def picture(self, name=None):
+        """What WebGL drew. Text above it is hidden: browsers smooth it differently from time to time."""
+        if PICTURES and name:
+            self.settle()
+            self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
+        self.show_text_on_scene(False)
+        self.settle()
+        image = Image.open(io.BytesIO(self.element("scene").screenshot_as_png)).convert("RGB")
+        self.show_text_on_scene(True)
+        return image
+
+    def show_text_on_scene(self, is_shown):
+        self.browser.execute_script(
+            "for (const element of document.querySelectorAll('#stage > :not(canvas):not(#message)'))"
+            "  element.style.visibility = arguments[0] ? '' : 'hidden';",
+            is_shown,
+        )
+
+    def text(self, name):
+        return self.element(name).text
+
+    @staticmethod
+    def share_near(image, color, tolerance=40):
+        """Share of the pixels whose channels all are within `tolerance` of `color`."""
+        distances = ImageChops.difference(image, Image.new("RGB", image.size, color)).split()
+        largest = ImageChops.lighter(ImageChops.lighter(distances[0], distances[1]), distances[2])
+        return sum(largest.histogram()[: tolerance + 1]) / (image.width * image.height)
+
+    def assert_differs(self, a, b, what):
+        self.assertIsNotNone(ImageChops.difference(a, b).getbbox(), what)
+
+    def assert_same(self, a, b, what):
+        self.assertIsNone(ImageChops.difference(a, b).getbbox(), what)
+
+    def test_scene_is_drawn(self):
+        self.open("ball.html")
+        image = self.picture("page")
+        background = self.share_near(image, (0xF4, 0xF5, 0xF4), 2)
+        self.assertLess(background, 0.9)
+        self.assertGreater(background, 0.2)
+        self.assertGreater(self.share_near(image, (0xC4, 0xBB, 0xAC)), 0.02, "object's color")
+        self.assertGreater(self.share_near(image, (0x6A, 0x88, 0xA5)), 0.02, "hand's color")
+        self.assertFalse(self.element("message").is_displayed())
+
+    def test_title_and_summary(self):
+        self.open("ball.html")
+        self.assertEqual(self.browser.title, "Ball <40 mm> & three fingers")
+        self.assertEqual(self.browser.find_element(By.TAG_NAME, "h1").text, self.browser.title)
+        self.assertIn("3 grasps, 2 usable, 1 valid", self.text("summary"))
+        self.assertIn("80 × 80 × 80 mm", self.text("summary"))
+
+    def test_list_is_sorted_by_m(self):
+        self.open("ball.html")
+        rows = self.browser.find_elements(By.CSS_SELECTOR, "#list > div")
+        self.assertEqual([row.get_attribute("id") for row in rows], ["grasp-2", "grasp-1", "grasp-3"])
+        badges = [row.find_element(By.CLASS_NAME, "badge").text for row in rows]
+        self.assertEqual(badges, ["usable", "valid", "unusable"])
+        for part in ("M 0.600", "M1 0.600", "M2 1.000", "M3 1.000"):
+            self.assertIn(part, rows[0].text)
+        self.assertEqual(rows[0].get_attribute("aria-selected"), "true")
+
+    def test_click_selects(self):
+        self.open("ball.html")
+        before = self.picture()
+        self.assertEqual(self.text("m"), "M 0.6000")
+        self.assertIn("4.70 to 4.90 mm", self.text("penetration"))
+        self.element("grasp-1").click()
+        self.assertEqual(self.text("m"), "M 0.4000")
+        self.assertIn("none", self.text("penetration"))
+        self.assert_differs(before, self.picture("valid"), "another grasp, the same picture")
+        self.element("grasp-3").click()
+        self.assertEqual(self.text("m"), "M 0.0000")
+        self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#contacts tbody tr")), 2)
+        selected = self.browser.find_elements(By.CSS_SELECTOR, '#list [aria-selected="true"]')
+        self.assertEqual([row.get_attribute("id") for row in selected], ["grasp-3"])
+
+    def test_arrow_keys_select(self):
+        self.open("ball.html")
+        body = self.browser.find_element(By.TAG_NAME, "body")
+        shown = []
+        for key in (Keys.ARROW_DOWN, Keys.ARROW_DOWN, Keys.ARROW_DOWN, Keys.ARROW_UP):
+            body.send_keys(key)
+            shown.append(self.text("m"))
+        self.assertEqual(shown, ["M 0.4000", "M 0.0000", "M 0.0000", "M 0.4000"])
+
+    def test_every_measure_is_shown(self):
+        self.open("ball.html")
+        self.element("grasp-1").click()
+        contacts = [row.text for row in self.browser.find_elements(By.CSS_SELECTOR, "#contacts tbody tr")]
+        # finger, gap [mm], area [mm²], d [mm], S of tests/viewer/sample_scene.cpp
+        self.assertEqual(contacts, ["1 thumb 0.00 40.0 8.00 1", "2 finger_1 0.20 50.0 8.50 1",
+                                    "3 finger_2 0.40 60.0 9.00 1"])
+        measures = self.text("measures")
+        for part in ("M1 sustainability", "0.4000", "R regularity", "D centroid distance", "0.00 mm",
+                     "M of the targets", "0.7000"):
+            self.assertIn(part, measures)
+        self.assertEqual(self.text("pairs").count("30.0°"), 3)
+        for summary in self.browser.find_elements(By.TAG_NAME, "summary"):
+            summary.click()
+        self.assertIn("joint_3", self.text("right"))
+        self.assertIn("Attempt", self.text("right"))
+
+    def test_toggles_change_the_picture_and_back(self):
+        self.open("ball.html")
+        self.element("grasp-1").click()
+        plain = self.picture()
+        for layer in ("object", "hand", "contacts", "polygon", "palm", "center", "targets", "clips",
+                      "voxels", "scores"):
+            with self.subTest(layer=layer):
+                box = self.element(f"show-{layer}")
+                box.click()
+                self.assert_differs(plain, self.picture(layer), f"{layer} toggled, the same picture")
+                box.click()
+                self.assert_same(plain, self.picture(), f"{layer} toggled twice, another picture")
+
+    def test_scores_color_the_object_and_the_voxels(self):
+        self.open("ball.html")
+        for layer in ("hand", "contacts", "polygon", "palm", "center"):
+            self.element(f"show-{layer}").click()
+        beige = self.share_near(self.picture(), (0xC4, 0xBB, 0xAC))
+        self.element("show-scores").click()
+        self.assertLess(self.share_near(self.picture("score_map"), (0xC4, 0xBB, 0xAC)), 0.2 * beige)
+        self.element("show-voxels").click()
+        self.assertLess(self.share_near(self.picture("score_voxels"), (0xC4, 0xBB, 0xAC)), 0.2 * beige)
+
+    def test_mouse_rotates_pans_and_zooms(self):
+        self.open("ball.html")
+        canvas = self.element("scene")
+        start = self.picture()
+        ActionChains(self.browser).drag_and_drop_by_offset(canvas, 90, 40).perform()
+        rotated = self.picture("rotated")
+        self.assert_differs(start, rotated, "dragged")
+        ActionChains(self.browser).key_down(Keys.SHIFT).drag_and_drop_by_offset(
+            canvas, 60, 0).key_up(Keys.SHIFT).perform()
+        panned = self.picture()
+        self.assert_differs(rotated, panned, "shift and drag")
+        self.browser.execute_script(
+            "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -240, cancelable: true}))", canvas)
+        self.assert_differs(panned, self.picture(), "wheel")
+        # Fit keeps the direction, so twice is once.
+        fit = self.browser.find_element(By.CSS_SELECTOR, '[data-view="fit"]')
+        fit.click()
+        fitted = self.picture()
+        fit.click()
+        self.assert_same(fitted, self.picture(), "Fit twice")
+        for view in ("side", "front", "behind", "polygon"):
+            before = self.picture()
+            self.browser.find_element(By.CSS_SELECTOR, f'[data-view="{view}"]').click()
+            self.assert_differs(before, self.picture(f"view_{view}"), view)
+
+    def test_page_without_voxels(self):
+        self.open("without_model.html")
+        for layer in ("voxels", "scores"):
+            self.assertFalse(self.element(f"show-{layer}").is_enabled())
+        self.assertLess(self.share_near(self.picture(), (0xF4, 0xF5, 0xF4), 2), 0.9)
+
+    def test_page_without_grasps(self):
+        self.open("no_grasps.html")
+        self.assertIn("No grasp was found", self.text("right"))
+        self.browser.find_element(By.TAG_NAME, "body").send_keys(Keys.ARROW_DOWN)
+        self.assertGreater(self.share_near(self.picture("no_grasps"), (0xC4, 0xBB, 0xAC)), 0.05)
+
+    def test_narrow_window(self):
+        self.browser.set_window_size(600, 700)
+        try:
+            self.open("ball.html")
+            self.assertLess(self.share_near(self.picture("narrow"), (0xF4, 0xF5, 0xF4), 2), 0.95)
+            width = self.browser.execute_script("return document.documentElement.scrollWidth")
+            self.assertLessEqual(width, self.browser.execute_script("return innerWidth"))
+        finally:
+            self.browser.set_window_size(1000, 700)
+
+
+if __name__ == "__main__":
+    CHROMIUM = shutil.which("chromium")
+    CHROMEDRIVER = shutil.which("chromedriver")
+    if not CHROMIUM or not CHROMEDRIVER:
+        print(f"SKIPPED: no chromium with chromedriver; {PACKAGES}")
+        sys.exit(0)
+    PAGES = pathlib.Path(sys.argv.pop(1))
+    if "--keep-pictures" in sys.argv:
+        at = sys.argv.index("--keep-pictures")
+        PICTURES = pathlib.Path(sys.argv[at + 1])
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        del sys.argv[at : at + 2]
+    unittest.main(verbosity=2)

@@ -1,0 +1,214 @@
+#!/usr/bin/python3
+"""Tests of the picture script: test_render_grasps.py RENDER_GRASPS_PY [--keep-pictures FOLDER]."""
+
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PACKAGES = "apt-get install python3-vtk9 xvfb xauth python3-pil"
+
+try:
+    import vtk  # noqa: F401
+    from PIL import Image, ImageChops
+except ImportError as error:
+    print(f"SKIPPED: {error}; {PACKAGES}")
+    sys.exit(0)
+
+SCRIPT = None
+PICTURES = None
+RADIUS = 0.04
+
+
+def ball_obj(first):
+    """OBJ text of a ball of 40 mm radius, its first vertex having this index."""
+    rows, columns = 24, 48
+    lines = []
+    for i in range(rows + 1):
+        polar = math.pi * i / rows
+        for j in range(columns):
+            angle = 2 * math.pi * j / columns
+            lines.append(
+                f"v {RADIUS * math.sin(polar) * math.cos(angle):.9f} "
+                f"{RADIUS * math.sin(polar) * math.sin(angle):.9f} {RADIUS * math.cos(polar):.9f}"
+            )
+    for i in range(rows):
+        for j in range(columns):
+            a, b = first + columns * i + j, first + columns * i + (j + 1) % columns
+            lines.append(f"f {a} {a + columns} {b + columns} {b}")
+    return lines, (rows + 1) * columns
+
+
+def box_obj(first, low, high):
+    lines = []
+    for k in range(8):
+        lines.append("v " + " ".join(str((high if k >> axis & 1 else low)[axis]) for axis in range(3)))
+    for face in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)):
+        lines.append("f " + " ".join(str(first + k) for k in face))
+    return lines, 8
+
+
+def write_sample(folder):
+    """One grasp of a ball by two box fingers and a thumb behind them, palm below."""
+    lines, count = ball_obj(1)
+    text = ["o object", *lines]
+    boxes = {
+        "palm": ((-0.05, -0.05, -0.08), (0.05, 0.05, -0.06)),
+        "thumb": ((0.04, -0.01, -0.06), (0.052, 0.01, 0.015)),
+        "finger_1": ((-0.052, -0.01, -0.06), (-0.04, 0.01, 0.015)),
+        "finger_2": ((-0.01, 0.04, -0.06), (0.01, 0.052, 0.015)),
+    }
+    next_vertex = 1 + count
+    for name, (low, high) in boxes.items():
+        lines, count = box_obj(next_vertex, low, high)
+        text += [f"o link {name}", *lines]
+        next_vertex += count
+    (folder / "grasp_001.obj").write_text("\n".join(text) + "\n")
+
+    def contact(finger, x, y):
+        return {
+            "link": finger,
+            "finger": finger,
+            "point_O_m": [x, y, 0.0],
+            "inward_normal_O": [-x / RADIUS, -y / RADIUS, 0.0],
+        }
+
+    data = {
+        "object": {"file": "shapes/ball.obj", "center_of_mass_O_m": [0, 0, 0]},
+        "hand": {
+            "name": "sample",
+            "palm": {"link": "palm", "center_H_m": [0, 0, 0], "direction_H": [0, 0, 1]},
+        },
+        "results": {
+            "grasps": [
+                {
+                    "m": 0.512,
+                    "m1": 0.6,
+                    "m2": 1.1,
+                    "m3": 0.6,
+                    "usable": True,
+                    "valid": True,
+                    "largest_penetration_m": 0.0,
+                    "X_OH": {"translation_m": [0, 0, -0.06], "rotation_wxyz": [1, 0, 0, 0]},
+                    "contacts": [
+                        contact("thumb", RADIUS, 0.0),
+                        contact("finger_1", -RADIUS, 0.0),
+                        contact("finger_2", 0.0, RADIUS),
+                    ],
+                    "stable_pairs": [{"contacts": [0, 1], "angle_rad": 0.0}],
+                }
+            ]
+        },
+    }
+    (folder / "grasps.json").write_text(json.dumps(data))
+    return data
+
+
+def share_near(image, color, tolerance):
+    distances = ImageChops.difference(image, Image.new("RGB", image.size, color)).split()
+    largest = ImageChops.lighter(ImageChops.lighter(distances[0], distances[1]), distances[2])
+    return sum(largest.histogram()[: tolerance + 1]) / (image.width * image.height)
+
+
+class RenderGrasps(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="graspfit_pictures_")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.data = write_sample(self.folder)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def run_script(self, *arguments, environment=None):
+        return subprocess.run(
+            [sys.executable, SCRIPT, self.folder, *arguments],
+            capture_output=True,
+            text=True,
+            timeout=240,
+            env=environment,
+        )
+
+    def change(self, edit):
+        edit(self.data)
+        (self.folder / "grasps.json").write_text(json.dumps(self.data))
+
+    def assert_refused(self, *words):
+        result = self.run_script()
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertEqual(result.stdout, "")
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertEqual(list(self.folder.glob("*.png")), [], "nothing is left behind")
+
+    def test_picture_shows_object_hand_and_contacts(self):
+        environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+        result = self.run_script("--width", "900", "--height", "600", environment=environment)
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+        names = sorted(path.name for path in self.folder.iterdir())
+        self.assertEqual(names, ["grasp_001.obj", "grasp_001.png", "grasps.json"])
+        image = Image.open(self.folder / "grasp_001.png").convert("RGB")
+        if PICTURES:
+            shutil.copy(self.folder / "grasp_001.png", PICTURES / "sample.png")
+        self.assertEqual(image.size, (900, 600))
+        white = share_near(image, (255, 255, 255), 3)
+        self.assertGreater(white, 0.3)
+        self.assertLess(white, 0.9)
+        for half, name in ((0, "left view"), (450, "right view")):
+            view = image.crop((half, 60, half + 450, 530))  # without caption and legend
+            with self.subTest(view=name):
+                self.assertGreater(share_near(view, (208, 196, 176), 45), 0.05, "object's color")
+                self.assertGreater(share_near(view, (98, 124, 150), 40), 0.02, "hand's color")
+                self.assertGreater(share_near(view, (205, 50, 42), 45), 0.001, "contacts' color")
+                self.assertGreater(share_near(view, (95, 150, 100), 45), 0.0005, "stable pair's color")
+
+    def test_no_grasps_is_no_error(self):
+        self.change(lambda data: data["results"].update(grasps=[]))
+        self.assertEqual(self.run_script().returncode, 0)
+
+    def test_missing_folder(self):
+        self.folder = self.folder / "missing"
+        self.assert_refused("missing/grasps.json", "No such file")
+
+    def test_text_that_is_not_json(self):
+        (self.folder / "grasps.json").write_text('{"results": ')
+        self.assert_refused("grasps.json", "not JSON")
+
+    def test_missing_member(self):
+        self.change(lambda data: data["results"]["grasps"][0].pop("contacts"))
+        self.assert_refused("grasps.json", "no /contacts")
+
+    def test_point_that_is_not_one(self):
+        self.change(lambda data: data["results"]["grasps"][0]["contacts"][1].update(point_O_m=[1, 2]))
+        self.assert_refused("/results/grasps/0/contacts/1/point_O_m", "[1, 2]")
+
+    def test_missing_mesh(self):
+        (self.folder / "grasp_001.obj").unlink()
+        self.assert_refused("grasp_001.obj", "No such file")
+
+    def test_broken_mesh(self):
+        mesh = self.folder / "grasp_001.obj"
+        mesh.write_text("o object\nv 0 0 0\nv 1 0 0\nf 1 2 3\n")
+        self.assert_refused("grasp_001.obj", "line 4", "f 1 2 3")
+
+    def test_pair_of_missing_contacts(self):
+        self.change(lambda data: data["results"]["grasps"][0].update(stable_pairs=[{"contacts": [0, 7]}]))
+        self.assert_refused("grasp 1", "7")
+
+
+if __name__ == "__main__":
+    if not (os.environ.get("DISPLAY") or (shutil.which("xvfb-run") and shutil.which("xauth"))):
+        print(f"SKIPPED: no display and no xvfb-run; {PACKAGES}")
+        sys.exit(0)
+    SCRIPT = sys.argv.pop(1)
+    if "--keep-pictures" in sys.argv:
+        at = sys.argv.index("--keep-pictures")
+        PICTURES = pathlib.Path(sys.argv[at + 1])
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        del sys.argv[at : at + 2]
+    unittest.main(verbosity=2)
