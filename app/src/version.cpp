@@ -16,7 +16,7 @@ std::string version_text() {
        {"assimp        ", kAssimp},
        {"Boost         ", kBoost},
        {"nlohmann-json ", kNlohmannJson},
-       {"urdfdom       ", kUrdfdom},
+       {"tinyxml2      ", kTinyxml2},
        {"OpenSSL       ", kOpenSsl}}};
   std::string text;
   for (const auto& [name, version] : kRows) text += std::string(name) + version + '\n';
