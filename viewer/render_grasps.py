@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures of grasps: DIR/grasp_001.png and so on, from the files that `graspfit plan` wrote there.
+"""Pictures of grasps: DIR/grasp_001.png and so on, from the files that `graspfit plan` wrote.
 
 Reads DIR/grasps.json and, for each of its grasps, DIR/grasp_NNN.obj: the object (`o object`) and the
 posed links (`o link NAME`), in meters, in the object frame O. Each picture shows the grasp across the
@@ -41,9 +41,8 @@ class BadInput(Exception):
 # ------------------------------------------------------------------------------------------- input
 
 
-def read_grasps(folder):
-    """The object and list of grasps of DIR/grasps.json, checked as far as pictures need them."""
-    path = folder / "grasps.json"
+def read_grasps(path):
+    """The object and list of grasps of a grasp file, checked as far as pictures need them."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -620,7 +619,10 @@ def main():
         prog="render_grasps.py",
         description="Writes DIR/grasp_001.png and so on: pictures of the grasps in DIR/grasps.json.",
     )
-    parser.add_argument("folder", metavar="DIR", type=pathlib.Path)
+    parser.add_argument(
+        "folder", metavar="DIR", type=pathlib.Path, help="folder of a plan, or its grasps.json"
+    )
+    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, help="for pictures (default: the same)")
     parser.add_argument("--width", type=pixels, default=1400, help="pixels (default 1400)")
     parser.add_argument("--height", type=pixels, default=800, help="pixels (default 800)")
     parser.add_argument(
@@ -628,9 +630,15 @@ def main():
     )
     arguments = parser.parse_args()
     try:
-        scene = read_grasps(arguments.folder)
+        file = arguments.folder
+        if file.suffix != ".json":
+            file = file / "grasps.json"
+        out = arguments.out or file.parent
+        if not out.is_dir():
+            raise BadInput(f"{out}: no such folder")
+        scene = read_grasps(file)
         for grasp in scene["grasps"]:
-            path = arguments.folder / f"grasp_{grasp['number']:03d}.obj"
+            path = file.parent / f"grasp_{grasp['number']:03d}.obj"
             if not path.is_file():
                 raise BadInput(f"{path}: No such file")
         # A virtual display wherever there is one: a user's display may be remote, closed to us, or
@@ -648,12 +656,14 @@ def main():
         except ImportError as error:
             raise BadInput(f"{error}: install python3-vtk9") from error
         for grasp in scene["grasps"]:
-            stem = arguments.folder / f"grasp_{grasp['number']:03d}"
-            picture = painter.paint(grasp, read_parts(stem.with_suffix(".obj")))
-            write_atomically(stem.with_suffix(".png"), picture)
+            name = f"grasp_{grasp['number']:03d}"
+            picture = painter.paint(grasp, read_parts(file.parent / f"{name}.obj"))
+            write_atomically(out / f"{name}.png", picture)
     except BadInput as error:
         print(f"render_grasps.py: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 

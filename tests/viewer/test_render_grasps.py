@@ -173,7 +173,21 @@ class RenderGrasps(unittest.TestCase):
 
     def test_missing_folder(self):
         self.folder = self.folder / "missing"
-        self.assert_refused("missing/grasps.json", "No such file")
+        self.assert_refused("missing", "no such folder")
+
+    def test_missing_grasp_file(self):
+        (self.folder / "grasps.json").unlink()
+        self.assert_refused("grasps.json", "No such file")
+
+    def test_grasp_file_and_another_output_folder(self):
+        source = self.folder
+        out = source / "out"
+        out.mkdir()
+        self.folder = source / "grasps.json"
+        result = self.run_script("--out", out, "--width", "300", "--height", "200")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual([path.name for path in out.iterdir()], ["grasp_001.png"])
+        self.assertFalse((source / "grasp_001.png").exists())
 
     def test_text_that_is_not_json(self):
         (self.folder / "grasps.json").write_text('{"results": ')
