@@ -1,0 +1,88 @@
+"""Runs the program graspfit and builds the small meshes that its tests need."""
+
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.environ["GRASPFIT"]
+SOURCE_DIR = pathlib.Path(os.environ["GRASPFIT_SOURCE_DIR"])
+
+
+def run(*arguments, cwd=None, env=None, timeout=200):
+    """Exit code, standard output and standard error of one run."""
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd,
+                          env=env, timeout=timeout, check=False)
+
+
+def off_text(vertices, faces):
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(repr(float(x)) for x in vertex) for vertex in vertices]
+    lines += [f"{len(face)} " + " ".join(map(str, face)) for face in faces]
+    return "\n".join(lines) + "\n"
+
+
+def torus(major=0.05, minor=0.02, rings=32, sides=16):
+    """A closed outward torus around z [m], which a Barrett hand grasps easily."""
+    vertices = []
+    for i in range(rings):
+        for j in range(sides):
+            u, v = 2 * math.pi * i / rings, 2 * math.pi * j / sides
+            radius = major + minor * math.cos(v)
+            vertices.append((radius * math.cos(u), radius * math.sin(u), minor * math.sin(v)))
+    faces = []
+    for i in range(rings):
+        for j in range(sides):
+            a, b = i * sides + j, (i + 1) % rings * sides + j
+            c, d = (i + 1) % rings * sides + (j + 1) % sides, i * sides + (j + 1) % sides
+            faces += [(a, b, c), (a, c, d)]
+    return vertices, faces
+
+
+def box(x, y, z):
+    """A closed outward box around the origin, 12 triangles [m]."""
+    vertices = [(sx * x / 2, sy * y / 2, sz * z / 2)
+                for sz in (-1, 1) for sy in (-1, 1) for sx in (-1, 1)]
+    quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return vertices, [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+
+
+class ProgramTest(unittest.TestCase):
+    """A test in a temporary folder of its own."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text) if isinstance(text, str) else path.write_bytes(text)
+        return path
+
+    def write_torus(self, name="torus.off"):
+        return self.write(name, off_text(*torus()))
+
+    def contents(self):
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
+
+    def assert_refused(self, *arguments, code=2, says=(), cwd=None):
+        """One line on standard error, nothing on standard output, no file made."""
+        before = self.contents()
+        done = run(*arguments, cwd=cwd)
+        shown = f"graspfit {' '.join(map(str, arguments))}\n{done.stdout}{done.stderr}"
+        self.assertEqual(done.returncode, code, shown)
+        self.assertEqual(len(done.stderr.splitlines()), 1, shown)
+        self.assertTrue(done.stderr.startswith("graspfit"), shown)
+        self.assertEqual(done.stdout, "", shown)
+        self.assertEqual(self.contents(), before, shown)
+        for text in [says] if isinstance(says, str) else says:
+            self.assertIn(text, done.stderr, shown)
+        return done.stderr
+
+
+def main():
+    unittest.main(verbosity=2, argv=[sys.argv[0]])

@@ -1,0 +1,217 @@
+"""Every bad input ends in one clear line, a code of its kind, and no output left behind."""
+
+import os
+import signal
+import subprocess
+import time
+
+import program
+from program import box, off_text, torus
+
+
+class BadMeshes(program.ProgramTest):
+    def refuse(self, path, says=()):
+        self.assert_refused("plan", path, "--longest", "0.14", "--out", self.folder / "out",
+                            says=[path.name, *([says] if isinstance(says, str) else says)])
+
+    def test_missing_file(self):
+        self.refuse(self.folder / "nothing.off")
+
+    def test_folder_instead_of_a_file(self):
+        path = self.folder / "mesh.off"
+        path.mkdir()
+        self.refuse(path)
+
+    def test_empty_file(self):
+        for extension in ("off", "obj", "ply", "stl", "glb"):
+            with self.subTest(extension):
+                self.refuse(self.write(f"empty.{extension}", ""), "empty")
+
+    def test_unknown_extension(self):
+        self.refuse(self.write("cup.xyz", off_text(*torus())), "xyz")
+        self.refuse(self.write("cup", off_text(*torus())))
+
+    def test_text_that_is_not_a_mesh(self):
+        for extension in ("off", "obj", "ply", "stl", "gltf", "glb"):
+            with self.subTest(extension):
+                self.refuse(self.write(f"letter.{extension}", "Dear Sir,\nno mesh here.\n"))
+
+    def test_truncated_file(self):
+        self.refuse(self.write("half.off", off_text(*torus())[:9000]))
+
+    def test_coordinates_that_are_not_finite(self):
+        vertices, faces = torus()
+        for value in ("nan", "inf", "-inf", "1e999"):
+            with self.subTest(value):
+                lines = off_text(vertices, faces).splitlines()
+                lines[5] = f"0.01 {value} 0.02"
+                self.refuse(self.write("bad.off", "\n".join(lines) + "\n"))
+                obj = "".join(f"v {x} {y} {z}\n" for x, y, z in vertices[1:])
+                obj = f"v 0.01 {value} 0.02\n" + obj
+                obj += "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces)
+                self.refuse(self.write("bad.obj", obj))
+
+    def test_face_index_out_of_range(self):
+        vertices, faces = torus()
+        self.refuse(self.write("bad.off", off_text(vertices, faces + [(0, 1, 99999)])), "99999")
+        self.refuse(self.write("neg.off", off_text(vertices, faces + [(0, 1, -7)])))
+        obj = "".join(f"v {x} {y} {z}\n" for x, y, z in vertices)
+        obj += "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in faces) + "f 1 2 99999\n"
+        self.refuse(self.write("bad.obj", obj))
+
+    def test_zero_faces(self):
+        self.refuse(self.write("points.off", off_text(torus()[0], [])), "no faces")
+
+    def test_point_cloud(self):
+        vertices = torus()[0]
+        ply = (f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\nproperty float x\n"
+               "property float y\nproperty float z\nend_header\n")
+        ply += "".join(f"{x} {y} {z}\n" for x, y, z in vertices)
+        self.refuse(self.write("cloud.ply", ply), "point cloud")
+        obj = "".join(f"v {x} {y} {z}\n" for x, y, z in vertices)
+        self.refuse(self.write("cloud.obj", obj), "point cloud")
+
+    def test_half_a_mesh_is_refused_as_open(self):
+        vertices, faces = torus()
+        self.refuse(self.write("half.off", off_text(vertices, faces[: len(faces) // 2])),
+                    "boundary edges")
+
+    def test_small_hole_is_repaired_and_recorded_or_refused_as_asked(self):
+        vertices, faces = torus()
+        path = self.write("hole.off", off_text(vertices, faces[:-2]))
+        done = program.run("inspect", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("filled holes 1", done.stdout)
+        self.assert_refused("plan", path, "--repair", "strict", says="hole.off")
+        self.assert_refused("plan", path, "--repair", "as-is", says=["open", "--repair"])
+        self.assert_refused("plan", path, "--max-hole", "0.01", says="hole.off")
+
+    def test_flat_mesh(self):
+        self.refuse(self.write("flat.off", off_text([(0, 0, 0), (1, 0, 0), (0, 1, 0)],
+                                                    [(0, 1, 2), (0, 2, 1)])))
+
+    def test_object_of_impossible_size_says_extents_and_flags(self):
+        for size, extent in ((150.0, "150"), (0.002, "0.002")):
+            with self.subTest(size):
+                path = self.write("block.off", off_text(*box(size, size, size)))
+                self.assert_refused("plan", path, "--out", self.folder / "out",
+                                    says=[extent, " m", "--mesh-unit", "--longest"])
+
+
+class BadFlags(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.object = self.write_torus()
+
+    def refuse(self, *flags, says=()):
+        self.assert_refused("plan", self.object, "--out", self.folder / "out", *flags, says=says)
+
+    def test_hand_and_fingers(self):
+        self.refuse("--hand", "claw", says=["claw", "barrett"])
+        self.refuse("--hand", self.folder / "no.urdf", says="no.urdf")
+        self.refuse("--contacts", "4", says=["3 fingers", "4"])
+        self.refuse("--contacts", "1")
+        self.refuse("--fingers", "finger_1,pinky", says=["pinky", "thumb"])
+        self.refuse("--fingers", "thumb", says="two")
+        self.refuse("--fingers", "thumb,thumb", says="twice")
+        self.refuse("--fingers", "thumb,,finger_1", says="empty")
+        self.refuse("--fingers", "thumb,finger_1", "--contacts", "3", says="contradicts")
+
+    def test_values_out_of_range(self):
+        for flag, *values in (
+                ("score-threshold", "-0.1", "1", "1.5"), ("theta-max-deg", "0", "-5", "90", "120"),
+                ("resolution", "3", "513", "-30"), ("count", "0", "-1"), ("max-attempts", "0"),
+                ("alpha", "-1"), ("beta", "-0.3"), ("w1", "-1"), ("w2", "-1"), ("w3", "-1"),
+                ("max-hole", "-0.1", "1.1"), ("longest", "0", "-0.15"),
+                ("clip-thickness-mm", "0", "-1"), ("wall-clock-limit-s", "0", "-1"),
+                ("edge-tolerance", "-1"), ("pool-fraction", "0", "1.1"), ("max-seeds", "0"),
+                ("clearance-mm", "-1"), ("mean-filter-radius", "-1"),
+                ("score-length-voxels", "0"), ("seed", "-1", "18446744073709551616")):
+            for value in values:
+                with self.subTest(flag=flag, value=value):
+                    self.refuse(f"--{flag}", value)
+
+    def test_text_that_is_not_a_number(self):
+        for value in ("abc", "1.5x", "0,3", "nan", "inf", "-inf", "1e999", "0x10", "--1", " 1", "1 ",
+                      ""):
+            with self.subTest(value):
+                self.refuse(f"--alpha={value}", says="alpha")
+                self.refuse(f"--longest={value}", says="longest")
+        for value in ("3.5", "1e3", "abc", "3,0", "99999999999999999999"):
+            with self.subTest(value):
+                self.refuse(f"--count={value}", says="count")
+        self.refuse("--beta", "0,3", says="point")
+        for value in ("1,2", "1,2,3,4", "1,b,3", "0,0,0", "1,,3", "1,2,"):
+            with self.subTest(value):
+                self.refuse(f"--approach={value}")
+
+    def test_unknown_choices(self):
+        for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
+                     "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit"):
+            with self.subTest(flag):
+                self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
+
+    def test_flags_that_do_not_exist_or_fit(self):
+        self.refuse("--fastest", says="--fastest")
+        self.refuse("--cou", "3", says="--cou")  # no guessing of abbreviations
+        self.refuse("--count", says="count")
+        self.refuse("--count", "1", "--count", "2", says="count")
+        self.refuse("second.off", says="more than one")
+        self.refuse("--mesh-unit", "mm", "--longest", "0.15", says="exclude")
+        self.assert_refused("plan", says="OBJECT")
+        self.assert_refused("plan", self.object, "--pictures", says="--out")
+        self.assert_refused("plan", self.object, "--page", says="--out")
+        self.assert_refused("evaluate", says="GRASPS.json")
+        self.assert_refused("inspect", self.object, "--count", "3", says="--count")
+        self.assert_refused("grab", self.object, says="grab")
+        self.assert_refused(says="command")
+
+    def test_output_folder_that_cannot_be_written(self):
+        file = self.write("file", "keep me")
+        self.assert_refused("plan", self.object, "--out", file, says="file")
+        self.assert_refused("plan", self.object, "--out", file / "below", says="file")
+        self.assert_refused("plan", self.object, "--out", "/proc/graspfit", says="/proc")
+        self.assert_refused("plan", self.object, "--out=", says="out")
+        self.assertEqual(file.read_text(), "keep me")
+
+    def test_folder_without_permission(self):
+        if os.geteuid() == 0:
+            self.skipTest("root may write everywhere")
+        locked = self.folder / "locked"
+        locked.mkdir(mode=0o555)
+        self.assert_refused("plan", self.object, "--out", locked / "out", says="locked")
+
+
+class NoGrasp(program.ProgramTest):
+    def test_no_grasp_found_has_its_own_code_and_says_why(self):
+        # Half a degree of friction cone: no two voxels of a torus face each other so well.
+        message = self.assert_refused(
+            "plan", self.write_torus(), "--theta-max-deg", "0.5", "--max-attempts", "4",
+            "--out", self.folder / "out", code=3, says=["no valid grasp", "4 attempts"])
+        self.assertRegex(message, r"attempts: .* \d+")
+
+
+class Interrupts(program.ProgramTest):
+    def start(self):
+        process = subprocess.Popen(
+            [program.PROGRAM, "plan", str(self.write_torus()), "--count", "100000",
+             "--max-attempts", "1000000", "--out", str(self.folder / "new/out")],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.stderr.close)
+        time.sleep(1.5)
+        self.assertIsNone(process.poll())
+        return process
+
+    def test_a_killed_run_leaves_nothing(self):
+        for kill in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
+            with self.subTest(kill.name):
+                process = self.start()
+                process.send_signal(kill)
+                code = process.wait(20)
+                self.assertEqual(code, -9 if kill == signal.SIGKILL else 128 + kill)
+                self.assertEqual(self.contents(), ["torus.off"])
+
+
+if __name__ == "__main__":
+    program.main()

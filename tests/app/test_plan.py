@@ -1,0 +1,172 @@
+"""What `graspfit plan` writes and prints."""
+
+import json
+import os
+import re
+import subprocess
+
+import program
+
+
+def results_text(path):
+    """The results of a grasp file as its own bytes."""
+    text = path.read_text()
+    return text[text.index('\n  "results": '):text.index('\n  "timings": ')]
+
+
+class Plan(program.ProgramTest):
+    def plan(self, *flags, out="out", **options):
+        done = program.run("plan", self.folder / "torus.off", "--count", "3", "--seed", "7", "--out",
+                           self.folder / out, *flags, **options)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done
+
+    def setUp(self):
+        super().setUp()
+        self.write_torus()
+
+    def test_writes_file_table_and_posed_meshes(self):
+        done = self.plan()
+        self.assertEqual(done.stderr, "")  # no progress bar when piped
+        names = sorted(path.name for path in (self.folder / "out").iterdir())
+        posed = [f"grasp_00{i}.{extension}" for i in (1, 2, 3) for extension in ("obj", "ply")]
+        self.assertEqual(names, sorted(posed + ["grasps.csv", "grasps.json"]))
+
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0].split(), ["rank", "M", "M1", "M2", "M3", "contacts", "gap_mm",
+                                            "penetration_mm", "valid"])
+        self.assertEqual([line.split()[0] for line in lines[1:4]], ["1", "2", "3"])
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        grasps = file["results"]["grasps"]
+        for grasp, line in zip(grasps, lines[1:4]):
+            self.assertEqual(f"{grasp['m']:.4f}", line.split()[1])
+            self.assertTrue(grasp["valid"])
+        self.assertEqual(sorted(grasps, key=lambda grasp: -grasp["m"]), grasps)
+
+        rows = (self.folder / "out/grasps.csv").read_text().splitlines()
+        self.assertEqual(len(rows), 4)
+        header = rows[0].split(",")
+        for column in ("m", "largest_penetration_m", "palm_x_m", "palm_qw"):
+            self.assertIn(column, header)
+        for joint in file["hand"]["joints"]:
+            column = header.index(f"{joint['name']}_{joint['unit']}")
+            self.assertEqual(float(rows[1].split(",")[column]), grasps[0]["joints"][joint["name"]])
+
+    def test_posed_obj_has_a_part_for_every_body(self):
+        self.plan()
+        text = (self.folder / "out/grasp_001.obj").read_text()
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        links = [f"link {link['name']}" for link in file["hand"]["links"] if link["mesh_file"]]
+        self.assertEqual(re.findall(r"^o (.*)$", text, re.MULTILINE), ["object", *links])
+        num_vertices = len(re.findall(r"^v ", text, re.MULTILINE))
+        indices = [int(i) for face in re.findall(r"^f (.*)$", text, re.MULTILINE)
+                   for i in face.split()]
+        self.assertEqual((min(indices), max(indices)), (1, num_vertices))
+        first = [float(x) for x in re.search(r"^v (.*)$", text, re.MULTILINE)[1].split()]
+        self.assertEqual(first, list(program.torus()[0][0]))
+
+    def test_same_seed_gives_the_same_bytes_of_results(self):
+        self.plan(out="a")
+        self.plan(out="b")
+        self.assertEqual(results_text(self.folder / "a/grasps.json"),
+                         results_text(self.folder / "b/grasps.json"))
+        for name in ("grasps.csv", "grasp_001.obj", "grasp_003.ply"):
+            self.assertEqual((self.folder / "a" / name).read_bytes(),
+                             (self.folder / "b" / name).read_bytes())
+        program.run("plan", self.folder / "torus.off", "--count", "3", "--seed", "8", "--out",
+                    self.folder / "c")
+        self.assertNotEqual(results_text(self.folder / "a/grasps.json"),
+                            results_text(self.folder / "c/grasps.json"))
+
+    def test_locale_does_not_change_the_bytes(self):
+        locales = subprocess.run(["locale", "-a"], capture_output=True, text=True, check=False)
+        german = [name for name in locales.stdout.split() if name.startswith("de_")]
+        if not german:
+            print("no German locale here; test_grasp_io.cpp tests the same with one of its own")
+            return
+        self.plan(out="a")
+        done = self.plan(out="b", env={**os.environ, "LC_ALL": german[0]})
+        self.assertEqual(results_text(self.folder / "a/grasps.json"),
+                         results_text(self.folder / "b/grasps.json"))
+        self.assertNotIn("0,", done.stdout)
+
+    def test_existing_folder_keeps_foreign_files_and_loses_stale_ones(self):
+        out = self.folder / "out"
+        out.mkdir()
+        for name in ("notes.txt", "grasp_009.obj", "grasp_001.obj", "grasp_1.obj", "grasps.html"):
+            (out / name).write_text("old")
+        self.plan()
+        self.assertEqual((out / "notes.txt").read_text(), "old")
+        self.assertEqual((out / "grasp_1.obj").read_text(), "old")
+        self.assertNotEqual((out / "grasp_001.obj").read_text(), "old")
+        self.assertFalse((out / "grasp_009.obj").exists())
+        self.assertFalse((out / "grasps.html").exists())
+        self.assertEqual([path.name for path in out.iterdir() if path.name.startswith(".")], [])
+
+    def test_refused_run_leaves_an_earlier_result_alone(self):
+        self.plan()
+        before = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+        self.assert_refused("plan", self.folder / "torus.off", "--theta-max-deg", "0.5",
+                            "--max-attempts", "2", "--out", self.folder / "out", code=3)
+        after = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+        self.assertEqual(before, after)
+
+    def test_quiet_and_without_folder(self):
+        self.assertEqual(self.plan("--quiet").stdout, "")
+        before = self.contents()
+        done = program.run("plan", self.folder / "torus.off")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("rank", done.stdout)
+        self.assertEqual(self.contents(), before)
+
+    def test_named_fingers_and_approach(self):
+        self.plan("--fingers", "finger_1,thumb", "--approach", "-0.2,0.1,-1")
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        self.assertEqual(file["planner"]["used"]["fingers"], ["thumb", "finger_1"])
+        self.assertEqual(file["planner"]["options"]["approach_O"], [-0.2, 0.1, -1])
+        direction_H = file["hand"]["palm"]["direction_H"]
+        for grasp in file["results"]["grasps"]:
+            w, x, y, z = grasp["X_OH"]["rotation_wxyz"]
+            rotation = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+            direction_O = [sum(r * d for r, d in zip(row, direction_H)) for row in rotation]
+            self.assertGreater(sum(a * b for a, b in zip(direction_O, (-0.2, 0.1, -1))), 0)
+
+    def test_units_scale_the_file(self):
+        vertices, faces = program.torus()
+        inches = program.off_text([[x / 0.0254 for x in vertex] for vertex in vertices], faces)
+        path = self.write("inches.off", inches)
+        for flags, factor in ((("--mesh-unit", "in"), 0.0254), (("--longest", "0.14"), None)):
+            done = program.run("plan", path, *flags, "--out", self.folder / "scaled")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            record = json.loads((self.folder / "scaled/grasps.json").read_text())["object"]
+            box = record["mesh"]["bounding_box_m"]
+            self.assertAlmostEqual(box["upper"][0] - box["lower"][0], 0.14, places=12)
+            if factor:
+                self.assertEqual(record["meters_per_file_unit"], factor)
+
+    def test_page_and_pictures(self):
+        done = self.plan("--page")
+        self.assertEqual(done.stderr, "")
+        self.assertTrue((self.folder / "out/grasps.html").read_text().startswith("<!"))
+
+
+class Help(program.ProgramTest):
+    def test_help_and_version(self):
+        for arguments in (["--help"], ["plan", "--help"], ["inspect", "--help"],
+                          ["evaluate", "-h"]):
+            done = program.run(*arguments)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("Usage: graspfit", done.stdout)
+            self.assertLessEqual(max(map(len, done.stdout.splitlines())), 110)
+        done = program.run("plan", "--help")
+        for text in ("[P]", "[R, A1]", "(=0.6)", "(=45)", "(=floor-median)", "Exit codes"):
+            self.assertIn(text, done.stdout)
+        done = program.run("--version")
+        for library in ("graspfit", "CGAL", "Eigen", "assimp", "Boost", "compiler"):
+            self.assertRegex(done.stdout, rf"(?m)^{library} +\S*\d+\.\d+|^{library} +\S+ \d+\.\d+")
+
+
+if __name__ == "__main__":
+    program.main()
