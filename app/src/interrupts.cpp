@@ -1,11 +1,13 @@
 #include "interrupts.hpp"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -67,11 +69,17 @@ void without_interrupts(const std::function<void()>& work) {
   work();
 }
 
-int run_program(const std::vector<std::string>& arguments) {
+ProgramEnd run_program(const std::vector<std::string>& arguments) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
+  int pipe_ends[2];
+  if (pipe2(pipe_ends, O_CLOEXEC) != 0) return {127, "no pipe"};
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&files, pipe_ends[1], STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -81,17 +89,32 @@ int run_program(const std::vector<std::string>& arguments) {
   pid_t child = -1;
   int error = 0;
   without_interrupts([&] {
-    error = posix_spawnp(&child, argv[0], nullptr, &attributes, argv.data(), environ);
+    error = posix_spawnp(&child, argv[0], &files, &attributes, argv.data(), environ);
     if (error == 0) state().child = child;
   });
   posix_spawnattr_destroy(&attributes);
-  if (error != 0) return 127;
+  posix_spawn_file_actions_destroy(&files);
+  close(pipe_ends[1]);
 
+  ProgramEnd end;
+  if (error != 0) {
+    close(pipe_ends[0]);
+    return {127, arguments[0] + ": " + std::strerror(error)};
+  }
+  char buffer[4096];
+  for (;;) {
+    const ssize_t count = read(pipe_ends[0], buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    end.errors.append(buffer, static_cast<std::size_t>(count));
+  }
+  close(pipe_ends[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   without_interrupts([] { state().child = -1; });
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return end;
 }
 
 }  // namespace graspfit::app

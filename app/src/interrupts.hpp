@@ -23,8 +23,13 @@ class CleanupOnInterrupt {
 /// Runs `work`; interrupts wait until it is done.
 void without_interrupts(const std::function<void()>& work);
 
-/// Runs a program, waits, and returns its exit code (128 + signal if it was killed, 127 if it
-/// cannot be started). An interrupt ends it too.
-int run_program(const std::vector<std::string>& arguments);
+/// What came of running another program.
+struct ProgramEnd {
+  int code = 0;        ///< Its exit code; 128 + signal if it was killed, 127 if it did not start.
+  std::string errors;  ///< What it wrote to standard error.
+};
+
+/// Runs a program and waits for it. Its standard output is dropped. An interrupt ends it too.
+ProgramEnd run_program(const std::vector<std::string>& arguments);
 
 }  // namespace graspfit::app

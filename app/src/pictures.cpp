@@ -30,15 +30,29 @@ fs::path find_script() {
                           " is not installed (looked for " + candidates.front().string() + ")");
 }
 
+/// The last line with something in it.
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \n\r");
+  if (end == std::string::npos) return "no reason given";
+  const std::size_t start = text.find_last_of("\n\r", end);
+  return text.substr(start == std::string::npos ? 0 : start + 1,
+                     start == std::string::npos ? end + 1 : end - start);
+}
+
 }  // namespace
 
-void require_pictures() { find_script(); }
+void require_pictures() {
+  find_script();
+  if (run_program({GRASPFIT_PYTHON, "-c", "import vtkmodules"}).code != 0) {
+    throw geometry::IoError("--pictures: needs VTK for " GRASPFIT_PYTHON "; install python3-vtk9");
+  }
+}
 
 void draw_pictures(const fs::path& folder) {
-  const int code = run_program({GRASPFIT_PYTHON, find_script().string(),
-                                (folder / "grasps.json").string(), "--out", folder.string()});
-  if (code != 0) {
-    throw geometry::IoError("--pictures: the script failed with exit code " + std::to_string(code));
+  const ProgramEnd end = run_program({GRASPFIT_PYTHON, find_script().string(), folder.string()});
+  if (end.code != 0) {
+    throw geometry::IoError("--pictures: " + last_line(end.errors) + " (exit code " +
+                            std::to_string(end.code) + ")");
   }
 }
 

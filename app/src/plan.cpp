@@ -118,7 +118,14 @@ void write_files(const grasp::GraspFile& file, const grasp::ObjectModel& object,
   }
   if (flags.has("pictures")) {
     progress.show("drawing pictures");
-    draw_pictures(folder);
+    try {
+      draw_pictures(folder);
+    } catch (const geometry::IoError& error) {
+      // Minutes of planning are not thrown away for want of a display.
+      out.commit("grasps.json");
+      throw geometry::IoError(std::string(error.what()) + "; all other files are in " +
+                              out.target().string());
+    }
   }
   out.commit("grasps.json");
 }

@@ -1,0 +1,121 @@
+"""`graspfit evaluate` computes every grasp again from the meshes."""
+
+import json
+import shutil
+
+import program
+
+
+class Evaluate(program.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.object = self.write_torus()
+        done = program.run("plan", self.object, "--count", "3", "--accept", "usable", "--out",
+                           self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.file = self.folder / "out/grasps.json"
+
+    def changed(self, change):
+        data = json.loads(self.file.read_text())
+        change(data)
+        return self.write("changed.json", json.dumps(data))
+
+    def test_reproduces_what_was_planned(self):
+        done = program.run("evaluate", self.file, "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        report = json.loads(done.stdout)
+        self.assertLess(report["largest_m_difference"], 1e-9)
+        stored = json.loads(self.file.read_text())["results"]["grasps"]
+        self.assertEqual(len(report["grasps"]), len(stored))
+        for row, grasp in zip(report["grasps"], stored):
+            self.assertTrue(row["same_contacts"])
+            self.assertLess(row["largest_difference"], 1e-9)
+            self.assertEqual(row["stored"]["m"], grasp["m"])
+            self.assertEqual(row["computed"]["valid"], grasp["valid"])
+
+        done = program.run("evaluate", self.file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("largest difference of M: ", done.stdout)
+        self.assertEqual(len(done.stdout.splitlines()), len(stored) + 2)
+
+    def test_reproduces_other_readings_too(self):
+        done = program.run("plan", self.object, "--count", "2", "--accept", "usable",
+                           "--measure-units", "centimeters", "--regularity", "edge-only",
+                           "--centroid", "vertices", "--averaging", "plain", "--alpha", "0.7",
+                           "--theta-max-deg", "40", "--clip-thickness-mm", "2.5", "--longest",
+                           "0.13", "--out", self.folder / "other")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = program.run("evaluate", self.folder / "other/grasps.json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_another_m_is_found_out(self):
+        def add(data):
+            data["results"]["grasps"][1]["m"] += 2e-9
+
+        done = program.run("evaluate", self.changed(add))
+        self.assertEqual(done.returncode, 4)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn("differs", done.stderr)
+
+    def test_a_moved_hand_is_found_out(self):
+        def move(data):
+            data["results"]["grasps"][0]["X_OH"]["translation_m"][0] += 1e-4
+
+        self.assertEqual(program.run("evaluate", self.changed(move)).returncode, 4)
+
+    def test_object_that_is_gone_moved_or_another_one(self):
+        moved = self.folder / "elsewhere.off"
+        self.object.rename(moved)
+        self.assert_refused("evaluate", self.file, says="torus.off")
+        self.assertEqual(program.run("evaluate", self.file, "--object", moved).returncode, 0)
+        shutil.copy(moved, self.folder / "out/torus.off")  # beside the grasp file
+        self.assertEqual(program.run("evaluate", self.file).returncode, 0)
+        self.write("out/torus.off", program.off_text(*program.torus(0.051)))
+        self.assert_refused("evaluate", self.file, says=["torus.off", "SHA-256"])
+
+    def test_files_that_are_no_grasp_files(self):
+        self.assert_refused("evaluate", self.folder / "no.json", says="no.json")
+        self.assert_refused("evaluate", self.object, says="not JSON")
+        self.assert_refused("evaluate", self.write("empty.json", ""), says="not JSON")
+        self.assert_refused("evaluate", self.write("list.json", "[1, 2]"), says="not an object")
+
+        def item(data, *keys):
+            for key in keys:
+                data = data[key]
+            return data
+
+        for keys, value, says in (
+                (("format",), "urdf", "graspfit-grasps"),
+                (("version",), 2, "version 1"),
+                (("hand", "description_sha256"), "0" * 64, "/hand"),
+                (("hand", "sidecar_sha256"), "0" * 64, "sidecar"),
+                (("hand", "links", 0, "mesh_sha256"), "0" * 64, "mesh of link"),
+                (("results", "stop"), "bored", "/results/stop"),
+                (("results", "grasps", 0, "m"), "high", "/results/grasps/0/m"),
+                (("results", "grasps", 0, "contacts", 0, "pad"), "elbow", "elbow"),
+                (("results", "grasps", 0, "X_OH", "rotation_wxyz"), [1, 1, 0, 0], "unit"),
+                (("results", "grasps", 0, "X_OH", "translation_m"), [1, 2], "3"),
+                (("planner", "used", "fingers"), ["pinky"], "pinky"),
+                (("planner", "options", "quality", "units"), "feet", "normalized|centimeters")):
+            def change(data, keys=keys, value=value):
+                item(data, *keys[:-1])[keys[-1]] = value
+
+            with self.subTest(keys):
+                self.assert_refused("evaluate", self.changed(change), says=says)
+
+                def remove(data, keys=keys):
+                    del item(data, *keys[:-1])[keys[-1]]
+
+                if not isinstance(keys[-1], int):
+                    self.assert_refused("evaluate", self.changed(remove), says="is missing")
+
+    def test_joint_beyond_its_limits(self):
+        def bend(data):
+            joints = data["results"]["grasps"][0]["joints"]
+            joints[next(iter(joints))] = 9.0
+
+        self.assert_refused("evaluate", self.changed(bend), says="/results/grasps/0/joints")
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,129 @@
+"""What `graspfit inspect` prints and writes: files that VTK opens."""
+
+import re
+
+import program
+
+try:
+    from vtkmodules.vtkIOPLY import vtkPLYReader
+    from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+except ImportError:
+    vtkPLYReader = None
+
+
+class Inspect(program.ProgramTest):
+    def inspect(self, *arguments):
+        done = program.run("inspect", *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        return done.stdout
+
+    def row(self, text, name):
+        return re.search(rf"^{re.escape(name)} {{2,}}(.*)$", text, re.MULTILINE)[1]
+
+    def test_report_of_a_box(self):
+        # 30 voxels of 1 cm along x; the box's faces lie on voxel planes, and each belongs to one of
+        # its two sides.
+        path = self.write("box.off", program.off_text(*program.box(0.3, 0.2, 0.1)))
+        text = self.inspect(path)
+        self.assertIn("8 vertices, 12 faces, 1 part; closed, manifold, outward",
+                      self.row(text, "after repair"))
+        self.assertEqual(self.row(text, "repair"), "nothing changed")
+        self.assertEqual(self.row(text, "extents"), "0.3 x 0.2 x 0.1 m")
+        self.assertAlmostEqual(float(self.row(text, "volume").split()[0]), 0.006, places=12)
+        self.assertTrue(self.row(text, "voxels").endswith(" of 0.01 m"))
+        counts = [int(n) for n in re.findall(r"\d+", self.row(text, "classes"))]
+        lattice = [int(n) for n in re.findall(r"\d+ x \d+ x \d+", self.row(text, "voxels"))[0].split(" x ")]
+        self.assertEqual(sum(counts), lattice[0] * lattice[1] * lattice[2])
+        self.assertTrue(self.row(text, "patches").startswith(f"{counts[1]}, "))
+        self.assertIn("above 0.6", self.row(text, "above threshold"))
+
+    def test_report_of_defects_and_repairs(self):
+        vertices, faces = program.torus()
+        faces = [(a, c, b) for a, b, c in faces[2:]]  # inside out, with a hole
+        text = self.inspect(self.write("bad.off", program.off_text(vertices, faces)))
+        self.assertIn("open", self.row(text, "before repair"))
+        self.assertIn("4 boundary edges", self.row(text, "before repair"))
+        self.assertIn("filled holes 1", text)
+        self.assertIn("turned parts 1", text)
+        self.assertIn("closed, manifold, outward", self.row(text, "after repair"))
+        text = self.inspect(self.folder / "bad.off", "--repair", "as-is")
+        self.assertIn("none", self.row(text, "voxels"))
+
+    def test_size_is_checked_for_a_hand(self):
+        path = self.write("box.off", program.off_text(*program.box(30, 20, 10)))
+        self.inspect(path)
+        self.assert_refused("inspect", path, "--hand", "barrett", says=["30 x 20 x 10", "--longest"])
+
+    def test_crossing_faces_are_counted(self):
+        a, faces = program.box(0.1, 0.1, 0.1)
+        b = [(x + 0.03, y + 0.02, z + 0.01) for x, y, z in a]
+        path = self.write("two.off", program.off_text(
+            a + b, faces + [tuple(i + 8 for i in face) for face in faces]))
+        pairs = int(self.row(self.inspect(path, "--self-intersections"), "crossing faces").split()[0])
+        self.assertGreater(pairs, 0)
+
+    def test_files_open_in_vtk_and_agree_with_the_report(self):
+        if vtkPLYReader is None:
+            print("SKIPPED: python3-vtk9 is not installed")
+            return
+        out = self.folder / "out"
+        text = self.inspect(self.write_torus(), "--out", out)
+        self.assertEqual(sorted(path.name for path in out.iterdir()),
+                         ["distance_map.vti", "patches.ply", "score_map.vti", "voxels.vti"])
+        empty, partial, full = [int(n) for n in re.findall(r"\d+", self.row(text, "classes"))]
+
+        def image(name):
+            reader = vtkXMLImageDataReader()
+            reader.SetFileName(str(out / name))
+            reader.Update()
+            self.assertEqual(reader.GetErrorCode(), 0)
+            return reader.GetOutput()
+
+        voxels = image("voxels.vti")
+        data = voxels.GetCellData().GetArray(0)
+        classes = [int(data.GetTuple1(i)) for i in range(data.GetNumberOfTuples())]
+        self.assertEqual([classes.count(c) for c in (0, 1, 2)], [empty, partial, full])
+        # The box's center is the torus' own: index order and origin are right.
+        bounds = voxels.GetBounds()
+        self.assertAlmostEqual(bounds[0] + bounds[1], 0.0, places=12)
+        self.assertEqual(classes[voxels.FindCell((0.05, 0.001, 0.001), None, 0, 1e-9, [0], [0] * 3,
+                                                 [0] * 8)], 2)
+
+        distance = image("distance_map.vti").GetCellData().GetArray("signed_distance_voxels")
+        score = image("score_map.vti").GetCellData().GetArray("score")
+        for i, voxel_class in enumerate(classes):
+            sign = {0: 1, 1: 0, 2: -1}[voxel_class]
+            value = distance.GetTuple1(i)
+            self.assertEqual((value > 0) - (value < 0), sign)
+            self.assertEqual(score.GetTuple1(i) == score.GetTuple1(i), voxel_class == 1)  # not NaN
+
+        reader = vtkPLYReader()
+        reader.SetFileName(str(out / "patches.ply"))
+        reader.Update()
+        patches = reader.GetOutput()
+        self.assertGreater(patches.GetNumberOfCells(), partial)
+        self.assertEqual(patches.GetCellData().GetArray("RGB").GetNumberOfComponents(), 3)
+        area = 0.0
+        points = patches.GetPoints()
+        for i in range(patches.GetNumberOfCells()):
+            ids = patches.GetCell(i).GetPointIds()
+            corners = [points.GetPoint(ids.GetId(j)) for j in range(ids.GetNumberOfIds())]
+            for p, q in zip(corners[1:], corners[2:]):
+                u = [a - b for a, b in zip(p, corners[0])]
+                v = [a - b for a, b in zip(q, corners[0])]
+                n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                     u[0] * v[1] - u[1] * v[0])
+                area += sum(x * x for x in n) ** 0.5 / 2
+        vertices, faces = program.torus()
+        whole = 0.0
+        for a, b, c in faces:
+            u = [x - y for x, y in zip(vertices[b], vertices[a])]
+            v = [x - y for x, y in zip(vertices[c], vertices[a])]
+            n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+            whole += sum(x * x for x in n) ** 0.5 / 2
+        # VTK reads coordinates as floats, 24 bits: 1e-6 of the area, with room for 10 000 pieces.
+        self.assertAlmostEqual(area / whole, 1.0, delta=1e-5)
+
+
+if __name__ == "__main__":
+    program.main()
