@@ -33,7 +33,7 @@ class Clipper {
     }
     const internal::CutMeasure measure = cutter_.measure(polygon_);
     ClippedPiece piece;
-    piece.area = measure.fraction * 0.5 * (b - a).cross(c - a).norm();
+    piece.area = measure.fraction * internal::accurate_vector_area(a, b, c).stableNorm();
     piece.centroid = measure.centroid;
     for (const internal::CutCorner& corner : polygon_) piece.polygon.push_back(corner.point);
     return piece;

@@ -14,6 +14,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "internal/box_tree.hpp"
 #include "internal/mesh_query_impl.hpp"
+#include "internal/winding.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -98,6 +99,29 @@ bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform
     }
   }
   return false;
+}
+
+/// Containment in a mesh whose vertices are mapped by X_AB and rounded. Exact.
+Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
+                               const Vector3d& point_A) {
+  internal::Winding winding(point_A);
+  const BoxTree& tree = b.impl().tree;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    const SeenBox box = seen_from(node, X_AB);
+    if (!winding.may_meet(box.lower, box.upper)) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = 0; i < node.count; ++i) {
+      winding.add(mapped(tree.triangles[node.first + i].corners, X_AB));
+    }
+  }
+  return winding.result();
 }
 
 /// Whether some part of `inner` (surfaces do not cross) lies inside `outer`, both in one frame.
@@ -264,10 +288,11 @@ bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& 
   const Eigen::AlignedBox3d& box_a = a.impl().box;
   if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
   if (holds_a_part(a, part_points(b, X_AB))) return true;
-  // A inside B: only with B as it was rounded to frame A is the answer exact.
-  std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
-  std::erase_if(points_a, [&](const Vector3d& p) { return !overlap(p, p, box_b); });
-  return !points_a.empty() && holds_a_part(MeshQuery(transformed(b.mesh(), X_AB)), points_a);
+  const std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
+  return std::any_of(points_a.begin(), points_a.end(), [&](const Vector3d& point_A) {
+    return overlap(point_A, point_A, box_b) &&
+           placed_containment(b, X_AB, point_A) != Containment::Outside;
+  });
 }
 
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,

@@ -55,7 +55,7 @@ std::size_t remove_collapsed_faces(TriangleMesh& mesh) {
 }
 
 /// Faces on the same three vertices cancel in pairs of opposite orientation; of those left one
-/// stays.
+/// stays. Where every face has its opposite, one of each pair is left.
 std::size_t remove_doubled_faces(TriangleMesh& mesh) {
   struct Tally {
     int balance = 0;
@@ -67,6 +67,13 @@ std::size_t remove_doubled_faces(TriangleMesh& mesh) {
   };
   std::map<Face, Tally> tallies;
   for (const Face& face : mesh.faces) tallies[key(face)].balance += is_even(face) ? 1 : -1;
+  const bool is_double_sided = std::all_of(tallies.begin(), tallies.end(),
+                                           [](const auto& t) { return t.second.balance == 0; });
+  if (is_double_sided) {
+    // A surface drawn on both sides throughout: the first face of each pair stays.
+    return std::erase_if(mesh.faces,
+                         [&](const Face& face) { return tallies[key(face)].kept++ > 0; });
+  }
   return std::erase_if(mesh.faces, [&](const Face& face) {
     Tally& tally = tallies[key(face)];
     const bool is_majority = is_even(face) ? tally.balance > 0 : tally.balance < 0;

@@ -1,6 +1,7 @@
 #include "internal/predicates.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "internal/exact_number.hpp"
 
@@ -44,6 +45,27 @@ bool is_certain(double value, double bound, double permanent) {
   return sign_of(left - right);
 }
 
+[[gnu::cold, gnu::noinline]] Eigen::Vector3d exact_vector_area(const Eigen::Vector3d& a,
+                                                               const Eigen::Vector3d& b,
+                                                               const Eigen::Vector3d& c) {
+  Rational ab[3];
+  Rational ac[3];
+  for (int i = 0; i < 3; ++i) {
+    ab[i] = Rational(b[i]) - Rational(a[i]);
+    ac[i] = Rational(c[i]) - Rational(a[i]);
+  }
+  Eigen::Vector3d area;
+  for (int i = 0; i < 3; ++i) {
+    const int u = (i + 1) % 3;
+    const int v = (i + 2) % 3;
+    const Rational doubled = ab[u] * ac[v] - ab[v] * ac[u];
+    area[i] = 0.5 * CGAL::to_double(doubled);
+    // Too small for a double is not nothing.
+    if (area[i] == 0.0) area[i] = sign_of(doubled) * std::numeric_limits<double>::min();
+  }
+  return area;
+}
+
 bool is_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b) {
   return (point.array() >= a.cwiseMin(b).array()).all() &&
@@ -80,6 +102,18 @@ int orientation_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
 bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return orientation_2d(a, b, c, 0, 1) == 0 && orientation_2d(a, b, c, 1, 2) == 0 &&
          orientation_2d(a, b, c, 2, 0) == 0;
+}
+
+Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                     const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const Eigen::Vector3d doubled = ab.cross(ac);
+  // Each component is off by at most 8 kEps |ab| |ac|, the vector by twice that.
+  const double bound = 16.0 * kEps * ab.norm() * ac.norm();
+  const double length = doubled.norm();
+  if (bound <= 0x1p-40 * length && length > 0x1p-450 && length < 0x1p450) return 0.5 * doubled;
+  return exact_vector_area(a, b, c);
 }
 
 bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,

@@ -200,8 +200,9 @@ std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelL
   std::vector<double> areas(mesh.faces.size());
   std::vector<Eigen::Vector3d> normals(mesh.faces.size());
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const Eigen::Vector3d area = vector_area(mesh, face);
-    areas[face] = area.norm();
+    const auto [a, b, c] = corners(mesh, face);
+    const Eigen::Vector3d area = internal::accurate_vector_area(a, b, c);
+    areas[face] = area.stableNorm();
     normals[face] = area.stableNormalized();
   }
   const Pieces all = all_pieces(mesh, lattice, areas);
@@ -238,7 +239,8 @@ std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelL
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   std::vector<double> areas(mesh.faces.size());
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    areas[face] = vector_area(mesh, face).norm();
+    const auto [a, b, c] = corners(mesh, face);
+    areas[face] = internal::accurate_vector_area(a, b, c).stableNorm();
   }
   const Pieces all = all_pieces(mesh, lattice, areas);
   std::vector<VoxelPiece> result;
