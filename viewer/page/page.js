@@ -1136,7 +1136,7 @@ function showMeasures() {
         element('td', {}, `${i + 1} ${contact.finger}`,
                 ...notes.map((note) => element('small', {className: 'soft'}, ` ${note}`))),
         element('td', {}, millimeters(contact.gap)),
-        element('td', {}, fixed(contact.area * 1e6, 1)),
+        element('td', {}, fixed(contact.area * 1e6, contact.area < 1e-6 ? 3 : 1)),
         element('td', {}, millimeters(contact.d)),
         element('td', {}, contact.term ? fixed(contact.term.s, 0) : '–'));
     row.addEventListener('mouseenter', () => highlight(i));
