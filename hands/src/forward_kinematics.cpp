@@ -46,8 +46,8 @@ std::vector<RigidTransform> forward_kinematics(const HandModel& model,
 
 std::vector<int> links_moved_by(const HandModel& model, int joint) {
   if (joint < 0 || joint >= static_cast<int>(model.joints.size())) {
-    throw geometry::InvalidInput("hand " + model.name + ": joint " + std::to_string(joint) + " of " +
-                                 std::to_string(model.joints.size()));
+    throw geometry::InvalidInput("hand " + model.name + ": joint " + std::to_string(joint) +
+                                 " of " + std::to_string(model.joints.size()));
   }
   std::vector<int> moved;
   std::vector<bool> moves(model.links.size(), false);

@@ -53,14 +53,15 @@ HandCollision::HandCollision(const HandModel& model) : model_(model) {
   }
 }
 
-HandCollision::Result HandCollision::against_object(
-    const geometry::MeshQuery& object, const std::vector<RigidTransform>& X_OL) const {
+HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& object,
+                                                    const std::vector<RigidTransform>& X_OL) const {
   require_poses(model_, X_OL);
   const Eigen::AlignedBox3d object_box = geometry::bounding_box(object.mesh());
   Result result;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (!links_[i] || !may_meet(object_box, boxes_[i], X_OL[i])) continue;
-    take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), static_cast<int>(i), -1);
+    take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), static_cast<int>(i),
+                -1);
   }
   return result;
 }

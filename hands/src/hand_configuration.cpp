@@ -26,10 +26,10 @@ HandConfiguration open_configuration(const HandModel& model) {
   configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
-    configuration.q[static_cast<Eigen::Index>(j)] =
-        joint.closing_sign > 0   ? joint.lower
-        : joint.closing_sign < 0 ? joint.upper
-                                 : std::clamp(0.0, joint.lower, joint.upper);
+    configuration.q[static_cast<Eigen::Index>(j)] = joint.closing_sign > 0 ? joint.lower
+                                                    : joint.closing_sign < 0
+                                                        ? joint.upper
+                                                        : std::clamp(0.0, joint.lower, joint.upper);
   }
   apply_couplings(model, configuration.q);
   return configuration;
@@ -41,9 +41,9 @@ void apply_couplings(const HandModel& model, Eigen::VectorXd& q) {
     const Joint& joint = model.joints[j];
     if (!joint.coupling) continue;
     double& position = q[static_cast<Eigen::Index>(j)];
-    const double follows = std::clamp(joint.coupling->ratio * q[joint.coupling->leader] +
-                                          joint.coupling->offset,
-                                      joint.lower, joint.upper);
+    const double follows =
+        std::clamp(joint.coupling->ratio * q[joint.coupling->leader] + joint.coupling->offset,
+                   joint.lower, joint.upper);
     const bool has_gone_on =
         joint.coupling->breakaway && joint.closing_sign * (position - follows) > 0.0;
     position = has_gone_on ? std::clamp(position, joint.lower, joint.upper) : follows;

@@ -100,16 +100,16 @@ TriangleMesh scaled_by(TriangleMesh mesh, const Eigen::Vector3d& scale) {
 /// vertices lie on the round surface.
 TriangleMesh surface(const UrdfGeometry& part, const fs::path& urdf_file, const std::string& item) {
   const TriangleMesh mesh_G = std::visit(
-      Overloaded{[](const internal::UrdfBox& box) { return geometry::box(box.size); },
-                 [](const internal::UrdfCylinder& cylinder) {
-                   return geometry::cylinder(cylinder.radius, cylinder.length, 48);
-                 },
-                 [](const internal::UrdfSphere& sphere) { return geometry::ball(sphere.radius, 3); },
-                 [&](const internal::UrdfMesh& mesh) {
-                   return scaled_by(
-                       geometry::read_mesh(mesh_path(urdf_file, mesh.filename, item)).mesh,
-                       mesh.scale);
-                 }},
+      Overloaded{
+          [](const internal::UrdfBox& box) { return geometry::box(box.size); },
+          [](const internal::UrdfCylinder& cylinder) {
+            return geometry::cylinder(cylinder.radius, cylinder.length, 48);
+          },
+          [](const internal::UrdfSphere& sphere) { return geometry::ball(sphere.radius, 3); },
+          [&](const internal::UrdfMesh& mesh) {
+            return scaled_by(geometry::read_mesh(mesh_path(urdf_file, mesh.filename, item)).mesh,
+                             mesh.scale);
+          }},
       part.shape);
   return transformed(mesh_G, part.X_LG);
 }
@@ -156,7 +156,8 @@ class TreeBuilder {
       }
       const auto [other, is_new] = joint_above.emplace(joint.child, joint.name);
       if (!is_new) {
-        fail("link " + joint.child + " hangs on two joints, " + other->second + " and " + joint.name);
+        fail("link " + joint.child + " hangs on two joints, " + other->second + " and " +
+             joint.name);
       }
     }
     std::vector<std::string> roots;
@@ -176,7 +177,8 @@ class TreeBuilder {
     if (model_.links.size() != urdf_.links.size()) {
       for (const UrdfLink& link : urdf_.links) {
         if (!added_.contains(link.name)) {
-          fail("the links form a cycle: link " + link.name + " is not reached from root " + roots[0]);
+          fail("the links form a cycle: link " + link.name + " is not reached from root " +
+               roots[0]);
         }
       }
     }
@@ -198,8 +200,8 @@ class TreeBuilder {
       link.parent_joint = static_cast<int>(model_.joints.size());
       Joint joint;
       joint.name = above->name;
-      joint.type = above->type == UrdfJoint::Type::Prismatic ? JointType::Prismatic
-                                                             : JointType::Revolute;
+      joint.type =
+          above->type == UrdfJoint::Type::Prismatic ? JointType::Prismatic : JointType::Revolute;
       joint.parent_link = parent;
       joint.child_link = index;
       joint.X_PJ = above->X_PJ;
@@ -221,7 +223,8 @@ class TreeBuilder {
   HandModel model_;
 };
 
-// ---- What the sidecar adds ------------------------------------------------------------------------
+// ---- What the sidecar adds
+// ------------------------------------------------------------------------
 
 /// Resolves the sidecar's names in a model that has links and joints.
 class SidecarResolver {
@@ -269,9 +272,8 @@ class SidecarResolver {
     for (const UrdfJoint& source : urdf.joints) {
       if (!source.mimic || source.type == UrdfJoint::Type::Fixed) continue;
       const std::string item = "<mimic> of joint " + source.name;
-      joint_at(joint(source.name, item)).coupling =
-          Coupling{joint(source.mimic->joint, item), source.mimic->multiplier, source.mimic->offset,
-                   false};
+      joint_at(joint(source.name, item)).coupling = Coupling{
+          joint(source.mimic->joint, item), source.mimic->multiplier, source.mimic->offset, false};
     }
     std::set<std::string> seen;
     for (const internal::SidecarCoupling& source : sidecar_.couplings) {
@@ -305,7 +307,9 @@ class SidecarResolver {
       if (!follower.coupling || sidecar_.closing.contains(follower.name)) continue;
       const double ratio = follower.coupling->ratio;
       follower.closing_sign =
-          joint_at(follower.coupling->leader).closing_sign * (ratio > 0.0 ? 1 : ratio < 0.0 ? -1 : 0);
+          joint_at(follower.coupling->leader).closing_sign * (ratio > 0.0   ? 1
+                                                              : ratio < 0.0 ? -1
+                                                                            : 0);
     }
   }
 

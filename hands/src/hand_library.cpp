@@ -90,8 +90,8 @@ HandModel find_hand(const std::string& name_or_file) {
       return read_hand_model(shipped_hand_file(name_or_file));
     }
     if (!fs::exists(path, error)) {
-      throw geometry::InvalidInput("no hand " + name_or_file + ": shipped hands are " + list(names) +
-                                   "; or give the path of a URDF file");
+      throw geometry::InvalidInput("no hand " + name_or_file + ": shipped hands are " +
+                                   list(names) + "; or give the path of a URDF file");
     }
   }
   return read_hand_model(path);

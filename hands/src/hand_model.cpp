@@ -113,7 +113,8 @@ class Checker {
       const Link& link = model_.links[i];
       const std::string what = "link " + link.name;
       if (i == 0) {
-        require(link.parent_link == -1 && link.parent_joint == -1, what + ": the root has a parent");
+        require(link.parent_link == -1 && link.parent_joint == -1,
+                what + ": the root has a parent");
         continue;
       }
       require(link.parent_link >= 0 && link.parent_link < static_cast<int>(i),
@@ -142,11 +143,13 @@ class Checker {
       require_pose(joint.X_PJ, what + ": origin");
       require(joint.axis_J.allFinite() && std::abs(joint.axis_J.norm() - 1.0) < 1e-9,
               what + ": axis is not a unit vector");
-      require(std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.lower <= joint.upper,
-              what + ": limits " + shortest_decimal(joint.lower) + " to " +
-                  shortest_decimal(joint.upper) + " are reversed or not finite");
-      require(joint.closing_sign >= -1 && joint.closing_sign <= 1,
-              what + ": closing sign " + std::to_string(joint.closing_sign) + " is none of -1, 0, 1");
+      require(
+          std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.lower <= joint.upper,
+          what + ": limits " + shortest_decimal(joint.lower) + " to " +
+              shortest_decimal(joint.upper) + " are reversed or not finite");
+      require(
+          joint.closing_sign >= -1 && joint.closing_sign <= 1,
+          what + ": closing sign " + std::to_string(joint.closing_sign) + " is none of -1, 0, 1");
       if (!joint.coupling) continue;
       require_index(joint.coupling->leader, model_.joints.size(), what + ": leader");
       const Joint& leader = model_.joints[static_cast<std::size_t>(joint.coupling->leader)];
@@ -183,9 +186,9 @@ class Checker {
         const int joint = finger.joints[i];
         require_index(joint, model_.joints.size(), what + ": joint");
         const Joint& j = model_.joints[static_cast<std::size_t>(joint)];
-        require(std::find(finger.links.begin(), finger.links.end(), j.child_link) !=
-                    finger.links.end(),
-                what + ": joint " + j.name + " moves none of its links");
+        require(
+            std::find(finger.links.begin(), finger.links.end(), j.child_link) != finger.links.end(),
+            what + ": joint " + j.name + " moves none of its links");
         require(i == 0 || joint > finger.joints[i - 1],
                 what + ": joints are not ordered from proximal to distal");
       }
@@ -219,13 +222,15 @@ class Checker {
       }
       require_pose(pad.X_LC, what + ": frame");
       outline(pad.outline, what);
-      require(!pad.clip_thickness || (std::isfinite(*pad.clip_thickness) && *pad.clip_thickness > 0.0),
-              what + ": clip thickness is not positive");
+      require(
+          !pad.clip_thickness || (std::isfinite(*pad.clip_thickness) && *pad.clip_thickness > 0.0),
+          what + ": clip thickness is not positive");
     }
   }
 
   void outline(const std::vector<Eigen::Vector2d>& points, const std::string& what) const {
-    require(points.size() >= 3, what + ": outline has " + std::to_string(points.size()) + " corners");
+    require(points.size() >= 3,
+            what + ": outline has " + std::to_string(points.size()) + " corners");
     for (const Eigen::Vector2d& point : points) {
       require(point.allFinite(), what + ": outline is not finite");
     }
@@ -303,8 +308,8 @@ void validate(const HandModel& model) {
   check.links();
   check.joints();
   check.palm();
-  check.pads();
   check.fingers();
+  check.pads();
   check.exclusions();
 }
 
@@ -381,23 +386,22 @@ double largest_reach(const HandModel& model) {
       bound.distance = model.palm.center_H.norm();
     } else {
       const Bound& parent = bounds[static_cast<std::size_t>(link.parent_link)];
-      const Joint* joint =
-          link.parent_joint < 0 ? nullptr : &model.joints[static_cast<std::size_t>(link.parent_joint)];
+      const Joint* joint = link.parent_joint < 0
+                               ? nullptr
+                               : &model.joints[static_cast<std::size_t>(link.parent_joint)];
       const RigidTransform& X_PL = joint ? joint->X_PJ : link.X_PL_fixed;
       bound.is_fixed = parent.is_fixed && joint == nullptr;
       bound.X_HL = parent.X_HL * X_PL;
-      bound.distance = parent.is_fixed
-                           ? (bound.X_HL.translation() - model.palm.center_H).norm()
-                           : parent.distance + X_PL.translation().norm();
+      bound.distance = parent.is_fixed ? (bound.X_HL.translation() - model.palm.center_H).norm()
+                                       : parent.distance + X_PL.translation().norm();
       if (joint && joint->type == JointType::Prismatic) {
         bound.distance += std::max(std::abs(joint->lower), std::abs(joint->upper));
       }
     }
     reach = std::max(reach, bound.distance);
     for (const Eigen::Vector3d& vertex : link.mesh_L.vertices) {
-      const double of_vertex =
-          bound.is_fixed ? (bound.X_HL * vertex - model.palm.center_H).norm()
-                         : bound.distance + vertex.norm();
+      const double of_vertex = bound.is_fixed ? (bound.X_HL * vertex - model.palm.center_H).norm()
+                                              : bound.distance + vertex.norm();
       reach = std::max(reach, of_vertex);
     }
   }

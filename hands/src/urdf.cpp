@@ -26,7 +26,8 @@ class Parser {
   explicit Parser(std::string file) : file_(std::move(file)) {}
 
   Urdf parse(const std::string& text) {
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw IoError(file_ + ": empty file");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+      throw IoError(file_ + ": empty file");
     tinyxml2::XMLDocument document;
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
       throw IoError(file_ + ": line " + std::to_string(document.ErrorLineNum()) + ": not XML (" +
@@ -79,14 +80,16 @@ class Parser {
       if (*at == '+') ++at;
       double value = 0.0;
       const auto [rest, error] = std::from_chars(at, end, value);
-      const bool ends_here = rest == end || *rest == ' ' || *rest == '\t' || *rest == '\n' || *rest == '\r';
+      const bool ends_here =
+          rest == end || *rest == ' ' || *rest == '\t' || *rest == '\n' || *rest == '\r';
       if (error != std::errc() || !ends_here) complain("is not a number");
       if (!std::isfinite(value)) complain("is not finite");
       values.push_back(value);
       at = rest;
     }
     if (values.size() != count) {
-      complain("has " + std::to_string(values.size()) + " of " + std::to_string(count) + " numbers");
+      complain("has " + std::to_string(values.size()) + " of " + std::to_string(count) +
+               " numbers");
     }
     return values;
   }
@@ -102,7 +105,8 @@ class Parser {
 
   double positive(const XMLElement& e, const char* attribute, const std::string& item) const {
     const double value = number(e, attribute, item);
-    if (value <= 0.0) fail(e, item + ": <" + e.Name() + "> has a " + attribute + " that is not positive");
+    if (value <= 0.0)
+      fail(e, item + ": <" + e.Name() + "> has a " + attribute + " that is not positive");
     return value;
   }
 
@@ -149,7 +153,8 @@ class Parser {
       if ((mesh.scale.array() == 0.0).any()) fail(*kind, item + ": <mesh> has a scale of zero");
       result.shape = mesh;
     } else {
-      fail(*kind, item + ": geometry <" + std::string(tag) + "> is none of box, cylinder, sphere, mesh");
+      fail(*kind,
+           item + ": geometry <" + std::string(tag) + "> is none of box, cylinder, sphere, mesh");
     }
     return result;
   }
@@ -159,7 +164,8 @@ class Parser {
     result.name = text_of(e, "name", "link");
     const std::string item = "link " + result.name;
     if (!link_names_.insert(result.name).second) fail(e, "two links named " + result.name);
-    for (const XMLElement* v = e.FirstChildElement("visual"); v; v = v->NextSiblingElement("visual")) {
+    for (const XMLElement* v = e.FirstChildElement("visual"); v;
+         v = v->NextSiblingElement("visual")) {
       result.visual.push_back(shape(*v, item));
     }
     for (const XMLElement* c = e.FirstChildElement("collision"); c;
@@ -219,9 +225,9 @@ class Parser {
       }
     }
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
-      result.mimic = UrdfMimic{text_of(*mimic, "joint", item),
-                               number_or(*mimic, "multiplier", 1.0, item),
-                               number_or(*mimic, "offset", 0.0, item)};
+      result.mimic =
+          UrdfMimic{text_of(*mimic, "joint", item), number_or(*mimic, "multiplier", 1.0, item),
+                    number_or(*mimic, "offset", 0.0, item)};
     }
     return result;
   }
@@ -233,6 +239,8 @@ class Parser {
 
 }  // namespace
 
-Urdf parse_urdf(const std::string& text, const std::string& file) { return Parser(file).parse(text); }
+Urdf parse_urdf(const std::string& text, const std::string& file) {
+  return Parser(file).parse(text);
+}
 
 }  // namespace graspfit::hands::internal

@@ -10,8 +10,8 @@
 
 namespace graspfit::hands::internal {
 
-/// The parts of a URDF that a hand needs, as the file says them: names not yet resolved, tree not yet
-/// checked.
+/// The parts of a URDF that a hand needs, as the file says them: names not yet resolved, tree not
+/// yet checked.
 struct UrdfBox {
   Eigen::Vector3d size;
 };
@@ -51,7 +51,8 @@ struct UrdfJoint {
   std::string parent;
   std::string child;
   geometry::RigidTransform X_PJ = geometry::RigidTransform::Identity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Unit; as the format says where none is given.
+  Eigen::Vector3d axis =
+      Eigen::Vector3d::UnitX();  ///< Unit; as the format says where none is given.
   double lower = 0.0;
   double upper = 0.0;
   std::optional<UrdfMimic> mimic;

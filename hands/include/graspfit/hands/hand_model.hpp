@@ -33,8 +33,8 @@ struct Joint {
   JointType type = JointType::Revolute;
   int parent_link = -1;
   int child_link = -1;
-  RigidTransform X_PJ = RigidTransform::Identity();  ///< Joint frame in the parent link's frame;
-                                                     ///< the child link's frame at q = 0.
+  RigidTransform X_PJ = RigidTransform::Identity();   ///< Joint frame in the parent link's frame;
+                                                      ///< the child link's frame at q = 0.
   Eigen::Vector3d axis_J = Eigen::Vector3d::UnitZ();  ///< Unit axis in the joint frame.
   double lower = 0.0;                                 ///< [rad] or [m]
   double upper = 0.0;                                 ///< [rad] or [m], ≥ lower.

@@ -1,0 +1,336 @@
+#include <unistd.h>
+
+#include <clocale>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <string>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/hands/hand_io.hpp"
+#include "support/catch.hpp"
+#include "support/test_data.hpp"
+
+namespace {
+
+using namespace graspfit;
+using Eigen::Vector3d;
+using hands::HandModel;
+namespace fs = std::filesystem;
+
+/// A folder of its own that goes away with the test.
+class Folder {
+ public:
+  Folder() {
+    static int count = 0;
+    path_ = fs::temp_directory_path() /
+            ("graspfit_hand_io_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    fs::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+const std::string kUrdf = R"(<?xml version="1.0"?>
+<robot name="pinch">
+  <link name="base"><collision><geometry><box size="0.1 0.1 0.02"/></geometry></collision></link>
+  <link name="left"><visual><origin xyz="0 0 0.05"/><geometry><cylinder radius="0.01" length="0.1"/></geometry></visual></link>
+  <link name="left_tip"><collision><geometry><sphere radius="0.01"/></geometry></collision></link>
+  <link name="right"/>
+  <joint name="slide" type="prismatic">
+    <parent link="base"/><child link="left"/>
+    <origin xyz="0.04 0 0.01" rpy="0 0 1.5"/><axis xyz="0 2 0"/><limit lower="-0.01" upper="+0.03" effort="1" velocity="1"/>
+  </joint>
+  <joint name="mount" type="fixed"><parent link="left"/><child link="left_tip"/><origin xyz="0 0 0.1"/></joint>
+  <joint name="turn" type="continuous">
+    <parent link="base"/><child link="right"/><mimic joint="slide" multiplier="-2" offset="0.5"/>
+  </joint>
+</robot>
+)";
+
+const std::string kSidecar = R"({
+  "format": {"name": "graspfit hand sidecar", "version": 1},
+  "fingers": [
+    {"name": "left", "links": ["left", "left_tip"], "joints": ["slide"]},
+    {"name": "right", "links": ["right"], "joints": ["turn"], "swing_joint": "turn"}
+  ],
+  "pads": [
+    {"name": "left_pad", "link": "left_tip", "finger": "left",
+     "frame": {"translation_m": [0.01, 0, 0], "rotation_wxyz": [0.7071, 0, 0.7071, 0]},
+     "outline_m": [[0.01, -0.01], [0.01, 0.01], [-0.01, 0.01], [-0.01, -0.01]]}
+  ],
+  "palm": {"link": "base", "center_m": [0, 0, 0.01], "direction": [0, 0, 2]},
+  "closing": {"slide": -1},
+  "couplings": [],
+  "exclusions": [["base", "left"]]
+})";
+
+fs::path write_hand(const Folder& folder, const std::string& urdf = kUrdf,
+                    const std::string& sidecar = kSidecar) {
+  folder.write("pinch.graspfit.json", sidecar);
+  return folder.write("pinch.urdf", urdf);
+}
+
+/// `text` with the only occurrence of `old` replaced.
+std::string with(std::string text, const std::string& old, const std::string& fresh) {
+  const std::size_t at = text.find(old);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, old.size(), fresh);
+}
+
+/// Reading throws `Exception` with one line that names the file and contains `about`.
+template <typename Exception>
+void check_refused(const fs::path& file, const std::string& names_file, const std::string& about) {
+  CAPTURE(about);
+  try {
+    hands::read_hand_model(file);
+    FAIL("accepted");
+  } catch (const Exception& error) {
+    const std::string message = error.what();
+    CAPTURE(message);
+    CHECK(message.find(names_file) != std::string::npos);
+    CHECK(message.find(about) != std::string::npos);
+    CHECK(message.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("A small description is read as it is written", "[hands][hand_io]") {
+  const Folder folder;
+  const HandModel hand = hands::read_hand_model(write_hand(folder));
+  CHECK(hand.name == "pinch");
+  REQUIRE(hand.links.size() == 4);
+  CHECK(hand.links[0].name == "base");
+  CHECK(hand.links[1].name == "left");
+  CHECK(hand.links[2].name == "left_tip");
+  CHECK(hand.links[2].parent_joint == -1);
+  CHECK(hand.links[2].X_PL_fixed.translation() == Vector3d(0, 0, 0.1));
+  REQUIRE(hand.joints.size() == 2);
+  const hands::Joint& slide = hand.joints[0];
+  CHECK(slide.type == hands::JointType::Prismatic);
+  CHECK(slide.axis_J == Vector3d(0, 1, 0));
+  CHECK(slide.lower == -0.01);
+  CHECK(slide.upper == 0.03);
+  CHECK(slide.closing_sign == -1);
+  const hands::Joint& turn = hand.joints[1];
+  CHECK(turn.axis_J == Vector3d(1, 0, 0));
+  REQUIRE(turn.coupling.has_value());
+  CHECK(turn.coupling->ratio == -2.0);
+  CHECK(turn.coupling->offset == 0.5);
+  CHECK(turn.closing_sign == 1);  // follows a closing joint of sign −1 by a negative ratio
+  CHECK(hand.palm.direction_H == Vector3d(0, 0, 1));
+  CHECK(hand.palm.pad == -1);
+  CHECK(hand.fingers[0].tip_pad == 0);
+  CHECK(hand.fingers[1].tip_pad == -1);
+  CHECK(hand.is_excluded(0, 1));
+  CHECK(hand.is_excluded(1, 2));  // fixed to each other
+  CHECK_FALSE(hand.is_excluded(0, 2));
+  CHECK_FALSE(hand.pads[0].clip_thickness.has_value());
+  CHECK((hand.pads[0].X_LC.linear().col(2) - Vector3d(1, 0, 0)).norm() < 1e-12);
+  // Primitives: the box exactly, the cylinder inscribed and moved.
+  CHECK(geometry::signed_volume(hand.links[0].mesh_L) == Approx(0.1 * 0.1 * 0.02));
+  CHECK(geometry::bounding_box(hand.links[1].mesh_L).min().z() == Approx(0.0).margin(1e-12));
+  CHECK(geometry::bounding_box(hand.links[1].mesh_L).max().z() == Approx(0.1));
+  CHECK(hand.links[3].mesh_L.faces.empty());
+}
+
+TEST_CASE("Meshes are found beside the description and scaled, mirrored ones turned outward",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const std::string tetrahedron =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  folder.write("pinch/meshes/part.obj", tetrahedron);
+  for (const std::string name :
+       {"meshes/part.obj", "./meshes/../meshes/part.obj", "package://pinch/meshes/part.obj",
+        "package://other/meshes/part.obj"}) {
+    CAPTURE(name);
+    const std::string urdf = with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>",
+                                  "<mesh filename=\"" + name + "\" scale=\"0.01 -0.02 0.03\"/>");
+    folder.write("pinch/pinch.graspfit.json", kSidecar);
+    const HandModel hand = hands::read_hand_model(folder.write("pinch/pinch.urdf", urdf));
+    CHECK(hand.links[0].mesh_file == name);
+    CHECK(geometry::signed_volume(hand.links[0].mesh_L) == Approx(0.01 * 0.02 * 0.03 / 6));
+    CHECK(geometry::bounding_box(hand.links[0].mesh_L).min().y() == Approx(-0.02));
+  }
+}
+
+TEST_CASE("The sidecar's couplings override <mimic>, and chains lead to the first leader",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const std::string sidecar =
+      with(kSidecar, R"("couplings": [])",
+           R"("couplings": [{"joint": "turn", "leader": "slide", "ratio": 4, "breakaway": true}])");
+  const HandModel hand = hands::read_hand_model(write_hand(folder, kUrdf, sidecar));
+  CHECK(hand.joints[1].coupling->ratio == 4.0);
+  CHECK(hand.joints[1].coupling->offset == 0.0);
+  CHECK(hand.joints[1].coupling->breakaway);
+  CHECK(hand.joints[1].closing_sign == -1);
+
+  const std::string chain = with(kUrdf, "</robot>", R"(
+  <link name="third"/>
+  <joint name="third_turn" type="revolute"><parent link="right"/><child link="third"/>
+    <limit lower="0" upper="1"/><mimic joint="turn" multiplier="3" offset="0.1"/></joint>
+</robot>)");
+  const HandModel chained = hands::read_hand_model(write_hand(folder, chain));
+  // 3 (-2 q + 0.5) + 0.1
+  CHECK(chained.joints[2].coupling->leader == 0);
+  CHECK(chained.joints[2].coupling->ratio == -6.0);
+  CHECK(chained.joints[2].coupling->offset == Approx(1.6));
+}
+
+TEST_CASE("A bad description gives one line with the file and the item", "[hands][hand_io]") {
+  const Folder folder;
+  using geometry::InvalidInput;
+  using geometry::IoError;
+  const auto bad = [&](const std::string& urdf, const std::string& about) {
+    check_refused<InvalidInput>(write_hand(folder, urdf), "pinch.urdf", about);
+  };
+  const auto unreadable = [&](const std::string& urdf, const std::string& about) {
+    check_refused<IoError>(write_hand(folder, urdf), "pinch.urdf", about);
+  };
+  check_refused<IoError>(folder.path() / "none.urdf", "none.urdf", "no such hand description");
+  check_refused<IoError>(folder.path(), folder.path().filename().string(), "is not a file");
+  unreadable("", "empty file");
+  unreadable("solid cube\nfacet normal 0 0 1\n", "not XML");
+  unreadable("<robot name=\"x\"><link name=\"a\"></robot>", "line 1: not XML");
+  unreadable("<mujoco model=\"x\"/>", "its root element is <mujoco>, not <robot>");
+  bad("<robot name=\"x\"/>", "no links");
+  bad(with(kUrdf, "name=\"pinch\"", "name=\"\""), "<robot> has no name");
+  bad(with(kUrdf, "<link name=\"right\"/>", "<xacro:finger/>"), "this is a xacro file");
+  bad(with(kUrdf, "<link name=\"right\"/>", "<link name=\"left\"/>"),
+      "line 6: two links named left");
+  bad(with(kUrdf, "joint name=\"mount\"", "joint name=\"slide\""), "two joints named slide");
+  bad(with(kUrdf, "<child link=\"right\"/>", "<child link=\"wrong\"/>"),
+      "joint turn: no link named wrong");
+  bad(with(kUrdf, "<child link=\"right\"/>", "<child link=\"left\"/>"),
+      "link left hangs on two joints, slide and turn");
+  bad(with(kUrdf, "type=\"fixed\"", "type=\"ball\""), "joint mount: type ball");
+  bad(with(kUrdf, "xyz=\"0 2 0\"", "xyz=\"0 0 0\""), "joint slide: axis 0 0 0");
+  bad(with(kUrdf, "xyz=\"0 2 0\"", "xyz=\"0 nan 0\""), "\"0 nan 0\" is not finite");
+  bad(with(kUrdf, "xyz=\"0 2 0\"", "xyz=\"0 2\""), "has 2 of 3 numbers");
+  bad(with(kUrdf, "xyz=\"0 2 0\"", "xyz=\"0 2,5 0\""), "is not a number");
+  bad(with(kUrdf, "lower=\"-0.01\"", "lower=\"0.31\""),
+      "joint slide: limits 0.31 to 0.03 are reversed");
+  bad(with(kUrdf, "<limit lower=\"-0.01\" upper=\"+0.03\" effort=\"1\" velocity=\"1\"/>", ""),
+      "joint slide: no limits");
+  bad(with(kUrdf, "radius=\"0.01\" length", "radius=\"-1\" length"), "not positive");
+  bad(with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>", "<capsule/>"), "geometry <capsule> is none of");
+  unreadable(with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>", "<mesh filename=\"lost.obj\"/>"),
+             "link base: mesh lost.obj is not there");
+  bad(with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>", "<mesh filename=\"../../etc/part.obj\"/>"),
+      "lies outside the description's package");
+  bad(with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>", "<mesh filename=\"http://x/part.obj\"/>"),
+      "only files and package:// are read");
+}
+
+TEST_CASE("A tree without root, with two roots or without movable joint is refused",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const auto bad = [&](const std::string& urdf, const std::string& about) {
+    check_refused<geometry::InvalidInput>(write_hand(folder, urdf), "pinch.urdf", about);
+  };
+  const auto joint = [](const std::string& name, const std::string& parent,
+                        const std::string& child, const std::string& type = "continuous") {
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/></joint>";
+  };
+  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+  bad("<robot name=\"x\">" + links + joint("1", "a", "b") + joint("2", "b", "c") +
+          joint("3", "c", "a") + "</robot>",
+      "cycle");
+  bad("<robot name=\"x\">" + links + joint("1", "b", "c") + joint("2", "c", "b") + "</robot>",
+      "cycle");
+  bad("<robot name=\"x\">" + links + joint("1", "a", "b") + "</robot>", "a and c are both roots");
+  bad("<robot name=\"x\">" + links + joint("1", "a", "b", "fixed") + joint("2", "b", "c", "fixed") +
+          "</robot>",
+      "no movable joint");
+}
+
+TEST_CASE("A bad sidecar gives one line with the file and the item", "[hands][hand_io]") {
+  const Folder folder;
+  using geometry::InvalidInput;
+  using geometry::IoError;
+  const auto bad = [&](const std::string& old, const std::string& fresh, const std::string& about) {
+    check_refused<InvalidInput>(write_hand(folder, kUrdf, with(kSidecar, old, fresh)),
+                                "pinch.graspfit.json", about);
+  };
+  check_refused<IoError>(write_hand(folder, kUrdf, "{\"format\": "), "pinch.graspfit.json",
+                         "not JSON: parse error at line 1");
+  check_refused<IoError>(write_hand(folder, kUrdf, ""), "pinch.graspfit.json", "not JSON");
+  check_refused<InvalidInput>(write_hand(folder, kUrdf, "[]"), "pinch.graspfit.json",
+                              "not an object");
+  bad("\"version\": 1", "\"version\": 2", "format: version is not 1");
+  bad("graspfit hand sidecar", "another", "format: name is not");
+  bad("\"closing\"", "\"closings\"", "unknown field closings");
+}
+
+TEST_CASE("Names and values in a sidecar are checked against the description", "[hands][hand_io]") {
+  const Folder folder;
+  using geometry::InvalidInput;
+  const auto bad = [&](const std::string& old, const std::string& fresh, const std::string& about) {
+    check_refused<InvalidInput>(write_hand(folder, kUrdf, with(kSidecar, old, fresh)),
+                                "pinch.graspfit.json", about);
+  };
+  bad("\"joints\": [\"slide\"]", "\"joints\": [\"slid\"]",
+      "finger left: the description has no movable joint named slid");
+  bad("\"joints\": [\"slide\"]", "\"joints\": [\"mount\"]", "no movable joint named mount");
+  bad("[\"left\", \"left_tip\"]", "[\"left\", \"tip\"]", "no link named tip");
+  bad("[\"left\", \"left_tip\"]", "\"left\"", "fingers[0].links: is not a list");
+  bad("\"finger\": \"left\"", "\"finger\": \"middle\"", "pad left_pad: no finger named middle");
+  bad("\"link\": \"left_tip\"", "\"link\": \"right\"", "its link is none of finger left");
+  bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 1, 0]",
+      "pads[0].frame.rotation_wxyz: is not a unit quaternion");
+  bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 0]", "has 3 of 4 numbers");
+  bad("[0.01, 0, 0]", "[0.01, \"0\", 0]", "pads[0].frame.translation_m[1]: is not a number");
+  bad("\"link\": \"base\"", "\"link\": \"left\"", "not the root link base");
+  bad("\"direction\": [0, 0, 2]", "\"direction\": [0, 0, 0]", "palm.direction: is zero");
+  bad("\"slide\": -1", "\"slide\": 3", "closing.slide: is none of -1, 0, 1");
+  bad("\"slide\": -1", "\"shut\": 1", "closing: the description has no movable joint named shut");
+  bad("[[\"base\", \"left\"]]", "[[\"base\"]]", "exclusions[0]: is not a pair");
+  bad("\"couplings\": []", "\"couplings\": [{\"joint\": \"slide\", \"leader\": \"turn\"}]",
+      "cycle");
+  bad("\"name\": \"right\"", "\"name\": \"left\"", "two fingers named left");
+  bad("[[0.01, -0.01], [0.01, 0.01], [-0.01, 0.01], [-0.01, -0.01]]", "[[0, 0], [1, 1], [2, 2]]",
+      "outline has no area");
+}
+
+TEST_CASE("A description without sidecar says which file is missing", "[hands][hand_io]") {
+  const Folder folder;
+  check_refused<geometry::IoError>(folder.write("pinch.urdf", kUrdf), "pinch.urdf",
+                                   "no sidecar pinch.graspfit.json beside it");
+}
+
+/// Decimal comma, as in many countries.
+class DecimalComma : public std::numpunct<char> {
+ protected:
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST_CASE("Numbers are read the same in a locale with a decimal comma", "[hands][hand_io]") {
+  const Folder folder;
+  const fs::path file = write_hand(folder);
+  const std::locale old = std::locale::global(std::locale(std::locale(), new DecimalComma));
+  const std::string old_c = std::setlocale(LC_ALL, nullptr);
+  std::setlocale(LC_ALL, "de_DE.UTF-8");  // without effect where it is not installed
+  const HandModel hand = hands::read_hand_model(file);
+  std::setlocale(LC_ALL, old_c.c_str());
+  std::locale::global(old);
+  CHECK(hand.joints[0].upper == 0.03);
+  CHECK(hand.pads[0].X_LC.translation().x() == 0.01);
+}
+
+}  // namespace

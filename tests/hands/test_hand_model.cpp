@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/hand_model.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace graspfit;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using hands::ContactPad;
+using hands::HandModel;
+using hands::RigidTransform;
+
+ContactPad pad_of(std::vector<Vector2d> outline) {
+  ContactPad pad;
+  pad.name = "pad";
+  pad.outline = std::move(outline);
+  return pad;
+}
+
+ContactPad rectangle(double length, double width) {
+  const double x = length / 2, y = width / 2;
+  return pad_of({{x, -y}, {x, y}, {-x, y}, {-x, -y}});
+}
+
+ContactPad regular_polygon(int corners, double side_distance) {
+  std::vector<Vector2d> outline;
+  const double radius = side_distance / std::cos(std::numbers::pi / corners);
+  for (int k = 0; k < corners; ++k) {
+    const double a = 2 * std::numbers::pi * k / corners;
+    outline.emplace_back(radius * std::cos(a), radius * std::sin(a));
+  }
+  return pad_of(outline);
+}
+
+/// Palm, one finger of two links: the smallest hand that has everything.
+HandModel small_hand() {
+  HandModel hand;
+  hand.name = "small";
+  hand.links.resize(3);
+  hand.links[0].name = "palm";
+  for (int i : {1, 2}) {
+    auto& link = hand.links[static_cast<std::size_t>(i)];
+    link.name = i == 1 ? "near" : "far";
+    link.parent_link = i - 1;
+    link.parent_joint = i - 1;
+    hands::Joint joint;
+    joint.name = i == 1 ? "knuckle" : "middle";
+    joint.parent_link = i - 1;
+    joint.child_link = i;
+    joint.X_PJ.translation() = Vector3d(0.05, 0, 0);
+    joint.upper = 1.0;
+    joint.closing_sign = 1;
+    hand.joints.push_back(joint);
+  }
+  hand.palm.link = 0;
+  hand.pads.push_back(rectangle(0.02, 0.01));
+  hand.pads[0].link = 2;
+  hand.pads[0].finger = 0;
+  hands::Finger finger;
+  finger.name = "finger";
+  finger.links = {1, 2};
+  finger.joints = {0, 1};
+  finger.tip_pad = 0;
+  hand.fingers.push_back(finger);
+  hand.exclusions = {{0, 1}, {1, 2}};
+  return hand;
+}
+
+TEST_CASE("Area, inradius and boundary distance of a rectangular pad have their closed forms",
+          "[hands][hand_model]") {
+  // The distal pad of the Barrett hand: 52 x 23 mm. The inradius is half the shorter side.
+  const ContactPad pad = rectangle(0.052, 0.023);
+  CHECK(hands::pad_area(pad) == Approx(0.052 * 0.023).epsilon(1e-12));
+  CHECK(hands::largest_boundary_distance(pad) == Approx(0.0115).epsilon(1e-12));
+  CHECK(hands::boundary_distance(pad, {0, 0}) == Approx(0.0115).epsilon(1e-12));
+  CHECK(hands::boundary_distance(pad, {0.020, 0.001}) == Approx(0.006).epsilon(1e-12));
+  CHECK(hands::boundary_distance(pad, {0.020, 0.0095}) == Approx(0.002).epsilon(1e-12));
+  CHECK(hands::boundary_distance(pad, {0.026, 0.0}) == 0.0);
+  CHECK(hands::boundary_distance(pad, {0.030, 0.0}) == 0.0);
+  CHECK(hands::boundary_distance(pad, {0.0, -0.5}) == 0.0);
+}
+
+TEST_CASE("Area and inradius of a hexagonal and a triangular pad have their closed forms",
+          "[hands][hand_model]") {
+  // A regular n-gon with inradius r has area n r^2 tan(pi/n).
+  for (const int corners : {3, 6, 8}) {
+    const double r = 0.01;
+    const ContactPad pad = regular_polygon(corners, r);
+    CHECK(hands::pad_area(pad) ==
+          Approx(corners * r * r * std::tan(std::numbers::pi / corners)).epsilon(1e-12));
+    CHECK(hands::largest_boundary_distance(pad) == Approx(r).epsilon(1e-12));
+    CHECK(hands::boundary_distance(pad, {0, 0}) == Approx(r).epsilon(1e-12));
+  }
+  // The 3-4-5 triangle: inradius (3 + 4 - 5) / 2 = 1.
+  CHECK(hands::largest_boundary_distance(pad_of({{0, 0}, {4, 0}, {0, 3}})) == Approx(1.0));
+}
+
+TEST_CASE("No point of a pad is farther from the outline than its inradius",
+          "[hands][hand_model]") {
+  const ContactPad pad =
+      pad_of({{0.02, -0.01}, {0.03, 0.005}, {0.0, 0.02}, {-0.025, 0.004}, {-0.01, -0.012}});
+  double farthest = 0.0;
+  for (double x = -0.03; x < 0.03; x += 0.0002) {
+    for (double y = -0.02; y < 0.02; y += 0.0002) {
+      farthest = std::max(farthest, hands::boundary_distance(pad, {x, y}));
+    }
+  }
+  const double inradius = hands::largest_boundary_distance(pad);
+  CHECK(farthest <= inradius + 1e-15);
+  // The distance is 1-Lipschitz and the grid's points at most 0.0002 / sqrt(2) from any point.
+  CHECK(farthest >= inradius - 0.00015);
+}
+
+TEST_CASE("The clip volume is the prism over the outline, in any frame", "[hands][hand_model]") {
+  const ContactPad pad = rectangle(0.04, 0.02);
+  const geometry::ConvexVolume volume = hands::clip_volume_C(pad, 0.003);
+  RigidTransform X_AC = RigidTransform::Identity();
+  X_AC.translation() = Vector3d(0.1, -0.2, 0.3);
+  X_AC.linear() = Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const geometry::ConvexVolume in_a = hands::transformed(volume, X_AC);
+  const auto contains = [](const geometry::ConvexVolume& v, const Vector3d& p) {
+    for (const auto& h : v) {
+      if (h.normal.dot(p) > h.offset) return false;
+    }
+    return true;
+  };
+  for (const auto& [point, inside] :
+       std::vector<std::pair<Vector3d, bool>>{{{0.0, 0.0, 0.001}, true},
+                                              {{0.0199, 0.0099, 0.0029}, true},
+                                              {{-0.0199, -0.0099, 0.0001}, true},
+                                              {{0.0, 0.0, -0.0001}, false},
+                                              {{0.0, 0.0, 0.0031}, false},
+                                              {{0.0201, 0.0, 0.001}, false},
+                                              {{0.0, -0.0101, 0.001}, false}}) {
+    CHECK(contains(volume, point) == inside);
+    CHECK(contains(in_a, X_AC * point) == inside);
+  }
+  CHECK_THROWS_AS(hands::clip_volume_C(pad, 0.0), geometry::InvalidInput);
+  CHECK_THROWS_AS(hands::clip_volume_C(pad, std::nan("")), geometry::InvalidInput);
+}
+
+TEST_CASE("A model that makes no sense is refused in one line that names the item",
+          "[hands][hand_model]") {
+  CHECK_NOTHROW(hands::validate(small_hand()));
+  const auto refused = [](auto change, const std::string& about) {
+    HandModel hand = small_hand();
+    change(hand);
+    CAPTURE(about);
+    try {
+      hands::validate(hand);
+      FAIL("accepted");
+    } catch (const geometry::InvalidInput& error) {
+      const std::string message = error.what();
+      CAPTURE(message);
+      CHECK(message.find("hand small: ") == 0);
+      CHECK(message.find(about) != std::string::npos);
+      CHECK(message.find('\n') == std::string::npos);
+    }
+  };
+  refused(
+      [](HandModel& h) {
+        h.joints.clear();
+        h.links.resize(1);
+      },
+      "no movable joint");
+  refused([](HandModel& h) { h.links[2].parent_link = 2; }, "does not come before");
+  refused([](HandModel& h) { h.links[1].name = "far"; }, "two links named far");
+  refused([](HandModel& h) { h.joints[0].lower = 2.0; }, "joint knuckle: limits 2 to 1");
+  refused([](HandModel& h) { h.joints[0].axis_J *= 2.0; }, "joint knuckle: axis");
+  refused([](HandModel& h) { h.joints[1].coupling = hands::Coupling{1}; }, "follows itself");
+  refused([](HandModel& h) { h.joints[1].coupling = hands::Coupling{7}; }, "leader has index 7");
+  refused(
+      [](HandModel& h) {
+        h.joints[1].closing_sign = 0;
+        h.joints[1].coupling = hands::Coupling{.leader = 0, .breakaway = true};
+      },
+      "breakaway without a closing direction");
+  refused([](HandModel& h) { h.fingers[0].tip_pad = 3; }, "tip pad has index 3");
+  refused([](HandModel& h) { h.fingers[0].links = {2, 1}; }, "not ordered");
+  refused([](HandModel& h) { h.fingers[0].links = {1}; }, "joint middle moves none of its links");
+  refused([](HandModel& h) { h.pads[0].link = 0; }, "pad pad: its link is none of finger");
+  refused(
+      [](HandModel& h) {
+        h.pads[0].outline.pop_back();
+        h.pads[0].outline.pop_back();
+      },
+      "2 corners");
+  refused([](HandModel& h) { std::reverse(h.pads[0].outline.begin(), h.pads[0].outline.end()); },
+          "clockwise");
+  refused([](HandModel& h) { h.pads[0].outline[1] = {-0.009, -0.004}; }, "not convex");
+  refused([](HandModel& h) { h.pads[0].outline = {{0, 0}, {1, 1}, {2, 2}}; }, "no area");
+  refused([](HandModel& h) { h.pads[0].X_LC.linear() *= 2.0; }, "frame is not a rotation");
+  refused([](HandModel& h) { h.palm.direction_H = Vector3d(0, 0, 2); }, "palm direction");
+  refused([](HandModel& h) { h.palm.link = 1; }, "root link");
+  refused([](HandModel& h) { h.exclusions.push_back({0, 9}); }, "index 9");
+}
+
+TEST_CASE("Names are looked up, and an unknown one is answered with those there are",
+          "[hands][hand_model]") {
+  const HandModel hand = small_hand();
+  CHECK(hand.finger_index("finger") == 0);
+  CHECK(hand.joint_index("middle") == 1);
+  CHECK(hand.link_index("far") == 2);
+  CHECK_THROWS_WITH(hand.joint_index("wrist"),
+                    "hand small: no joint named wrist; there are knuckle, middle");
+  CHECK(hand.thumb() == 0);
+  CHECK(hand.num_intrinsic_dof() == 2);
+  CHECK(hand.is_excluded(1, 0));
+  CHECK(hand.is_excluded(2, 2));
+  CHECK_FALSE(hand.is_excluded(0, 2));
+}
+
+TEST_CASE("The reach bounds every vertex over revolute and prismatic joints",
+          "[hands][hand_model]") {
+  HandModel hand = small_hand();
+  hand.palm.center_H = Vector3d(0.0, 0.0, 0.02);
+  hand.links[2].mesh_L.vertices = {Vector3d(0.03, 0.04, 0.0)};
+  // |(0.05, 0, 0) - (0, 0, 0.02)| + 0.05 + |(0.03, 0.04, 0)|
+  CHECK(hands::largest_reach(hand) == Approx(std::hypot(0.05, 0.02) + 0.05 + 0.05).epsilon(1e-12));
+  hand.joints[1].type = hands::JointType::Prismatic;
+  hand.joints[1].lower = -0.2;
+  hand.joints[1].upper = 0.1;
+  CHECK(hands::largest_reach(hand) ==
+        Approx(std::hypot(0.05, 0.02) + 0.05 + 0.05 + 0.2).epsilon(1e-12));
+}
+
+}  // namespace
