@@ -58,13 +58,20 @@ Kernel::Triangle_3 to_cgal(const Corners& c) {
   return {point(c[0]), point(c[1]), point(c[2])};
 }
 
-/// Exact, degenerate triangles included as the segments or points that they are.
+bool boxes_overlap(const Corners& a, const Corners& b) {
+  const auto lower = [](const Corners& c) { return c[0].cwiseMin(c[1]).cwiseMin(c[2]); };
+  const auto upper = [](const Corners& c) { return c[0].cwiseMax(c[1]).cwiseMax(c[2]); };
+  return (lower(a).array() <= upper(b).array()).all() &&
+         (lower(b).array() <= upper(a).array()).all();
+}
+
+/// Exact. Degenerate faces bound nothing that their neighbors do not, and CGAL's test needs proper
+/// triangles: they are left out.
 bool triangles_intersect(const Corners& a, const Corners& b) {
+  if (!boxes_overlap(a, b)) return false;
   const Kernel::Triangle_3 first = to_cgal(a);
   const Kernel::Triangle_3 second = to_cgal(b);
-  // CGAL's test needs proper triangles. A degenerate face bounds nothing that its neighbors do not.
-  if (first.is_degenerate() || second.is_degenerate()) return false;
-  return CGAL::do_intersect(first, second);
+  return !first.is_degenerate() && !second.is_degenerate() && CGAL::do_intersect(first, second);
 }
 
 /// Whether the surfaces share a point.

@@ -80,6 +80,8 @@ MeshQuery::MeshQuery(TriangleMesh mesh) : impl_(std::make_shared<const Impl>(std
 
 const TriangleMesh& MeshQuery::mesh() const { return impl_->mesh; }
 
+const Eigen::AlignedBox3d& MeshQuery::box() const { return impl_->box; }
+
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   struct Entry {
     std::int32_t node;

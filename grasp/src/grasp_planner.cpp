@@ -111,7 +111,6 @@ class Run {
         options_(with_planner_rules(object, hand, options)),
         fingers_(requested_fingers(hand, options)),
         fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
-        collision_(hand),
         distances_(tip_distances(hand)) {
     context_.center_of_mass_O = object.mass.center_of_mass;
     context_.normalizing_radius = object.normalizing_radius;
@@ -247,8 +246,9 @@ class Run {
     }
     {
       const Stopwatch watch(result_.timings.penetration_s);
-      grasp.penetration = measure_penetration(
-          collision_, object_.query, hands::forward_kinematics(hand_, grasp.configuration));
+      grasp.penetration =
+          measure_penetration(fitting_hand_.collision(), object_.query,
+                              hands::forward_kinematics(hand_, grasp.configuration));
     }
     if (grasp.penetration.self_depth > options_.self_overlap) {
       return {AttemptOutcome::SelfCollision, std::nullopt};
@@ -288,7 +288,6 @@ class Run {
   const PlannerOptions options_;
   const std::vector<int> fingers_;
   const FittingHand fitting_hand_;
-  const hands::HandCollision collision_;
   const TipDistances distances_;
   QualityContext context_;
   ContactEstimationOptions contact_options_;

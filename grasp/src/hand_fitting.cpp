@@ -1,9 +1,11 @@
 #include "graspfit/grasp/hand_fitting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <span>
 #include <string>
 
@@ -22,15 +24,15 @@ using geometry::RigidTransform;
 using geometry::shortest_decimal;
 
 constexpr double kSqrt3 = 1.7320508075688772;
-constexpr std::size_t kClusterSize = 24;
+constexpr std::size_t kLeafSize = 8;
 
 void require(bool holds, const std::string& field, const std::string& value,
              const std::string& range) {
   if (!holds) throw InvalidInput("FittingOptions: " + field + " = " + value + ", must be " + range);
 }
 
-/// Points on the surface of a mesh, no farther than `spacing` from each other within a face:
-/// vertices, and a barycentric lattice in faces that are longer.
+/// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
+/// `spacing`; then one point of each cell of half that size, the first.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
   std::vector<Vector3d> points = mesh.vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -44,21 +46,33 @@ std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double 
       }
     }
   }
+  std::set<std::array<std::int64_t, 3>> taken;
+  std::erase_if(points, [&](const Vector3d& point) {
+    const Vector3d cell = (point / (0.5 * spacing)).array().floor();
+    return !taken
+                .insert({static_cast<std::int64_t>(cell[0]), static_cast<std::int64_t>(cell[1]),
+                         static_cast<std::int64_t>(cell[2])})
+                .second;
+  });
   return points;
 }
 
-/// Splits points at the median of the longest extent until clusters are small.
-void split_into_clusters(std::span<Vector3d> points, std::vector<FittingHand::Cluster>& clusters) {
+/// Adds the ball of points [first, last) and, split at the median of the longest extent, those
+/// below it.
+void add_ball(FittingHand::LinkSamples& samples, std::size_t first, std::size_t last) {
+  const std::span<Vector3d> points(samples.points_L.data() + first, last - first);
   Eigen::AlignedBox3d box;
   for (const Vector3d& point : points) box.extend(point);
-  if (points.size() <= kClusterSize) {
-    FittingHand::Cluster cluster;
-    cluster.center_L = box.center();
-    cluster.points_L.assign(points.begin(), points.end());
-    for (const Vector3d& point : points) {
-      cluster.radius = std::max(cluster.radius, (point - cluster.center_L).norm());
-    }
-    clusters.push_back(std::move(cluster));
+  FittingHand::Ball ball;
+  ball.center_L = box.center();
+  for (const Vector3d& point : points) {
+    ball.radius = std::max(ball.radius, (point - ball.center_L).norm());
+  }
+  const std::size_t index = samples.balls.size();
+  samples.balls.push_back(ball);
+  if (points.size() <= kLeafSize) {
+    samples.balls[index].first = static_cast<std::int32_t>(first);
+    samples.balls[index].count = static_cast<std::int32_t>(points.size());
     return;
   }
   Eigen::Index axis = 0;
@@ -66,8 +80,9 @@ void split_into_clusters(std::span<Vector3d> points, std::vector<FittingHand::Cl
   const std::size_t half = points.size() / 2;
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
                    [axis](const Vector3d& a, const Vector3d& b) { return a[axis] < b[axis]; });
-  split_into_clusters(points.first(half), clusters);
-  split_into_clusters(points.subspan(half), clusters);
+  add_ball(samples, first, first + half);
+  samples.balls[index].first = static_cast<std::int32_t>(samples.balls.size());
+  add_ball(samples, first + half, last);
 }
 
 /// A finger that has a target, while the loop runs.
@@ -126,6 +141,11 @@ class Loop {
       }
       for (Part& part : parts_) {
         if (part.state == Part::State::Free && touches(part)) part.state = Part::State::Touching;
+      }
+    }
+    if (options_.settle) {
+      for (Part& part : parts_) {
+        if (part.state == Part::State::Touching) settle(part);
       }
     }
     finish(result);
@@ -222,7 +242,10 @@ class Loop {
     trial_distance_ = link_distance_;
     for (const int link : moved) {
       trial_distance_[link] = distance_of(link, X_OL[link]);
-      if (trial_distance_[link] < 0.0F) {
+      const bool is_exact = options_.guard == PenetrationGuard::Meshes;
+      if (trial_distance_[link] < 0.0F ||
+          (is_exact && trial_distance_[link] == 0.0F &&
+           hand_.collision().link_intersects(object_.query, link, X_OL[link]))) {
         blocking_link_ = link;
         return false;
       }
@@ -258,7 +281,8 @@ class Loop {
         (X_OL_[model_.joints[joint].parent_link] * model_.joints[joint].X_PJ).translation();
     double reach = 0.0;
     for (const int link : moved_links_[joint]) {
-      reach = std::max(reach, (X_OL_[link].translation() - origin).norm() + hand_.reach(link));
+      reach =
+          std::max(reach, (X_OL_[link].translation() - origin).norm() + hand_.samples(link).reach);
     }
     double factor = 1.0;
     for (const hands::Joint& other : model_.joints) {
@@ -300,6 +324,23 @@ class Loop {
     const bool is_tip = blocking_link_ == part.tip_link;
     if (is_tip || !break_away(part)) {
       part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
+    }
+  }
+
+  /// Closes a touching finger on until the guard stops even the smallest motion.
+  void settle(Part& part) {
+    double motion = options_.small_step * voxel_size_;
+    while (motion >= options_.settle_tolerance) {
+      const int joint = part.closing_joint;
+      const double step = motion / lever(joint) * model_.joints[joint].closing_sign;
+      const bool is_done =
+          is_at_closing_limit(joint) ||
+          !try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint]);
+      if (is_done) motion /= 2;
+      // The tip may go on where only the link behind it is stopped.
+      const bool is_stopped_behind = is_done && motion < options_.settle_tolerance &&
+                                     blocking_link_ >= 0 && blocking_link_ != part.tip_link;
+      if (is_stopped_behind && break_away(part)) motion = options_.small_step * voxel_size_;
     }
   }
 
@@ -347,7 +388,8 @@ class Loop {
                       target_point(seed) - pivot, axis);
     double reach = 0.0;
     for (const int link : all_links_) {
-      reach = std::max(reach, (X_OL_[link].translation() - pivot).norm() + hand_.reach(link));
+      reach =
+          std::max(reach, (X_OL_[link].translation() - pivot).norm() + hand_.samples(link).reach);
     }
     move_hand(std::abs(angle) * reach, [&](double share) {
       return turned(configuration_.X_OH, pivot, axis, share * angle);
@@ -443,41 +485,62 @@ void FittingOptions::validate() const {
   require(max_halvings >= 0 && max_halvings <= 30, "max_halvings", std::to_string(max_halvings),
           "in [0, 30]");
   require(max_iterations >= 1, "max_iterations", std::to_string(max_iterations), ">= 1");
+  require(finite_positive(settle_tolerance), "settle_tolerance", shortest_decimal(settle_tolerance),
+          "finite and > 0 m");
   require(sample_spacing >= 0.05 && sample_spacing <= 1.0, "sample_spacing",
           shortest_decimal(sample_spacing), "in [0.05, 1] voxels");
 }
 
-FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing) : model_(hand) {
+FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
+    : model_(hand), collision_(hand) {
   if (!(sample_spacing > 0.0) || !std::isfinite(sample_spacing)) {
     throw InvalidInput("FittingHand: sample_spacing = " + shortest_decimal(sample_spacing) +
                        ", must be a positive length in meters");
   }
   for (const hands::Link& link : hand.links) {
-    std::vector<Vector3d> points = surface_points(link.mesh_L, sample_spacing);
-    double reach = 0.0;
-    for (const Vector3d& point : points) reach = std::max(reach, point.norm());
-    reach_.push_back(reach);
-    clusters_.emplace_back();
-    if (!points.empty()) split_into_clusters(points, clusters_.back());
+    LinkSamples& samples = samples_.emplace_back();
+    samples.points_L = surface_points(link.mesh_L, sample_spacing);
+    for (const Vector3d& point : samples.points_L) {
+      samples.reach = std::max(samples.reach, point.norm());
+    }
+    if (!samples.points_L.empty()) add_ball(samples, 0, samples.points_L.size());
   }
 }
 
 float smallest_distance(const FittingHand& hand, int link, const RigidTransform& X_OL,
                         const geometry::SignedDistanceMap& map, float enough) {
-  const double voxel_size = map.lattice.voxel_size;
-  float smallest = std::numeric_limits<float>::infinity();
-  for (const FittingHand::Cluster& cluster : hand.clusters(link)) {
-    // Values change by at most one per voxel between voxel centers, and a point is within √3/2 of
-    // its own.
-    const double bound =
-        map.at(Vector3d(X_OL * cluster.center_L)) - cluster.radius / voxel_size - kSqrt3;
-    if (bound >= smallest || bound > enough) {
-      smallest = std::min(smallest, static_cast<float>(std::max<double>(bound, enough + 0.5)));
+  const FittingHand::LinkSamples& samples = hand.samples(link);
+  // Anything above `enough` is as good as this.
+  float smallest = enough + 0.5F;
+  if (samples.balls.empty()) return smallest;
+  const double voxels_per_meter = 1.0 / map.lattice.voxel_size;
+  // Values change by at most one per voxel between voxel centers, and a point is within √3/2 of its
+  // own.
+  const auto bound = [&](const FittingHand::Ball& ball) {
+    return map.at(Vector3d(X_OL * ball.center_L)) - ball.radius * voxels_per_meter - kSqrt3;
+  };
+  struct Open {
+    std::int32_t ball;
+    double bound;
+  };
+  std::array<Open, 128> open;  // the tree is balanced: its depth is the logarithm of the points
+  std::size_t size = 0;
+  open[size++] = {0, bound(samples.balls[0])};
+  while (size > 0 && smallest >= 0.0F) {
+    const Open next = open[--size];
+    if (next.bound >= smallest) continue;
+    const FittingHand::Ball& ball = samples.balls[next.ball];
+    if (ball.count > 0) {
+      for (std::int32_t i = 0; i < ball.count; ++i) {
+        smallest = std::min(smallest, map.at(Vector3d(X_OL * samples.points_L[ball.first + i])));
+      }
       continue;
     }
-    for (const Vector3d& point_L : cluster.points_L) {
-      smallest = std::min(smallest, map.at(Vector3d(X_OL * point_L)));
-    }
+    const Open left = {next.ball + 1, bound(samples.balls[next.ball + 1])};
+    const Open right = {ball.first, bound(samples.balls[ball.first])};
+    const bool is_left_nearer = left.bound < right.bound;
+    open[size++] = is_left_nearer ? right : left;
+    open[size++] = is_left_nearer ? left : right;
   }
   return smallest;
 }

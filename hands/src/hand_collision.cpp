@@ -53,13 +53,19 @@ HandCollision::HandCollision(const HandModel& model) : model_(model) {
   }
 }
 
+bool HandCollision::link_intersects(const geometry::MeshQuery& object, int link,
+                                    const RigidTransform& X_OL) const {
+  const auto& query = links_.at(static_cast<std::size_t>(link));
+  return query && may_meet(object.box(), boxes_[static_cast<std::size_t>(link)], X_OL) &&
+         geometry::do_intersect(object, *query, X_OL);
+}
+
 HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& object,
                                                     const std::vector<RigidTransform>& X_OL) const {
   require_poses(model_, X_OL);
-  const Eigen::AlignedBox3d object_box = geometry::bounding_box(object.mesh());
   Result result;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!links_[i] || !may_meet(object_box, boxes_[i], X_OL[i])) continue;
+    if (!links_[i] || !may_meet(object.box(), boxes_[i], X_OL[i])) continue;
     take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), static_cast<int>(i),
                 -1);
   }

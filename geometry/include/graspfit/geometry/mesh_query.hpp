@@ -36,6 +36,9 @@ class MeshQuery {
 
   const TriangleMesh& mesh() const;
 
+  /// Box of all faces. Exact.
+  const Eigen::AlignedBox3d& box() const;
+
   /// Nearest surface point. Approximate to rounding (double constructions).
   ClosestPoint closest_point(const Eigen::Vector3d& point) const;
 

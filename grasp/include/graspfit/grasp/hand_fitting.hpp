@@ -15,6 +15,14 @@
 
 namespace graspfit::grasp {
 
+/// What a motion of the hand must not do (paper section 9).
+enum class PenetrationGuard {
+  Voxels,  ///< Let a link's surface enter a full voxel: d_min < 0 [P]. Links may cut into the
+           ///< object by a voxel, and through parts too thin to hold a full voxel.
+  Meshes,  ///< Nor, where a link shares voxels with the surface (d_min = 0), let the true meshes
+           ///< intersect, decided exactly [R].
+};
+
 /// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
 struct FittingOptions {
   double clearance = 0.02;  ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
@@ -26,8 +34,14 @@ struct FittingOptions {
   int max_halvings = 5;  ///< Of a step that would penetrate (A30) [R].
   int max_iterations = 400;  ///< Of the loop, ≥ 1.
   double sample_spacing =
-      0.5;                ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
-  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+      0.5;  ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
+  PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
+  /// Whether fingers that touch by the clip test close on until the next motion would penetrate, so
+  /// that pads rest on the surface instead of up to a clip thickness before it [R]. Without: the
+  /// paper's contact.
+  bool settle = true;
+  double settle_tolerance = 1e-5;  ///< Motion at which settling ends [m], > 0.
+  void validate() const;           ///< Throws InvalidInput naming the field and its value.
 };
 
 /// How an attempt to fit the hand ended.
@@ -51,28 +65,34 @@ struct FittingResult {
 };
 
 /// A hand prepared for fitting to objects of one voxel size: points that cover every link's
-/// surface, in small clusters so that those far from the object are passed over together.
+/// surface, in a tree of balls so that those far from the object are passed over together.
 class FittingHand {
  public:
   /// @throws InvalidInput unless `sample_spacing` is a positive length [m].
   FittingHand(const hands::HandModel& hand, double sample_spacing);
 
-  /// Neighboring points and a ball around them, in the link's frame [m].
-  struct Cluster {
+  /// A ball around some of the points, in the link's frame [m].
+  struct Ball {
     Eigen::Vector3d center_L = Eigen::Vector3d::Zero();
     double radius = 0.0;
+    std::int32_t first = 0;  ///< Leaf: first of its points. Inner node: its second child; the first
+                             ///< child follows the node itself.
+    std::int32_t count = 0;  ///< Leaf: number of points, > 0. Inner node: 0.
+  };
+  /// The points of one link; both lists are empty for a link without a mesh.
+  struct LinkSamples {
+    std::vector<Ball> balls;  ///< The root is ball 0.
     std::vector<Eigen::Vector3d> points_L;
+    double reach = 0.0;  ///< Largest distance of a point from the origin of the link's frame [m].
   };
   const hands::HandModel& model() const { return model_; }
-  /// Clusters of link `link`; none for a link without a mesh.
-  const std::vector<Cluster>& clusters(int link) const { return clusters_[link]; }
-  /// Largest distance of a point of the link from the origin of its frame [m].
-  double reach(int link) const { return reach_[link]; }
+  const LinkSamples& samples(int link) const { return samples_[link]; }
+  const hands::HandCollision& collision() const { return collision_; }
 
  private:
   hands::HandModel model_;
-  std::vector<std::vector<Cluster>> clusters_;
-  std::vector<double> reach_;
+  hands::HandCollision collision_;
+  std::vector<LinkSamples> samples_;
 };
 
 /// A palm pose to start from: which way the palm looks and how it is turned.

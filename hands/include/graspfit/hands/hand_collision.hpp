@@ -24,6 +24,11 @@ class HandCollision {
     int link_b = -1;           ///< The other link for self-collision; −1 against the object.
   };
 
+  /// Whether one link and the object share a point. Exact, as `geometry::do_intersect`; much
+  /// cheaper than a depth.
+  bool link_intersects(const geometry::MeshQuery& object, int link,
+                       const RigidTransform& X_OL) const;
+
   /// Hand against object, all links. `X_OL` from forward kinematics.
   Result against_object(const geometry::MeshQuery& object,
                         const std::vector<RigidTransform>& X_OL) const;
