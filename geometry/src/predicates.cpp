@@ -1,5 +1,6 @@
 #include "internal/predicates.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
