@@ -180,6 +180,11 @@ class Loop {
     }));
   }
 
+  bool any_touching() const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.state == Part::State::Touching; });
+  }
+
   Vector3d palm_direction() const {
     return (configuration_.X_OH.linear() * model_.palm.direction_H).normalized();
   }
@@ -235,17 +240,15 @@ class Loop {
     return smallest;
   }
 
-  /// Accepts `candidate` if no moved link reaches a full voxel and no touching part loses contact.
-  /// `blocking_link_` says which link spoke against it (−1: a lost contact).
+  /// Accepts `candidate` if the guard lets every moved link through and no touching part loses
+  /// contact. `blocking_link_` says which link spoke against it (−1: a lost contact). The cheap
+  /// tests come first.
   bool try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved) {
     const std::vector<RigidTransform> X_OL = hands::forward_kinematics(model_, candidate);
     trial_distance_ = link_distance_;
     for (const int link : moved) {
       trial_distance_[link] = distance_of(link, X_OL[link]);
-      const bool is_exact = options_.guard == PenetrationGuard::Meshes;
-      if (trial_distance_[link] < 0.0F ||
-          (is_exact && trial_distance_[link] == 0.0F &&
-           hand_.collision().link_intersects(object_.query, link, X_OL[link]))) {
+      if (trial_distance_[link] < 0.0F) {
         blocking_link_ = link;
         return false;
       }
@@ -255,6 +258,13 @@ class Loop {
       if (part.state != Part::State::Touching) continue;
       if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
       if (!contact_of(part, X_OL)) return false;
+    }
+    for (const int link : moved) {
+      if (options_.guard == PenetrationGuard::Meshes && trial_distance_[link] == 0.0F &&
+          hand_.collision().link_intersects(object_.query, link, X_OL[link])) {
+        blocking_link_ = link;
+        return false;
+      }
     }
     configuration_ = candidate;
     X_OL_ = X_OL;
@@ -359,7 +369,9 @@ class Loop {
     const double allowed = step_at(distance_over(all_links_));
     hands::HandConfiguration candidate = configuration_;
     double share = std::min(1.0, allowed / length);
-    for (int halving = 0; halving <= options_.max_halvings; ++halving, share /= 2) {
+    // Once a finger touches, a motion of the hand that is not possible is skipped (A29).
+    const int max_halvings = any_touching() ? 0 : options_.max_halvings;
+    for (int halving = 0; halving <= max_halvings; ++halving, share /= 2) {
       candidate.X_OH = make(share);
       if (try_move(candidate, all_links_)) return;
     }
