@@ -17,21 +17,40 @@ using geometry::RigidTransform;
 
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
 
-/// Box in O of the prism over the pad's outline, grown by more than the rounding of its
-/// half-spaces.
-Eigen::AlignedBox3d prism_box_O(const hands::ContactPad& pad, double thickness,
-                                const RigidTransform& X_OC) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector2d& corner : pad.outline) {
-    for (const double height : {0.0, thickness}) {
-      box.extend(X_OC * Vector3d(corner.x(), corner.y(), height));
+/// Faces whose boxes meet the prism over the pad's outline, and some more; ascending.
+///
+/// Asked tile by tile: the box of a whole pad that stands oblique in O is mostly air, and holds
+/// several times the faces that are near the pad.
+std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double thickness,
+                                         const RigidTransform& X_OC,
+                                         const geometry::MeshQuery& object) {
+  constexpr int kTilesAlongPad = 6;
+  constexpr double kRoundingRel = 1e-12;  // far above the rounding of tiles and half-spaces
+  Eigen::AlignedBox2d outline;
+  for (const Eigen::Vector2d& corner : pad.outline) outline.extend(corner);
+  const double edge = std::max(thickness, outline.sizes().maxCoeff() / kTilesAlongPad);
+  const Eigen::Array2i counts = (outline.sizes().array() / edge).ceil().cast<int>().max(1);
+  const Eigen::Vector2d tile = outline.sizes().array() / counts.cast<double>();
+  const Vector3d half_sizes_C(tile.x() / 2, tile.y() / 2, thickness / 2);
+  const Vector3d half_sizes_O = X_OC.linear().cwiseAbs() * half_sizes_C;
+
+  std::vector<std::int32_t> faces;
+  for (int x = 0; x < counts.x(); ++x) {
+    for (int y = 0; y < counts.y(); ++y) {
+      const Eigen::Vector2d corner = outline.min() + tile.cwiseProduct(Eigen::Vector2d(x, y));
+      const Vector3d center_O = X_OC * (Vector3d(corner.x(), corner.y(), 0.0) + half_sizes_C);
+      const double slack =
+          kRoundingRel * (center_O.cwiseAbs().maxCoeff() + X_OC.translation().norm() +
+                          outline.sizes().norm() + thickness);
+      const Vector3d half = half_sizes_O.array() + slack;
+      const std::vector<std::int32_t> found =
+          object.faces_near(Eigen::AlignedBox3d(center_O - half, center_O + half));
+      faces.insert(faces.end(), found.begin(), found.end());
     }
   }
-  constexpr double kRoundingRel = 1e-12;
-  const double slack =
-      kRoundingRel *
-      (box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() + box.sizes().maxCoeff());
-  return {box.min().array() - slack, box.max().array() + slack};
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
 }
 
 /// True only if the triangle lies wholly outside one half-space of the volume, with room for
@@ -72,7 +91,7 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   const hands::ContactPad& pad = hand.pads[pad_index];
   const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
 
-  std::vector<std::int32_t> faces = object.faces_near(prism_box_O(pad, thickness, X_OC));
+  std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);
   if (faces.empty()) return std::nullopt;
   const geometry::ConvexVolume volume_O =
       hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);

@@ -1,8 +1,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/contact_estimation.hpp"
 #include "pad_hand.hpp"
@@ -198,6 +200,35 @@ TEST_CASE("Contacts move with hand and object together", "[grasp][contact_estima
   CHECK((moved->inward_normal_O - X_AB.linear() * contact->inward_normal_O).norm() < 1e-9);
   CHECK(moved->gap == Approx(contact->gap).margin(1e-12));
   CHECK(moved->pad_boundary_distance == Approx(contact->pad_boundary_distance).epsilon(1e-8));
+}
+
+TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]") {
+  // Against the clip of every triangle of the mesh, at random poses of a long pad that touch.
+  const MeshQuery torus(geometry::torus(0.05, 0.02));
+  const hands::HandModel hand = pad_hand(1, 0.01, 0.06);
+  std::vector<std::int32_t> all_faces(torus.mesh().faces.size());
+  std::iota(all_faces.begin(), all_faces.end(), 0);
+  geometry::Random random(3);
+  int num_contacts = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const auto face = random.index(all_faces.size());
+    const Vector3d outward = geometry::face_normal(torus.mesh(), face);
+    const Vector3d x_axis = outward.unitOrthogonal();
+    RigidTransform X_OC =
+        facing(geometry::corners(torus.mesh(), face)[0] + 0.001 * outward, -outward, x_axis);
+    X_OC.rotate(Eigen::AngleAxisd(random.uniform(0, 6), Vector3d::UnitZ()));
+    X_OC.rotate(Eigen::AngleAxisd(random.uniform(-0.5, 0.5), Vector3d::UnitX()));
+    double area = 0.0;
+    for (const geometry::ClippedPiece& piece :
+         geometry::clip(torus.mesh(), all_faces,
+                        hands::transformed(hands::clip_volume_C(hand.pads[1], kThickness), X_OC))) {
+      area += piece.area;
+    }
+    const auto contact = estimate_contact(hand, 1, X_OC, torus, kOptions);
+    CHECK((contact ? contact->area : 0.0) == area);
+    if (contact) ++num_contacts;
+  }
+  CHECK(num_contacts > 30);
 }
 
 TEST_CASE("All pads of a hand report in pad order, the palm's finger being -1",

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -62,18 +63,18 @@ geometry::TriangleMesh ellipsoid(const Vector3d& half_axes) {
   return mesh;
 }
 
-/// A ball of radius 10 with four round legs of diameter 2.4 that stick out 8 below it. Seen from
-/// its center the surface is a graph over directions, so there is nothing inside the ball: along a
-/// direction phi off a leg's axis, the leg's wall is at 1.2 / sin(phi) and its end at 18 /
-/// cos(phi).
-constexpr double kBallRadius = 10.0;
+/// A ball with four round legs of diameter 2.4 below it, 30 high in all, with about the surface of
+/// the notes' shape (1488). Seen from its center the surface is a graph over directions, so there
+/// is nothing inside the ball: along a direction phi off a leg's axis, the leg's wall is at 1.2 /
+/// sin(phi) and its end at 22.2 / cos(phi).
+constexpr double kBallRadius = 9.63;
 constexpr double kLegRadius = 1.2;
-constexpr double kLegEnd = 18.0;
+constexpr double kLegEnd = 22.2;
 
 std::array<Vector3d, 4> leg_axes() {
   std::array<Vector3d, 4> axes;
   for (int i = 0; i < 4; ++i) {
-    axes[i] = Vector3d(i & 1 ? 0.6 : -0.6, i & 2 ? 0.6 : -0.6, -1).normalized();
+    axes[i] = Vector3d(i & 1 ? 0.35 : -0.35, i & 2 ? 0.35 : -0.35, -1).normalized();
   }
   return axes;
 }
@@ -86,7 +87,7 @@ geometry::TriangleMesh ball_with_legs() {
     Vector3d direction = vertex.normalized();
     for (const Vector3d& axis : leg_axes()) {
       const double phi = std::acos(std::clamp(axis.dot(direction), -1.0, 1.0));
-      constexpr double kReach = 0.4;  // [rad] less than half the angle between two legs
+      constexpr double kReach = 0.3;  // [rad] less than half the angle between two legs
       if (phi >= kReach || phi == 0.0) continue;
       const double drawn = kReach * std::pow(phi / kReach, 2.0);
       const Vector3d across = (direction - std::cos(phi) * axis).normalized();
@@ -379,11 +380,36 @@ TEST_CASE("Scores of round shapes agree with the notes' experiment", "[grasp][co
   }
 }
 
+TEST_CASE("Shares above the threshold agree with the notes' experiment on flat and mixed shapes",
+          "[grasp][contact_score_map]") {
+  // Notes section 24, column floor-median: edges and rims are rejected, faces and walls are not.
+  std::vector<Eigen::Vector2d> half_disk = {{0.0, 1.0}};
+  for (int i = 1; i < 48; ++i) {
+    const double angle = std::numbers::pi / 2 * i / 48;
+    half_disk.emplace_back(std::sin(angle), std::cos(angle));
+  }
+  half_disk.insert(half_disk.end(), {{1.0, 0.0}, {0.0, 0.0}});
+  struct Row {
+    std::string name;
+    geometry::TriangleMesh mesh;
+    double share;
+  };
+  const std::vector<Row> rows = {{"box", geometry::box({0.30, 0.20, 0.15}), 0.59},
+                                 {"half ball", geometry::solid_of_revolution(half_disk), 0.81},
+                                 {"cylinder", geometry::cylinder(0.225, 1.0), 0.75}};
+  for (const Row& row : rows) {
+    CAPTURE(row.name);
+    const VoxelizedObject object(row.mesh);
+    const std::vector<double> scores = contact_score_map(object.patches, object.lattice).scores;
+    CHECK(share_above(scores, 0.6) == Approx(row.share).epsilon(0.1));
+  }
+}
+
 TEST_CASE("Thin legs score lowest and are rejected by the threshold",
           "[grasp][contact_score_map]") {
   const VoxelizedObject object(ball_with_legs());
   const double h = object.lattice.voxel_size;
-  REQUIRE(2 * kLegRadius / h == Approx(2.4).epsilon(0.15));
+  REQUIRE(2 * kLegRadius / h == Approx(2.4).epsilon(0.02));
   const ContactScoreMap map = contact_score_map(object.patches, object.lattice);
   double highest_leg = 0.0;
   int num_legs = 0;
