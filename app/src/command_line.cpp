@@ -103,6 +103,12 @@ int Flags::integer(const std::string& name) const {
   return parse_number<int>(name, text(name), "an integer");
 }
 
+bool Flags::yes_or_no(const std::string& name) const {
+  if (text(name) == "yes") return true;
+  if (text(name) == "no") return false;
+  throw UsageError("--" + name + " \"" + text(name) + "\" is neither yes nor no");
+}
+
 std::uint64_t Flags::unsigned_integer(const std::string& name) const {
   return parse_number<std::uint64_t>(name, text(name), "an integer from 0");
 }

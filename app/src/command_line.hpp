@@ -49,6 +49,7 @@ class Flags {
   double number(const std::string& name) const;
   std::optional<double> optional_number(const std::string& name) const;
   int integer(const std::string& name) const;
+  bool yes_or_no(const std::string& name) const;
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
   std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.

@@ -84,6 +84,9 @@ po::options_description planner_options() {
       search, "accept", defaults.acceptance,
       "which grasps count: free of penetration and with every contact; M > 0 [P]; M at least "
       "half of the targets' own or 0.6 [R, A36]");
+  add_choice(search, "search", defaults.search,
+             "best: use all attempts and return the best grasps; first: stop at the first ones "
+             "[R, A36]");
   add_integer(search, "max-attempts", static_cast<std::uint64_t>(defaults.max_attempts),
               "target sets tried before giving up: work, not time [R, A36]");
   add_option(search, "wall-clock-limit-s", "SECONDS", std::nullopt,
@@ -106,6 +109,11 @@ po::options_description planner_options() {
               "seeds tried per target set [R, A20]");
   add_number(target, "clearance-mm", defaults.fitting.clearance * 1000.0,
              "between the object and the palm at the start [R, A24]");
+  add_choice(target, "guard", defaults.fitting.guard,
+             "what a motion must not enter: full voxels [P], or also, near the surface, the true "
+             "meshes [R]");
+  add_option(target, "settle", "yes|no", "yes",
+             "after the clip test, close fingers on until they touch [R]; no: the paper's contact");
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
              "of clip volumes; without it max(0.5 voxel, 1 mm) [R, A33]");
 
@@ -163,6 +171,9 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   options.count = flags.integer("count");
   options.seed = flags.unsigned_integer("seed");
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
+  options.search = flags.choice<grasp::SearchRule>("search");
+  options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
+  options.fitting.settle = flags.yes_or_no("settle");
   options.max_attempts = flags.integer("max-attempts");
   options.wall_clock_limit_s = flags.optional_number("wall-clock-limit-s");
 

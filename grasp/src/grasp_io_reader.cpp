@@ -80,6 +80,7 @@ PlannerOptions read_options(const JsonNode& planner) {
   options.count = node.at("count").small_integer();
   options.max_attempts = node.at("max_attempts").small_integer();
   options.acceptance = node.at("acceptance").choice<Acceptance>();
+  options.search = node.at("search").choice<SearchRule>();
   if (const JsonNode approach = node.at("approach_O"); !approach.is_null()) {
     options.approach_O = approach.vector3();
   }
@@ -119,6 +120,9 @@ PlannerOptions read_options(const JsonNode& planner) {
   options.fitting.max_halvings = fitting.at("max_halvings").small_integer();
   options.fitting.max_iterations = fitting.at("max_iterations").small_integer();
   options.fitting.sample_spacing = fitting.at("sample_spacing_voxels").number();
+  options.fitting.guard = fitting.at("guard").choice<PenetrationGuard>();
+  options.fitting.settle = fitting.at("settle").flag();
+  options.fitting.settle_tolerance = fitting.at("settle_tolerance_m").number();
   options.self_overlap = node.at("self_overlap_m").number();
 
   const JsonNode quality = node.at("quality");

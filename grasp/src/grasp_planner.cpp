@@ -134,7 +134,8 @@ class Run {
       if (progress) {
         progress(number + 1, static_cast<std::int64_t>(result_.grasps.size()));
       }
-      if (static_cast<int>(result_.grasps.size()) >= options_.count) {
+      if (options_.search == SearchRule::First &&
+          static_cast<int>(result_.grasps.size()) >= options_.count) {
         result_.stop = PlannerStop::Count;
         break;
       }
@@ -146,6 +147,9 @@ class Run {
     }
     std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
                      [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
+    if (static_cast<int>(result_.grasps.size()) > options_.count) {
+      result_.grasps.resize(static_cast<std::size_t>(options_.count));
+    }
     result_.timings.total_s = std::chrono::duration<double>(Clock::now() - start).count();
     return std::move(result_);
   }

@@ -22,6 +22,21 @@ std::span<const NamedValue<Acceptance>> named_values<Acceptance>() {
 }
 
 template <>
+std::span<const NamedValue<SearchRule>> named_values<SearchRule>() {
+  static constexpr std::array names = {NamedValue<SearchRule>{SearchRule::Best, "best"},
+                                       NamedValue<SearchRule>{SearchRule::First, "first"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>() {
+  static constexpr std::array names = {
+      NamedValue<PenetrationGuard>{PenetrationGuard::Voxels, "voxels"},
+      NamedValue<PenetrationGuard>{PenetrationGuard::Meshes, "meshes"}};
+  return names;
+}
+
+template <>
 std::span<const NamedValue<PatchAveraging>> named_values<PatchAveraging>() {
   static constexpr std::array names = {
       NamedValue<PatchAveraging>{PatchAveraging::AreaWeighted, "area-weighted"},

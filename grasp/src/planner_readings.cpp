@@ -62,13 +62,17 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
                   shortest_decimal(fitting.small_step)},
       {"A31", "missed contact: the attempt fails"},
-      {"A32", "small steps until contact or penetration"},
+      {"A32", std::string("small steps until contact or penetration; guard on ") +
+                  std::string(name_of(fitting.guard)) +
+                  (fitting.settle ? ", fingers then settle on the surface" : "")},
       {"A33", options.clip_thickness
                   ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
                   : "clip volume max(0.5 voxel, 1 mm) thick"},
       {"A34", averaging},
       {"A35", "contacts of all pads count"},
-      {"A36", text(name_of(options.acceptance))},
+      {"A36", std::string(name_of(options.search)) + " " +
+                  std::string(name_of(options.acceptance)) + " of at most " +
+                  std::to_string(options.max_attempts) + " attempts"},
       {"A37", "unknown: counts as not weak"},
       {"A40", "overlap of different fingers above " + shortest_decimal(options.self_overlap) +
                   " m ends the attempt"},

@@ -62,6 +62,7 @@ TEST_CASE("Pipeline from mesh file to grasps", "[!benchmark][pipeline]") {
   options.max_attempts = kAttempts;
   options.count = kAttempts;
   options.acceptance = grasp::Acceptance::Usable;
+  options.search = grasp::SearchRule::First;
   const hands::HandModel hand = hands::find_hand("barrett");
   for (int run = 0; run < kRuns; ++run) {
     geometry::MeshFile read_file;

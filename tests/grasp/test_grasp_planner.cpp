@@ -327,6 +327,7 @@ PlannerOptions collecting(Acceptance acceptance, int count, int max_attempts) {
   options.acceptance = acceptance;
   options.count = count;
   options.max_attempts = max_attempts;
+  options.search = SearchRule::First;
   return options;
 }
 

@@ -28,6 +28,14 @@ enum class Acceptance {
   Quality,  ///< Usable and M ≥ min(0.5 · ideal M, 0.6): the paper's "high quality" (A36).
 };
 
+/// When the planner stops looking (notes A36).
+enum class SearchRule {
+  Best,   ///< Use all attempts and return the best accepted grasps: the paper's generate, evaluate,
+          ///< select.
+  First,  ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
+          ///< grasps.
+};
+
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
 struct PlannerOptions {
   GraspStyle style = GraspStyle::Precision;
@@ -37,7 +45,8 @@ struct PlannerOptions {
       3;          ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
   int count = 1;  ///< Grasps to collect (K), ≥ 1.
   std::uint64_t seed = 1;
-  int max_attempts = 400;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
+  SearchRule search = SearchRule::Best;
+  int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
   Acceptance acceptance = Acceptance::Valid;
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero.
   std::optional<double>

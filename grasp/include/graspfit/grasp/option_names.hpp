@@ -34,6 +34,10 @@ std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>();
 template <>
 std::span<const NamedValue<Acceptance>> named_values<Acceptance>();
 template <>
+std::span<const NamedValue<SearchRule>> named_values<SearchRule>();
+template <>
+std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>();
+template <>
 std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
 template <>
 std::span<const NamedValue<ScoreNormalization>> named_values<ScoreNormalization>();
