@@ -47,6 +47,12 @@ std::vector<std::string> split_at_commas(const std::string& text) {
 
 }  // namespace
 
+po::options_description option_group(const std::string& caption) {
+  constexpr unsigned kLineLength = 100;
+  constexpr unsigned kDescriptionLength = 62;
+  return po::options_description(caption, kLineLength, kDescriptionLength);
+}
+
 void add_option(po::options_description& options, const std::string& name,
                 const std::string& value_name, const std::optional<std::string>& fallback,
                 const std::string& description) {
@@ -132,8 +138,8 @@ std::vector<double> Flags::numbers(const std::string& name) const {
 std::string help_text(const Command& command) {
   std::ostringstream text;
   text << "Usage: graspfit " << command.name << ' ' << command.positional << " [options]\n\n"
-       << command.summary << '\n'
-       << command.options << "\n  -h [ --help ]  print this text\n";
+       << command.summary << command.options
+       << "\n  -h [ --help ]                       print this text\n";
   if (!command.epilog.empty()) text << '\n' << command.epilog;
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
           "line says why,\nnothing is written); 3 no grasp found; 4 evaluate: M differs.\n";

@@ -21,6 +21,9 @@ struct Command {
   std::string epilog;  ///< Printed after the options.
 };
 
+/// A group of options under a caption, laid out for --help.
+boost::program_options::options_description option_group(const std::string& caption = "");
+
 /// An option with a text as its value; `fallback` is its default, shown by --help.
 void add_option(boost::program_options::options_description& options, const std::string& name,
                 const std::string& value_name, const std::optional<std::string>& fallback,

@@ -25,7 +25,7 @@ Command evaluate_command() {
       "evaluate", "GRASPS.json",
       "Computes contacts and measures of every grasp in a file again, from the meshes of "
       "object and\nhand alone, and compares. The hashes of all files are checked first.\n",
-      po::options_description("Options", 100, 50), ""};
+      option_group("Options"), ""};
   add_option(command.options, "object", "FILE", std::nullopt,
              "the object's file, if it is no longer where the grasp file says");
   add_switch(command.options, "json", "print JSON instead of a table");

@@ -24,7 +24,7 @@ using geometry::MeshAnalysis;
 using geometry::shortest_decimal;
 
 Command inspect_command() {
-  po::options_description more("Hand and output");
+  po::options_description more = option_group("Hand and output");
   add_option(more, "hand", "NAME|FILE", std::nullopt,
              "make the voxels of the whole interaction volume for this hand and check the object's "
              "size for it; without it only those of the object");
@@ -35,13 +35,13 @@ Command inspect_command() {
       "and MeshLab");
   Command command{"inspect", "OBJECT",
                   "Reports what OBJECT is like: mesh and repairs, mass, voxels, contact scores.\n",
-                  po::options_description(100, 50), ""};
+                  option_group(), ""};
   command.options.add(object_options()).add(score_map_options()).add(more);
   return command;
 }
 
 void print_row(const std::string& name, const std::string& value) {
-  std::printf("%-18s%s\n", name.c_str(), value.c_str());
+  std::printf("%-20s%s\n", name.c_str(), value.c_str());
 }
 
 std::string vector_text(const Eigen::Vector3d& v) {

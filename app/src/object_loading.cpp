@@ -25,7 +25,7 @@ double meters_per(const std::string& unit) {
 }  // namespace
 
 boost::program_options::options_description object_options() {
-  boost::program_options::options_description options("Object");
+  boost::program_options::options_description options = option_group("Object");
   add_option(options, "mesh-unit", "m|cm|mm|in", std::nullopt,
              "unit of the numbers in the file; without this and --longest they are meters");
   add_option(options, "longest", "LENGTH_M", std::nullopt,

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
 Command plan_command() {
-  po::options_description output("Output");
+  po::options_description output = option_group("Output");
   add_option(output, "out", "DIR", std::nullopt,
              "write grasps.json, grasps.csv and every grasp as grasp_NNN.obj and .ply there; "
              "without it only the table is printed");
@@ -41,7 +41,7 @@ Command plan_command() {
       "Plans grasps of OBJECT (OFF, OBJ, PLY, STL, glTF or GLB) with a hand.\n"
       "[P]: stated by the paper; [R]: a reading of what it leaves open, by its number in "
       "REPRODUCTION.md.\n",
-      po::options_description(100, 50),
+      option_group(),
       "Lengths are meters and directions are in the object's own frame unless a flag's "
       "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
       "true meshes, every requested finger touches.\n"};

@@ -38,7 +38,7 @@ void add_integer(po::options_description& options, const std::string& name, std:
 po::options_description score_map_options() {
   const PlannerOptions defaults;
   const grasp::ScoreOptions& score = defaults.score;
-  po::options_description options("Voxels and contact score map");
+  po::options_description options = option_group("Voxels and contact score map");
   add_integer(options, "resolution", static_cast<std::uint64_t>(defaults.resolution),
               "voxels along the object's longest extent, 4 to 512 [P; whose extent: R, A8]");
   add_choice(options, "averaging", defaults.averaging,
@@ -63,7 +63,7 @@ po::options_description planner_options() {
   const grasp::TargetOptions& targets = defaults.targets;
   const grasp::QualityOptions& quality = defaults.quality;
 
-  po::options_description request("Hand and request");
+  po::options_description request = option_group("Hand and request");
   add_option(request, "hand", "NAME|FILE", "barrett",
              "a shipped hand, or the URDF file of any hand with its sidecar beside it");
   add_option(request, "fingers", "A,B,...", std::nullopt,
@@ -76,7 +76,7 @@ po::options_description planner_options() {
              "wanted direction of the palm, toward the object, in the object's frame [P; reading: "
              "R, A23]");
 
-  po::options_description search("Search");
+  po::options_description search = option_group("Search");
   add_integer(search, "count", static_cast<std::uint64_t>(defaults.count),
               "grasps to find, at least 1");
   add_integer(search, "seed", defaults.seed, "of the random numbers; same seed, same grasps");
@@ -92,7 +92,7 @@ po::options_description planner_options() {
   add_option(search, "wall-clock-limit-s", "SECONDS", std::nullopt,
              "also stop after this time; results then depend on the machine, and say so");
 
-  po::options_description target("Target contacts and fitting");
+  po::options_description target = option_group("Target contacts and fitting");
   add_number(target, "theta-max-deg", quality.theta_max / kRadiansPerDegree,
              "half-angle of the friction cones of targets and measure, in degrees between 0 and 90 "
              "[P; one angle for both: R, A47]");
@@ -117,7 +117,7 @@ po::options_description planner_options() {
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
              "of clip volumes; without it max(0.5 voxel, 1 mm) [R, A33]");
 
-  po::options_description measure("Measure M = M1^w1 * M2^w2 * M3^w3");
+  po::options_description measure = option_group("Measure M = M1^w1 * M2^w2 * M3^w3");
   add_number(measure, "alpha", quality.alpha, "weight of contact area in M1 [P]");
   add_number(measure, "beta", quality.beta, "weight of the centroid's distance in M3 [P]");
   add_number(measure, "w1", quality.w1, "exponent of M1 [P]");
@@ -129,7 +129,7 @@ po::options_description planner_options() {
   add_choice(measure, "centroid", quality.centroid,
              "centroid of the contacts' hull: of its area or volume, or of its corners [R, A15]");
 
-  po::options_description all;
+  po::options_description all = option_group();
   all.add(request).add(search).add(target).add(measure);
   return all;
 }

@@ -4,7 +4,6 @@ import math
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 
@@ -85,4 +84,5 @@ class ProgramTest(unittest.TestCase):
 
 
 def main():
-    unittest.main(verbosity=2, argv=[sys.argv[0]])
+    """Runs the test classes named on the command line, or all of the file."""
+    unittest.main(verbosity=2)

@@ -71,10 +71,10 @@ class BadMeshes(program.ProgramTest):
         obj = "".join(f"v {x} {y} {z}\n" for x, y, z in vertices)
         self.refuse(self.write("cloud.obj", obj), "point cloud")
 
-    def test_half_a_mesh_is_refused_as_open(self):
-        vertices, faces = torus()
-        self.refuse(self.write("half.off", off_text(vertices, faces[: len(faces) // 2])),
-                    "boundary edges")
+    def test_box_without_a_side_is_refused_as_open(self):
+        # The hole is as long as the box; by default one of half the length is filled.
+        vertices, faces = box(0.1, 0.08, 0.06)
+        self.refuse(self.write("tray.off", off_text(vertices, faces[2:])), "boundary edges")
 
     def test_small_hole_is_repaired_and_recorded_or_refused_as_asked(self):
         vertices, faces = torus()

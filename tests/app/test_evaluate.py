@@ -1,19 +1,34 @@
 """`graspfit evaluate` computes every grasp again from the meshes."""
 
 import json
+import pathlib
 import shutil
+import tempfile
 
 import program
 
 
 class Evaluate(program.ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.planned = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.planned.cleanup)
+        folder = pathlib.Path(cls.planned.name)
+        (folder / "torus.off").write_text(program.off_text(*program.torus()))
+        # By a relative name, so that copies of the folder refer to their own object.
+        done = program.run("plan", "torus.off", "--count", "2", "--accept", "usable", "--out", "out",
+                           cwd=folder)
+        assert done.returncode == 0, done.stderr
+
     def setUp(self):
         super().setUp()
-        self.object = self.write_torus()
-        done = program.run("plan", self.object, "--count", "3", "--accept", "usable", "--out",
-                           self.folder / "out")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        shutil.copytree(self.planned.name, self.folder, dirs_exist_ok=True)
+        self.object = self.folder / "torus.off"
         self.file = self.folder / "out/grasps.json"
+
+    def evaluate(self, *arguments):
+        return program.run("evaluate", *arguments, cwd=self.folder)
 
     def changed(self, change):
         data = json.loads(self.file.read_text())
@@ -21,7 +36,7 @@ class Evaluate(program.ProgramTest):
         return self.write("changed.json", json.dumps(data))
 
     def test_reproduces_what_was_planned(self):
-        done = program.run("evaluate", self.file, "--json")
+        done = self.evaluate(self.file, "--json")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         report = json.loads(done.stdout)
         self.assertLess(report["largest_m_difference"], 1e-9)
@@ -33,7 +48,7 @@ class Evaluate(program.ProgramTest):
             self.assertEqual(row["stored"]["m"], grasp["m"])
             self.assertEqual(row["computed"]["valid"], grasp["valid"])
 
-        done = program.run("evaluate", self.file)
+        done = self.evaluate(self.file)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("largest difference of M: ", done.stdout)
         self.assertEqual(len(done.stdout.splitlines()), len(stored) + 2)
@@ -45,14 +60,14 @@ class Evaluate(program.ProgramTest):
                            "--theta-max-deg", "40", "--clip-thickness-mm", "2.5", "--longest",
                            "0.13", "--out", self.folder / "other")
         self.assertEqual(done.returncode, 0, done.stderr)
-        done = program.run("evaluate", self.folder / "other/grasps.json")
+        done = self.evaluate(self.folder / "other/grasps.json")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_another_m_is_found_out(self):
         def add(data):
             data["results"]["grasps"][1]["m"] += 2e-9
 
-        done = program.run("evaluate", self.changed(add))
+        done = self.evaluate(self.changed(add))
         self.assertEqual(done.returncode, 4)
         self.assertEqual(len(done.stderr.splitlines()), 1)
         self.assertIn("differs", done.stderr)
@@ -61,17 +76,18 @@ class Evaluate(program.ProgramTest):
         def move(data):
             data["results"]["grasps"][0]["X_OH"]["translation_m"][0] += 1e-4
 
-        self.assertEqual(program.run("evaluate", self.changed(move)).returncode, 4)
+        self.assertEqual(self.evaluate(self.changed(move)).returncode, 4)
 
     def test_object_that_is_gone_moved_or_another_one(self):
         moved = self.folder / "elsewhere.off"
         self.object.rename(moved)
-        self.assert_refused("evaluate", self.file, says="torus.off")
-        self.assertEqual(program.run("evaluate", self.file, "--object", moved).returncode, 0)
+        self.assert_refused("evaluate", self.file, says="torus.off", cwd=self.folder)
+        self.assertEqual(self.evaluate(self.file, "--object", moved).returncode, 0)
         shutil.copy(moved, self.folder / "out/torus.off")  # beside the grasp file
-        self.assertEqual(program.run("evaluate", self.file).returncode, 0)
+        self.assertEqual(self.evaluate(self.file).returncode, 0)
         self.write("out/torus.off", program.off_text(*program.torus(0.051)))
-        self.assert_refused("evaluate", self.file, says=["torus.off", "SHA-256"])
+        self.assert_refused("evaluate", self.file, says=["torus.off", "SHA-256"],
+                            cwd=self.folder)
 
     def test_files_that_are_no_grasp_files(self):
         self.assert_refused("evaluate", self.folder / "no.json", says="no.json")

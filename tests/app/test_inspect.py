@@ -11,7 +11,7 @@ except ImportError:
     vtkPLYReader = None
 
 
-class Inspect(program.ProgramTest):
+class InspectTest(program.ProgramTest):
     def inspect(self, *arguments):
         done = program.run("inspect", *arguments)
         self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
@@ -20,6 +20,8 @@ class Inspect(program.ProgramTest):
     def row(self, text, name):
         return re.search(rf"^{re.escape(name)} {{2,}}(.*)$", text, re.MULTILINE)[1]
 
+
+class Inspect(InspectTest):
     def test_report_of_a_box(self):
         # 30 voxels of 1 cm along x; the box's faces lie on voxel planes, and each belongs to one of
         # its two sides.
@@ -62,6 +64,8 @@ class Inspect(program.ProgramTest):
         pairs = int(self.row(self.inspect(path, "--self-intersections"), "crossing faces").split()[0])
         self.assertGreater(pairs, 0)
 
+
+class VtkFiles(InspectTest):
     def test_files_open_in_vtk_and_agree_with_the_report(self):
         if vtkPLYReader is None:
             print("SKIPPED: python3-vtk9 is not installed")
@@ -86,8 +90,10 @@ class Inspect(program.ProgramTest):
         # The box's center is the torus' own: index order and origin are right.
         bounds = voxels.GetBounds()
         self.assertAlmostEqual(bounds[0] + bounds[1], 0.0, places=12)
-        self.assertEqual(classes[voxels.FindCell((0.05, 0.001, 0.001), None, 0, 1e-9, [0], [0] * 3,
-                                                 [0] * 8)], 2)
+        i, j, k = [int((p - o) / h) for p, o, h in
+                   zip((0.05, 0.001, 0.001), voxels.GetOrigin(), voxels.GetSpacing())]
+        nx, ny, _ = [n - 1 for n in voxels.GetDimensions()]
+        self.assertEqual(classes[i + nx * (j + ny * k)], 2)
 
         distance = image("distance_map.vti").GetCellData().GetArray("signed_distance_voxels")
         score = image("score_map.vti").GetCellData().GetArray("score")

@@ -1,8 +1,10 @@
 """What `graspfit plan` writes and prints."""
 
+import importlib.util
 import json
 import os
 import re
+import shutil
 import subprocess
 
 import program
@@ -16,8 +18,8 @@ def results_text(path):
 
 class Plan(program.ProgramTest):
     def plan(self, *flags, out="out", **options):
-        done = program.run("plan", self.folder / "torus.off", "--count", "3", "--seed", "7", "--out",
-                           self.folder / out, *flags, **options)
+        done = program.run("plan", self.folder / "torus.off", "--count", "2", "--seed", "7",
+                           "--accept", "usable", "--out", self.folder / out, *flags, **options)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done
 
@@ -29,22 +31,23 @@ class Plan(program.ProgramTest):
         done = self.plan()
         self.assertEqual(done.stderr, "")  # no progress bar when piped
         names = sorted(path.name for path in (self.folder / "out").iterdir())
-        posed = [f"grasp_00{i}.{extension}" for i in (1, 2, 3) for extension in ("obj", "ply")]
+        posed = [f"grasp_00{i}.{extension}" for i in (1, 2) for extension in ("obj", "ply")]
         self.assertEqual(names, sorted(posed + ["grasps.csv", "grasps.json"]))
 
         lines = done.stdout.splitlines()
         self.assertEqual(lines[0].split(), ["rank", "M", "M1", "M2", "M3", "contacts", "gap_mm",
                                             "penetration_mm", "valid"])
-        self.assertEqual([line.split()[0] for line in lines[1:4]], ["1", "2", "3"])
+        self.assertEqual([line.split()[0] for line in lines[1:3]], ["1", "2"])
         file = json.loads((self.folder / "out/grasps.json").read_text())
         grasps = file["results"]["grasps"]
-        for grasp, line in zip(grasps, lines[1:4]):
+        for grasp, line in zip(grasps, lines[1:3]):
             self.assertEqual(f"{grasp['m']:.4f}", line.split()[1])
-            self.assertTrue(grasp["valid"])
+            self.assertEqual(line.split()[-1], "yes" if grasp["valid"] else "no")
+            self.assertTrue(grasp["usable"])
         self.assertEqual(sorted(grasps, key=lambda grasp: -grasp["m"]), grasps)
 
         rows = (self.folder / "out/grasps.csv").read_text().splitlines()
-        self.assertEqual(len(rows), 4)
+        self.assertEqual(len(rows), 3)
         header = rows[0].split(",")
         for column in ("m", "largest_penetration_m", "palm_x_m", "palm_qw"):
             self.assertIn(column, header)
@@ -70,11 +73,11 @@ class Plan(program.ProgramTest):
         self.plan(out="b")
         self.assertEqual(results_text(self.folder / "a/grasps.json"),
                          results_text(self.folder / "b/grasps.json"))
-        for name in ("grasps.csv", "grasp_001.obj", "grasp_003.ply"):
+        for name in ("grasps.csv", "grasp_001.obj", "grasp_002.ply"):
             self.assertEqual((self.folder / "a" / name).read_bytes(),
                              (self.folder / "b" / name).read_bytes())
-        program.run("plan", self.folder / "torus.off", "--count", "3", "--seed", "8", "--out",
-                    self.folder / "c")
+        program.run("plan", self.folder / "torus.off", "--count", "2", "--seed", "8", "--accept",
+                    "usable", "--out", self.folder / "c")
         self.assertNotEqual(results_text(self.folder / "a/grasps.json"),
                             results_text(self.folder / "c/grasps.json"))
 
@@ -114,7 +117,7 @@ class Plan(program.ProgramTest):
     def test_quiet_and_without_folder(self):
         self.assertEqual(self.plan("--quiet").stdout, "")
         before = self.contents()
-        done = program.run("plan", self.folder / "torus.off")
+        done = program.run("plan", self.folder / "torus.off", "--accept", "usable")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("rank", done.stdout)
         self.assertEqual(self.contents(), before)
@@ -138,7 +141,8 @@ class Plan(program.ProgramTest):
         inches = program.off_text([[x / 0.0254 for x in vertex] for vertex in vertices], faces)
         path = self.write("inches.off", inches)
         for flags, factor in ((("--mesh-unit", "in"), 0.0254), (("--longest", "0.14"), None)):
-            done = program.run("plan", path, *flags, "--out", self.folder / "scaled")
+            done = program.run("plan", path, *flags, "--accept", "usable", "--out",
+                               self.folder / "scaled")
             self.assertEqual(done.returncode, 0, done.stderr)
             record = json.loads((self.folder / "scaled/grasps.json").read_text())["object"]
             box = record["mesh"]["bounding_box_m"]
@@ -146,10 +150,26 @@ class Plan(program.ProgramTest):
             if factor:
                 self.assertEqual(record["meters_per_file_unit"], factor)
 
-    def test_page_and_pictures(self):
-        done = self.plan("--page")
-        self.assertEqual(done.stderr, "")
+
+class Page(program.ProgramTest):
+    def test_page_is_written_and_removed_by_a_run_without_it(self):
+        arguments = ["plan", self.write_torus(), "--accept", "usable", "--out", self.folder / "out"]
+        done = program.run(*arguments, "--page")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue((self.folder / "out/grasps.html").read_text().startswith("<!"))
+        program.run(*arguments)
+        self.assertFalse((self.folder / "out/grasps.html").exists())
+
+
+class Pictures(program.ProgramTest):
+    def test_pictures_are_drawn(self):
+        if importlib.util.find_spec("vtkmodules") is None or not shutil.which("xvfb-run"):
+            print("SKIPPED: python3-vtk9 or xvfb is not installed")
+            return
+        done = program.run("plan", self.write_torus(), "--accept", "usable", "--pictures", "--out",
+                           self.folder / "out")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual((self.folder / "out/grasp_001.png").read_bytes()[:4], b"\x89PNG")
 
 
 class Help(program.ProgramTest):
