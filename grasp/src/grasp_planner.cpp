@@ -225,6 +225,8 @@ class Run {
     switch (fitted.stop) {
       case FittingStop::InitialCollision:
         return {AttemptOutcome::InitialCollision, std::nullopt};
+      case FittingStop::BlockedFinger:
+        return {AttemptOutcome::BlockedFinger, std::nullopt};
       case FittingStop::MissedContact:
         return {AttemptOutcome::MissedContact, std::nullopt};
       case FittingStop::IterationLimit:
@@ -341,6 +343,8 @@ const char* outcome_name(AttemptOutcome outcome) {
       return "no target set";
     case AttemptOutcome::InitialCollision:
       return "initial collision";
+    case AttemptOutcome::BlockedFinger:
+      return "blocked finger";
     case AttemptOutcome::MissedContact:
       return "missed contact";
     case AttemptOutcome::SelfCollision:

@@ -87,7 +87,7 @@ void add_ball(FittingHand::LinkSamples& samples, std::size_t first, std::size_t 
 
 /// A finger that has a target, while the loop runs.
 struct Part {
-  enum class State { Free, Touching, Blocked };
+  enum class State { Free, Touching, Blocked, AtLimit };
   int finger = -1;
   int pad = -1;
   int tip_link = -1;
@@ -321,7 +321,7 @@ class Loop {
   void close(Part& part) {
     const int joint = part.closing_joint;
     if (joint < 0 || is_at_closing_limit(joint)) {
-      if (!break_away(part)) part.state = Part::State::Blocked;
+      if (!break_away(part)) part.state = Part::State::AtLimit;
       return;
     }
     double step = step_at(distance_over(moved_links_[joint])) / lever(joint) *
@@ -452,15 +452,18 @@ class Loop {
     }
     result.contact_tests_s = contact_tests_s_;
     bool has_all = true;
+    bool is_blocked = false;
     for (const Part& part : parts_) {
       bool has_contact = false;
       for (Contact& contact : result.contacts) {
         if (contact.pad == part.pad) has_contact = contact.is_target = true;
       }
       has_all = has_all && has_contact;
+      is_blocked = is_blocked || (!has_contact && part.state == Part::State::Blocked);
     }
     result.stop = num_free() > 0 ? FittingStop::IterationLimit
                   : has_all      ? FittingStop::Contact
+                  : is_blocked   ? FittingStop::BlockedFinger
                                  : FittingStop::MissedContact;
   }
 

@@ -61,7 +61,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
                   shortest_decimal(fitting.small_step)},
-      {"A31", "missed contact: the attempt fails"},
+      {"A31", "a part without contact fails the attempt"},
       {"A32", std::string("small steps until contact or penetration; guard on ") +
                   std::string(name_of(fitting.guard)) +
                   (fitting.settle ? ", fingers then settle on the surface" : "")},

@@ -35,11 +35,11 @@ using grasp::PlannerStop;
 const std::vector<std::string> kNothing;
 
 const std::vector<AttemptOutcome> kOutcomes = {
-    AttemptOutcome::Valid,          AttemptOutcome::UsableOnly,
-    AttemptOutcome::NoTargets,      AttemptOutcome::InitialCollision,
-    AttemptOutcome::MissedContact,  AttemptOutcome::SelfCollision,
-    AttemptOutcome::IterationLimit, AttemptOutcome::Unstable,
-    AttemptOutcome::PoorShape,
+    AttemptOutcome::Valid,         AttemptOutcome::UsableOnly,
+    AttemptOutcome::NoTargets,     AttemptOutcome::InitialCollision,
+    AttemptOutcome::BlockedFinger, AttemptOutcome::MissedContact,
+    AttemptOutcome::SelfCollision, AttemptOutcome::IterationLimit,
+    AttemptOutcome::Unstable,      AttemptOutcome::PoorShape,
 };
 
 /// Every number of a grasp, written so that two are equal exactly if their bits are.

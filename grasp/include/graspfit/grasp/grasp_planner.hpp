@@ -73,6 +73,7 @@ enum class AttemptOutcome {
   UsableOnly,  ///< Usable but penetrating or without a requested contact.
   NoTargets,   ///< No seed, no pair or no further contact.
   InitialCollision,
+  BlockedFinger,
   MissedContact,
   SelfCollision,
   IterationLimit,

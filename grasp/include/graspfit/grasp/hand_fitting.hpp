@@ -48,8 +48,9 @@ struct FittingOptions {
 enum class FittingStop {
   Contact,           ///< Every part with a target touches: a formed grasp.
   InitialCollision,  ///< No starting pose clear of the object was found.
-  MissedContact,     ///< A part with a target reached its limits without touching (A31).
-  IterationLimit,    ///< Work budget used up.
+  BlockedFinger,   ///< A part with a target was stopped by the object where its pad does not touch.
+  MissedContact,   ///< A part with a target reached its limits without touching (A31).
+  IterationLimit,  ///< Work budget used up.
 };
 
 /// A fitted hand.
