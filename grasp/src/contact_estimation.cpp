@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "graspfit/geometry/convex_clip.hpp"
@@ -15,6 +16,7 @@ namespace {
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
+constexpr double kThinRel = 1e-9;            // height over length of a triangle
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
 
 /// Faces whose boxes meet the prism over the pad's outline, and some more; ascending.
@@ -53,24 +55,62 @@ std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double th
   return faces;
 }
 
-/// True only if the triangle lies wholly outside one half-space of the volume, with room for
-/// rounding: spares the exact clip the triangles that merely share the prism's box.
-bool is_surely_outside(const std::array<Vector3d, 3>& triangle,
-                       const geometry::ConvexVolume& volume) {
+/// A triangle against a convex volume, as far as rounded numbers can tell.
+enum class Placement { Outside, Inside, Unsure };
+
+/// Outside and Inside are certain; they spare the exact clip most triangles.
+Placement placement(const std::array<Vector3d, 3>& triangle, const geometry::ConvexVolume& volume) {
+  bool is_inside = true;
   for (const geometry::HalfSpace& half_space : volume) {
     double lowest = std::numeric_limits<double>::infinity();
+    double highest = -lowest;
     double magnitude = std::abs(half_space.offset);
     for (const Vector3d& corner : triangle) {
-      lowest = std::min(lowest, half_space.normal.dot(corner));
+      const double height = half_space.normal.dot(corner);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
       magnitude = std::max(magnitude, half_space.normal.cwiseAbs().dot(corner.cwiseAbs()));
     }
-    // Five roundings of terms no larger than `magnitude`, doubled.
-    if (lowest - half_space.offset > 10 * std::numeric_limits<double>::epsilon() * magnitude) {
-      return true;
+    // Six roundings of terms no larger than `magnitude`, doubled.
+    const double rounding = 12 * std::numeric_limits<double>::epsilon() * magnitude;
+    if (lowest - half_space.offset > rounding) return Placement::Outside;
+    is_inside = is_inside && highest - half_space.offset < -rounding;
+  }
+  return is_inside ? Placement::Inside : Placement::Unsure;
+}
+
+/// Sums over the pieces of surface inside a clip volume.
+class SurfaceMean {
+ public:
+  SurfaceMean(geometry::PatchAveraging averaging, const RigidTransform& X_CO)
+      : averaging_(averaging), X_CO_(X_CO) {}
+
+  void add(std::span<const Vector3d> polygon_O, double area, const Vector3d& centroid_O,
+           const Vector3d& outward_normal_O) {
+    const double weight = averaging_ == geometry::PatchAveraging::AreaWeighted ? area : 1.0;
+    area_ += area;
+    weight_ += weight;
+    centroid_O_ += weight * centroid_O;
+    outward_normal_O_ += weight * outward_normal_O;
+    for (const Vector3d& corner_O : polygon_O) {
+      lowest_ = std::min(lowest_, (X_CO_ * corner_O).z());
     }
   }
-  return false;
-}
+
+  double area() const { return area_; }
+  double lowest() const { return lowest_; }  ///< Smallest height over the pad's plane.
+  Vector3d centroid_O() const { return centroid_O_ / weight_; }
+  Vector3d outward_normal_O() const { return outward_normal_O_ / weight_; }
+
+ private:
+  geometry::PatchAveraging averaging_;
+  RigidTransform X_CO_;
+  double area_ = 0.0;
+  double weight_ = 0.0;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  Vector3d centroid_O_ = Vector3d::Zero();
+  Vector3d outward_normal_O_ = Vector3d::Zero();
+};
 
 }  // namespace
 
@@ -91,44 +131,43 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   const hands::ContactPad& pad = hand.pads[pad_index];
   const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
 
-  std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);
+  const std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);
   if (faces.empty()) return std::nullopt;
   const geometry::ConvexVolume volume_O =
       hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
-  std::erase_if(faces, [&](std::int32_t face) {
-    return is_surely_outside(geometry::corners(object.mesh(), face), volume_O);
-  });
-  const std::vector<geometry::ClippedPiece> pieces = geometry::clip(object.mesh(), faces, volume_O);
-
-  // Means over the pieces, by area or plain; heights along the pad's z.
   const RigidTransform X_CO = X_OC.inverse();
-  double area = 0.0;
-  double total_weight = 0.0;
-  double gap = std::numeric_limits<double>::infinity();
-  Vector3d centroid_O = Vector3d::Zero();
-  Vector3d outward_normal_O = Vector3d::Zero();
-  for (const geometry::ClippedPiece& piece : pieces) {
-    const double weight =
-        options.averaging == geometry::PatchAveraging::AreaWeighted ? piece.area : 1.0;
-    area += piece.area;
-    total_weight += weight;
-    centroid_O += weight * piece.centroid;
-    outward_normal_O += weight * geometry::face_normal(object.mesh(), piece.face);
-    for (const Vector3d& corner_O : piece.polygon) {
-      gap = std::min(gap, (X_CO * corner_O).z());
+  SurfaceMean mean(options.averaging, X_CO);
+  std::vector<std::int32_t> cut_faces;
+  for (const std::int32_t face : faces) {
+    const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);
+    const Placement place = placement(triangle, volume_O);
+    if (place == Placement::Outside) continue;
+    const auto& [a, b, c] = triangle;
+    const Vector3d twice_area = (b - a).cross(c - a);
+    // Whether a triangle this thin has area at all is for the exact clip to say.
+    const bool is_thin =
+        twice_area.norm() <= kThinRel * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+    if (place == Placement::Unsure || is_thin) {
+      cut_faces.push_back(face);
+    } else {
+      mean.add(triangle, 0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized());
     }
   }
-  if (!(area > 0.0)) return std::nullopt;
-  centroid_O /= total_weight;
-  outward_normal_O /= total_weight;
+  for (const geometry::ClippedPiece& piece : geometry::clip(object.mesh(), cut_faces, volume_O)) {
+    mean.add(piece.polygon, piece.area, piece.centroid,
+             geometry::face_normal(object.mesh(), piece.face));
+  }
+  if (!(mean.area() > 0.0)) return std::nullopt;
+  const Vector3d outward_normal_O = mean.outward_normal_O();
   if (outward_normal_O.norm() < kSmallestMeanNormal) return std::nullopt;
 
   Contact contact;
-  contact.point_O = object.closest_point(centroid_O).point;
+  contact.point_O = object.closest_point(mean.centroid_O()).point;
   contact.inward_normal_O = -outward_normal_O.normalized();
-  contact.area = area;
+  contact.area = mean.area();
   contact.pad_boundary_distance = hands::boundary_distance(pad, (X_CO * contact.point_O).head<2>());
-  contact.gap = std::max(0.0, gap);  // corners are rounded and may lie a little behind the pad
+  contact.gap =
+      std::max(0.0, mean.lowest());  // corners are rounded and may lie a little behind the pad
   contact.link = pad.link;
   contact.pad = pad_index;
   contact.finger = pad.finger;
