@@ -149,7 +149,7 @@ def cross2(o, a, b):
 
 
 def triangulate(points, outer, holes):
-    """Ear clipping of a polygon with holes [Meisters 1975; holes by bridges]. Deterministic."""
+    """Ear clipping of a polygon whose holes are joined to it by bridges. Ties go to the first."""
     polygon = list(outer)
     # Join each hole by its rightmost vertex to the nearest polygon vertex that sees it.
     for hole in sorted(holes, key=lambda h: -max(points[i][0] for i in h)):
@@ -261,12 +261,11 @@ def barrett_palm(p):
     b = MeshBuilder()
     bottom = p["finger_1_base"][2] - p["wrist_to_knuckle_axis"]
     drum_top = bottom + p["wrist_height"]
-    # Drum with rounded edges.
+    # Drum with rounded edges; the lower one is an upper one upside down.
     radius = p["wrist_radius"]
-    rings = [b.add_ring([(x, y, bottom + (drum_top - h)) for x, y in circle(radius - d, 64)])
-             for h, d in reversed(fillet_levels(drum_top, 2.0, 3))]
-    rings += [b.add_ring([(x, y, h) for x, y in circle(radius - d, 64)])
-              for h, d in fillet_levels(drum_top, 3.0, 3)]
+    profile = [(bottom + (drum_top - h), d) for h, d in reversed(fillet_levels(drum_top, 2.0, 3))]
+    profile += fillet_levels(drum_top, 3.0, 3)
+    rings = [b.add_ring([(x, y, h) for x, y in circle(radius - d, 64)]) for h, d in profile]
     for lower, upper in zip(rings, rings[1:]):
         b.strip(lower, upper)
     b.cap(rings[0], outward_up=False)
