@@ -24,6 +24,10 @@ using geometry::RigidTransform;
 using geometry::shortest_decimal;
 
 constexpr double kSqrt3 = 1.7320508075688772;
+// A link whose points keep this far [voxels] cannot share a voxel with the surface: voxel centers
+// are up to √3/2 from points in them, on both sides, and points of the link up to a voxel from the
+// samples.
+constexpr float kNearVoxels = 3.0F;
 constexpr std::size_t kLeafSize = 8;
 
 void require(bool holds, const std::string& field, const std::string& value,
@@ -260,7 +264,7 @@ class Loop {
       if (!contact_of(part, X_OL)) return false;
     }
     for (const int link : moved) {
-      if (options_.guard == PenetrationGuard::Meshes && trial_distance_[link] == 0.0F &&
+      if (options_.guard == PenetrationGuard::Meshes && trial_distance_[link] < kNearVoxels &&
           hand_.collision().link_intersects(object_.query, link, X_OL[link])) {
         blocking_link_ = link;
         return false;
