@@ -158,11 +158,14 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
+  const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
   grasp::PlannerResult result =
       grasp::plan_grasps(object, hand, options, [&](std::int64_t attempts, std::int64_t grasps) {
-        progress.show(grasps, options.count,
+        progress.show(uses_all_attempts ? attempts : grasps,
+                      uses_all_attempts ? options.max_attempts : options.count,
                       std::to_string(grasps) + " of " + std::to_string(options.count) +
-                          " grasps, attempt " + std::to_string(attempts) + " of at most " +
+                          " grasps, attempt " + std::to_string(attempts) + " of " +
+                          (uses_all_attempts ? "" : "at most ") +
                           std::to_string(options.max_attempts));
       });
   result.timings.object = object_timings;

@@ -132,8 +132,8 @@ class BadFlags(program.ProgramTest):
                     self.refuse(f"--{flag}", value)
 
     def test_text_that_is_not_a_number(self):
-        for value in ("abc", "1.5x", "0,3", "nan", "inf", "-inf", "1e999", "0x10", "--1", " 1", "1 ",
-                      ""):
+        for value in ("abc", "1.5x", "0,3", "nan", "inf", "-inf", "1e999", "0x10", "--1", " 1",
+                      "1 ", ""):
             with self.subTest(value):
                 self.refuse(f"--alpha={value}", says="alpha")
                 self.refuse(f"--longest={value}", says="longest")

@@ -17,8 +17,8 @@ class Evaluate(program.ProgramTest):
         folder = pathlib.Path(cls.planned.name)
         (folder / "torus.off").write_text(program.off_text(*program.torus()))
         # By a relative name, so that copies of the folder refer to their own object.
-        done = program.run("plan", "torus.off", "--count", "2", "--accept", "usable", "--out", "out",
-                           cwd=folder)
+        done = program.run("plan", "torus.off", "--count", "2", "--accept", "usable",
+                           "--search", "first", "--out", "out", cwd=folder)
         assert done.returncode == 0, done.stderr
 
     def setUp(self):
@@ -55,6 +55,7 @@ class Evaluate(program.ProgramTest):
 
     def test_reproduces_other_readings_too(self):
         done = program.run("plan", self.object, "--count", "2", "--accept", "usable",
+                           "--search", "first",
                            "--measure-units", "centimeters", "--regularity", "edge-only",
                            "--centroid", "vertices", "--averaging", "plain", "--alpha", "0.7",
                            "--theta-max-deg", "40", "--clip-thickness-mm", "2.5", "--longest",

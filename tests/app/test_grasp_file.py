@@ -51,7 +51,8 @@ def clip(polygon, normal, offset):
 def area_vector(polygon):
     total = [0.0, 0.0, 0.0]
     for p, q in zip(polygon[1:], polygon[2:]):
-        total = [a + b / 2 for a, b in zip(total, cross(minus(p, polygon[0]), minus(q, polygon[0])))]
+        doubled = cross(minus(p, polygon[0]), minus(q, polygon[0]))
+        total = [a + b / 2 for a, b in zip(total, doubled)]
     return total
 
 
@@ -61,7 +62,8 @@ def planned_file():
         folder = pathlib.Path(name)
         mesh = folder / "torus.off"
         mesh.write_text(program.off_text(*program.torus()))
-        done = program.run("plan", mesh, "--count", "2", "--accept", "usable", "--out", folder / "out")
+        done = program.run("plan", mesh, "--count", "2", "--accept", "usable", "--search",
+                           "first", "--out", folder / "out")
         assert done.returncode == 0, done.stderr
         return json.loads((folder / "out/grasps.json").read_text())
 
@@ -186,8 +188,9 @@ class GraspFile(program.ProgramTest):
                     b = contacts[j]
                     line = minus(b["point_O_m"], a["point_O_m"])
                     length = math.sqrt(dot(line, line))
-                    angles = [math.acos(max(-1, min(1, s * dot(c["inward_normal_O"], line) / length)))
-                              for s, c in ((1, a), (-1, b))]
+                    cosines = [s * dot(c["inward_normal_O"], line) / length
+                               for s, c in ((1, a), (-1, b))]
+                    angles = [math.acos(max(-1, min(1, cosine))) for cosine in cosines]
                     if a["finger"] != b["finger"] and max(angles) < options["theta_max_rad"]:
                         pairs.append([i, j])
                         m2 += 1 - sum(angles) / 2 / options["theta_max_rad"]

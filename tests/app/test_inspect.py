@@ -34,7 +34,7 @@ class Inspect(InspectTest):
         self.assertAlmostEqual(float(self.row(text, "volume").split()[0]), 0.006, places=12)
         self.assertTrue(self.row(text, "voxels").endswith(" of 0.01 m"))
         counts = [int(n) for n in re.findall(r"\d+", self.row(text, "classes"))]
-        lattice = [int(n) for n in re.findall(r"\d+ x \d+ x \d+", self.row(text, "voxels"))[0].split(" x ")]
+        lattice = [int(n) for n in self.row(text, "voxels").split(" of ")[0].split(" x ")]
         self.assertEqual(sum(counts), lattice[0] * lattice[1] * lattice[2])
         self.assertTrue(self.row(text, "patches").startswith(f"{counts[1]}, "))
         self.assertIn("above 0.6", self.row(text, "above threshold"))
@@ -54,15 +54,16 @@ class Inspect(InspectTest):
     def test_size_is_checked_for_a_hand(self):
         path = self.write("box.off", program.off_text(*program.box(30, 20, 10)))
         self.inspect(path)
-        self.assert_refused("inspect", path, "--hand", "barrett", says=["30 x 20 x 10", "--longest"])
+        self.assert_refused("inspect", path, "--hand", "barrett",
+                            says=["30 x 20 x 10", "--longest"])
 
     def test_crossing_faces_are_counted(self):
         a, faces = program.box(0.1, 0.1, 0.1)
         b = [(x + 0.03, y + 0.02, z + 0.01) for x, y, z in a]
         path = self.write("two.off", program.off_text(
             a + b, faces + [tuple(i + 8 for i in face) for face in faces]))
-        pairs = int(self.row(self.inspect(path, "--self-intersections"), "crossing faces").split()[0])
-        self.assertGreater(pairs, 0)
+        text = self.inspect(path, "--self-intersections")
+        self.assertGreater(int(self.row(text, "crossing faces").split()[0]), 0)
 
 
 class VtkFiles(InspectTest):

@@ -9,6 +9,9 @@ import subprocess
 
 import program
 
+# The first grasps with M > 0 of a few attempts.
+FAST = ("--accept", "usable", "--search", "first")
+
 
 def results_text(path):
     """The results of a grasp file as its own bytes."""
@@ -19,7 +22,7 @@ def results_text(path):
 class Plan(program.ProgramTest):
     def plan(self, *flags, out="out", **options):
         done = program.run("plan", self.folder / "torus.off", "--count", "2", "--seed", "7",
-                           "--accept", "usable", "--out", self.folder / out, *flags, **options)
+                           *FAST, "--out", self.folder / out, *flags, **options)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done
 
@@ -76,8 +79,8 @@ class Plan(program.ProgramTest):
         for name in ("grasps.csv", "grasp_001.obj", "grasp_002.ply"):
             self.assertEqual((self.folder / "a" / name).read_bytes(),
                              (self.folder / "b" / name).read_bytes())
-        program.run("plan", self.folder / "torus.off", "--count", "2", "--seed", "8", "--accept",
-                    "usable", "--out", self.folder / "c")
+        program.run("plan", self.folder / "torus.off", "--count", "2", "--seed", "8", *FAST,
+                    "--out", self.folder / "c")
         self.assertNotEqual(results_text(self.folder / "a/grasps.json"),
                             results_text(self.folder / "c/grasps.json"))
 
@@ -117,7 +120,7 @@ class Plan(program.ProgramTest):
     def test_quiet_and_without_folder(self):
         self.assertEqual(self.plan("--quiet").stdout, "")
         before = self.contents()
-        done = program.run("plan", self.folder / "torus.off", "--accept", "usable")
+        done = program.run("plan", self.folder / "torus.off", *FAST)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("rank", done.stdout)
         self.assertEqual(self.contents(), before)
@@ -141,8 +144,7 @@ class Plan(program.ProgramTest):
         inches = program.off_text([[x / 0.0254 for x in vertex] for vertex in vertices], faces)
         path = self.write("inches.off", inches)
         for flags, factor in ((("--mesh-unit", "in"), 0.0254), (("--longest", "0.14"), None)):
-            done = program.run("plan", path, *flags, "--accept", "usable", "--out",
-                               self.folder / "scaled")
+            done = program.run("plan", path, *flags, *FAST, "--out", self.folder / "scaled")
             self.assertEqual(done.returncode, 0, done.stderr)
             record = json.loads((self.folder / "scaled/grasps.json").read_text())["object"]
             box = record["mesh"]["bounding_box_m"]
@@ -153,7 +155,7 @@ class Plan(program.ProgramTest):
 
 class Page(program.ProgramTest):
     def test_page_is_written_and_removed_by_a_run_without_it(self):
-        arguments = ["plan", self.write_torus(), "--accept", "usable", "--out", self.folder / "out"]
+        arguments = ["plan", self.write_torus(), *FAST, "--out", self.folder / "out"]
         done = program.run(*arguments, "--page")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertTrue((self.folder / "out/grasps.html").read_text().startswith("<!"))
@@ -166,7 +168,7 @@ class Pictures(program.ProgramTest):
         if importlib.util.find_spec("vtkmodules") is None or not shutil.which("xvfb-run"):
             print("SKIPPED: python3-vtk9 or xvfb is not installed")
             return
-        done = program.run("plan", self.write_torus(), "--accept", "usable", "--pictures", "--out",
+        done = program.run("plan", self.write_torus(), *FAST, "--pictures", "--out",
                            self.folder / "out")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual((self.folder / "out/grasp_001.png").read_bytes()[:4], b"\x89PNG")

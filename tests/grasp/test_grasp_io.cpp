@@ -1,0 +1,387 @@
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <sstream>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/random.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/option_names.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace graspfit;
+using Catch::Matchers::Contains;
+using geometry::RigidTransform;
+
+/// A folder that goes with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "graspfit-test-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+/// A Barrett hand in some pose around a ball of 5 cm radius, measured as the planner measures.
+grasp::GraspFile sample_file(const fs::path& object_file) {
+  geometry::write_mesh(object_file, geometry::ball(0.05, 2));
+  const grasp::ObjectFile object = grasp::read_object_file(object_file);
+
+  grasp::GraspFile file;
+  file.object = object.record;
+  file.object.repairs = {{"filled holes", 2, 1.25e-7}};
+  file.hand = hands::find_hand("barrett");
+  file.link_mesh_sha256.resize(file.hand.links.size());
+  for (std::size_t i = 0; i < file.hand.links.size(); ++i) {
+    if (file.hand.links[i].mesh_file.empty()) continue;
+    file.link_mesh_sha256[i] = geometry::sha256_hex(geometry::read_file(
+        fs::path(file.hand.description_file).parent_path() / file.hand.links[i].mesh_file));
+  }
+  file.options.seed = 18446744073709551615U;  // the largest there is
+  file.options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
+  file.options.wall_clock_limit_s = 12.5;
+  file.options.clip_thickness = 0.1;
+  file.options.score.normalization = grasp::ScoreNormalization::Raw;
+  file.options.targets.pair_rule = grasp::PairRule::AllPairs;
+  file.options.quality.regularity = grasp::Regularity::EdgeOnly;
+  file.options.quality.alpha = 0.1;
+  file.fingers = {"thumb", "finger_1", "finger_2"};
+  file.voxel_size = 0.1 / 30.0;
+  file.clip_thickness = 0.1;  // so thick that every pad meets the ball
+  file.merge_distance = 0.1 * file.voxel_size;
+  file.stop = grasp::PlannerStop::WallClock;
+  file.statistics.attempts = 5;
+  for (int i = 0; i <= static_cast<int>(grasp::AttemptOutcome::PoorShape); ++i) {
+    file.statistics.outcomes[static_cast<grasp::AttemptOutcome>(i)] = i;
+  }
+  file.statistics.target_failures["no seed"] = 3;
+  file.timings.fitting_s = 0.25;
+
+  const hands::HandCollision collision(file.hand);
+  const geometry::MeshQuery query(object.mesh);
+  geometry::Random random(3);
+  for (int i = 0; i < 4; ++i) {
+    hands::HandConfiguration configuration = hands::open_configuration(file.hand);
+    for (Eigen::Index j = 0; j < configuration.q.size(); ++j) {
+      const hands::Joint& joint = file.hand.joints[static_cast<std::size_t>(j)];
+      configuration.q[j] = random.uniform(joint.lower, 0.4 * joint.upper);
+    }
+    hands::apply_couplings(file.hand, configuration.q);
+    const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    configuration.X_OH =
+        Eigen::Translation3d(0.0, 0.0, 0.0) *
+        Eigen::AngleAxisd(random.uniform(-3.14, 3.14), axis.normalized()) *
+        Eigen::Translation3d(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.15);
+    const grasp::QualityContext context = grasp::quality_context(file, object.mesh);
+    grasp::Grasp measured =
+        grasp::measure_grasp(file.hand, collision, query, context, configuration, {2, 0, 1},
+                             grasp::contact_options(file), grasp::quality_options(file));
+    measured.attempt = i;
+    measured.ideal_m = 1.0 / 3.0;
+    measured.targets.contacts.resize(2);
+    measured.targets.contacts[0].score = std::numeric_limits<double>::infinity();
+    measured.targets.contacts[1].finger = 1;
+    if (i == 1) measured.squeeze = configuration;
+    if (!measured.contacts.empty()) measured.contacts[0].weak = i == 2;
+    file.grasps.push_back(measured);
+  }
+  return file;
+}
+
+/// The message of the IoError that `read_grasps` throws for a text.
+std::string refusal(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+  try {
+    grasp::read_grasps(path);
+  } catch (const geometry::IoError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+struct CommaDecimals : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile written = sample_file(folder / "ball.off");
+  grasp::write_grasps(folder / "grasps.json", written);
+  const grasp::GraspFile read = grasp::read_grasps(folder / "grasps.json");
+
+  CHECK(read.object.file == written.object.file);
+  CHECK(read.object.sha256 == written.object.sha256);
+  CHECK(read.object.center_of_mass_O == written.object.center_of_mass_O);
+  CHECK(read.object.analysis.box.max() == written.object.analysis.box.max());
+  REQUIRE(read.object.repairs.size() == 1);
+  CHECK(read.object.repairs[0].volume_change == 1.25e-7);
+  CHECK(read.hand.name == written.hand.name);
+  CHECK(read.options.seed == written.options.seed);
+  CHECK(read.options.approach_O == written.options.approach_O);
+  CHECK(read.options.wall_clock_limit_s == written.options.wall_clock_limit_s);
+  CHECK(read.options.score.normalization == written.options.score.normalization);
+  CHECK(read.options.targets.pair_rule == written.options.targets.pair_rule);
+  CHECK(read.options.quality.regularity == written.options.quality.regularity);
+  CHECK(read.options.quality.theta_max == written.options.quality.theta_max);
+  CHECK(read.fingers == written.fingers);
+  CHECK(read.voxel_size == written.voxel_size);
+  CHECK(read.stop == written.stop);
+  CHECK(read.statistics.outcomes == written.statistics.outcomes);
+  CHECK(read.statistics.target_failures == written.statistics.target_failures);
+  CHECK(read.timings.fitting_s == written.timings.fitting_s);
+
+  REQUIRE(read.grasps.size() == written.grasps.size());
+  bool some_contact = false;
+  for (std::size_t i = 0; i < read.grasps.size(); ++i) {
+    const grasp::Grasp& a = written.grasps[i];
+    const grasp::Grasp& b = read.grasps[i];
+    CHECK(b.configuration.q == a.configuration.q);
+    CHECK(b.configuration.X_OH.translation() == a.configuration.X_OH.translation());
+    CHECK(b.squeeze.has_value() == a.squeeze.has_value());
+    CHECK_FALSE(b.pre_grasp.has_value());
+    CHECK(b.quality.m == a.quality.m);
+    CHECK(b.quality.m3 == a.quality.m3);
+    CHECK(b.quality.stable_pairs.size() == a.quality.stable_pairs.size());
+    CHECK(b.ideal_m == a.ideal_m);
+    CHECK(b.penetration.object_depth == a.penetration.object_depth);
+    CHECK(b.penetration.object_link == a.penetration.object_link);
+    CHECK(b.is_valid() == a.is_valid());
+    CHECK(b.targets.contacts[0].score == a.targets.contacts[0].score);
+    CHECK(b.targets.contacts[0].finger == -1);
+    CHECK(b.targets.contacts[1].finger == 1);
+    REQUIRE(b.contacts.size() == a.contacts.size());
+    for (std::size_t j = 0; j < a.contacts.size(); ++j) {
+      some_contact = true;
+      CHECK(b.contacts[j].point_O == a.contacts[j].point_O);
+      CHECK(b.contacts[j].area == a.contacts[j].area);
+      CHECK(b.contacts[j].pad == a.contacts[j].pad);
+      CHECK(b.contacts[j].finger == a.contacts[j].finger);
+      CHECK(b.contacts[j].weak == a.contacts[j].weak);
+      CHECK(b.contacts[j].is_target == a.contacts[j].is_target);
+    }
+  }
+  CHECK(some_contact);
+}
+
+TEST_CASE("Link poses survive the way through a quaternion to 1e-15", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile written = sample_file(folder / "ball.off");
+  grasp::write_grasps(folder / "grasps.json", written);
+  const grasp::GraspFile read = grasp::read_grasps(folder / "grasps.json");
+  for (std::size_t i = 0; i < read.grasps.size(); ++i) {
+    const auto a = hands::forward_kinematics(written.hand, written.grasps[i].configuration);
+    const auto b = hands::forward_kinematics(read.hand, read.grasps[i].configuration);
+    for (std::size_t link = 0; link < a.size(); ++link) {
+      // Some roundings of 1.1e-16 in rotations, times lengths below 0.4 m for translations.
+      CHECK((a[link].linear() - b[link].linear()).cwiseAbs().maxCoeff() < 2e-15);
+      CHECK((a[link].translation() - b[link].translation()).cwiseAbs().maxCoeff() < 1e-15);
+    }
+  }
+}
+
+TEST_CASE("M computed again from a grasp file and the object is that of the file",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::write_grasps(folder / "grasps.json", sample_file(folder / "ball.off"));
+  const grasp::GraspFile file = grasp::read_grasps(folder / "grasps.json");
+  const geometry::TriangleMesh mesh = grasp::read_object(file.object);
+  const hands::HandCollision collision(file.hand);
+  const geometry::MeshQuery query(mesh);
+  const grasp::QualityContext context = grasp::quality_context(file, mesh);
+  for (const grasp::Grasp& stored : file.grasps) {
+    const grasp::Grasp again =
+        grasp::measure_grasp(file.hand, collision, query, context, stored.configuration, {2, 0, 1},
+                             grasp::contact_options(file), grasp::quality_options(file));
+    // The poses moved by about 1e-16 m; contact areas and points follow continuously.
+    CHECK(again.quality.m == Approx(stored.quality.m).margin(1e-12));
+    CHECK(again.quality.m1 == Approx(stored.quality.m1).margin(1e-12));
+    CHECK(again.contacts.size() == stored.contacts.size());
+  }
+}
+
+TEST_CASE("The program's locale does not change a byte of grasp files", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile file = sample_file(folder / "ball.off");
+  const std::string json = grasp::to_json(file);
+  const std::string csv = grasp::to_csv(file);
+  const std::string obj =
+      grasp::posed_scene_obj(geometry::ball(0.05, 1), file.hand, file.grasps[0].configuration);
+
+  const std::locale before = std::locale::global(std::locale(std::locale(), new CommaDecimals));
+  const std::string json_with_commas = grasp::to_json(file);
+  const std::string csv_with_commas = grasp::to_csv(file);
+  const std::string obj_with_commas =
+      grasp::posed_scene_obj(geometry::ball(0.05, 1), file.hand, file.grasps[0].configuration);
+  grasp::write_grasps(folder / "grasps.json", file);
+  const double read_voxel_size = grasp::read_grasps(folder / "grasps.json").voxel_size;
+  std::locale::global(before);
+
+  CHECK(json == json_with_commas);
+  CHECK(csv == csv_with_commas);
+  CHECK(obj == obj_with_commas);
+  CHECK(read_voxel_size == file.voxel_size);
+}
+
+TEST_CASE("Timings are the only thing that a second run changes", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder / "ball.off");
+  const std::string first = grasp::to_json(file);
+  file.timings.total_s = 99.0;
+  const std::string second = grasp::to_json(file);
+  CHECK(first != second);
+  const std::size_t timings = first.find("\n  \"timings\": ");
+  REQUIRE(timings != std::string::npos);
+  CHECK(first.substr(0, timings) == second.substr(0, timings));
+}
+
+TEST_CASE("Numbers of a grasp file are as short as they can be", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const std::string json = grasp::to_json(sample_file(folder / "ball.off"));
+  // Grisu2, which the JSON library prints with, gives 0.1 as such too, but not every number.
+  CHECK_THAT(json, Contains("\"alpha\": 0.1,"));
+  CHECK_THAT(json, Contains("\"approach_O\": [0.1, -0.3333333333333333, 0.7]"));
+  CHECK_THAT(json, Contains("\"seed\": 18446744073709551615,"));
+  CHECK_THAT(json, Contains("\"weak\": null"));
+  CHECK_THAT(json, Contains("\"score\": \"infinity\""));
+}
+
+TEST_CASE("A file that is not a grasp file is refused with the place and the reason",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const std::string good = grasp::to_json(sample_file(folder / "ball.off"));
+  const fs::path path = folder / "bad.json";
+  CHECK(refusal(path, good) == "accepted");
+
+  CHECK_THAT(refusal(path, ""), Contains("bad.json: is not JSON"));
+  CHECK_THAT(refusal(path, good.substr(0, good.size() / 2)), Contains("is not JSON"));
+  CHECK_THAT(refusal(path, "[]"), Contains("/: is not an object"));
+  CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
+  CHECK_THAT(refusal(path, replaced(good, "\"version\": 1", "\"version\": 2")),
+             Contains("/version: is 2"));
+  CHECK_THAT(refusal(path, replaced(good, "\"voxel_size_m\": ", "\"voxel_size_m\": -")),
+             Contains("accepted"));
+  CHECK_THAT(refusal(path, replaced(good, "\"alpha\": 0.1", "\"alpha\": 1e999")),
+             Contains("bad.json"));
+  CHECK_THAT(refusal(path, replaced(good, "\"stop\": \"wall-clock\"", "\"stop\": 3")),
+             Contains("/results/stop: is not a text"));
+  CHECK_THAT(refusal(path, replaced(good, "\"rotation_wxyz\": [", "\"rotation_wxyz\": [2, ")),
+             Contains("rotation_wxyz"));
+  const std::string hash = sample_file(folder / "ball.off").hand.sidecar_sha256;
+  CHECK_THAT(refusal(path, replaced(good, hash, std::string(64, 'f'))), Contains("sidecar"));
+}
+
+TEST_CASE("An object is read by its record, bit for bit, however it was scaled",
+          "[grasp][object_file]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "ball.obj";
+  geometry::write_mesh(path, geometry::ball(37.0, 2));
+
+  grasp::ObjectReadOptions options;
+  options.longest_extent = 0.15;
+  const grasp::ObjectFile object = grasp::read_object_file(path, options);
+  CHECK(geometry::longest_extent(object.mesh) == Approx(0.15).epsilon(1e-15));
+  CHECK(object.record.analysis.is_closed);
+  CHECK(grasp::read_object(object.record) == object.mesh);
+
+  std::ofstream(path, std::ios::app) << "# another comment\n";
+  CHECK_THROWS_WITH(grasp::read_object(object.record), Contains("ball.obj") && Contains("SHA-256"));
+  options.longest_extent = -1.0;
+  CHECK_THROWS_AS(grasp::read_object_file(path, options), geometry::InvalidInput);
+  CHECK_THROWS_WITH(grasp::read_object_file(folder / "no.obj"), Contains("no.obj"));
+}
+
+TEST_CASE("The table has a row per grasp and a unit in every column that needs one",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile file = sample_file(folder / "ball.off");
+  std::istringstream csv(grasp::to_csv(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(csv, line);) lines.push_back(line);
+  REQUIRE(lines.size() == 1 + file.grasps.size());
+  CHECK_THAT(lines[0], Contains("largest_penetration_m"));
+  CHECK_THAT(lines[0], Contains(file.hand.joints[0].name + "_rad"));
+  const auto num_commas = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  for (const std::string& line : lines) CHECK(num_commas(line) == num_commas(lines[0]));
+}
+
+TEST_CASE("A posed scene holds the object and every link where the hand has it",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile file = sample_file(folder / "ball.off");
+  const geometry::TriangleMesh object = geometry::ball(0.05, 1);
+  const hands::HandConfiguration& configuration = file.grasps[0].configuration;
+  const geometry::TriangleMesh scene = grasp::posed_scene(object, file.hand, configuration);
+
+  std::size_t num_faces = object.faces.size();
+  for (const hands::Link& link : file.hand.links) num_faces += link.mesh_L.faces.size();
+  CHECK(scene.faces.size() == num_faces);
+
+  std::ofstream(folder / "scene.obj") << grasp::posed_scene_obj(object, file.hand, configuration);
+  const std::string text = geometry::read_file(folder / "scene.obj");
+  CHECK_THAT(text, Contains("o object\n"));
+  for (const hands::Link& link : file.hand.links) {
+    if (!link.mesh_L.faces.empty()) CHECK_THAT(text, Contains("o link " + link.name + '\n'));
+  }
+  const geometry::TriangleMesh read = geometry::read_mesh(folder / "scene.obj").mesh;
+  CHECK(read.faces.size() == num_faces);
+  CHECK(geometry::bounding_box(read).isApprox(geometry::bounding_box(scene), 1e-6));
+}
+
+TEST_CASE("Every choice has a name that is read back, and no two share one",
+          "[grasp][option_names]") {
+  const auto check = [](auto value) {
+    using Enum = decltype(value);
+    std::vector<std::string_view> names;
+    for (const auto& named : grasp::named_values<Enum>()) {
+      CHECK(grasp::value_named<Enum>(named.name) == named.value);
+      CHECK(grasp::name_of(named.value) == named.name);
+      CHECK(std::count(names.begin(), names.end(), named.name) == 0);
+      names.push_back(named.name);
+    }
+    CHECK_FALSE(grasp::value_named<Enum>("no such name").has_value());
+  };
+  check(grasp::GraspStyle{});
+  check(grasp::Acceptance{});
+  check(geometry::PatchAveraging{});
+  check(grasp::ScoreNormalization{});
+  check(grasp::PlaneDistance{});
+  check(grasp::PairRule{});
+  check(grasp::MeasureUnits{});
+  check(grasp::Regularity{});
+  check(grasp::HullCentroid{});
+  check(grasp::PlannerStop{});
+  check(geometry::RepairMode{});
+  CHECK(grasp::names_of<grasp::Acceptance>() == "valid|usable|quality");
+}
+
+}  // namespace
