@@ -76,6 +76,10 @@ missing_packages() {
   done
 }
 
+# An apt-get or dpkg that was interrupted, perhaps in an earlier run of this script, leaves packages
+# half installed and refuses all work until this is called.
+finish_interrupted_install() { as_root env DEBIAN_FRONTEND=noninteractive dpkg --configure -a; }
+
 apt_get() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0 -o Acquire::Retries=3 "$@"
 }
@@ -96,6 +100,10 @@ install_packages() {
   as_root true # asks for a password here, not behind the progress line
   run_with_progress "packages: index" apt-update.log apt_get update ||
     fail "apt-get update failed"
+  if [ -n "$(dpkg --audit)" ]; then
+    run_with_progress "packages: finish what was interrupted" dpkg-configure.log \
+      finish_interrupted_install || fail "dpkg --configure -a failed"
+  fi
   # shellcheck disable=SC2086
   run_with_progress "packages: install" apt-install.log \
     apt_get install -y --no-install-recommends $missing || fail "apt-get install failed"
