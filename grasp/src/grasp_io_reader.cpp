@@ -136,6 +136,11 @@ PlannerOptions read_options(const JsonNode& planner) {
   options.quality.regularity = quality.at("regularity").choice<Regularity>();
   options.quality.centroid = quality.at("centroid").choice<HullCentroid>();
   options.quality.merge_distance = quality.at("merge_distance_m").number();
+  try {
+    options.validate();
+  } catch (const geometry::InvalidInput& error) {
+    node.fail(error.what());
+  }
   return options;
 }
 
