@@ -89,16 +89,13 @@ TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estima
 }
 
 TEST_CASE("Plain averaging counts pieces, whatever their size", "[grasp][contact_estimation]") {
-  // The same edge. box() cuts each face in two triangles along a diagonal, so the pad sees two
-  // pieces of the top and two of the wall when it sits on the middle of the edge's length, where
-  // both diagonals pass... away from the middle it may see one of each; the normal is then the
-  // bisector of +z and +x.
+  // The same edge with a pad 1 cm long at y = 0.06. The two triangles of a face meet along a diagonal,
+  // which is within 1 cm of the edge only near its ends, y = ±0.1: the pad sees one piece of the top
+  // and one of the wall, and the normal is the bisector of +z and +x although the top is larger.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.01);
   ContactEstimationOptions plain = kOptions;
   plain.averaging = geometry::PatchAveraging::Plain;
-  // A pad 1 cm long at y = 0.06: the diagonals cross the edge at its ends only and pass the pad at
-  // more than its width where |x| or z is near 0.1, so each face gives one piece.
   const auto contact = estimate_contact(hand, 1, above(0.1, 0.06, 0.1, 0.0005), box, plain);
   REQUIRE(contact);
   CHECK((contact->inward_normal_O + Vector3d(1, 0, 1).normalized()).norm() < 1e-10);
