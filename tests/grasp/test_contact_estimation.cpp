@@ -89,9 +89,10 @@ TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estima
 }
 
 TEST_CASE("Plain averaging counts pieces, whatever their size", "[grasp][contact_estimation]") {
-  // The same edge with a pad 1 cm long at y = 0.06. The two triangles of a face meet along a diagonal,
-  // which is within 1 cm of the edge only near its ends, y = ±0.1: the pad sees one piece of the top
-  // and one of the wall, and the normal is the bisector of +z and +x although the top is larger.
+  // The same edge with a pad 1 cm long at y = 0.06. The two triangles of a face meet along a
+  // diagonal, which is within 1 cm of the edge only near its ends, y = ±0.1: the pad sees one piece
+  // of the top and one of the wall, and the normal is the bisector of +z and +x although the top is
+  // larger.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.01);
   ContactEstimationOptions plain = kOptions;
