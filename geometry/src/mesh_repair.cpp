@@ -312,6 +312,9 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& opti
     step("split non-manifold vertices", split_nonmanifold(result.mesh));
     const double largest_hole = options.max_hole_extent_rel * longest_extent(result.mesh);
     step("filled holes", fill_holes(result.mesh, largest_hole));
+    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
+    step("removed doubled faces", remove_doubled_faces(result.mesh));
+    step("removed unused vertices", remove_unused_vertices(result.mesh));
     step("turned parts", turn_inside_out_parts(result.mesh));
   }
   result.after = result.steps.empty() ? result.before : analyze(result.mesh);
