@@ -113,7 +113,7 @@ Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vect
   // Each component is off by at most 8 kEps |ab| |ac|, the vector by twice that.
   const double bound = 16.0 * kEps * ab.norm() * ac.norm();
   const double length = doubled.norm();
-  if (bound <= 0x1p-40 * length && length > 0x1p-450 && length < 0x1p450) return 0.5 * doubled;
+  if (bound <= 0x1p-42 * length && length > 0x1p-450 && length < 0x1p450) return 0.5 * doubled;
   return exact_vector_area(a, b, c);
 }
 

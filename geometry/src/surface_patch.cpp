@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 
@@ -30,10 +31,11 @@ int cell_of(const VoxelLattice& lattice, int axis, double x) {
 
 // Cuts one triangle after the other at the planes of a lattice and hands out what falls in each
 // voxel.
-template <typename Visit>
+template <typename VisitWhole, typename Visit>
 class VoxelCutter {
  public:
-  VoxelCutter(const VoxelLattice& lattice, Visit visit) : lattice_(lattice), visit_(visit) {}
+  VoxelCutter(const VoxelLattice& lattice, VisitWhole visit_whole, Visit visit)
+      : lattice_(lattice), visit_whole_(visit_whole), visit_(visit) {}
 
   void cut(const std::array<Eigen::Vector3d, 3>& triangle, std::int32_t face) {
     const auto& [a, b, c] = triangle;
@@ -55,9 +57,7 @@ class VoxelCutter {
     if (internal::are_collinear(a, b, c)) return;
     face_ = face;
     if (first == last) {
-      cutter_.reset(triangle);
-      cutter_.whole(levels_[0].piece);
-      visit_(lattice_.index(first), face_, levels_[0].piece, 1.0, (a + b + c) / 3.0);
+      visit_whole_(lattice_.index(first), face_, triangle);
       return;
     }
     // Where a cut corner can be, away from its computed place (see TriangleCutter).
@@ -93,8 +93,7 @@ class VoxelCutter {
       if (!level.piece.empty()) {
         cell_[axis] = i;
         if (axis == 2) {
-          const internal::CutMeasure measure = cutter_.measure(level.piece);
-          visit_(lattice_.index(cell_), face_, level.piece, measure.fraction, measure.centroid);
+          visit_(lattice_.index(cell_), face_, level.piece, cutter_.measure(level.piece));
         } else {
           std::swap(levels_[axis + 1].rest, level.piece);
           Eigen::Vector3i piece_first = first;
@@ -122,6 +121,7 @@ class VoxelCutter {
   }
 
   const VoxelLattice& lattice_;
+  VisitWhole visit_whole_;
   Visit visit_;
   internal::TriangleCutter cutter_;
   std::array<Level, 3> levels_;
@@ -152,24 +152,59 @@ struct Pieces {
   std::vector<Eigen::Vector3d> corners;
 };
 
+// Orders pieces by voxel, keeping the order of faces within each: a few passes over digits of the
+// voxel's index, which takes a fraction of the time of comparing.
+std::vector<Piece> sorted_by_voxel(const std::vector<Piece>& pieces, std::int64_t num_voxels) {
+  constexpr int kDigitBits = 11;
+  struct Entry {
+    std::int64_t voxel;
+    std::size_t piece;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(pieces.size());
+  for (const Piece& piece : pieces) entries.push_back({piece.voxel, entries.size()});
+  std::vector<Entry> next(entries.size());
+  for (int shift = 0; (num_voxels >> shift) > 0; shift += kDigitBits) {
+    const auto digit = [&](const Entry& entry) {
+      return static_cast<std::size_t>(entry.voxel >> shift) & ((1 << kDigitBits) - 1);
+    };
+    std::array<std::size_t, (1 << kDigitBits) + 1> begin{};
+    for (const Entry& entry : entries) ++begin[digit(entry) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const Entry& entry : entries) next[begin[digit(entry)]++] = entry;
+    std::swap(entries, next);
+  }
+  std::vector<Piece> sorted;
+  sorted.reserve(pieces.size());
+  for (const Entry& entry : entries) sorted.push_back(pieces[entry.piece]);
+  return sorted;
+}
+
 Pieces all_pieces(const TriangleMesh& mesh, const VoxelLattice& lattice,
                   const std::vector<double>& face_areas) {
   check(lattice);
   Pieces result;
-  result.pieces.reserve(mesh.faces.size() * 2);
+  std::vector<Piece> pieces;
+  pieces.reserve(mesh.faces.size() * 2);
   result.corners.reserve(mesh.faces.size() * 7);
-  VoxelCutter cutter(lattice, [&](std::int64_t voxel, std::int32_t face, const CutPolygon& polygon,
-                                  double fraction, const Eigen::Vector3d& centroid) {
-    result.pieces.push_back({voxel, face, static_cast<std::int32_t>(polygon.size()),
-                             result.corners.size(), fraction * face_areas[face], centroid});
+  const auto visit_whole = [&](std::int64_t voxel, std::int32_t face,
+                               const std::array<Eigen::Vector3d, 3>& triangle) {
+    const auto& [a, b, c] = triangle;
+    pieces.push_back(
+        {voxel, face, 3, result.corners.size(), face_areas[face], a + ((b - a) + (c - a)) / 3.0});
+    result.corners.insert(result.corners.end(), triangle.begin(), triangle.end());
+  };
+  const auto visit = [&](std::int64_t voxel, std::int32_t face, const CutPolygon& polygon,
+                         const internal::CutMeasure& measure) {
+    pieces.push_back({voxel, face, static_cast<std::int32_t>(polygon.size()), result.corners.size(),
+                      measure.fraction * face_areas[face], measure.centroid});
     for (const CutCorner& corner : polygon) result.corners.push_back(corner.point);
-  });
+  };
+  VoxelCutter cutter(lattice, visit_whole, visit);
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     cutter.cut(corners(mesh, face), static_cast<std::int32_t>(face));
   }
-  std::sort(result.pieces.begin(), result.pieces.end(), [](const Piece& p, const Piece& q) {
-    return p.voxel != q.voxel ? p.voxel < q.voxel : p.face < q.face;
-  });
+  result.pieces = sorted_by_voxel(pieces, lattice.num_voxels());
   return result;
 }
 

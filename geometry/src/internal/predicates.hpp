@@ -26,9 +26,9 @@ bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
 bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
-/// Vector area of (a, b, c): along its normal, as long as its area, each within 2^-40 of its
-/// length. Unlike a cross product in doubles it keeps that promise for slivers: they are computed
-/// in rationals. Never zero unless the corners are collinear.
+/// Vector area of (a, b, c): along its normal, as long as its area, within 2^-42 of its length.
+/// Unlike a cross product in doubles it keeps that promise for slivers: they are computed in
+/// rationals. Never zero unless the corners are collinear.
 Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                      const Eigen::Vector3d& c);
 
