@@ -334,7 +334,7 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   in_b.search(a.impl().tree);
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);
-  result.depth_bound = std::max(in_a.bound, in_b.bound) + options.tolerance;
+  result.depth_bound = std::max(in_a.bound, in_b.bound);
   result.deepest_point_A = is_in_a ? in_a.point : Vector3d(X_AB * in_b.point);
   return result;
 }

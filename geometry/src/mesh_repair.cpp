@@ -304,7 +304,9 @@ RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& opti
     result.steps.push_back({what, count, after - volume});
     volume = after;
   };
-  if (options.mode == RepairMode::Repair) {
+  const bool is_good =
+      result.before.is_outward && result.before.is_manifold && defects_of(result.before).empty();
+  if (options.mode == RepairMode::Repair && !is_good) {
     step("removed degenerate faces", remove_collapsed_faces(result.mesh));
     step("removed doubled faces", remove_doubled_faces(result.mesh));
     step("removed unused vertices", remove_unused_vertices(result.mesh));

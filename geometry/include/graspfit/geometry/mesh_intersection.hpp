@@ -30,7 +30,9 @@ struct PenetrationOptions {
 /// surface that lie inside A, and the same with A and B exchanged.
 ///
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
-/// does not depend on how finely either mesh is cut. Cost: nothing if the solids do not intersect.
+/// does not depend on how finely either mesh is cut. Ends when the tolerance is met or after 50 000
+/// steps each way (wide overlaps of faces that nearly coincide); the bound holds either way.
+/// Cost: that of `do_intersect` if the solids do not intersect.
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         const PenetrationOptions& options = {});
 

@@ -42,8 +42,10 @@ class MeshQuery {
   /// Nearest surface point. Approximate to rounding (double constructions).
   ClosestPoint closest_point(const Eigen::Vector3d& point) const;
 
-  /// Exact for closed meshes whose parts do not overlap: parity of ray crossings decided with exact
-  /// predicates. Parts that overlap are united: inside any part is inside.
+  /// Exact for closed meshes: inside is where the winding number of the surface is not zero,
+  /// counted by the signed crossings of one ray with exact predicates. So parts that overlap are
+  /// united, an outward part inside another changes nothing, and an inward part inside an outward
+  /// one is a cavity. For an open mesh the answer depends on the ray.
   Containment containment(const Eigen::Vector3d& point) const;
 
   /// Distance to the surface, negative inside; sign exact, magnitude rounded.
