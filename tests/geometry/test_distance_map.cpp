@@ -1,0 +1,101 @@
+#include <cmath>
+#include <limits>
+
+#include "graspfit/geometry/distance_map.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/random.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/geometry/surface_patch.hpp"
+#include "support/catch.hpp"
+
+using namespace graspfit::geometry;
+
+namespace {
+
+VoxelGrid grid_of(const Eigen::Vector3i& counts, VoxelClass everywhere) {
+  VoxelGrid grid{{Eigen::Vector3d::Zero(), 1.0, counts}, {}};
+  grid.classes.assign(static_cast<std::size_t>(grid.lattice.num_voxels()), everywhere);
+  return grid;
+}
+
+std::vector<float> brute_force(const VoxelGrid& grid) {
+  std::vector<float> values;
+  for (std::int64_t i = 0; i < grid.lattice.num_voxels(); ++i) {
+    int best = std::numeric_limits<int>::max();
+    for (std::int64_t j = 0; j < grid.lattice.num_voxels(); ++j) {
+      if (grid.classes[j] != VoxelClass::Partial) continue;
+      best = std::min(best, (grid.lattice.voxel(i) - grid.lattice.voxel(j)).squaredNorm());
+    }
+    const float distance = best == std::numeric_limits<int>::max()
+                               ? std::numeric_limits<float>::infinity()
+                               : static_cast<float>(std::sqrt(static_cast<double>(best)));
+    values.push_back(grid.classes[i] == VoxelClass::Full ? -distance : distance);
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("The distance map is that of brute force on random grids", "[geometry][distance_map]") {
+  Random random(21);
+  for (int round = 0; round < 60; ++round) {
+    const Eigen::Vector3i counts(1 + static_cast<int>(random.index(20)),
+                                 1 + static_cast<int>(random.index(9)),
+                                 1 + static_cast<int>(random.index(9)));
+    VoxelGrid grid = grid_of(counts, VoxelClass::Empty);
+    const double density = random.uniform() < 0.5 ? 0.01 : 0.3;
+    for (VoxelClass& c : grid.classes) {
+      if (random.uniform() < density) {
+        c = VoxelClass::Partial;
+      } else if (random.uniform() < 0.5) {
+        c = VoxelClass::Full;
+      }
+    }
+    REQUIRE(signed_distance_map(grid).values == brute_force(grid));
+  }
+}
+
+TEST_CASE("Without a partial voxel all distances are infinite", "[geometry][distance_map]") {
+  for (const float value : signed_distance_map(grid_of({3, 4, 5}, VoxelClass::Empty)).values) {
+    CHECK(value == std::numeric_limits<float>::infinity());
+  }
+  CHECK(signed_distance_map(grid_of({1, 1, 1}, VoxelClass::Partial)).values ==
+        std::vector<float>{0.0F});
+}
+
+TEST_CASE("Neighboring distances of a solid differ by at most a voxel",
+          "[geometry][distance_map]") {
+  const TriangleMesh mesh = torus(0.05, 0.02, 40, 20);
+  const VoxelLattice lattice =
+      lattice_around(bounding_box(mesh), {.resolution = 24, .margin = 0.02});
+  const VoxelGrid grid = voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice));
+  const SignedDistanceMap map = signed_distance_map(grid);
+  for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
+    const Eigen::Vector3i voxel = lattice.voxel(index);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
+      // The surface is partial voxels without a gap, so the sign changes through zero.
+      if (lattice.contains(next)) CHECK(std::abs(map.at(next) - map.at(voxel)) <= 1.0F + 1e-6F);
+    }
+    const VoxelClass c = grid.classes[index];
+    CHECK((map.values[index] > 0) == (c == VoxelClass::Empty));
+    CHECK((map.values[index] < 0) == (c == VoxelClass::Full));
+  }
+}
+
+TEST_CASE("A point takes its voxel's distance, beyond the lattice more",
+          "[geometry][distance_map]") {
+  VoxelGrid grid = grid_of({3, 3, 3}, VoxelClass::Empty);
+  grid.classes[grid.lattice.index({0, 1, 1})] = VoxelClass::Partial;
+  const SignedDistanceMap map = signed_distance_map(grid);
+  CHECK(map.at(Eigen::Vector3d(2.5, 1.5, 1.5)) == 2.0F);
+  CHECK(map.at(Eigen::Vector3d(2.999, 1.001, 1.999)) == 2.0F);
+  CHECK(map.at(Eigen::Vector3d(6.5, 1.5, 1.5)) == 6.0F);
+  CHECK(map.at(Eigen::Vector3d(-3.5, 1.5, 1.5)) == 4.0F);
+  // Clamped to (2, 2, 2), whose center is (4, 3, 0) away; its own distance is sqrt 6.
+  CHECK(map.at(Eigen::Vector3d(6.5, 5.5, 2.5)) == Approx(std::sqrt(6.0) + 5.0));
+}
+
+TEST_CASE("A lattice too long for exact squares is refused", "[geometry][distance_map]") {
+  CHECK_THROWS_AS(signed_distance_map(grid_of({16385, 1, 1}, VoxelClass::Empty)), InvalidInput);
+}
