@@ -19,6 +19,14 @@ inline double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) 
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// Empty if an error message names the field and the value; the message if it does not.
+inline std::string unsaid(const std::string& message, const std::string& field,
+                          const std::string& value) {
+  const bool says_field = message.find(field) != std::string::npos;
+  const bool says_value = message.find(value) != std::string::npos;
+  return says_field && says_value ? "" : message;
+}
+
 /// Slack for comparing an angle, a length relative to 1 m or a ratio that two programs compute from
 /// the same doubles: a few hundred rounding errors.
 inline constexpr double kRounding = 1e-12;

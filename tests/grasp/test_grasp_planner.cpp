@@ -31,6 +31,7 @@ using grasp::Grasp;
 using grasp::PlannerOptions;
 using grasp::PlannerResult;
 using grasp::PlannerStop;
+using testing::unsaid;
 
 const std::vector<std::string> kNothing;
 
@@ -349,7 +350,7 @@ std::vector<NamedMesh> shapes() {
 TEST_CASE("Valid grasps keep every promise on every shape", "[grasp][grasp_planner]") {
   for (const NamedMesh& shape : shapes()) {
     INFO(shape.name);
-    const Run run(shape.mesh, collecting(Acceptance::Valid, 3, 60));
+    const Run run(shape.mesh, collecting(Acceptance::Valid, 2, 60));
     const PlannerResult result = run.plan();
     CHECK(broken_promises(run, result) == kNothing);
     CHECK_FALSE(result.grasps.empty());
@@ -357,9 +358,15 @@ TEST_CASE("Valid grasps keep every promise on every shape", "[grasp][grasp_plann
 }
 
 TEST_CASE("Usable grasps keep every promise, and none is left out", "[grasp][grasp_planner]") {
+  const bool as_published = GENERATE(false, true);
   for (const NamedMesh& shape : shapes()) {
-    INFO(shape.name);
-    const Run run(shape.mesh, collecting(Acceptance::Usable, 1000, 20));
+    PlannerOptions options = collecting(Acceptance::Usable, 1000, 6);
+    if (as_published) {
+      options.fitting.guard = grasp::PenetrationGuard::Voxels;
+      options.fitting.settle = false;
+    }
+    INFO(shape.name << (as_published ? ", guarded by voxels" : ", guarded by meshes, settled"));
+    const Run run(shape.mesh, options);
     const PlannerResult result = run.plan();
     CHECK(result.stop == PlannerStop::Attempts);
     CHECK(broken_promises(run, result) == kNothing);
@@ -375,7 +382,7 @@ TEST_CASE("High-quality grasps reach half the ideal measure or 0.6", "[grasp][gr
 }
 
 TEST_CASE("Two fingers grasp too", "[grasp][grasp_planner]") {
-  PlannerOptions options = collecting(Acceptance::Usable, 1000, 15);
+  PlannerOptions options = collecting(Acceptance::Usable, 1000, 8);
   options.num_contacts = 2;
   const Run run(geometry::box(Vector3d(0.12, 0.05, 0.05)), options);
   const PlannerResult result = run.plan();
@@ -385,7 +392,7 @@ TEST_CASE("Two fingers grasp too", "[grasp][grasp_planner]") {
 
 TEST_CASE("A wanted approach direction is kept", "[grasp][grasp_planner]") {
   for (const Vector3d& approach : {Vector3d(0, 0, -2), Vector3d(1, 1, 0.5)}) {
-    PlannerOptions options = collecting(Acceptance::Usable, 1000, 12);
+    PlannerOptions options = collecting(Acceptance::Usable, 1000, 6);
     options.approach_O = approach;
     const Run run(geometry::ball(0.05), options);
     const PlannerResult result = run.plan();
@@ -423,7 +430,7 @@ TEST_CASE("Outcomes have names of their own", "[grasp][grasp_planner]") {
 TEST_CASE("The same seed gives the same bytes, another seed another result",
           "[grasp][grasp_planner]") {
   const geometry::TriangleMesh mesh = geometry::torus(0.05, 0.018);
-  PlannerOptions options = collecting(Acceptance::Usable, 1000, 8);
+  PlannerOptions options = collecting(Acceptance::Usable, 1000, 4);
   const Run run(mesh, options);
   const std::string once = all_fields(run.plan());
   CHECK(once == all_fields(run.plan()));
@@ -436,10 +443,10 @@ TEST_CASE("The same seed gives the same bytes, another seed another result",
 TEST_CASE("An attempt's grasp depends on the seed and its number alone", "[grasp][grasp_planner]") {
   // Asking for fewer grasps, or accepting fewer, changes which are returned and not what they are.
   const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
-  const PlannerResult all = Run(mesh, collecting(Acceptance::Usable, 1000, 15)).plan();
+  const PlannerResult all = Run(mesh, collecting(Acceptance::Usable, 1000, 8)).plan();
   for (const PlannerOptions& fewer :
-       {collecting(Acceptance::Usable, 2, 15), collecting(Acceptance::Valid, 1000, 15),
-        collecting(Acceptance::Usable, 1000, 6)}) {
+       {collecting(Acceptance::Usable, 2, 8), collecting(Acceptance::Valid, 1000, 8),
+        collecting(Acceptance::Usable, 1000, 4)}) {
     const PlannerResult some = Run(mesh, fewer).plan();
     CHECK(some.grasps.size() <= all.grasps.size());
     for (const Grasp& grasp : some.grasps) {
@@ -464,7 +471,7 @@ TEST_CASE("A time limit stops the work and is recorded", "[grasp][grasp_planner]
 }
 
 TEST_CASE("A turned object is grasped as often", "[grasp][grasp_planner]") {
-  constexpr int kAttempts = 40;
+  constexpr int kAttempts = 20;
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));
   geometry::RigidTransform X_WO = geometry::RigidTransform::Identity();
   X_WO.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // 90° about z, exactly
@@ -473,10 +480,10 @@ TEST_CASE("A turned object is grasped as often", "[grasp][grasp_planner]") {
         Run(turned, collecting(Acceptance::Usable, 1000, kAttempts)).plan().statistics.usable());
   };
   const double plain = usable_of(mesh), turned = usable_of(geometry::transformed(mesh, X_WO));
-  // Both are counts out of 40 with the same chance p, so their difference has a standard deviation
-  // of at most sqrt(2 · 40 / 4) = 4.5; four of them.
+  // Both are counts out of 20 with the same chance, so their difference has a standard deviation of
+  // at most sqrt(2 · 20 / 4) = 3.2; four of them.
   INFO(plain << " and " << turned << " of " << kAttempts);
-  CHECK(std::abs(plain - turned) <= 18.0);
+  CHECK(std::abs(plain - turned) <= 13.0);
   CHECK(plain > 0.0);
   CHECK(turned > 0.0);
 }
@@ -539,35 +546,32 @@ std::string message_after(Set set) {
 }
 
 TEST_CASE("Planner options out of range are refused by name and value", "[grasp][grasp_planner]") {
-  const auto refused = [](const char* field, const char* value) {
-    return Contains(field) && Contains(value);
-  };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(PlannerOptions{}.validate());
-  CHECK_THAT(message_after([](auto& o) { o.num_contacts = 1; }), refused("num_contacts", "1"));
-  CHECK_THAT(message_after([](auto& o) { o.count = 0; }), refused("count", "0"));
-  CHECK_THAT(message_after([](auto& o) { o.max_attempts = -4; }), refused("max_attempts", "-4"));
-  CHECK_THAT(message_after([](auto& o) { o.approach_O = Vector3d(0, 0, 0); }),
-             refused("approach_O", "0"));
-  CHECK_THAT(message_after([=](auto& o) { o.approach_O = Vector3d(0, nan, 1); }),
-             refused("approach_O", "nan"));
-  CHECK_THAT(message_after([](auto& o) { o.wall_clock_limit_s = -2.5; }),
-             refused("wall_clock_limit_s", "-2.5"));
-  CHECK_THAT(message_after([](auto& o) { o.resolution = 3; }), refused("resolution", "3"));
-  CHECK_THAT(message_after([](auto& o) { o.resolution = 513; }), refused("resolution", "513"));
-  CHECK_THAT(message_after([](auto& o) { o.clip_thickness = 0.0; }),
-             refused("clip_thickness", "0"));
-  CHECK_THAT(message_after([](auto& o) { o.self_overlap = -0.125; }),
-             refused("self_overlap", "-0.125"));
+  CHECK(unsaid(message_after([](auto& o) { o.num_contacts = 1; }), "num_contacts", "1") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.count = 0; }), "count", "0") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.max_attempts = -4; }), "max_attempts", "-4") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.approach_O = Vector3d(0, 0, 0); }), "approach_O",
+               "0") == "");
+  CHECK(unsaid(message_after([=](auto& o) { o.approach_O = Vector3d(0, nan, 1); }), "approach_O",
+               "nan") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.wall_clock_limit_s = -2.5; }), "wall_clock_limit_s",
+               "-2.5") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.resolution = 3; }), "resolution", "3") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.resolution = 513; }), "resolution", "513") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.clip_thickness = 0.0; }), "clip_thickness", "0") ==
+        "");
+  CHECK(unsaid(message_after([](auto& o) { o.self_overlap = -0.125; }), "self_overlap", "-0.125") ==
+        "");
   // Options inside options.
-  CHECK_THAT(message_after([](auto& o) { o.score.neighborhood = 4; }),
-             refused("neighborhood", "4"));
-  CHECK_THAT(message_after([](auto& o) { o.targets.score_threshold = 1.5; }),
-             refused("score_threshold", "1.5"));
-  CHECK_THAT(message_after([](auto& o) { o.fitting.small_step = -0.5; }),
-             refused("small_step", "-0.5"));
-  CHECK_THAT(message_after([](auto& o) { o.quality.theta_max = 1.75; }),
-             refused("theta_max", "1.75"));
+  CHECK(unsaid(message_after([](auto& o) { o.score.neighborhood = 4; }), "neighborhood", "4") ==
+        "");
+  CHECK(unsaid(message_after([](auto& o) { o.targets.score_threshold = 1.5; }), "score_threshold",
+               "1.5") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.fitting.small_step = -0.5; }), "small_step", "-0.5") ==
+        "");
+  CHECK(unsaid(message_after([](auto& o) { o.quality.theta_max = 1.75; }), "theta_max", "1.75") ==
+        "");
 }
 
 TEST_CASE("Planning checks its options before it works", "[grasp][grasp_planner]") {
@@ -582,6 +586,9 @@ TEST_CASE("Planning checks its options before it works", "[grasp][grasp_planner]
   CHECK_THROWS_WITH(run.plan(), Contains("finger_9") && Contains("finger_1"));
   run.options = {};
   run.options.num_contacts = 4;
+  CHECK_THROWS_AS(run.plan(), geometry::InvalidInput);
+  run.options = {};
+  run.options.fingers = {"thumb"};  // N ≥ 2
   CHECK_THROWS_AS(run.plan(), geometry::InvalidInput);
 }
 
@@ -616,7 +623,6 @@ TEST_CASE("The thumb comes first where it is among the fingers asked for",
 
   options.num_contacts = 4;
   CHECK_THROWS_WITH(grasp::requested_fingers(hand, options), Contains("4") && Contains("3"));
-  CHECK_THROWS_AS(requested({"thumb"}), geometry::InvalidInput);
   CHECK_THROWS_AS(requested({"thumb", "thumb"}), geometry::InvalidInput);
   CHECK_THROWS_WITH(requested({"thumb", "pinky"}), Contains("pinky") && Contains("finger_2"));
 }

@@ -33,6 +33,7 @@ using grasp::TargetSelection;
 using grasp::TipDistanceRange;
 using grasp::TipDistances;
 using testing::broken_requirements;
+using testing::unsaid;
 
 const std::vector<std::string> kNothing;
 constexpr double kPi = std::numbers::pi;
@@ -170,10 +171,12 @@ TEST_CASE("Every target set of three meets every requirement of section 6 on eve
       TargetOptions options;
       options.pair_rule = rule;
       options.min_separation = 0.023;
-      const int num_sets = check_selections(object, distances, fingers, options, 40);
-      // A box has no three points that are pairwise in each other's cones: two are on one face.
-      if (shape.name == "box" && rule == PairRule::AllPairs) continue;
-      CHECK(num_sets >= 30);
+      // The faces of a box hold no three points that are pairwise in each other's cones: two would
+      // be on one face. Little is found, after all seeds.
+      const bool is_hopeless = shape.name == "box" && rule == PairRule::AllPairs;
+      const int num_sets =
+          check_selections(object, distances, fingers, options, is_hopeless ? 2 : 40);
+      CHECK(num_sets >= (is_hopeless ? 0 : 30));
     }
   }
 }
@@ -529,10 +532,12 @@ TEST_CASE("No voxel above the threshold: no seed", "[grasp][target_contacts]") {
 }
 
 TEST_CASE("An object wider than the fingers open: no second contact", "[grasp][target_contacts]") {
-  // On a ball a stable pair is more than 90° apart, so farther than sqrt(2) · 5 cm.
+  // On a sphere a stable pair is more than 90° apart, so farther than sqrt(2) · 5 cm = 7.07 cm.
+  // Normals of this icosphere's patches leave the radial direction by its faces' half width, 2.2°,
+  // at most: 2 · 5 cm · sin(45° − 2.2°) = 6.8 cm.
   const grasp::ObjectModel object = object_of(geometry::ball(0.05));
   for (const std::vector<int>& fingers : {std::vector<int>{0, 1}, std::vector<int>{0, 1, 2}}) {
-    const TargetSelection selection = select(object, equal_reach(3, 0.0, 0.070), fingers, {}, 1);
+    const TargetSelection selection = select(object, equal_reach(3, 0.0, 0.067), fingers, {}, 1);
     CHECK_FALSE(selection.targets);
     CHECK(selection.failure == TargetFailure::NoSecond);
     CHECK(selection.seeds_tried == 200);
@@ -567,7 +572,7 @@ TEST_CASE("No more seeds are tried than allowed", "[grasp][target_contacts]") {
     TargetOptions options;
     options.max_seeds = max_seeds;
     const TargetSelection selection =
-        select(object, equal_reach(3, 0.0, 0.070), {0, 1}, options, 1);
+        select(object, equal_reach(3, 0.0, 0.067), {0, 1}, options, 1);
     CHECK_FALSE(selection.targets);
     CHECK(selection.seeds_tried == max_seeds);
   }
@@ -592,31 +597,27 @@ TEST_CASE("Target options out of range are refused by name and value", "[grasp][
     return std::string("nothing thrown");
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  using Catch::Contains;
-  const auto refused = [](const char* field, const char* value) {
-    return Contains(field) && Contains(value);
-  };
   CHECK_NOTHROW(TargetOptions{}.validate());
-  CHECK_THAT(message_of([](auto& o) { o.score_threshold = -0.25; }),
-             refused("score_threshold", "-0.25"));
-  CHECK_THAT(message_of([](auto& o) { o.score_threshold = 1.0; }), refused("score_threshold", "1"));
-  CHECK_THAT(message_of([=](auto& o) { o.score_threshold = nan; }),
-             refused("score_threshold", "nan"));
-  CHECK_THAT(message_of([](auto& o) { o.theta_max = 0.0; }), refused("theta_max", "0"));
-  CHECK_THAT(message_of([](auto& o) { o.theta_max = 1.75; }), refused("theta_max", "1.75"));
-  CHECK_THAT(message_of([=](auto& o) { o.theta_max = nan; }), refused("theta_max", "nan"));
-  CHECK_THAT(message_of([](auto& o) { o.edge_tolerance_rel = -0.5; }),
-             refused("edge_tolerance_rel", "-0.5"));
-  CHECK_THAT(message_of([](auto& o) { o.centroid_limit_rel = -0.5; }),
-             refused("centroid_limit_rel", "-0.5"));
-  CHECK_THAT(message_of([](auto& o) { o.pool_fraction = 0.0; }), refused("pool_fraction", "0"));
-  CHECK_THAT(message_of([](auto& o) { o.pool_fraction = 1.5; }), refused("pool_fraction", "1.5"));
-  CHECK_THAT(message_of([](auto& o) { o.pool_minimum = 0; }), refused("pool_minimum", "0"));
-  CHECK_THAT(message_of([](auto& o) { o.max_seeds = 0; }), refused("max_seeds", "0"));
-  CHECK_THAT(message_of([](auto& o) { o.relax_after_seeds = -3; }),
-             refused("relax_after_seeds", "-3"));
-  CHECK_THAT(message_of([](auto& o) { o.min_separation = -0.125; }),
-             refused("min_separation", "-0.125"));
+  CHECK(unsaid(message_of([](auto& o) { o.score_threshold = -0.25; }), "score_threshold",
+               "-0.25") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.score_threshold = 1.0; }), "score_threshold", "1") == "");
+  CHECK(unsaid(message_of([=](auto& o) { o.score_threshold = nan; }), "score_threshold", "nan") ==
+        "");
+  CHECK(unsaid(message_of([](auto& o) { o.theta_max = 0.0; }), "theta_max", "0") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.theta_max = 1.75; }), "theta_max", "1.75") == "");
+  CHECK(unsaid(message_of([=](auto& o) { o.theta_max = nan; }), "theta_max", "nan") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.edge_tolerance_rel = -0.5; }), "edge_tolerance_rel",
+               "-0.5") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.centroid_limit_rel = -0.5; }), "centroid_limit_rel",
+               "-0.5") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.pool_fraction = 0.0; }), "pool_fraction", "0") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.pool_fraction = 1.5; }), "pool_fraction", "1.5") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.pool_minimum = 0; }), "pool_minimum", "0") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.max_seeds = 0; }), "max_seeds", "0") == "");
+  CHECK(unsaid(message_of([](auto& o) { o.relax_after_seeds = -3; }), "relax_after_seeds", "-3") ==
+        "");
+  CHECK(unsaid(message_of([](auto& o) { o.min_separation = -0.125; }), "min_separation",
+               "-0.125") == "");
 }
 
 TEST_CASE("The centroid of targets is the midpoint, the triangle's centroid, the mean of more",
