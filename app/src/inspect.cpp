@@ -49,7 +49,8 @@ std::string vector_text(const Eigen::Vector3d& v) {
          fixed_decimal(v.z(), 6) + ')';
 }
 
-/// "closed, manifold, outward; 3 parts; 2 degenerate faces": defects only where there are any.
+/// "8 vertices, 12 faces, 1 part; closed, manifold, outward; degenerate faces 2": defects only
+/// where there are any.
 std::string analysis_text(const MeshAnalysis& mesh) {
   std::string text = std::to_string(mesh.num_vertices) + " vertices, " +
                      std::to_string(mesh.num_faces) + " faces, " + std::to_string(mesh.num_parts) +
@@ -58,7 +59,7 @@ std::string analysis_text(const MeshAnalysis& mesh) {
   text += mesh.is_manifold ? ", manifold" : ", not manifold";
   if (mesh.is_closed) text += mesh.is_outward ? ", outward" : ", inside-out";
   const auto defect = [&text](std::size_t count, const char* what) {
-    if (count > 0) text += "; " + std::to_string(count) + ' ' + what;
+    if (count > 0) text += std::string("; ") + what + ' ' + std::to_string(count);
   };
   defect(mesh.num_unused_vertices, "unused vertices");
   defect(mesh.num_degenerate_faces, "degenerate faces");

@@ -161,12 +161,15 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
   grasp::PlannerResult result =
       grasp::plan_grasps(object, hand, options, [&](std::int64_t attempts, std::int64_t grasps) {
-        progress.show(uses_all_attempts ? attempts : grasps,
-                      uses_all_attempts ? options.max_attempts : options.count,
-                      std::to_string(grasps) + " of " + std::to_string(options.count) +
-                          " grasps, attempt " + std::to_string(attempts) + " of " +
-                          (uses_all_attempts ? "" : "at most ") +
-                          std::to_string(options.max_attempts));
+        const std::string attempt =
+            "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
+        const std::string found = std::to_string(grasps) + " grasps";
+        if (uses_all_attempts) {
+          progress.show(attempts, options.max_attempts, attempt + ", " + found);
+        } else {
+          progress.show(grasps, options.count,
+                        found + " of " + std::to_string(options.count) + ", " + attempt);
+        }
       });
   result.timings.object = object_timings;
   progress.clear();

@@ -57,13 +57,16 @@ Json conventions() {
        "m1^w1 * m2^w2 * m3^w3; 0 if there are fewer than two contacts, no stable pair, or m3 <= 0"},
       {"m1",
        "mean over contacts of (boundary_distance + alpha * area) * strength, the listed "
-       "sustainability_terms"},
+       "sustainability_terms: pad_boundary_distance_m and area_m2, normalized (over the pad's "
+       "largest_boundary_distance_m and area_m2, at most 1 each) or in centimeters"},
       {"m2", "sum over stable pairs of 1 - angle_rad / theta_max"},
       {"m3", "regularity - beta * scaled_centroid_distance"},
       {"stable_pair",
        "contacts of different fingers whose connecting line lies inside both friction cones; the "
        "angle is the mean of its angles to the two normals"},
-      {"centroid_distance_m", "from the centroid of the contacts' hull to the center of mass"},
+      {"centroid_distance_m",
+       "from the centroid of the contacts' hull to the center of mass; scaled: over the object's "
+       "normalizing_radius_m, or in centimeters"},
       {"usable", "m > 0"},
       {"valid",
        "usable, no link shares a point with the object or another link that is not excluded, and "

@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   std::to_string(targets.relax_after_seeds) + " seeds"},
       {"A20", "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +
                   std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
-                  " seeds per set"},
+                  " seeds per set; the second of three or more from all"},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23", options.approach_O

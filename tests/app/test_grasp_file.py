@@ -177,9 +177,12 @@ class GraspFile(program.ProgramTest):
         pads = {pad["name"]: pad for pad in self.data["hand"]["pads"]}
         for grasp in self.data["results"]["grasps"]:
             contacts = grasp["contacts"]
-            m1 = sum(c["pad_boundary_distance_m"] / pads[c["pad"]]["largest_boundary_distance_m"]
-                     + options["alpha"] * c["area_m2"] / pads[c["pad"]]["area_m2"]
-                     for c in contacts) / len(contacts)
+            m1 = 0.0
+            for c in contacts:
+                pad = pads[c["pad"]]
+                d = c["pad_boundary_distance_m"] / pad["largest_boundary_distance_m"]
+                m1 += min(1, d) + options["alpha"] * min(1, c["area_m2"] / pad["area_m2"])
+            m1 /= len(contacts)
             self.assertAlmostEqual(grasp["m1"], m1, delta=1e-12)
 
             m2, pairs = 0.0, []

@@ -44,7 +44,7 @@ class Inspect(InspectTest):
         faces = [(a, c, b) for a, b, c in faces[2:]]  # inside out, with a hole
         text = self.inspect(self.write("bad.off", program.off_text(vertices, faces)))
         self.assertIn("open", self.row(text, "before repair"))
-        self.assertIn("4 boundary edges", self.row(text, "before repair"))
+        self.assertIn("boundary edges 4", self.row(text, "before repair"))
         self.assertIn("filled holes 1", text)
         self.assertIn("turned parts 1", text)
         self.assertIn("closed, manifold, outward", self.row(text, "after repair"))
