@@ -31,6 +31,7 @@ using grasp::Grasp;
 using grasp::PlannerOptions;
 using grasp::PlannerResult;
 using grasp::PlannerStop;
+using grasp::SearchRule;
 using testing::unsaid;
 
 const std::vector<std::string> kNothing;
@@ -184,16 +185,25 @@ std::vector<std::string> broken_promises(const Run& run, const PlannerResult& re
 
   // Number and order of grasps.
   const std::int64_t num_grasps = static_cast<std::int64_t>(result.grasps.size());
-  if (result.stop == PlannerStop::Count && num_grasps != options.count) {
-    report(num_grasps, " grasps of ", options.count);
-  }
-  if (result.stop == PlannerStop::Attempts &&
-      (num_grasps >= options.count || statistics.attempts != options.max_attempts)) {
-    report("stopped by attempts with ", num_grasps, " grasps, ", statistics.attempts, " attempts");
-  }
+  if (num_grasps > options.count) report(num_grasps, " grasps of ", options.count);
   if (result.stop == PlannerStop::WallClock) report("stopped by the clock");
-  const std::int64_t num_acceptable =
-      options.acceptance == Acceptance::Valid ? statistics.valid() : statistics.usable();
+  const bool used_all = statistics.attempts == options.max_attempts;
+  if (options.search == SearchRule::Best && (!used_all || result.stop != PlannerStop::Attempts)) {
+    report("stopped before all attempts: ", statistics.attempts);
+  }
+  if (result.stop == PlannerStop::Count && num_grasps != options.count) {
+    report("stopped with ", num_grasps, " grasps of ", options.count);
+  }
+  if (result.stop == PlannerStop::Attempts && !used_all) {
+    report("stopped by attempts after ", statistics.attempts);
+  }
+  if (options.search == SearchRule::First && result.stop == PlannerStop::Attempts &&
+      num_grasps == options.count) {
+    report("had its grasps and went on");
+  }
+  const std::int64_t num_acceptable = std::min<std::int64_t>(
+      options.count,
+      options.acceptance == Acceptance::Valid ? statistics.valid() : statistics.usable());
   if (options.acceptance == Acceptance::Quality ? num_grasps > num_acceptable
                                                 : num_grasps != num_acceptable) {
     report(num_grasps, " grasps, statistics say ", num_acceptable);
@@ -323,8 +333,10 @@ std::vector<std::string> broken_promises(const Run& run, const PlannerResult& re
   return broken;
 }
 
+/// Stops at the first `count` grasps.
 PlannerOptions collecting(Acceptance acceptance, int count, int max_attempts) {
   PlannerOptions options;
+  options.search = SearchRule::First;
   options.acceptance = acceptance;
   options.count = count;
   options.max_attempts = max_attempts;
@@ -456,6 +468,21 @@ TEST_CASE("An attempt's grasp depends on the seed and its number alone", "[grasp
       CHECK(all_fields(*same) == all_fields(grasp));
     }
   }
+}
+
+TEST_CASE("The best of all attempts are those that collecting all of them ranks first",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::ball(0.05);
+  const PlannerResult all = Run(mesh, collecting(Acceptance::Usable, 1000, 8)).plan();
+  REQUIRE(all.grasps.size() >= 3);
+  PlannerOptions options = collecting(Acceptance::Usable, 2, 8);
+  options.search = SearchRule::Best;
+  const Run run(mesh, options);
+  const PlannerResult best = run.plan();
+  CHECK(broken_promises(run, best) == kNothing);
+  REQUIRE(best.grasps.size() == 2);
+  CHECK(all_fields(best.grasps[0]) == all_fields(all.grasps[0]));
+  CHECK(all_fields(best.grasps[1]) == all_fields(all.grasps[1]));
 }
 
 TEST_CASE("A time limit stops the work and is recorded", "[grasp][grasp_planner]") {
