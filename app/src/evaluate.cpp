@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/hands/hand_collision.hpp"
@@ -62,15 +64,18 @@ Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   return comparison;
 }
 
+/// The object's file: where the user says, where the record says, or beside the grasp file.
 std::filesystem::path find_object(const Flags& flags, const grasp::ObjectRecord& record) {
   if (flags.has("object")) return flags.text("object");
   const std::filesystem::path file = record.file;
   const std::filesystem::path beside =
       std::filesystem::path(flags.positional()).parent_path() / file.filename();
   std::error_code error;
-  if (!std::filesystem::exists(file, error) && std::filesystem::exists(beside, error))
-    return beside;
-  return file;
+  for (const std::filesystem::path& candidate : {file, beside}) {
+    if (std::filesystem::exists(candidate, error)) return candidate;
+  }
+  throw geometry::IoError("the object's file " + record.file +
+                          " is not there; --object FILE says where it is");
 }
 
 std::string table_of(const std::vector<Comparison>& comparisons) {

@@ -48,7 +48,7 @@ void watch_interrupts() {
     if (sigwait(&signals, &signal) != 0) return;
     // Held to the end: whoever waits for it does not go on.
     state().mutex.lock();
-    if (state().child > 0) kill(state().child, SIGTERM);
+    if (state().child > 0) kill(-state().child, SIGTERM);
     if (state().cleanup) state().cleanup();
     _exit(128 + signal);
   }).detach();
@@ -85,7 +85,9 @@ ProgramEnd run_program(const std::vector<std::string>& arguments) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  // A group of its own, so that an interrupt reaches what the program starts in turn.
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   pid_t child = -1;
   int error = 0;
   without_interrupts([&] {

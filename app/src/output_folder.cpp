@@ -32,6 +32,12 @@ fs::path make_hidden_folder(const fs::path& parent, const fs::path& target) {
   return name;
 }
 
+/// The folder's absolute path without a trailing slash.
+fs::path absolute_path(const fs::path& folder) {
+  const fs::path absolute = fs::absolute(folder).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
 /// The nearest folder above a path that exists.
 fs::path existing_ancestor(fs::path path) {
   std::error_code error;
@@ -46,7 +52,7 @@ fs::path existing_ancestor(fs::path path) {
 OutputFolder::OutputFolder(fs::path target, IsOurs is_ours)
     : target_(std::move(target)), is_ours_(std::move(is_ours)) {
   if (target_.empty()) fail("\"\"", "has no name");
-  const fs::path absolute = fs::absolute(target_).lexically_normal();
+  const fs::path absolute = absolute_path(target_);
   const fs::path existing = existing_ancestor(absolute);
   std::error_code error;
   if (!fs::is_directory(existing, error)) fail(target_, existing.string() + " is not a folder");
@@ -63,19 +69,18 @@ void OutputFolder::discard() {
   if (!staging_.empty()) fs::remove_all(staging_, error);
   // Folders made on the way to the target go too, unless somebody has put something there.
   if (first_created_.empty()) return;
-  fs::path folder = fs::absolute(target_).lexically_normal().parent_path();
+  fs::path folder = absolute_path(target_).parent_path();
   while (fs::remove(folder, error) && folder != first_created_) folder = folder.parent_path();
 }
 
 const fs::path& OutputFolder::staging() {
   if (!staging_.empty()) return staging_;
-  const fs::path absolute = fs::absolute(target_).lexically_normal();
+  const fs::path absolute = absolute_path(target_);
   std::error_code error;
   if (fs::is_directory(absolute, error)) {
     staging_ = make_hidden_folder(absolute, target_);
   } else {
-    const fs::path name = absolute.has_filename() ? absolute : absolute.parent_path();
-    const fs::path parent = name.parent_path();
+    const fs::path parent = absolute.parent_path();
     const fs::path existing = existing_ancestor(parent);
     for (fs::path folder = parent; folder != existing; folder = folder.parent_path()) {
       first_created_ = folder;
@@ -91,7 +96,7 @@ const fs::path& OutputFolder::staging() {
 void OutputFolder::commit(const std::string& last_file) {
   staging();
   without_interrupts([&] {
-    const fs::path absolute = fs::absolute(target_).lexically_normal();
+    const fs::path absolute = absolute_path(target_);
     std::error_code error;
     if (!fs::exists(absolute, error)) {
       fs::rename(staging_, absolute, error);

@@ -82,7 +82,8 @@ class Evaluate(program.ProgramTest):
     def test_object_that_is_gone_moved_or_another_one(self):
         moved = self.folder / "elsewhere.off"
         self.object.rename(moved)
-        self.assert_refused("evaluate", self.file, says="torus.off", cwd=self.folder)
+        self.assert_refused("evaluate", self.file, says=["torus.off", "--object"],
+                            cwd=self.folder)
         self.assertEqual(self.evaluate(self.file, "--object", moved).returncode, 0)
         shutil.copy(moved, self.folder / "out/torus.off")  # beside the grasp file
         self.assertEqual(self.evaluate(self.file).returncode, 0)
