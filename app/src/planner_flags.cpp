@@ -105,6 +105,10 @@ po::options_description planner_options() {
              "bounding box's diagonal [R, A19]");
   add_number(target, "pool-fraction", targets.pool_fraction,
              "share of the ranked candidates that is drawn from, above 0 to 1 [R, A20]");
+  add_integer(
+      target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
+      "target sets drawn per attempt; the one that suits the fingertips' directions best is "
+      "fitted [R]; 1: the paper's random set");
   add_integer(target, "max-seeds", static_cast<std::uint64_t>(targets.max_seeds),
               "seeds tried per target set [R, A20]");
   add_number(target, "clearance-mm", defaults.fitting.clearance * 1000.0,
@@ -172,6 +176,7 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   options.seed = flags.unsigned_integer("seed");
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
   options.search = flags.choice<grasp::SearchRule>("search");
+  options.target_draws = flags.integer("target-draws");
   options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
   options.fitting.settle = flags.yes_or_no("settle");
   options.max_attempts = flags.integer("max-attempts");

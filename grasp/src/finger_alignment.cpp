@@ -183,6 +183,48 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
   return best;
 }
 
+double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
+                const PalmPlacement& placement) {
+  constexpr int kSamples = 24;  // of each closing joint: 6 degrees for a finger that turns by 140
+  const Vector3d direction = placement.direction_O.normalized();
+  const hands::HandConfiguration start =
+      aligned_open_hand(hand, targets, direction, hands::largest_reach(hand));
+  const Vector3d center = start.X_OH * hand.palm.center_H;
+  const auto distance_from_axis = [&](const Vector3d& point) {
+    const Vector3d offset = point - center;
+    return (offset - offset.dot(direction) * direction).norm();
+  };
+  double largest = 0.0;
+  for (const TargetContact& target : targets.contacts) {
+    const hands::Finger& finger = hand.fingers[target.finger];
+    const auto closing = std::find_if(finger.joints.begin(), finger.joints.end(), [&](int joint) {
+      return hand.joints[joint].closing_sign != 0 && !hand.joints[joint].coupling;
+    });
+    if (closing == finger.joints.end()) continue;
+    const hands::Joint& joint = hand.joints[*closing];
+    const double wanted = distance_from_axis(target.point_O);
+    double best_error = std::numeric_limits<double>::infinity();
+    double tilt = 0.0;
+    hands::HandConfiguration trial = start;
+    for (int sample = 0; sample <= kSamples; ++sample) {
+      const double share = static_cast<double>(sample) / kSamples;
+      trial.q[*closing] = joint.lower + share * (joint.upper - joint.lower);
+      hands::apply_couplings(hand, trial.q);
+      const RigidTransform X_OC =
+          hands::pad_pose(hand, finger.tip_pad, hands::forward_kinematics(hand, trial));
+      const double error = std::abs(distance_from_axis(X_OC.translation()) - wanted);
+      if (error < best_error) {
+        best_error = error;
+        const Vector3d pad_normal = X_OC.linear() * Vector3d::UnitZ();
+        const Vector3d inward = -target.outward_normal_O;
+        tilt = std::atan2(pad_normal.cross(inward).norm(), pad_normal.dot(inward));
+      }
+    }
+    largest = std::max(largest, tilt);
+  }
+  return largest;
+}
+
 std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
                                            const std::optional<Vector3d>& approach_O) {
   constexpr int kDirectionsAroundAxis = 16;  // for two targets (A23)

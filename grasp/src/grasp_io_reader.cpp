@@ -81,6 +81,7 @@ PlannerOptions read_options(const JsonNode& planner) {
   options.max_attempts = node.at("max_attempts").small_integer();
   options.acceptance = node.at("acceptance").choice<Acceptance>();
   options.search = node.at("search").choice<SearchRule>();
+  options.target_draws = node.at("target_draws").small_integer();
   if (const JsonNode approach = node.at("approach_O"); !approach.is_null()) {
     options.approach_O = approach.vector3();
   }

@@ -225,6 +225,7 @@ Json options_json(const PlannerOptions& options) {
           {"max_attempts", options.max_attempts},
           {"acceptance", choice(options.acceptance)},
           {"search", choice(options.search)},
+          {"target_draws", options.target_draws},
           {"approach_O", options.approach_O ? to_json(*options.approach_O) : Json(nullptr)},
           {"wall_clock_limit_s", or_null(options.wall_clock_limit_s)},
           {"resolution", options.resolution},

@@ -85,6 +85,18 @@ double widest_opening(const TipDistances& distances, const std::vector<int>& fin
   return widest;
 }
 
+const char* failure_name(TargetFailure failure) {
+  switch (failure) {
+    case TargetFailure::NoSeed:
+      return "no seed";
+    case TargetFailure::NoSecond:
+      return "no second";
+    case TargetFailure::NoFurther:
+      return "no further";
+  }
+  return "";
+}
+
 GraspPenetration measure_penetration(const hands::HandCollision& collision,
                                      const geometry::MeshQuery& object,
                                      const std::vector<geometry::RigidTransform>& X_OL) {
@@ -125,8 +137,9 @@ class Run {
     for (int outcome = 0; outcome <= static_cast<int>(AttemptOutcome::PoorShape); ++outcome) {
       result_.statistics.outcomes[static_cast<AttemptOutcome>(outcome)] = 0;
     }
-    for (const char* failure : {"no seed", "no second", "no further"}) {
-      result_.statistics.target_failures[failure] = 0;
+    for (const TargetFailure failure :
+         {TargetFailure::NoSeed, TargetFailure::NoSecond, TargetFailure::NoFurther}) {
+      result_.statistics.target_failures[failure_name(failure)] = 0;
     }
     result_.stop = PlannerStop::Attempts;
     for (std::int64_t number = 0; number < options_.max_attempts; ++number) {
@@ -179,46 +192,66 @@ class Run {
     ++statistics.attempts;
     geometry::Random random =
         geometry::Random::stream(options_.seed, static_cast<std::uint64_t>(number));
-    TargetSelection selection;
-    {
-      const Stopwatch watch(result_.timings.targets_s);
-      selection = select_target_contacts(object_, distances_, fingers_, options_.targets, random);
-    }
-    statistics.seeds_tried += selection.seeds_tried;
-    if (!selection.targets) {
-      ++statistics.outcomes[AttemptOutcome::NoTargets];
-      ++statistics.target_failures[selection.failure == TargetFailure::NoSeed     ? "no seed"
-                                   : selection.failure == TargetFailure::NoSecond ? "no second"
-                                                                                  : "no further"];
-      return;
-    }
     std::optional<Candidate> best;
-    for (const PalmPlacement& placement :
-         palm_placements(object_, *selection.targets, options_.approach_O)) {
-      Candidate candidate = fit(*selection.targets, placement, number);
+    for (const Start& start : draw_starts(random)) {
+      Candidate candidate = fit(start, number);
       const bool is_better = !best || candidate.outcome < best->outcome;
       if (is_better) best = std::move(candidate);
       if (best->grasp && is_accepted(*best->grasp)) break;
     }
-    // With an approach cone, a triangle whose plane holds the approach has no placement at all.
-    const AttemptOutcome outcome = best ? best->outcome : AttemptOutcome::NoTargets;
-    ++statistics.outcomes[outcome];
-    if (!best) ++statistics.target_failures["no further"];
+    ++statistics.outcomes[best ? best->outcome : AttemptOutcome::NoTargets];
     if (best && best->grasp && is_accepted(*best->grasp)) {
       result_.grasps.push_back(std::move(*best->grasp));
     }
   }
 
+  /// Assigned targets and the side from which to reach for them.
+  struct Start {
+    TargetContacts targets;
+    PalmPlacement placement;
+  };
+
+  /// Draws target sets and returns the sides of the one whose targets suit the fingertips best, the
+  /// better side first. Empty if the first draw fails: the reason is counted.
+  std::vector<Start> draw_starts(geometry::Random& random) {
+    const Stopwatch watch(result_.timings.targets_s);
+    std::vector<Start> best;
+    double best_tilt = std::numeric_limits<double>::infinity();
+    for (int draw = 0; draw < options_.target_draws; ++draw) {
+      const TargetSelection selection =
+          select_target_contacts(object_, distances_, fingers_, options_.targets, random);
+      result_.statistics.seeds_tried += selection.seeds_tried;
+      if (!selection.targets) {
+        if (draw == 0) ++result_.statistics.target_failures[failure_name(selection.failure)];
+        break;  // the search gave up after many seeds of its own
+      }
+      std::vector<Start> sides;
+      std::vector<double> tilts;
+      for (const PalmPlacement& placement :
+           palm_placements(object_, *selection.targets, options_.approach_O)) {
+        sides.push_back(
+            {assign_fingers(hand_, *selection.targets, fingers_, placement), placement});
+        tilts.push_back(pad_tilt(hand_, sides.back().targets, placement));
+      }
+      if (sides.empty()) continue;  // no side within 90 degrees of the approach direction
+      if (options_.target_draws == 1) return sides;
+      const auto least = std::min_element(tilts.begin(), tilts.end());
+      if (*least >= best_tilt) continue;
+      best_tilt = *least;
+      std::rotate(sides.begin(), sides.begin() + (least - tilts.begin()),
+                  sides.begin() + (least - tilts.begin()) + 1);
+      best = std::move(sides);
+    }
+    return best;
+  }
+
   /// One hand fitted to one target set from one side.
-  Candidate fit(const TargetContacts& targets, const PalmPlacement& placement,
-                std::int64_t number) {
+  Candidate fit(const Start& start, std::int64_t number) {
     FittingResult fitted;
-    TargetContacts assigned;
     {
       const Stopwatch watch(result_.timings.fitting_s);
-      assigned = assign_fingers(hand_, targets, fingers_, placement);
-      fitted =
-          fit_hand(fitting_hand_, object_, assigned, placement, contact_options_, options_.fitting);
+      fitted = fit_hand(fitting_hand_, object_, start.targets, start.placement, contact_options_,
+                        options_.fitting);
     }
     result_.statistics.fitting_iterations += fitted.iterations;
     result_.timings.contact_tests_s += fitted.contact_tests_s;
@@ -236,7 +269,7 @@ class Run {
     }
     Grasp grasp;
     grasp.configuration = fitted.configuration;
-    grasp.targets = assigned;
+    grasp.targets = start.targets;
     grasp.contacts = fitted.contacts;
     grasp.has_all_contacts = true;
     grasp.attempt = number;
@@ -244,7 +277,7 @@ class Run {
     {
       const Stopwatch watch(result_.timings.measure_s);
       grasp.quality = contact_quality(grasp.contacts, context_, options_.quality);
-      grasp.ideal_m = ideal_m(assigned);
+      grasp.ideal_m = ideal_m(start.targets);
     }
     if (!grasp.is_usable()) {
       const bool is_unstable = grasp.quality.stable_pairs.empty();
@@ -325,6 +358,7 @@ void PlannerOptions::validate() const {
     require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
             shortest_decimal(*clip_thickness), "finite and > 0 m");
   }
+  require(target_draws >= 1, "target_draws", std::to_string(target_draws), ">= 1");
   require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap",
           shortest_decimal(self_overlap), "finite and >= 0 m");
   score.validate();

@@ -545,7 +545,7 @@ float smallest_distance(const FittingHand& hand, int link, const RigidTransform&
   std::array<Open, 128> open;  // the tree is balanced: its depth is the logarithm of the points
   std::size_t size = 0;
   open[size++] = {0, bound(samples.balls[0])};
-  while (size > 0 && smallest >= 0.0F) {
+  while (size > 0) {
     const Open next = open[--size];
     if (next.bound >= smallest) continue;
     const FittingHand::Ball& ball = samples.balls[next.ball];

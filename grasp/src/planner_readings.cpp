@@ -47,7 +47,9 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   std::to_string(targets.relax_after_seeds) + " seeds"},
       {"A20", "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +
                   std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
-                  " seeds per set; the second of three or more from all"},
+                  " seeds per set; the second of three or more from all; fitted: the flattest for "
+                  "the fingertip pads of " +
+                  std::to_string(options.target_draws) + " sets"},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23", options.approach_O

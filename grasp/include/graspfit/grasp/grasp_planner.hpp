@@ -56,6 +56,10 @@ struct PlannerOptions {
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score;
   TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
+  /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
+  /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
+  /// kinematics [R]. 1: the paper's random set, the side with more room first.
+  int target_draws = 8;
   FittingOptions fitting;
   double self_overlap =
       0.001;               ///< Overlap of links of different fingers that a formed grasp may have

@@ -112,12 +112,19 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const std::vector<int>& fingers, const PalmPlacement& placement);
 
+/// How far the fingertip pads would be from lying flat on assigned targets: for every finger,
+/// closed until its pad is as far from the palm's axis as its target, the angle between the pad's
+/// normal and the inward normal of the target; the largest of them [rad]. The kinematic part of
+/// choosing targets that "the hand can plausibly reach" (paper section 1; no formula there) [R].
+double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
+                const PalmPlacement& placement);
+
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
 /// of five steps (section 8) under the penetration guard (section 9).
 ///
-/// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0). Penetration
-/// of the true meshes by less than a voxel is possible and is decided elsewhere
-/// (hands::HandCollision).
+/// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0), and, with the
+/// guard on meshes, no link intersects the object. With the guard on voxels the true meshes may
+/// intersect. Links of the hand may intersect each other in either case.
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        const TargetContacts& targets, const PalmPlacement& placement,
                        const ContactEstimationOptions& contact_options,
