@@ -189,6 +189,19 @@ class Help(program.ProgramTest):
         for library in ("graspfit", "CGAL", "Eigen", "assimp", "Boost", "compiler"):
             self.assertRegex(done.stdout, rf"(?m)^{library} +\S*\d+\.\d+|^{library} +\S+ \d+\.\d+")
 
+    def test_reproduction_page_names_flags_and_fields_that_exist(self):
+        page = (program.SOURCE_DIR / "REPRODUCTION.md").read_text()
+        flags = set(re.findall(r"--[a-z][a-z0-9-]+", page)) - {"--help"}
+        self.assertGreater(len(flags), 20)
+        text = program.run("plan", "--help").stdout
+        for flag in flags:
+            self.assertRegex(text, rf"(?m)^  {flag}\b")
+        headers = "".join(path.read_text() for path in program.SOURCE_DIR.glob(
+            "grasp/include/graspfit/grasp/*.hpp"))
+        for options, field in re.findall(r"`(\w+Options)::(\w+)`", page):
+            self.assertIn(f"struct {options} ", headers)
+            self.assertRegex(headers, rf"\b{field}\b")
+
 
 if __name__ == "__main__":
     program.main()
