@@ -21,6 +21,7 @@ try:
     from selenium import webdriver
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.utils import is_connectable
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
@@ -30,6 +31,17 @@ except ImportError as error:
 
 PAGES = None
 PICTURES = None
+
+
+class LoopbackService(Service):
+    """The driver by address: a bare system may have no /etc/hosts, and then no "localhost"."""
+
+    @property
+    def service_url(self):
+        return f"http://127.0.0.1:{self.port}"
+
+    def is_connectable(self):
+        return is_connectable(self.port, "127.0.0.1")
 
 
 def start_browser(chromium, chromedriver, profile):
@@ -53,7 +65,7 @@ def start_browser(chromium, chromedriver, profile):
     ):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(chromedriver), options=options)
+    return webdriver.Chrome(service=LoopbackService(chromedriver), options=options)
 
 
 class PageInBrowser(unittest.TestCase):
