@@ -190,10 +190,6 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
   const hands::HandConfiguration start =
       aligned_open_hand(hand, targets, direction, hands::largest_reach(hand));
   const Vector3d center = start.X_OH * hand.palm.center_H;
-  const auto distance_from_axis = [&](const Vector3d& point) {
-    const Vector3d offset = point - center;
-    return (offset - offset.dot(direction) * direction).norm();
-  };
   double largest = 0.0;
   for (const TargetContact& target : targets.contacts) {
     const hands::Finger& finger = hand.fingers[target.finger];
@@ -202,25 +198,41 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
     });
     if (closing == finger.joints.end()) continue;
     const hands::Joint& joint = hand.joints[*closing];
-    const double wanted = distance_from_axis(target.point_O);
-    double best_error = std::numeric_limits<double>::infinity();
-    double tilt = 0.0;
+    const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
+    const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
     hands::HandConfiguration trial = start;
-    for (int sample = 0; sample <= kSamples; ++sample) {
-      const double share = static_cast<double>(sample) / kSamples;
-      trial.q[*closing] = joint.lower + share * (joint.upper - joint.lower);
+    const auto pad_at = [&](double share) {
+      trial.q = start.q;  // a breakaway joint must not keep the position of a more closed sample
+      trial.q[*closing] = open + share * (closed - open);
       hands::apply_couplings(hand, trial.q);
-      const RigidTransform X_OC =
-          hands::pad_pose(hand, finger.tip_pad, hands::forward_kinematics(hand, trial));
-      const double error = std::abs(distance_from_axis(X_OC.translation()) - wanted);
-      if (error < best_error) {
-        best_error = error;
-        const Vector3d pad_normal = X_OC.linear() * Vector3d::UnitZ();
-        const Vector3d inward = -target.outward_normal_O;
-        tilt = std::atan2(pad_normal.cross(inward).norm(), pad_normal.dot(inward));
+      return hands::pad_pose(hand, finger.tip_pad, hands::forward_kinematics(hand, trial));
+    };
+    // Along the direction in which the open finger looks, so that a pad beyond the axis counts as
+    // closer.
+    Vector3d outward = pad_at(0.0).translation() - center;
+    outward -= outward.dot(direction) * direction;
+    outward.normalize();
+    const auto distance_from_axis = [&](const Vector3d& point) {
+      return (point - center).dot(outward);
+    };
+    const double wanted = distance_from_axis(target.point_O);
+    double before = 0.0;
+    double excess_before = distance_from_axis(pad_at(0.0).translation()) - wanted;
+    double share = 0.0;
+    for (int sample = 1; sample <= kSamples && excess_before > 0.0; ++sample) {
+      share = static_cast<double>(sample) / kSamples;
+      const double excess = distance_from_axis(pad_at(share).translation()) - wanted;
+      if (excess <= 0.0) {
+        share = before + (share - before) * excess_before / (excess_before - excess);
+        break;
       }
+      before = share;
+      excess_before = excess;
     }
-    largest = std::max(largest, tilt);
+    const Vector3d pad_normal = pad_at(share).linear() * Vector3d::UnitZ();
+    const Vector3d inward = -target.outward_normal_O;
+    largest =
+        std::max(largest, std::atan2(pad_normal.cross(inward).norm(), pad_normal.dot(inward)));
   }
   return largest;
 }

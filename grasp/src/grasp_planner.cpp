@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
@@ -168,7 +169,32 @@ class Run {
   }
 
  private:
-  /// A grasp and how good an end of the attempt it is; smaller outcomes are better.
+  /// How far an attempt that ended so had come.
+  static int stage(AttemptOutcome outcome) {
+    switch (outcome) {
+      case AttemptOutcome::NoTargets:
+        return 0;
+      case AttemptOutcome::InitialCollision:
+        return 1;
+      case AttemptOutcome::IterationLimit:
+        return 2;
+      case AttemptOutcome::BlockedFinger:
+      case AttemptOutcome::MissedContact:
+        return 3;
+      case AttemptOutcome::Unstable:
+      case AttemptOutcome::PoorShape:
+        return 4;
+      case AttemptOutcome::SelfCollision:
+        return 5;
+      case AttemptOutcome::UsableOnly:
+        return 6;
+      case AttemptOutcome::Valid:
+        return 7;
+    }
+    return 0;
+  }
+
+  /// How one fit ended.
   struct Candidate {
     AttemptOutcome outcome = AttemptOutcome::NoTargets;
     std::optional<Grasp> grasp;
@@ -195,14 +221,23 @@ class Run {
     std::optional<Candidate> best;
     for (const Start& start : draw_starts(random)) {
       Candidate candidate = fit(start, number);
-      const bool is_better = !best || candidate.outcome < best->outcome;
-      if (is_better) best = std::move(candidate);
+      if (!best || is_better(candidate, *best)) best = std::move(candidate);
       if (best->grasp && is_accepted(*best->grasp)) break;
     }
     ++statistics.outcomes[best ? best->outcome : AttemptOutcome::NoTargets];
     if (best && best->grasp && is_accepted(*best->grasp)) {
       result_.grasps.push_back(std::move(*best->grasp));
     }
+  }
+
+  /// An accepted grasp before any other, a grasp before a failure, a failure at a later stage
+  /// before an earlier one.
+  bool is_better(const Candidate& a, const Candidate& b) const {
+    const auto rank = [this](const Candidate& candidate) {
+      const bool is_taken = candidate.grasp && is_accepted(*candidate.grasp);
+      return std::make_tuple(is_taken, stage(candidate.outcome));
+    };
+    return rank(a) > rank(b);
   }
 
   /// Assigned targets and the side from which to reach for them.
@@ -212,17 +247,18 @@ class Run {
   };
 
   /// Draws target sets and returns the sides of the one whose targets suit the fingertips best, the
-  /// better side first. Empty if the first draw fails: the reason is counted.
+  /// better side first. Empty if no draw has any: the reason is counted.
   std::vector<Start> draw_starts(geometry::Random& random) {
     const Stopwatch watch(result_.timings.targets_s);
     std::vector<Start> best;
+    TargetFailure failure = TargetFailure::NoFurther;  // no side within 90 degrees of the approach
     double best_tilt = std::numeric_limits<double>::infinity();
     for (int draw = 0; draw < options_.target_draws; ++draw) {
       const TargetSelection selection =
           select_target_contacts(object_, distances_, fingers_, options_.targets, random);
       result_.statistics.seeds_tried += selection.seeds_tried;
       if (!selection.targets) {
-        if (draw == 0) ++result_.statistics.target_failures[failure_name(selection.failure)];
+        failure = selection.failure;
         break;  // the search gave up after many seeds of its own
       }
       std::vector<Start> sides;
@@ -233,7 +269,7 @@ class Run {
             {assign_fingers(hand_, *selection.targets, fingers_, placement), placement});
         tilts.push_back(pad_tilt(hand_, sides.back().targets, placement));
       }
-      if (sides.empty()) continue;  // no side within 90 degrees of the approach direction
+      if (sides.empty()) continue;
       if (options_.target_draws == 1) return sides;
       const auto least = std::min_element(tilts.begin(), tilts.end());
       if (*least >= best_tilt) continue;
@@ -242,6 +278,7 @@ class Run {
                   sides.begin() + (least - tilts.begin()) + 1);
       best = std::move(sides);
     }
+    if (best.empty()) ++result_.statistics.target_failures[failure_name(failure)];
     return best;
   }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
@@ -23,10 +24,9 @@ using geometry::InvalidInput;
 using geometry::RigidTransform;
 using geometry::shortest_decimal;
 
-constexpr double kSqrt3 = 1.7320508075688772;
-// A link whose points keep this far [voxels] cannot share a voxel with the surface: voxel centers
-// are up to √3/2 from points in them, on both sides, and points of the link up to a voxel from the
-// samples.
+// A link whose samples keep this far [voxels] cannot meet the surface: a sample and a point of the
+// surface are each up to √3/2 from the centers of their voxels, and a point of the link is up
+// to 1.44 spacings (at most 0.85 voxel) from a sample.
 constexpr float kNearVoxels = 3.0F;
 constexpr std::size_t kLeafSize = 8;
 
@@ -130,6 +130,7 @@ class Loop {
     result.configuration = configuration_;
     if (!is_clear) {
       result.stop = FittingStop::InitialCollision;
+      result.smallest_distance = distance_over(all_links_);
       return result;
     }
     while (result.iterations < options_.max_iterations && num_free() > 0) {
@@ -224,16 +225,29 @@ class Loop {
     const double limit = 2.0 * hands::largest_reach(model_) + extent;
     for (double retreat = 0.0; retreat <= limit; retreat += voxel_size_) {
       commit(start);
-      if (*std::min_element(link_distance_.begin(), link_distance_.end()) > 0.0F) return true;
+      if (is_clear()) return true;
       start.X_OH.pretranslate(-voxel_size_ * direction);
     }
     return false;
   }
 
+  bool is_clear() const {
+    return std::all_of(all_links_.begin(), all_links_.end(), [&](int link) {
+      return link_distance_[link] > 0.0F && !cuts_object(link, link_distance_[link], X_OL_[link]);
+    });
+  }
+
+  /// The exact part of the guard.
+  bool cuts_object(int link, float d_min, const RigidTransform& X_OL) const {
+    return options_.guard == PenetrationGuard::Meshes && d_min < kNearVoxels &&
+           hand_.collision().link_intersects(object_.query, link, X_OL);
+  }
+
   /// Motion of the fastest point allowed to something at distance `d_min` [m] (section 9, A30).
   double step_at(float d_min) const {
     const double voxels = d_min >= options_.large_step_at
-                              ? std::min(d_min - 1.0, options_.large_step_limit)
+                              ? std::clamp(d_min - 1.0, options_.small_step,
+                                           std::max(options_.small_step, options_.large_step_limit))
                               : options_.small_step;
     return voxels * voxel_size_;
   }
@@ -264,8 +278,7 @@ class Loop {
       if (!contact_of(part, X_OL)) return false;
     }
     for (const int link : moved) {
-      if (options_.guard == PenetrationGuard::Meshes && trial_distance_[link] < kNearVoxels &&
-          hand_.collision().link_intersects(object_.query, link, X_OL[link])) {
+      if (cuts_object(link, trial_distance_[link], X_OL[link])) {
         blocking_link_ = link;
         return false;
       }
@@ -347,13 +360,15 @@ class Loop {
     while (motion >= options_.settle_tolerance) {
       const int joint = part.closing_joint;
       const double step = motion / lever(joint) * model_.joints[joint].closing_sign;
+      const bool is_at_limit = is_at_closing_limit(joint);
       const bool is_done =
-          is_at_closing_limit(joint) ||
+          is_at_limit ||
           !try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint]);
       if (is_done) motion /= 2;
       // The tip may go on where only the link behind it is stopped.
-      const bool is_stopped_behind = is_done && motion < options_.settle_tolerance &&
-                                     blocking_link_ >= 0 && blocking_link_ != part.tip_link;
+      const bool is_stopped_behind =
+          is_done && motion < options_.settle_tolerance &&
+          (is_at_limit || (blocking_link_ >= 0 && blocking_link_ != part.tip_link));
       if (is_stopped_behind && break_away(part)) motion = options_.small_step * voxel_size_;
     }
   }
@@ -506,8 +521,8 @@ void FittingOptions::validate() const {
   require(max_iterations >= 1, "max_iterations", std::to_string(max_iterations), ">= 1");
   require(finite_positive(settle_tolerance), "settle_tolerance", shortest_decimal(settle_tolerance),
           "finite and > 0 m");
-  require(sample_spacing >= 0.05 && sample_spacing <= 1.0, "sample_spacing",
-          shortest_decimal(sample_spacing), "in [0.05, 1] voxels");
+  require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing",
+          shortest_decimal(sample_spacing), "in [0.05, 0.85] voxels");
 }
 
 FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
@@ -533,10 +548,11 @@ float smallest_distance(const FittingHand& hand, int link, const RigidTransform&
   float smallest = enough + 0.5F;
   if (samples.balls.empty()) return smallest;
   const double voxels_per_meter = 1.0 / map.lattice.voxel_size;
-  // Values change by at most one per voxel between voxel centers, and a point is within √3/2 of its
-  // own.
+  // Values change by at most √2 per voxel between voxel centers (voxels that meet in an edge may be
+  // +1 and −1; beyond the lattice as well), and a point is within √3/2 of its own center.
   const auto bound = [&](const FittingHand::Ball& ball) {
-    return map.at(Vector3d(X_OL * ball.center_L)) - ball.radius * voxels_per_meter - kSqrt3;
+    return map.at(Vector3d(X_OL * ball.center_L)) -
+           std::numbers::sqrt2 * (ball.radius * voxels_per_meter + std::numbers::sqrt3);
   };
   struct Open {
     std::int32_t ball;
@@ -579,6 +595,10 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
       throw InvalidInput(
           "fit_hand: a target is assigned to finger " + std::to_string(target.finger) + " of " +
           std::to_string(hand.model().fingers.size()) + "; call assign_fingers first");
+    }
+    if (hand.model().fingers[target.finger].tip_pad < 0) {
+      throw InvalidInput("fit_hand: finger " + hand.model().fingers[target.finger].name +
+                         " has no fingertip pad");
     }
   }
   return Loop(hand, object, targets, contact_options, options).run(placement);

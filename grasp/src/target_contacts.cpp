@@ -222,6 +222,7 @@ TipDistances tip_distances(const hands::HandModel& hand, int samples_per_joint) 
   distances.ranges.assign(num_fingers, std::vector<TipDistanceRange>(num_fingers));
   for (std::size_t a = 0; a < num_fingers; ++a) {
     for (std::size_t b = a + 1; b < num_fingers; ++b) {
+      if (hand.fingers[a].tip_pad < 0 || hand.fingers[b].tip_pad < 0) continue;
       const std::vector<int> joints =
           joints_of_pair(hand, static_cast<int>(a), static_cast<int>(b));
       const double grid = std::pow(samples_per_joint, static_cast<double>(joints.size()));

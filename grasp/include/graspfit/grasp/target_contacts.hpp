@@ -25,7 +25,7 @@ struct TipDistanceRange {
 };
 
 /// Tip distance ranges of every pair of fingers, by sampling independent joints on a grid (A18).
-/// `ranges[a][b]` is symmetric; the diagonal is zero.
+/// `ranges[a][b]` is symmetric; the diagonal and fingers without a fingertip pad have zero.
 struct TipDistances {
   std::vector<std::vector<TipDistanceRange>> ranges;
 };
