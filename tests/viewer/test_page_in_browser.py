@@ -57,6 +57,7 @@ def start_browser(chromium, chromedriver, profile):
         "--disable-background-networking",
         "--disable-component-update",
         "--disable-sync",
+        "--remote-debugging-pipe",  # or the driver, too, looks for "localhost"
         "--no-first-run",
         "--no-proxy-server",
         "--force-device-scale-factor=1",
