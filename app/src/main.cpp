@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
       graspfit::app::run_and_report(std::vector<std::string>(argv + 1, argv + argc));
   // A full disk or a closed pipe shows only now.
   if (std::fflush(stdout) != 0 && code == graspfit::app::kSuccess) {
+    std::fputs("graspfit: standard output could not be written\n", stderr);
     return graspfit::app::kInternalError;
   }
   return code;

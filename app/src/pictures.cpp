@@ -1,5 +1,6 @@
 #include "pictures.hpp"
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ void require_pictures() {
   find_script();
   if (run_program({GRASPFIT_PYTHON, "-c", "import vtkmodules"}).code != 0) {
     throw geometry::IoError("--pictures: needs VTK for " GRASPFIT_PYTHON "; install python3-vtk9");
+  }
+  const bool has_display = std::getenv("DISPLAY") != nullptr;
+  if (!has_display && run_program({"/bin/sh", "-c", "command -v xvfb-run"}).code != 0) {
+    throw geometry::IoError("--pictures: there is no display; install xvfb and xauth");
   }
 }
 
