@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Checks that README.md shows the program and the project that the tests build, and its output.
+"""Checks that README.md shows the program and the project that the tests build, and its output,
+and that the files it links to exist.
 
 Usage: check_readme.py README.md PROJECT_DIRECTORY OUTPUT_FILE
 
@@ -30,6 +31,9 @@ def main():
     printed = output.read_text(encoding="utf-8")
     if without_numbers(printed) not in map(without_numbers, code_blocks(markdown, "text")):
         failures.append(f"README.md: no text block looks like the program's output:\n{printed}")
+    for target in re.findall(r"\]\(([^)#:]+)\)", markdown):
+        if not (readme.parent / target).exists():
+            failures.append(f"README.md: links to {target}, which does not exist")
     print("\n".join(failures))
     return 1 if failures else 0
 
