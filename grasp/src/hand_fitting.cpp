@@ -1,13 +1,10 @@
 #include "graspfit/grasp/hand_fitting.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <set>
-#include <span>
 #include <string>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -28,65 +25,10 @@ using geometry::shortest_decimal;
 // surface are each up to √3/2 from the centers of their voxels, and a point of the link is up
 // to 1.44 spacings (at most 0.85 voxel) from a sample.
 constexpr float kNearVoxels = 3.0F;
-constexpr std::size_t kLeafSize = 8;
 
 void require(bool holds, const std::string& field, const std::string& value,
              const std::string& range) {
   if (!holds) throw InvalidInput("FittingOptions: " + field + " = " + value + ", must be " + range);
-}
-
-/// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
-/// `spacing`; then one point of each cell of half that size, the first.
-std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
-  std::vector<Vector3d> points = mesh.vertices;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const auto [a, b, c] = geometry::corners(mesh, face);
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const int n = static_cast<int>(std::ceil(longest / spacing));
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; i + j <= n; ++j) {
-        const bool is_corner = (i == 0 && j == 0) || i == n || j == n;
-        if (!is_corner) points.push_back(a + (b - a) * (double(i) / n) + (c - a) * (double(j) / n));
-      }
-    }
-  }
-  std::set<std::array<std::int64_t, 3>> taken;
-  std::erase_if(points, [&](const Vector3d& point) {
-    const Vector3d cell = (point / (0.5 * spacing)).array().floor();
-    return !taken
-                .insert({static_cast<std::int64_t>(cell[0]), static_cast<std::int64_t>(cell[1]),
-                         static_cast<std::int64_t>(cell[2])})
-                .second;
-  });
-  return points;
-}
-
-/// Adds the ball of points [first, last) and, split at the median of the longest extent, those
-/// below it.
-void add_ball(FittingHand::LinkSamples& samples, std::size_t first, std::size_t last) {
-  const std::span<Vector3d> points(samples.points_L.data() + first, last - first);
-  Eigen::AlignedBox3d box;
-  for (const Vector3d& point : points) box.extend(point);
-  FittingHand::Ball ball;
-  ball.center_L = box.center();
-  for (const Vector3d& point : points) {
-    ball.radius = std::max(ball.radius, (point - ball.center_L).norm());
-  }
-  const std::size_t index = samples.balls.size();
-  samples.balls.push_back(ball);
-  if (points.size() <= kLeafSize) {
-    samples.balls[index].first = static_cast<std::int32_t>(first);
-    samples.balls[index].count = static_cast<std::int32_t>(points.size());
-    return;
-  }
-  Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const std::size_t half = points.size() / 2;
-  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
-                   [axis](const Vector3d& a, const Vector3d& b) { return a[axis] < b[axis]; });
-  add_ball(samples, first, first + half);
-  samples.balls[index].first = static_cast<std::int32_t>(samples.balls.size());
-  add_ball(samples, first + half, last);
 }
 
 /// A finger that has a target, while the loop runs.
@@ -523,61 +465,6 @@ void FittingOptions::validate() const {
           "finite and > 0 m");
   require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing",
           shortest_decimal(sample_spacing), "in [0.05, 0.85] voxels");
-}
-
-FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
-    : model_(hand), collision_(hand) {
-  if (!(sample_spacing > 0.0) || !std::isfinite(sample_spacing)) {
-    throw InvalidInput("FittingHand: sample_spacing = " + shortest_decimal(sample_spacing) +
-                       ", must be a positive length in meters");
-  }
-  for (const hands::Link& link : hand.links) {
-    LinkSamples& samples = samples_.emplace_back();
-    samples.points_L = surface_points(link.mesh_L, sample_spacing);
-    for (const Vector3d& point : samples.points_L) {
-      samples.reach = std::max(samples.reach, point.norm());
-    }
-    if (!samples.points_L.empty()) add_ball(samples, 0, samples.points_L.size());
-  }
-}
-
-float smallest_distance(const FittingHand& hand, int link, const RigidTransform& X_OL,
-                        const geometry::SignedDistanceMap& map, float enough) {
-  const FittingHand::LinkSamples& samples = hand.samples(link);
-  // Anything above `enough` is as good as this.
-  float smallest = enough + 0.5F;
-  if (samples.balls.empty()) return smallest;
-  const double voxels_per_meter = 1.0 / map.lattice.voxel_size;
-  // Values change by at most √2 per voxel between voxel centers (voxels that meet in an edge may be
-  // +1 and −1; beyond the lattice as well), and a point is within √3/2 of its own center.
-  const auto bound = [&](const FittingHand::Ball& ball) {
-    return map.at(Vector3d(X_OL * ball.center_L)) -
-           std::numbers::sqrt2 * (ball.radius * voxels_per_meter + std::numbers::sqrt3);
-  };
-  struct Open {
-    std::int32_t ball;
-    double bound;
-  };
-  std::array<Open, 128> open;  // the tree is balanced: its depth is the logarithm of the points
-  std::size_t size = 0;
-  open[size++] = {0, bound(samples.balls[0])};
-  while (size > 0) {
-    const Open next = open[--size];
-    if (next.bound >= smallest) continue;
-    const FittingHand::Ball& ball = samples.balls[next.ball];
-    if (ball.count > 0) {
-      for (std::int32_t i = 0; i < ball.count; ++i) {
-        smallest = std::min(smallest, map.at(Vector3d(X_OL * samples.points_L[ball.first + i])));
-      }
-      continue;
-    }
-    const Open left = {next.ball + 1, bound(samples.balls[next.ball + 1])};
-    const Open right = {ball.first, bound(samples.balls[ball.first])};
-    const bool is_left_nearer = left.bound < right.bound;
-    open[size++] = is_left_nearer ? right : left;
-    open[size++] = is_left_nearer ? left : right;
-  }
-  return smallest;
 }
 
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
