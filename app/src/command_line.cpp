@@ -142,7 +142,8 @@ std::string help_text(const Command& command) {
        << "\n  -h [ --help ]                       print this text\n";
   if (!command.epilog.empty()) text << '\n' << command.epilog;
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
-          "line says why,\nnothing is written); 3 no grasp found; 4 evaluate: M differs.\n";
+          "line says why,\nnothing is written, except that grasps are kept if drawing their "
+          "pictures fails); 3 no grasp\nfound; 4 evaluate: M differs.\n";
   return text.str();
 }
 

@@ -68,7 +68,7 @@ std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
 /// Exact: a repeated index, or three collinear corners.
 bool is_degenerate(const TriangleMesh& mesh, std::size_t face);
 
-/// The faces of one part as a mesh of its own (vertices kept, so indices stay).
+/// The faces of one part, in order, as a mesh of its own: only the vertices they use, renumbered.
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& parts,
                      std::int32_t part);
 

@@ -37,6 +37,8 @@ struct MeshAnalysisOptions {
 };
 
 /// Analyzes a mesh of any quality. Throws nothing on bad meshes: that is what it is for.
+/// Precondition, not checked: every index of a face is that of a vertex, and coordinates are finite
+/// (`read_mesh` sees to both).
 MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& options = {});
 
 /// What to do with a mesh that is not a closed outward surface.

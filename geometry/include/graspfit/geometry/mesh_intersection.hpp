@@ -38,10 +38,13 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
 
 /// Smallest distance between two surfaces that do not intersect, with witness points [m].
 struct MeshDistance {
-  double distance = 0.0;  ///< Zero if the solids intersect.
-  Eigen::Vector3d point_on_a_A;
-  Eigen::Vector3d point_on_b_A;
+  double distance = 0.0;         ///< Zero if the solids intersect.
+  Eigen::Vector3d point_on_a_A;  ///< Meaningless (the origin) if the solids intersect.
+  Eigen::Vector3d point_on_b_A;  ///< As `point_on_a_A`.
 };
+
+/// Whether the solids intersect is exact, as by `do_intersect`; otherwise distance and points are
+/// approximate, to rounding.
 MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
 
 }  // namespace graspfit::geometry
