@@ -228,6 +228,7 @@ PolygonSoup parse_text_stl(std::string_view content) {
       soup.vertices.emplace_back(x, y, z);
       ++in_facet;
     } else if (keyword == "outer") {
+      if (is_in_loop) text.fail("a loop inside a loop");
       soup.polygon_begin.push_back(soup.corners.size());
       in_facet = 0;
       is_in_loop = true;

@@ -304,6 +304,10 @@ TEST_CASE("Bad PLY and STL files get one clear line", "[geometry][mesh_io]") {
   CHECK(
       error_of(folder.file("b.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n")) ==
       "line 4: coordinate inf is not finite");
+  CHECK(error_of(folder.file("loop.stl",
+                             "solid x\nfacet normal 0 0 1\nouter loop\nouter loop\n"
+                             "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n")) ==
+        "line 4: a loop inside a loop");
   CHECK(error_of(folder.file("c.stl", "solid x\nendsolid x\n")) == "no vertices and no faces");
   CHECK(error_of(folder.file("d.stl", "solid gold\nwatch\n")) ==
         "line 2: expected a facet, found 'watch'");
