@@ -167,10 +167,10 @@ Json hand_json(const GraspFile& file) {
   const hands::HandModel& hand = file.hand;
   Json links = Json::array();
   for (std::size_t i = 0; i < hand.links.size(); ++i) {
-    const bool has_file = !hand.links[i].mesh_file.empty();
+    const bool has_file = !hand.links[i].mesh_files.empty();
     links.push_back(
         {{"name", hand.links[i].name},
-         {"mesh_file", has_file ? Json(hand.links[i].mesh_file) : Json(nullptr)},
+         {"mesh_files", hand.links[i].mesh_files},
          {"mesh_sha256", has_file ? Json(file.link_mesh_sha256.at(i)) : Json(nullptr)}});
   }
   Json joints = Json::array();

@@ -38,12 +38,12 @@ void check_hash(const std::string& what, const std::string& found, const std::st
 }  // namespace
 
 std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand) {
-  const fs::path folder = fs::path(hand.description_file).parent_path();
+  const fs::path folder = fs::weakly_canonical(hand.description_file).parent_path();
   std::vector<std::string> hashes;
   for (const hands::Link& link : hand.links) {
-    hashes.push_back(link.mesh_file.empty()
-                         ? std::string()
-                         : geometry::sha256_hex(geometry::read_file(folder / link.mesh_file)));
+    std::string bytes;
+    for (const std::string& file : link.mesh_files) bytes += geometry::read_file(folder / file);
+    hashes.push_back(link.mesh_files.empty() ? std::string() : geometry::sha256_hex(bytes));
   }
   return hashes;
 }

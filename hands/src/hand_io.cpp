@@ -97,8 +97,9 @@ TriangleMesh scaled_by(TriangleMesh mesh, const Eigen::Vector3d& scale) {
 }
 
 /// The surface of one <visual> or <collision> in the link's frame. Primitives are inscribed: their
-/// vertices lie on the round surface.
-TriangleMesh surface(const UrdfGeometry& part, const fs::path& urdf_file, const std::string& item) {
+/// vertices lie on the round surface. The file of a <mesh> is added to `mesh_files`.
+TriangleMesh surface(const UrdfGeometry& part, const fs::path& urdf_file, const std::string& item,
+                     std::vector<std::string>& mesh_files) {
   const TriangleMesh mesh_G = std::visit(
       Overloaded{
           [](const internal::UrdfBox& box) { return geometry::box(box.size); },
@@ -107,8 +108,10 @@ TriangleMesh surface(const UrdfGeometry& part, const fs::path& urdf_file, const 
           },
           [](const internal::UrdfSphere& sphere) { return geometry::ball(sphere.radius, 3); },
           [&](const internal::UrdfMesh& mesh) {
-            return scaled_by(geometry::read_mesh(mesh_path(urdf_file, mesh.filename, item)).mesh,
-                             mesh.scale);
+            const fs::path file = mesh_path(urdf_file, mesh.filename, item);
+            const fs::path folder = fs::weakly_canonical(urdf_file).parent_path();
+            mesh_files.push_back(file.lexically_relative(folder).generic_string());
+            return scaled_by(geometry::read_mesh(file).mesh, mesh.scale);
           }},
       part.shape);
   return transformed(mesh_G, part.X_LG);
@@ -121,7 +124,7 @@ void read_surface(const UrdfLink& source, const fs::path& urdf_file, Link& link)
   const std::string item = urdf_file.string() + ": link " + source.name;
   std::vector<TriangleMesh> meshes;
   for (const UrdfGeometry& part : parts) {
-    TriangleMesh mesh = surface(part, urdf_file, item);
+    TriangleMesh mesh = surface(part, urdf_file, item, link.mesh_files);
     const geometry::MeshAnalysis analysis = geometry::analyze(mesh);
     if (!analysis.is_closed || !analysis.is_manifold || !analysis.is_outward) {
       try {
@@ -131,9 +134,6 @@ void read_surface(const UrdfLink& source, const fs::path& urdf_file, Link& link)
       }
     }
     meshes.push_back(std::move(mesh));
-    if (const auto* file = std::get_if<internal::UrdfMesh>(&part.shape)) {
-      link.mesh_file += (link.mesh_file.empty() ? "" : " ") + file->filename;
-    }
   }
   link.mesh_L = geometry::concatenated(meshes);
 }

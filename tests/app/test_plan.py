@@ -62,7 +62,7 @@ class Plan(program.ProgramTest):
         self.plan()
         text = (self.folder / "out/grasp_001.obj").read_text()
         file = json.loads((self.folder / "out/grasps.json").read_text())
-        links = [f"link {link['name']}" for link in file["hand"]["links"] if link["mesh_file"]]
+        links = [f"link {link['name']}" for link in file["hand"]["links"] if link["mesh_files"]]
         self.assertEqual(re.findall(r"^o (.*)$", text, re.MULTILINE), ["object", *links])
         num_vertices = len(re.findall(r"^v ", text, re.MULTILINE))
         indices = [int(i) for face in re.findall(r"^f (.*)$", text, re.MULTILINE)

@@ -15,6 +15,7 @@
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
@@ -53,9 +54,9 @@ grasp::GraspFile sample_file(const fs::path& object_file) {
   file.hand = hands::find_hand("barrett");
   file.link_mesh_sha256.resize(file.hand.links.size());
   for (std::size_t i = 0; i < file.hand.links.size(); ++i) {
-    if (file.hand.links[i].mesh_file.empty()) continue;
+    if (file.hand.links[i].mesh_files.empty()) continue;
     file.link_mesh_sha256[i] = geometry::sha256_hex(geometry::read_file(
-        fs::path(file.hand.description_file).parent_path() / file.hand.links[i].mesh_file));
+        fs::path(file.hand.description_file).parent_path() / file.hand.links[i].mesh_files.at(0)));
   }
   file.options.seed = 18446744073709551615U;  // the largest there is
   file.options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
@@ -191,6 +192,48 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
     }
   }
   CHECK(some_contact);
+}
+
+TEST_CASE("A hand with package:// and file:// meshes, two on one link, is recorded and found again",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const fs::path shipped = hands::shipped_hand_file("barrett");
+  fs::copy(shipped.parent_path(), folder / "hand", fs::copy_options::recursive);
+  const fs::path description = folder / "hand" / shipped.filename();
+  std::string urdf = geometry::read_file(description);
+  const auto replace_all = [&urdf](const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = urdf.find(from, at)) != std::string::npos; at += to.size()) {
+      urdf.replace(at, from.size(), to);
+    }
+  };
+  // The palm's mesh twice: two closed parts that happen to coincide.
+  const std::string palm = "<mesh filename=\"meshes/palm.obj\"/>";
+  const std::string again = "</geometry></collision><collision><geometry>";
+  REQUIRE(urdf.find(palm) != std::string::npos);
+  const std::string start = "<collision><geometry>";
+  const std::string from_file =
+      "<mesh filename=\"file://" + (folder / "hand/meshes/palm.obj").string() + "\"/>";
+  replace_all(start + palm, start + from_file + again + palm);
+  replace_all("\"meshes/", "\"package://barrett_description/meshes/");
+  std::ofstream(description) << urdf;
+
+  const hands::HandModel hand = hands::read_hand_model(description);
+  const fs::path palm_file = folder / "hand/meshes/palm.obj";
+  CHECK(hand.links[0].mesh_files == std::vector<std::string>{"meshes/palm.obj", "meshes/palm.obj"});
+
+  geometry::write_mesh(folder / "ball.off", geometry::ball(0.05, 2));
+  const grasp::ObjectFile object = grasp::read_object_file(folder / "ball.off");
+  grasp::PlannerOptions options;
+  options.resolution = 10;
+  const grasp::ObjectModel model = grasp::prepare_object(object.mesh, hand, options);
+  grasp::write_grasps(folder / "grasps.json",
+                      grasp::make_grasp_file(object.record, hand, options, model, {}));
+  const grasp::GraspFile read = grasp::read_grasps(folder / "grasps.json");
+  const std::string bytes = geometry::read_file(palm_file);
+  CHECK(read.link_mesh_sha256[0] == geometry::sha256_hex(bytes + bytes));
+
+  std::ofstream(palm_file, std::ios::app) << "# another file now\n";
+  CHECK_THROWS_AS(grasp::read_grasps(folder / "grasps.json"), geometry::IoError);
 }
 
 TEST_CASE("Link poses survive the way through a quaternion to 1e-15", "[grasp][grasp_io]") {

@@ -48,7 +48,7 @@ TEST_CASE("The Barrett hand has four independent joints, three fingers, a thumb 
   CHECK(hand.palm.direction_H == Vector3d::UnitZ());
   CHECK(hand.description_sha256.size() == 64);
   CHECK(hand.sidecar_sha256.size() == 64);
-  CHECK(hand.links[0].mesh_file == "meshes/palm.obj");
+  CHECK(hand.links[0].mesh_files == std::vector<std::string>{"meshes/palm.obj"});
 }
 
 TEST_CASE("Joint limits of the Barrett hand are the published ones", "[hands][barrett]") {

@@ -154,15 +154,17 @@ TEST_CASE("Meshes are found beside the description and scaled, mirrored ones tur
   const std::string tetrahedron =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
   folder.write("pinch/meshes/part.obj", tetrahedron);
-  for (const std::string name :
-       {"meshes/part.obj", "./meshes/../meshes/part.obj", "package://pinch/meshes/part.obj",
-        "package://other/meshes/part.obj"}) {
+  for (const std::string& name :
+       {std::string("meshes/part.obj"), std::string("./meshes/../meshes/part.obj"),
+        std::string("package://pinch/meshes/part.obj"),
+        std::string("package://other/meshes/part.obj"),
+        "file://" + (folder.path() / "pinch/meshes/part.obj").string()}) {
     CAPTURE(name);
     const std::string urdf = with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>",
                                   "<mesh filename=\"" + name + "\" scale=\"0.01 -0.02 0.03\"/>");
     folder.write("pinch/pinch.graspfit.json", kSidecar);
     const HandModel hand = hands::read_hand_model(folder.write("pinch/pinch.urdf", urdf));
-    CHECK(hand.links[0].mesh_file == name);
+    CHECK(hand.links[0].mesh_files == std::vector<std::string>{"meshes/part.obj"});
     CHECK(geometry::signed_volume(hand.links[0].mesh_L) == Approx(0.01 * 0.02 * 0.03 / 6));
     CHECK(geometry::bounding_box(hand.links[0].mesh_L).min().y() == Approx(-0.02));
   }

@@ -16,7 +16,8 @@ struct RecordedHand {
   std::vector<std::string> link_mesh_sha256;
 };
 
-/// SHA-256 of every link's mesh file, empty for links without one. @throws IoError.
+/// SHA-256 of every link's mesh files, one after the other; empty for links without any. @throws
+/// IoError.
 std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand);
 
 /// Finds and reads the hand of a record: where it says, relative to the grasp file's folder, or the

@@ -18,9 +18,9 @@ const char* library_version();
 /// Its schema is grasp/grasps.schema.json.
 struct GraspFile {
   ObjectRecord object;
-  hands::HandModel hand;  ///< As loaded again from the files recorded.
-  std::vector<std::string>
-      link_mesh_sha256;  ///< One per link; empty text where it has no mesh file.
+  hands::HandModel hand;                      ///< As loaded again from the files recorded.
+  std::vector<std::string> link_mesh_sha256;  ///< One per link, of its mesh files one after the
+                                              ///< other; empty text where it has none.
   PlannerOptions options;
   std::string version = library_version();  ///< Of the library that planned.
   std::vector<std::string> fingers;         ///< Requested, the thumb first; what `options` came to.

@@ -51,8 +51,9 @@ struct Link {
   RigidTransform X_PL_fixed =
       RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
   TriangleMesh mesh_L;             ///< Closed surface in the link's frame [m]; may have no faces.
-  std::string
-      mesh_file;  ///< Where it came from, relative to the description; empty for primitives.
+  /// The mesh files that it came from, in the order of the description and relative to the folder
+  /// of the description itself (symbolic links resolved); none for primitives.
+  std::vector<std::string> mesh_files;
 };
 
 /// A planar surface meant to touch, on one link.
