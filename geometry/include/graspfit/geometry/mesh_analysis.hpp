@@ -48,22 +48,48 @@ enum class RepairMode {
   AsIs,    ///< Change nothing.
 };
 
+/// What to do about faces that cross other faces of the mesh.
+enum class SelfIntersections {
+  Leave,    ///< Not looked for. Sound all the same: what crosses is united (see `containment`).
+  Report,   ///< Counted before and after, nothing changed; `Strict` refuses them.
+  Resolve,  ///< The faces around a crossing are replaced, where that can be done; what is left is
+            ///< counted in `after`.
+};
+
+/// A closed surface wrapped around whatever the mesh is [CGAL Alpha_wrap_3; Portaneri et al. 2022].
+/// It lies outside the mesh and shrinks into no gap narrower than `alpha`.
+struct AlphaWrap {
+  double alpha_rel = 0.02;    ///< Narrowest gap that is entered, over the longest extent, in
+                              ///< [1e-3, 1]. Smaller follows the mesh better and costs more.
+  double offset_rel = 0.002;  ///< Distance of the wrap from the mesh, over the longest extent, in
+                              ///< [1e-4, 1].
+};
+
 /// Limits of `repair_mesh`.
 struct MeshRepairOptions {
   RepairMode mode = RepairMode::Repair;
+  double weld_distance_rel = 0.0;    ///< Vertices this close become one, over the longest extent of
+                                     ///< the mesh, in [0, 0.01]. Zero: equal coordinates only.
   double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
-  void validate() const;             ///< Throws InvalidInput naming the field and its value.
+  SelfIntersections self_intersections = SelfIntersections::Leave;
+  std::optional<AlphaWrap> wrap;  ///< The last resort, only where the mesh would be refused as not
+                                  ///< closed or without volume. Empty: refuse.
+  void validate() const;          ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One thing that a repair did.
 struct RepairStep {
-  std::string what;            ///< One of "removed degenerate faces", "removed doubled faces",
-                               ///< "removed unused vertices", "turned faces",
-                               ///< "split non-manifold vertices", "filled holes", "turned parts".
-  std::size_t count = 0;       ///< How many of them, > 0.
-  double volume_change = 0.0;  ///< Change of the signed volume by this step [m³].
+  std::string what;              ///< One of "welded vertices", "removed degenerate faces",
+                                 ///< "removed doubled faces", "removed unused vertices",
+                                 ///< "turned faces", "split non-manifold vertices", "filled holes",
+                                 ///< "resolved self-intersections", "turned parts", "wrapped".
+  std::size_t count = 0;         ///< How many of them, > 0. "wrapped": faces of the wrap.
+  double volume_change = 0.0;    ///< Change of the signed volume by this step [m³].
+  double hausdorff_bound = 0.0;  ///< Upper bound of the Hausdorff distance between the surfaces
+                                 ///< before and after the step [m]; 0 where the set of points is
+                                 ///< the same.
 };
 
 /// A mesh after repair with everything that was done and what is true of it now.
@@ -76,11 +102,14 @@ struct RepairedMesh {
 
 /// Makes a closed, consistently outward mesh of `mesh`, or refuses.
 ///
-/// Order: faces with a repeated vertex, doubled faces (opposite ones cancel), unused vertices,
-/// orientation made consistent, non-manifold edges and vertices split (solids that touch along an
-/// edge come apart), holes filled up to the stated size, inside-out parts turned. Collinear faces
-/// stay: they carry the connection between their neighbors. Overlapping parts are kept as they are
-/// (their union is meant). Self-intersections are reported, not resolved.
+/// Order: vertices welded, faces with a repeated vertex, doubled faces (opposite ones cancel),
+/// unused vertices, orientation made consistent, non-manifold edges and vertices split (solids that
+/// touch along an edge come apart), holes filled up to the stated size, self-intersections resolved
+/// if asked for, inside-out parts turned. Collinear faces stay: they carry the connection between
+/// their neighbors. Parts that overlap or lie in each other are kept: their union is meant, and an
+/// inward part inside an outward one is a cavity. A mesh that is closed, outward and manifold and
+/// has no degenerate, doubled or unused parts comes back as it is, byte for byte, crossing or not,
+/// unless self-intersections are to be resolved.
 /// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
 /// large the largest hole is), if `Strict` meets any defect, or if the mesh has no faces.
 /// @throws DegenerateGeometry if the mesh has no volume.
