@@ -22,9 +22,15 @@ struct MeshAnalysis {
   std::size_t num_inconsistent_edges = 0;  ///< Two-face edges run through in the same direction.
   std::size_t num_inward_parts = 0;  ///< Closed parts whose signed volume is negative and that
                                      ///< no other part encloses.
-  std::optional<std::size_t> num_self_intersections;  ///< Crossing pairs of faces (exact); empty if
-                                                      ///< not asked for.
-  Eigen::AlignedBox3d box;                            ///< [m]
+  /// Pairs of faces that share a point other than their common corners and edges (exact; corners
+  /// are common where their coordinates are; faces without area are left out). Touching counts, so
+  /// the neighbors across a collinear face count too. Empty if not asked for, as the two below.
+  std::optional<std::size_t> num_self_intersections;
+  std::optional<std::size_t> num_overlapping_part_pairs;  ///< Pairs of parts with such a pair of
+                                                          ///< faces.
+  std::optional<std::size_t> num_nested_parts;  ///< Parts that lie inside another closed part and
+                                                ///< do not cross it; cavities too.
+  Eigen::AlignedBox3d box;                      ///< [m]
 
   bool is_closed = false;    ///< Every edge has exactly two faces, consistently oriented.
   bool is_manifold = false;  ///< No edge with more than two faces, no pinched vertex.
@@ -33,7 +39,8 @@ struct MeshAnalysis {
 
 /// What `analyze` looks at.
 struct MeshAnalysisOptions {
-  bool count_self_intersections = false;  ///< Costs about as much as an AABB tree of the mesh.
+  bool count_self_intersections = false;  ///< Costs a few times the rest of the analysis.
+  bool count_part_overlaps = false;       ///< As much, where the boxes of parts overlap.
 };
 
 /// Analyzes a mesh of any quality. Throws nothing on bad meshes: that is what it is for.
@@ -52,12 +59,15 @@ enum class RepairMode {
 enum class SelfIntersections {
   Leave,    ///< Not looked for. Sound all the same: what crosses is united (see `containment`).
   Report,   ///< Counted before and after, nothing changed; `Strict` refuses them.
-  Resolve,  ///< The faces around a crossing are replaced, where that can be done; what is left is
-            ///< counted in `after`.
+  Resolve,  ///< Faces are cut where they cross, and of the pieces those stay that bound the solid
+            ///< (see `containment`): the solid remains, what lies inside it goes. Not taken where
+            ///< rounding the cuts would open the surface; what is left is counted in `after`.
+            ///< `Strict` refuses crossings as with `Report`.
 };
 
 /// A closed surface wrapped around whatever the mesh is [CGAL Alpha_wrap_3; Portaneri et al. 2022].
-/// It lies outside the mesh and shrinks into no gap narrower than `alpha`.
+/// It lies outside the mesh and shrinks into no gap narrower than `alpha`. It is made of the mesh
+/// as given, so it is then the only step of the repair.
 struct AlphaWrap {
   double alpha_rel = 0.02;    ///< Narrowest gap that is entered, over the longest extent, in
                               ///< [1e-3, 1]. Smaller follows the mesh better and costs more.
@@ -68,8 +78,9 @@ struct AlphaWrap {
 /// Limits of `repair_mesh`.
 struct MeshRepairOptions {
   RepairMode mode = RepairMode::Repair;
-  double weld_distance_rel = 0.0;    ///< Vertices this close become one, over the longest extent of
-                                     ///< the mesh, in [0, 0.01]. Zero: equal coordinates only.
+  double weld_distance_rel = 0.0;    ///< A vertex this close to an earlier one that stays becomes
+                                     ///< that one; over the longest extent of the mesh, in [0,
+                                     ///< 0.01]. Zero: equal coordinates only (−0 equals 0).
   double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
@@ -84,8 +95,10 @@ struct RepairStep {
   std::string what;              ///< One of "welded vertices", "removed degenerate faces",
                                  ///< "removed doubled faces", "removed unused vertices",
                                  ///< "turned faces", "split non-manifold vertices", "filled holes",
-                                 ///< "resolved self-intersections", "turned parts", "wrapped".
-  std::size_t count = 0;         ///< How many of them, > 0. "wrapped": faces of the wrap.
+                                 ///< "turned parts", "resolved self-intersections", "wrapped".
+  std::size_t count = 0;         ///< How many of them, > 0. "welded vertices": those that became
+                                 ///< another; "resolved self-intersections": pairs of faces fewer;
+                                 ///< "wrapped": faces of the wrap.
   double volume_change = 0.0;    ///< Change of the signed volume by this step [m³].
   double hausdorff_bound = 0.0;  ///< Upper bound of the Hausdorff distance between the surfaces
                                  ///< before and after the step [m]; 0 where the set of points is
@@ -104,12 +117,13 @@ struct RepairedMesh {
 ///
 /// Order: vertices welded, faces with a repeated vertex, doubled faces (opposite ones cancel),
 /// unused vertices, orientation made consistent, non-manifold edges and vertices split (solids that
-/// touch along an edge come apart), holes filled up to the stated size, self-intersections resolved
-/// if asked for, inside-out parts turned. Collinear faces stay: they carry the connection between
-/// their neighbors. Parts that overlap or lie in each other are kept: their union is meant, and an
-/// inward part inside an outward one is a cavity. A mesh that is closed, outward and manifold and
-/// has no degenerate, doubled or unused parts comes back as it is, byte for byte, crossing or not,
-/// unless self-intersections are to be resolved.
+/// touch along an edge come apart), holes filled up to the stated size, doubled faces and unused
+/// vertices once more (what fills a sheet without thickness is its mirror image), inside-out parts
+/// turned, self-intersections resolved if asked for. Collinear faces stay: they carry the
+/// connection between their neighbors. Parts that overlap or lie in each other are kept: their
+/// union is meant, and an inward part inside an outward one is a cavity. A mesh that is closed,
+/// outward and manifold and has no degenerate, doubled or unused parts comes back as it is, byte
+/// for byte, crossing or not, close vertices or not, unless self-intersections are to be resolved.
 /// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
 /// large the largest hole is), if `Strict` meets any defect, or if the mesh has no faces.
 /// @throws DegenerateGeometry if the mesh has no volume.
