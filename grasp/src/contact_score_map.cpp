@@ -106,14 +106,14 @@ void ScoreOptions::validate() const {
     internal::require(value > 0.0 && std::isfinite(value), "ScoreOptions", field, value,
                       "finite and above 0");
   };
-  internal::require(neighborhood >= 3 && neighborhood % 2 == 1, "ScoreOptions", "neighborhood",
-                    neighborhood, "odd and at least 3");
+  internal::require(neighborhood >= 3 && neighborhood <= 63 && neighborhood % 2 == 1,
+                    "ScoreOptions", "neighborhood", neighborhood, "odd and in [3, 63]");
   require_positive(gamma_deg, "gamma_deg");
   require_positive(length_voxels, "length_voxels");
-  internal::require(mean_filter_radius >= 0, "ScoreOptions", "mean_filter_radius",
-                    mean_filter_radius, "at least 0");
-  internal::require(mean_filter_passes >= 0, "ScoreOptions", "mean_filter_passes",
-                    mean_filter_passes, "at least 0");
+  internal::require(mean_filter_radius >= 0 && mean_filter_radius <= 31, "ScoreOptions",
+                    "mean_filter_radius", mean_filter_radius, "in [0, 31]");
+  internal::require(mean_filter_passes >= 0 && mean_filter_passes <= 1000, "ScoreOptions",
+                    "mean_filter_passes", mean_filter_passes, "in [0, 1000]");
   require_positive(floor, "floor");
   require_positive(median_factor, "median_factor");
 }

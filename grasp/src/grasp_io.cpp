@@ -29,8 +29,7 @@ GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& ha
   }
   file.voxel_size = object.grid.lattice.voxel_size;
   file.clip_thickness = clip_thickness(options, file.voxel_size);
-  file.merge_distance =
-      options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * file.voxel_size;
+  file.merge_distance = merge_distance(options, file.voxel_size);
   file.grasps = result.grasps;
   file.statistics = result.statistics;
   file.stop = result.stop;

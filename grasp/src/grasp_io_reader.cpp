@@ -145,6 +145,14 @@ PlannerOptions read_options(const JsonNode& planner) {
   return options;
 }
 
+template <class Item>
+int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name.text()) return static_cast<int>(i);
+  }
+  name.fail("the hand has nothing named \"" + name.text() + "\"");
+}
+
 /// Reads what refers to links, joints, fingers and pads of a hand by name.
 class GraspReader {
  public:
@@ -169,14 +177,6 @@ class GraspReader {
   }
 
  private:
-  template <class Item>
-  static int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      if (items[i].name == name.text()) return static_cast<int>(i);
-    }
-    name.fail("the hand has nothing named \"" + name.text() + "\"");
-  }
-
   int link_or_none(const JsonNode& name) const {
     return name.is_null() ? -1 : index_by_name(hand_.links, name);
   }
@@ -344,10 +344,13 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.options = read_options(planner);
   file.version = planner.at("version").text();
   const JsonNode used = planner.at("used");
-  file.fingers = used.at("fingers").texts();
-  file.voxel_size = used.at("voxel_size_m").number();
-  file.clip_thickness = used.at("clip_thickness_m").number();
-  file.merge_distance = used.at("merge_distance_m").number();
+  for (const JsonNode& finger : used.at("fingers").items()) {
+    index_by_name(file.hand.fingers, finger);
+    file.fingers.push_back(finger.text());
+  }
+  file.voxel_size = used.at("voxel_size_m").positive_number();
+  file.clip_thickness = used.at("clip_thickness_m").positive_number();
+  file.merge_distance = used.at("merge_distance_m").positive_number();
 
   const JsonNode results = root.at("results");
   file.stop = results.at("stop").choice<PlannerStop>();

@@ -11,7 +11,9 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "internal/option_check.hpp"
 #include "internal/stopwatch.hpp"
+#include "internal/target_marks.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -25,11 +27,6 @@ using Clock = std::chrono::steady_clock;
 // (A10, A48).
 constexpr double kIdealBoundaryDistance = 1.0;
 constexpr double kIdealArea = 0.3;
-
-void require(bool holds, const std::string& field, const std::string& value,
-             const std::string& range) {
-  if (!holds) throw InvalidInput("PlannerOptions: " + field + " = " + value + ", must be " + range);
-}
 
 /// Shorter side of the box around a pad's outline [m].
 double pad_width(const hands::ContactPad& pad) {
@@ -207,9 +204,7 @@ class Run {
     if (options.targets.min_separation == 0.0) {
       options.targets.min_separation = fingertip_width(hand, fingers);
     }
-    if (options.quality.merge_distance == 0.0) {
-      options.quality.merge_distance = 0.1 * object.grid.lattice.voxel_size;
-    }
+    options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
     return options;
   }
 
@@ -373,14 +368,15 @@ class Run {
 }  // namespace
 
 void PlannerOptions::validate() const {
-  require(count >= 1, "count", std::to_string(count), ">= 1");
-  require(max_attempts >= 1, "max_attempts", std::to_string(max_attempts), ">= 1");
-  require(!fingers.empty() || num_contacts >= 2, "num_contacts", std::to_string(num_contacts),
-          ">= 2");
-  require(fingers.empty() || fingers.size() >= 2, "fingers", std::to_string(fingers.size()),
-          "at least two names");
-  require(resolution >= 4 && resolution <= 512, "resolution", std::to_string(resolution),
-          "in [4, 512]");
+  const auto require = [](bool is_met, std::string_view field, const auto& value,
+                          std::string_view rule) {
+    internal::require(is_met, "PlannerOptions", field, value, rule);
+  };
+  require(count >= 1, "count", count, ">= 1");
+  require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
+  require(!fingers.empty() || num_contacts >= 2, "num_contacts", num_contacts, ">= 2");
+  require(fingers.empty() || fingers.size() >= 2, "fingers", fingers.size(), "at least two names");
+  require(resolution >= 4 && resolution <= 512, "resolution", resolution, "in [4, 512]");
   if (approach_O) {
     require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
             shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
@@ -388,16 +384,15 @@ void PlannerOptions::validate() const {
             "finite and not zero");
   }
   if (wall_clock_limit_s) {
-    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", shortest_decimal(*wall_clock_limit_s),
-            "> 0 s");
+    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", *wall_clock_limit_s, "> 0 s");
   }
   if (clip_thickness) {
     require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
-            shortest_decimal(*clip_thickness), "finite and > 0 m");
+            *clip_thickness, "finite and > 0 m");
   }
-  require(target_draws >= 1, "target_draws", std::to_string(target_draws), ">= 1");
-  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap",
-          shortest_decimal(self_overlap), "finite and >= 0 m");
+  require(target_draws >= 1, "target_draws", target_draws, ">= 1");
+  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap", self_overlap,
+          "finite and >= 0 m");
   score.validate();
   targets.validate();
   fitting.validate();
@@ -438,6 +433,10 @@ std::int64_t PlannerStatistics::valid() const { return outcomes.at(AttemptOutcom
 
 double clip_thickness(const PlannerOptions& options, double voxel_size) {
   return options.clip_thickness.value_or(std::max(0.5 * voxel_size, 0.001));
+}
+
+double merge_distance(const PlannerOptions& options, double voxel_size) {
+  return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
 }
 
 std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOptions& options) {
@@ -504,10 +503,7 @@ Grasp measure_grasp(const hands::HandModel& hand, const hands::HandCollision& co
   grasp.contacts = estimate_contacts(hand, X_OL, object, contact_options);
   grasp.has_all_contacts = true;
   for (const int finger : requested_fingers) {
-    bool has_contact = false;
-    for (Contact& contact : grasp.contacts) {
-      if (contact.pad == hand.fingers[finger].tip_pad) has_contact = contact.is_target = true;
-    }
+    const bool has_contact = internal::mark_targets(grasp.contacts, hand.fingers[finger].tip_pad);
     grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
   }
   grasp.quality = contact_quality(grasp.contacts, context, quality_options);

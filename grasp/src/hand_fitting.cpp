@@ -12,6 +12,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/finger_alignment.hpp"
 #include "internal/stopwatch.hpp"
+#include "internal/target_marks.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -415,10 +416,7 @@ class Loop {
     bool has_all = true;
     bool is_blocked = false;
     for (const Part& part : parts_) {
-      bool has_contact = false;
-      for (Contact& contact : result.contacts) {
-        if (contact.pad == part.pad) has_contact = contact.is_target = true;
-      }
+      const bool has_contact = internal::mark_targets(result.contacts, part.pad);
       has_all = has_all && has_contact;
       is_blocked = is_blocked || (!has_contact && part.state == Part::State::Blocked);
     }

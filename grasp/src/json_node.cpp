@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "internal/pose_numbers.hpp"
 
@@ -49,6 +50,12 @@ std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
 double JsonNode::number() const {
   if (!json_->is_number()) fail("is not a number");
   return json_->get<double>();
+}
+
+double JsonNode::positive_number() const {
+  const double value = number();
+  if (!(value > 0.0)) fail("is " + geometry::shortest_decimal(value) + ", must be > 0");
+  return value;
 }
 
 std::int64_t JsonNode::integer() const {

@@ -340,6 +340,11 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(
       refusal(path, replaced(good, "\"rotation_wxyz\": [", "\"rotation_wxyz\": [2, ", "\"X_OH\"")),
       Contains("/results/grasps/0/X_OH/rotation_wxyz: has 5 numbers, not 4"));
+  CHECK_THAT(refusal(path, replaced(good, "\"voxel_size_m\": ", "\"voxel_size_m\": -")),
+             Contains("/planner/used/voxel_size_m: is -") && Contains("must be > 0"));
+  CHECK_THAT(
+      refusal(path, replaced(good, "\"fingers\": [", "\"fingers\": [\"pinky\", ", "\"used\"")),
+      Contains("/planner/used/fingers/0: the hand has nothing named \"pinky\""));
   const std::string hash = sample_file(folder / "ball.off").hand.sidecar_sha256;
   CHECK_THAT(refusal(path, replaced(good, hash, std::string(64, 'f'))), Contains("sidecar"));
 }

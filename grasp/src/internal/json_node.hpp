@@ -33,6 +33,7 @@ class JsonNode {
   bool is_null() const { return json_->is_null(); }
   bool is_text() const { return json_->is_string(); }
   double number() const;
+  double positive_number() const;  ///< > 0.
   std::int64_t integer() const;
   std::uint64_t unsigned_integer() const;
   std::size_t count() const { return static_cast<std::size_t>(unsigned_integer()); }

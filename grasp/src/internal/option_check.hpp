@@ -11,13 +11,15 @@ namespace graspfit::grasp::internal {
 
 /// Throws InvalidInput "<where>: <field> = <value>, must be <rule>" unless `is_met`. Write the
 /// condition so that NaN does not meet it.
-template <typename Number>
-void require(bool is_met, std::string_view where, std::string_view field, Number value,
+template <typename Value>
+void require(bool is_met, std::string_view where, std::string_view field, const Value& value,
              std::string_view rule) {
   if (is_met) return;
   std::string message(where);
   message.append(": ").append(field).append(" = ");
-  if constexpr (std::integral<Number>) {
+  if constexpr (std::convertible_to<Value, std::string_view>) {
+    message.append(value);
+  } else if constexpr (std::integral<Value>) {
     message.append(std::to_string(value));
   } else {
     message.append(geometry::shortest_decimal(value));

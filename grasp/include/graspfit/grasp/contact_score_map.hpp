@@ -23,14 +23,14 @@ enum class PlaneDistance {
 
 /// Parameters of the contact score map (paper section 5).
 struct ScoreOptions {
-  int neighborhood = 5;      ///< Edge of the cubic window in voxels, odd, ≥ 3 [P].
+  int neighborhood = 5;      ///< Edge of the cubic window in voxels, odd, in [3, 63] [P].
   double gamma_deg = 180.0;  ///< Normalizer of the mean normal angle, > 0 [P].
   double length_voxels =
       5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 (A3) [R].
   ScoreNormalization normalization = ScoreNormalization::FloorMedian;  ///< A1.
   PlaneDistance plane_distance = PlaneDistance::Unsigned;              ///< A2.
-  int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included (A5), ≥ 0.
-  int mean_filter_passes = 1;   ///< ≥ 0 (A5).
+  int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included (A5); [0, 31].
+  int mean_filter_passes = 1;   ///< In [0, 1000] (A5).
   double floor = 0.05;          ///< Smallest C_d/L + C_a/gamma (FloorMedian, Max), > 0.
   double median_factor = 1.25;  ///< Score 1 at this multiple of the median (FloorMedian), > 0.
   void validate() const;        ///< Throws InvalidInput naming the field and its value.

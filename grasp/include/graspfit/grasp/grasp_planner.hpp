@@ -137,6 +137,9 @@ PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& han
 /// The planner's rule for clip volumes (A33).
 double clip_thickness(const PlannerOptions& options, double voxel_size);
 
+/// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
+double merge_distance(const PlannerOptions& options, double voxel_size);
+
 /// The fingers that `options` ask of `hand`, the thumb first where it is among them (A22).
 std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOptions& options);
 
