@@ -337,15 +337,21 @@ PolygonSoup parse_stl(std::string_view content) {
   if (content.size() >= kHeader) count = decoded<std::uint32_t>(content.data() + 80, true);
   const bool is_binary = content.size() >= kHeader && content.size() == kHeader + kTriangle * count;
   if (!is_binary) {
+    // Text holds no zero byte; a cut binary file does, in any count below 2^24.
+    const bool is_text = content.find('\0') == std::string_view::npos;
     const std::size_t start = content.find_first_not_of(" \t\r\n");
-    if (start != std::string_view::npos && content.substr(start, 5) == "solid") {
+    if (is_text && start != std::string_view::npos && content.substr(start, 5) == "solid") {
       return parse_text_stl(content);
     }
-    if (content.size() < kHeader) {
-      throw IoError("not an STL mesh: neither 'solid' at its start nor 84 bytes long");
+    if (is_text) throw IoError("not an STL mesh: text that does not start with 'solid'");
+    if (content.size() < kHeader) throw IoError("the file ends inside its header of 84 bytes");
+    const std::size_t whole = (content.size() - kHeader) / kTriangle;
+    if (whole < count) {
+      throw IoError("the file ends after " + std::to_string(whole) + " of " +
+                    std::to_string(count) + " triangles");
     }
-    throw IoError("not an STL mesh: " + std::to_string(count) + " triangles would take " +
-                  std::to_string(kHeader + kTriangle * count) + " bytes, there are " +
+    throw IoError(std::to_string(count) + " triangles take " +
+                  std::to_string(kHeader + kTriangle * count) + " bytes, the file has " +
                   std::to_string(content.size()));
   }
   PolygonSoup soup;

@@ -18,8 +18,7 @@ Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
   return result;
 }
 
-void add(const aiScene& scene, const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
-  static_cast<void>(scene);
+void add(const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
   const std::size_t first = soup.vertices.size();
   for (unsigned int i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& v = mesh.mVertices[i];
@@ -56,7 +55,7 @@ void add(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& X_pare
   const Eigen::Matrix4d X = X_parent * matrix(node.mTransformation);
   for (unsigned int i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] < scene.mNumMeshes) {
-      add(scene, *scene.mMeshes[node.mMeshes[i]], X, soup);
+      add(*scene.mMeshes[node.mMeshes[i]], X, soup);
     }
   }
   for (unsigned int i = 0; i < node.mNumChildren; ++i) add(scene, *node.mChildren[i], X, soup);

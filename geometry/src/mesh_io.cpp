@@ -32,13 +32,7 @@ std::string unknown_extension(const std::string& extension, const char* known) {
          "; known are " + known;
 }
 
-PolygonSoup parse(const std::filesystem::path& file, const std::string& format) {
-  if (format == "gltf" || format == "glb") {
-    if (read_file(file).empty()) throw IoError("the file is empty");
-    return internal::import_gltf(file);
-  }
-  const std::string content = read_file(file);
-  if (content.empty()) throw IoError("the file is empty");
+PolygonSoup parse(std::string_view content, const std::string& format) {
   if (format == "off") return internal::parse_off(content);
   if (format == "obj") return internal::parse_obj(content);
   if (format == "ply") return internal::parse_ply(content);
@@ -124,53 +118,24 @@ void triangulate(const std::vector<Eigen::Vector3d>& vertices,
   for (std::size_t i = 2; i < rest.size(); ++i) faces.push_back({rest[0], rest[i - 1], rest[i]});
 }
 
-}  // namespace
-
-void MeshReadOptions::validate() const {
-  if (!(meters_per_file_unit > 0.0) || !std::isfinite(meters_per_file_unit)) {
-    throw InvalidInput("meters_per_file_unit is " + shortest_decimal(meters_per_file_unit) +
-                       ", must be positive");
+MeshFile mesh_of(PolygonSoup soup, const std::string& format, double meters_per_file_unit) {
+  if (soup.num_polygons() == 0) {
+    throw IoError(soup.vertices.empty() ? std::string("no vertices and no faces")
+                                        : "no faces: a point cloud of " +
+                                              std::to_string(soup.vertices.size()) + " points");
   }
-}
-
-MeshFile read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
-  options.validate();
-  const std::string prefix = "read_mesh: " + file.string() + ": ";
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw IoError(prefix + "no such file");
-  if (std::filesystem::is_directory(status)) throw IoError(prefix + "it is a folder");
-
+  if (soup.vertices.size() > std::numeric_limits<std::int32_t>::max() / 2) {
+    throw IoError("too many vertices");
+  }
   MeshFile result;
   MeshFileReport& report = result.report;
-  report.format = lower_case_extension(file);
-  constexpr std::array<std::string_view, 6> kFormats = {"off", "obj", "ply", "stl", "gltf", "glb"};
-  if (std::find(kFormats.begin(), kFormats.end(), report.format) == kFormats.end()) {
-    throw IoError(prefix + unknown_extension(report.format, "off, obj, ply, stl, gltf, glb"));
-  }
-  PolygonSoup soup;
-  try {
-    soup = parse(file, report.format);
-    if (soup.num_polygons() == 0) {
-      throw IoError(soup.vertices.empty() ? std::string("no vertices and no faces")
-                                          : "no faces: a point cloud of " +
-                                                std::to_string(soup.vertices.size()) + " points");
-    }
-    if (soup.vertices.size() > std::numeric_limits<std::int32_t>::max() / 2) {
-      throw IoError("too many vertices");
-    }
-  } catch (const IoError& failure) {
-    const std::string_view what = failure.what();
-    throw IoError(what.starts_with("cannot read ") ? "read_mesh: " + std::string(what)
-                                                   : prefix + std::string(what));
-  }
-
+  report.format = format;
   report.num_file_vertices = soup.vertices.size();
   report.num_file_polygons = soup.num_polygons();
   for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
-    soup.vertices[i] *= options.meters_per_file_unit;
+    soup.vertices[i] *= meters_per_file_unit;
     if (!soup.vertices[i].allFinite()) {
-      throw IoError(prefix + "vertex " + std::to_string(i) + " is not finite in meters");
+      throw IoError("vertex " + std::to_string(i) + " is not finite in meters");
     }
   }
   const std::vector<std::int32_t> target = weld(soup.vertices);
@@ -187,6 +152,51 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshReadOptions& opt
                 result.mesh.faces);
   }
   return result;
+}
+
+}  // namespace
+
+namespace internal {
+
+MeshFile mesh_from_content(std::string_view content, const std::string& format,
+                           double meters_per_file_unit) {
+  return mesh_of(parse(content, format), format, meters_per_file_unit);
+}
+
+}  // namespace internal
+
+void MeshReadOptions::validate() const {
+  if (!(meters_per_file_unit > 0.0) || !std::isfinite(meters_per_file_unit)) {
+    throw InvalidInput("meters_per_file_unit is " + shortest_decimal(meters_per_file_unit) +
+                       ", must be positive");
+  }
+}
+
+MeshFile read_mesh(const std::filesystem::path& file, const MeshReadOptions& options) {
+  options.validate();
+  const std::string prefix = "read_mesh: " + file.string() + ": ";
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw IoError(prefix + "no such file");
+  if (std::filesystem::is_directory(status)) throw IoError(prefix + "it is a folder");
+
+  const std::string format = lower_case_extension(file);
+  constexpr std::array<std::string_view, 6> kFormats = {"off", "obj", "ply", "stl", "gltf", "glb"};
+  if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
+    throw IoError(prefix + unknown_extension(format, "off, obj, ply, stl, gltf, glb"));
+  }
+  try {
+    const std::string content = read_file(file);
+    if (content.empty()) throw IoError("the file is empty");
+    if (format == "gltf" || format == "glb") {
+      return mesh_of(internal::import_gltf(file), format, options.meters_per_file_unit);
+    }
+    return internal::mesh_from_content(content, format, options.meters_per_file_unit);
+  } catch (const IoError& failure) {
+    const std::string_view what = failure.what();
+    throw IoError(what.starts_with("cannot read ") ? "read_mesh: " + std::string(what)
+                                                   : prefix + std::string(what));
+  }
 }
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {

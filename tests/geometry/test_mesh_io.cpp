@@ -215,7 +215,7 @@ TEST_CASE("Bad mesh files get one clear line", "[geometry][mesh_io]") {
   CHECK(error_of(folder.file("b.ply", "Dear sir,\nhello\n")) ==
         "not a PLY mesh: it does not start with 'ply'");
   CHECK(error_of(folder.file("b.stl", "Dear sir,\nhello\n")) ==
-        "not an STL mesh: neither 'solid' at its start nor 84 bytes long");
+        "not an STL mesh: text that does not start with 'solid'");
   CHECK(error_of(folder.file("b.gltf", "Dear sir,\nhello\n")).starts_with("not a glTF mesh: "));
   CHECK(error_of(folder.file("b.glb", "Dear sir,\nhello\n")).starts_with("not a glTF mesh: "));
   CHECK(error_of(folder.file("c.off", "OFF\n")) == "line 1: the file ends after its header");
@@ -293,7 +293,14 @@ TEST_CASE("Bad PLY and STL files get one clear line", "[geometry][mesh_io]") {
   write_mesh(folder / "whole.stl", box({1, 1, 1}));
   std::string stl = read_file(folder / "whole.stl");
   CHECK(error_of(folder.file("cut.stl", stl.substr(0, stl.size() - 7))) ==
-        "not an STL mesh: 12 triangles would take 684 bytes, there are 677");
+        "the file ends after 11 of 12 triangles");
+  CHECK(error_of(folder.file("tail.stl", stl + "?")) ==
+        "12 triangles take 684 bytes, the file has 685");
+  CHECK(error_of(folder.file("head.stl", stl.substr(0, 82))) ==
+        "the file ends inside its header of 84 bytes");
+  // Some programs begin binary files like text.
+  CHECK(error_of(folder.file("solid.stl", "solid" + stl.substr(5, stl.size() - 60))) ==
+        "the file ends after 10 of 12 triangles");
   stl.replace(84 + 12, 4, std::string("\0\0\xc0\x7f", 4));  // A NaN as the first coordinate.
   CHECK(error_of(folder.file("nan.stl", stl)) == "vertex 0 has a coordinate that is not finite");
   CHECK(error_of(folder.file("none.stl", std::string(84, '\0'))) == "no vertices and no faces");

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/geometry/triangle_mesh.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
 
 namespace graspfit::geometry::internal {
 
@@ -32,6 +32,11 @@ PolygonSoup parse_stl(std::string_view content);
 /// glTF and GLB, by assimp: it resolves buffers in other files, and the format has single precision
 /// anyway.
 PolygonSoup import_gltf(const std::filesystem::path& file);
+
+/// `read_mesh` of a file's bytes: `format` is "off", "obj", "ply" or "stl". Throws like the
+/// readers.
+MeshFile mesh_from_content(std::string_view content, const std::string& format,
+                           double meters_per_file_unit = 1.0);
 
 std::string format_off(const TriangleMesh& mesh);
 std::string format_obj(const TriangleMesh& mesh);
