@@ -537,8 +537,8 @@ std::vector<BrokenMesh> broken_meshes() {
       {"far_off", "1e6 m away from the origin (good)", cube(1e6, 1e6 + 1)},
       {"small_with_hole", "micrometers, with a hole", without_side(tall(1e-6), kTop)},
       {"huge_with_hole", "thousands of kilometers, with a hole", without_side(tall(1e6), kTop)},
-      {"size_1e-100", "products of coordinates below 1e-300 (good)", cube(0, 1e-100)},
-      {"size_1e+100", "products of coordinates above 1e300 (good)", cube(0, 1e100)},
+      {"size_1e-70", "products of four coordinates below 1e-270 (good)", cube(0, 1e-70)},
+      {"size_1e+70", "products of four coordinates above 1e270 (good)", cube(0, 1e70)},
       {"denormal_size", "all coordinates denormal", cube(0, 1e-310)},
       {"many_parts", "512 parts (good)", many_cubes()},
       // All at once.
