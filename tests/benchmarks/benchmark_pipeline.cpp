@@ -5,9 +5,7 @@
 // over a fixed number of attempts, divided by the usable grasps found, failures counted. "share" is
 // of that section's total. Run: build/release/bin/graspfit_benchmarks "[pipeline]".
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,22 +17,14 @@
 #include "support/catch.hpp"
 #include "support/skip.hpp"
 #include "support/test_data.hpp"
+#include "timing.hpp"
 
 namespace {
 
 using namespace graspfit;
 
-double seconds_of(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
+using testing::median;
+using testing::seconds_of;
 
 using Rows = std::vector<std::pair<std::string, double>>;
 

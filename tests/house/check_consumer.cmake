@@ -1,5 +1,5 @@
 # Installs the build into an empty folder, then builds and runs a project that knows that folder
-# only. What the project's program prints goes to OUTPUT.
+# only. What its PROGRAMS (with commas between) print goes to <program>.txt in WORK_DIR.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
@@ -14,6 +14,9 @@ run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix)
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/${PROGRAM} OUTPUT_FILE ${WORK_DIR}/output.txt)
-file(READ ${WORK_DIR}/output.txt output)
-message("${output}")
+string(REPLACE "," ";" programs "${PROGRAMS}")
+foreach(program IN LISTS programs)
+  run(${WORK_DIR}/build/${program} OUTPUT_FILE ${WORK_DIR}/${program}.txt)
+  file(READ ${WORK_DIR}/${program}.txt output)
+  message("${output}")
+endforeach()

@@ -1,0 +1,82 @@
+#include "mesh_path.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "graspfit/geometry/distance_map.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/surface_patch.hpp"
+#include "internal/mesh_formats.hpp"
+
+namespace graspfit::testing {
+namespace {
+
+using namespace geometry;
+
+// What is read in thousandths of a second; more of the same finds nothing new.
+constexpr std::size_t kMostFacesQueried = 300;
+
+// Coordinates whose products of three stay within the range of double (README.md, limits).
+constexpr double kLargestCoordinate = 1e90;
+
+void require(bool condition, const char* promise) {
+  if (!condition) throw std::logic_error(promise);
+}
+
+void query(const TriangleMesh& mesh) {
+  const MeshQuery object(mesh);
+  const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 6});
+  const auto patches = surface_patches(mesh, lattice);
+  const VoxelGrid grid = voxelize(object, lattice, patches);
+  require(grid.count(VoxelClass::Partial) == static_cast<std::int64_t>(patches.size()),
+          "a voxel is partial iff it has a patch");
+  const SignedDistanceMap map = signed_distance_map(grid);
+  for (std::int64_t i = 0; i < lattice.num_voxels(); ++i) {
+    if (grid.classes[i] == VoxelClass::Partial) continue;
+    const Eigen::Vector3d center = lattice.center(lattice.voxel(i));
+    const bool is_inside = object.containment(center) == Containment::Inside;
+    require(is_inside == (grid.classes[i] == VoxelClass::Full), "classes agree with containment");
+    require(is_inside == (map.values[i] < 0.0f), "the map's sign agrees with containment");
+  }
+}
+
+}  // namespace
+
+std::string take_mesh_path(std::string_view input) {
+  if (input.empty()) return "nothing";
+  constexpr std::array<const char*, 4> kFormats = {"off", "obj", "ply", "stl"};
+  std::string format = kFormats[static_cast<unsigned char>(input[0]) % 4];
+  if (input[0] == 'o') format = "off";
+  if (input[0] == 'b') format = "obj";
+  if (input[0] == 'p') format = "ply";
+  if (input[0] == 's') format = "stl";
+  try {
+    const TriangleMesh mesh = internal::mesh_from_content(input.substr(1), format).mesh;
+    for (const Face& face : mesh.faces) {
+      for (const std::int32_t vertex : face) {
+        require(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
+                "the indices of what is read are in range");
+      }
+    }
+    analyze(mesh, {.count_self_intersections = mesh.faces.size() <= kMostFacesQueried});
+    const RepairedMesh repaired = repair_mesh(mesh);
+    require(repaired.after.is_closed && repaired.after.is_outward, "repair closes or refuses");
+    require(analyze(repaired.mesh).is_closed, "what repair calls closed is closed");
+    const bool is_small = repaired.mesh.faces.size() <= kMostFacesQueried;
+    const Eigen::AlignedBox3d box = bounding_box(repaired.mesh);
+    if (is_small &&
+        box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() < kLargestCoordinate) {
+      query(repaired.mesh);
+    }
+    return "good";
+  } catch (const Error& refusal) {
+    const std::string what = refusal.what();
+    require(!what.empty() && what.find('\n') == std::string::npos, "a refusal is one line");
+    return what;
+  }
+}
+
+}  // namespace graspfit::testing

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace graspfit::testing {
+
+/// An input of `take_mesh_path` to start from.
+struct Seed {
+  std::string name;
+  std::string input;
+};
+
+/// Small solids, and small broken meshes, in every format that is read.
+std::vector<Seed> seeds();
+
+}  // namespace graspfit::testing
