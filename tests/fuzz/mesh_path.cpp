@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "graspfit/geometry/distance_map.hpp"
 #include "graspfit/geometry/errors.hpp"
@@ -24,6 +25,17 @@ constexpr double kLargestCoordinate = 1e90;
 
 void require(bool condition, const char* promise) {
   if (!condition) throw std::logic_error(promise);
+}
+
+void require_round_trips(const TriangleMesh& mesh) {
+  const std::array<std::pair<const char*, std::string>, 3> written = {
+      {{"off", internal::format_off(mesh)},
+       {"obj", internal::format_obj(mesh)},
+       {"ply", internal::format_ply(mesh)}}};
+  for (const auto& [format, content] : written) {
+    require(internal::mesh_from_content(content, format).mesh == mesh,
+            "every bit of a double survives OFF, OBJ and PLY");
+  }
 }
 
 void query(const TriangleMesh& mesh) {
@@ -61,6 +73,7 @@ std::string take_mesh_path(std::string_view input) {
                 "the indices of what is read are in range");
       }
     }
+    require_round_trips(mesh);
     analyze(mesh, {.count_self_intersections = mesh.faces.size() <= kMostFacesQueried});
     const RepairedMesh repaired = repair_mesh(mesh);
     require(repaired.after.is_closed && repaired.after.is_outward, "repair closes or refuses");
