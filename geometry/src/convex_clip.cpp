@@ -1,6 +1,7 @@
 #include "graspfit/geometry/convex_clip.hpp"
 
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
@@ -22,22 +23,35 @@ class Clipper {
 
   std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle) {
     const auto& [a, b, c] = triangle;
-    if (internal::are_collinear(a, b, c)) return std::nullopt;
+    polygon_.clear();
+    const Eigen::Vector3d vector_area = internal::accurate_vector_area(a, b, c);
+    if (vector_area.isZero(0.0)) return std::nullopt;  // The corners are collinear.
     cutter_.reset(triangle);
     cutter_.whole(polygon_);
-    for (const HalfSpace& half_space : volume_) {
-      const std::uint32_t line = cutter_.add_plane(half_space.normal, half_space.offset);
+    for (std::size_t i = 0; i < volume_.size(); ++i) {
+      const std::uint32_t line =
+          cutter_.add_plane(volume_[i].normal, volume_[i].offset, static_cast<int>(i));
       cutter_.split(polygon_, line, internal::TriangleCutter::InPlane::Inside, rest_, nullptr);
       std::swap(polygon_, rest_);
       if (polygon_.empty()) return std::nullopt;
     }
     const internal::CutMeasure measure = cutter_.measure(polygon_);
     ClippedPiece piece;
-    piece.area = measure.fraction * internal::accurate_vector_area(a, b, c).stableNorm();
+    piece.area = measure.fraction * vector_area.stableNorm();
     piece.centroid = measure.centroid;
-    for (const internal::CutCorner& corner : polygon_) piece.polygon.push_back(corner.point);
+    piece.polygon.reserve(polygon_.size());
+    for (const internal::CutEdge& of : polygon_) piece.polygon.push_back(cutter_.corner(of).point);
     return piece;
   }
+
+  /// Of the piece last clipped.
+  std::vector<CornerOrigin> origins() const {
+    std::vector<CornerOrigin> result;
+    for (const internal::CutEdge& of : polygon_) result.push_back(cutter_.origin(of));
+    return result;
+  }
+
+  const ClipStatistics& statistics() const { return cutter_.statistics(); }
 
  private:
   const ConvexVolume& volume_;
@@ -64,6 +78,16 @@ std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::in
     }
   }
   return pieces;
+}
+
+ClippedWithOrigins clip_with_origins(const std::array<Eigen::Vector3d, 3>& triangle,
+                                     const ConvexVolume& volume) {
+  Clipper clipper(volume);
+  ClippedWithOrigins result;
+  result.piece = clipper.clip(triangle);
+  if (result.piece) result.origins = clipper.origins();
+  result.statistics = clipper.statistics();
+  return result;
 }
 
 }  // namespace graspfit::geometry

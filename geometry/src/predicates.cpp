@@ -1,6 +1,7 @@
 #include "internal/predicates.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -110,10 +111,18 @@ Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vect
   const Eigen::Vector3d ab = b - a;
   const Eigen::Vector3d ac = c - a;
   const Eigen::Vector3d doubled = ab.cross(ac);
-  // Each component is off by at most 8 kEps |ab| |ac|, the vector by twice that.
-  const double bound = 16.0 * kEps * ab.norm() * ac.norm();
-  const double length = doubled.norm();
-  if (bound <= 0x1p-42 * length && length > 0x1p-450 && length < 0x1p450) return 0.5 * doubled;
+  // Each component is off by at most 8 kEps |ab| |ac|, the vector by twice that; compared in
+  // squares, all in a range where neither they nor the products above lose bits to underflow.
+  constexpr double kLeast = 0x1p-450;
+  constexpr double kGreatest = 0x1p450;
+  constexpr double kSquaredRatio = (0x1p42 * 16.0 * kEps) * (0x1p42 * 16.0 * kEps);
+  const double ab_squared = ab.squaredNorm();
+  const double ac_squared = ac.squaredNorm();
+  const double squared_length = doubled.squaredNorm();
+  if (kSquaredRatio * (ab_squared * ac_squared) <= squared_length &&
+      std::min(ab_squared, ac_squared) > kLeast && std::max(ab_squared, ac_squared) < kGreatest) {
+    return 0.5 * doubled;
+  }
   return exact_vector_area(a, b, c);
 }
 

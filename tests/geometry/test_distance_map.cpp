@@ -63,23 +63,85 @@ TEST_CASE("Without a partial voxel all distances are infinite", "[geometry][dist
         std::vector<float>{0.0F});
 }
 
-TEST_CASE("Neighboring distances of a solid differ by at most a voxel",
+TEST_CASE("The distance map of a solid is that of brute force, its signs those of containment",
+          "[geometry][distance_map]") {
+  const RigidTransform X(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, -2, 3).normalized()));
+  for (const TriangleMesh& mesh :
+       {ball(1.0, 2), torus(1.0, 0.4, 16, 8), transformed(box({1.0, 0.6, 0.4}), X)}) {
+    const MeshQuery query(mesh);
+    const VoxelLattice lattice =
+        lattice_around(bounding_box(mesh), {.resolution = 12, .margin = 0.3});
+    const VoxelGrid grid = voxelize(query, lattice, surface_patches(mesh, lattice));
+    const SignedDistanceMap map = signed_distance_map(grid);
+    REQUIRE(map.values == brute_force(grid));
+    CHECK(grid.count(VoxelClass::Full) > 0);
+    for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
+      if (map.values[index] == 0.0F) continue;
+      const bool is_inside =
+          query.containment(lattice.center(lattice.voxel(index))) == Containment::Inside;
+      REQUIRE((map.values[index] < 0.0F) == is_inside);
+    }
+  }
+}
+
+TEST_CASE("The distance map of a solid is 1-Lipschitz between any two voxels",
           "[geometry][distance_map]") {
   const TriangleMesh mesh = torus(0.05, 0.02, 40, 20);
   const VoxelLattice lattice =
       lattice_around(bounding_box(mesh), {.resolution = 24, .margin = 0.02});
   const VoxelGrid grid = voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice));
   const SignedDistanceMap map = signed_distance_map(grid);
+  // Every step to a neighbor, diagonal ones too. The surface is partial voxels without a gap, so
+  // that the sign changes through zero; across a diagonal it need not, and magnitudes are compared.
   for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
     const Eigen::Vector3i voxel = lattice.voxel(index);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3i next = voxel + Eigen::Vector3i::Unit(axis);
-      // The surface is partial voxels without a gap, so the sign changes through zero.
-      if (lattice.contains(next)) CHECK(std::abs(map.at(next) - map.at(voxel)) <= 1.0F + 1e-6F);
+    for (int n = 0; n < 27; ++n) {
+      const Eigen::Vector3i step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+      const Eigen::Vector3i next = voxel + step;
+      if (!lattice.contains(next)) continue;
+      const double distance = step.cast<double>().norm();
+      const bool is_straight = step.squaredNorm() == 1;
+      const double change = is_straight
+                                ? std::abs(map.at(next) - map.at(voxel))
+                                : std::abs(std::abs(map.at(next)) - std::abs(map.at(voxel)));
+      REQUIRE(change <= distance + 1e-5);  // Floats: half an ulp of values up to 64.
     }
     const VoxelClass c = grid.classes[index];
-    CHECK((map.values[index] > 0) == (c == VoxelClass::Empty));
-    CHECK((map.values[index] < 0) == (c == VoxelClass::Full));
+    REQUIRE((map.values[index] > 0) == (c == VoxelClass::Empty));
+    REQUIRE((map.values[index] < 0) == (c == VoxelClass::Full));
+  }
+  // And pairs far apart.
+  Random random(22);
+  for (int i = 0; i < 20000; ++i) {
+    const auto any = [&] {
+      return static_cast<std::int64_t>(
+          random.index(static_cast<std::uint64_t>(lattice.num_voxels())));
+    };
+    const std::int64_t a = any();
+    const std::int64_t b = any();
+    const double distance = (lattice.voxel(a) - lattice.voxel(b)).cast<double>().norm();
+    REQUIRE(std::abs(std::abs(map.values[a]) - std::abs(map.values[b])) <= distance + 1e-5);
+  }
+}
+
+TEST_CASE("At 256 voxels along the longest axis the distance map is that of single voxels",
+          "[geometry][distance_map]") {
+  // A flat box of 256 x 40 x 20 voxels, a few of them partial: brute force over those few.
+  Random random(23);
+  VoxelGrid grid = grid_of({256, 40, 20}, VoxelClass::Empty);
+  std::vector<Eigen::Vector3i> partial;
+  for (int i = 0; i < 40; ++i) {
+    const auto index = static_cast<std::int64_t>(random.index(256 * 40 * 20));
+    grid.classes[index] = VoxelClass::Partial;
+    partial.push_back(grid.lattice.voxel(index));
+  }
+  const SignedDistanceMap map = signed_distance_map(grid);
+  for (std::int64_t index = 0; index < grid.lattice.num_voxels(); ++index) {
+    int best = std::numeric_limits<int>::max();
+    for (const Eigen::Vector3i& p : partial) {
+      best = std::min(best, (grid.lattice.voxel(index) - p).squaredNorm());
+    }
+    REQUIRE(map.values[index] == static_cast<float>(std::sqrt(static_cast<double>(best))));
   }
 }
 

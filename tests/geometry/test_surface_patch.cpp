@@ -1,9 +1,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <utility>
 
-#include "geometry/rational_clip.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -11,87 +9,11 @@
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
-using graspfit::testing::RationalPolygon;
 
 namespace {
 
 VoxelLattice unit_lattice(int count, double origin = 0.0) {
   return {Eigen::Vector3d::Constant(origin), 1.0, Eigen::Vector3i::Constant(count)};
-}
-
-// Exact part of each triangle in each voxel by the tie rule, from the definition.
-std::map<std::pair<std::int64_t, std::int32_t>, CGAL::Gmpq> brute_force(
-    const TriangleMesh& mesh, const VoxelLattice& lattice) {
-  std::map<std::pair<std::int64_t, std::int32_t>, CGAL::Gmpq> result;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const auto triangle = corners(mesh, face);
-    Eigen::AlignedBox3d box;
-    for (const auto& corner : triangle) box.extend(corner);
-    const RationalPolygon whole(triangle);
-    if (!whole.has_area()) continue;
-    for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
-      const Eigen::Vector3i voxel = lattice.voxel(index);
-      RationalPolygon piece = whole;
-      bool is_here = true;
-      for (int axis = 0; axis < 3 && is_here; ++axis) {
-        const double lower = lattice.plane(axis, voxel[axis]);
-        const double upper = lattice.plane(axis, voxel[axis] + 1);
-        is_here =
-            box.min()[axis] <= upper && box.max()[axis] >= lower && !whole.is_in_plane(axis, upper);
-      }
-      for (int axis = 0; axis < 3 && is_here; ++axis) {
-        piece.clip_slab(axis, lattice.plane(axis, voxel[axis]),
-                        lattice.plane(axis, voxel[axis] + 1));
-        is_here = piece.has_area();
-      }
-      if (is_here) result[{index, static_cast<std::int32_t>(face)}] = piece.fraction();
-    }
-  }
-  return result;
-}
-
-void check_against_brute_force(const TriangleMesh& mesh, const VoxelLattice& lattice) {
-  const auto expected = brute_force(mesh, lattice);
-  const std::vector<VoxelPiece> pieces = clip_by_voxels(mesh, lattice);
-  REQUIRE(pieces.size() == expected.size());
-  auto entry = expected.begin();
-  for (const VoxelPiece& piece : pieces) {
-    const auto& [voxel, face] = entry->first;
-    REQUIRE(piece.voxel == voxel);
-    REQUIRE(piece.piece.face == face);
-    // Not by a cross product of doubles, which loses the area of slivers.
-    const double whole = RationalPolygon(corners(mesh, static_cast<std::size_t>(face))).area();
-    // Corners are within 2^-44 of their barycentric places; the polygon has at most nine.
-    const double exact = CGAL::to_double(entry->second) * whole;
-    REQUIRE(piece.piece.area > 0.0);
-    REQUIRE(std::abs(piece.piece.area - exact) <= 1e-12 * whole);
-    REQUIRE(piece.piece.polygon.size() >= 3);
-    const Eigen::Vector3i v = lattice.voxel(voxel);
-    for (const Eigen::Vector3d& corner : piece.piece.polygon) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double slack = 1e-12 * (std::abs(corner[axis]) + lattice.voxel_size);
-        REQUIRE(corner[axis] >= lattice.plane(axis, v[axis]) - slack);
-        REQUIRE(corner[axis] <= lattice.plane(axis, v[axis] + 1) + slack);
-      }
-    }
-    ++entry;
-  }
-}
-
-// Loose triangles with corners drawn by `coordinate`.
-template <typename Coordinate>
-TriangleMesh loose_triangles(int count, const Coordinate& coordinate) {
-  TriangleMesh mesh;
-  for (int i = 0; i < count; ++i) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const double x = coordinate();
-      const double y = coordinate();
-      const double z = coordinate();
-      mesh.vertices.emplace_back(x, y, z);
-    }
-    mesh.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
 }
 
 double sum_of_areas(const std::vector<SurfacePatch>& patches) {
@@ -100,56 +22,6 @@ double sum_of_areas(const std::vector<SurfacePatch>& patches) {
 }
 
 }  // namespace
-
-TEST_CASE("Pieces of triangles in general position are those of rational arithmetic",
-          "[geometry][surface_patch]") {
-  Random random(1);
-  check_against_brute_force(loose_triangles(60, [&] { return random.uniform(0.0, 4.0); }),
-                            unit_lattice(4));
-}
-
-TEST_CASE("Pieces of triangles with corners in voxel planes are those of rational arithmetic",
-          "[geometry][surface_patch]") {
-  // Halves: most corners lie in planes, edges and corners of voxels; some triangles are degenerate
-  // or lie wholly in a plane.
-  Random random(2);
-  const auto half = [&] { return 0.5 * static_cast<double>(1 + random.index(6)); };
-  check_against_brute_force(loose_triangles(150, half), unit_lattice(4));
-}
-
-TEST_CASE("Pieces a hair's breadth beside voxel planes are those of rational arithmetic",
-          "[geometry][surface_patch]") {
-  // One or two ulps beside a whole number: filters cannot decide, rationals must.
-  Random random(3);
-  const auto near = [&] {
-    double x = static_cast<double>(1 + random.index(3));
-    for (std::uint64_t ulps = random.index(3); ulps > 0; --ulps) {
-      x = std::nextafter(x, random.index(2) == 0 ? 0.0 : 4.0);
-    }
-    return x;
-  };
-  check_against_brute_force(loose_triangles(100, near), unit_lattice(4));
-}
-
-TEST_CASE("Pieces of slivers of height 1e-12 are those of rational arithmetic",
-          "[geometry][surface_patch]") {
-  Random random(4);
-  TriangleMesh mesh = loose_triangles(40, [&] { return random.uniform(0.5, 3.5); });
-  for (const Face& f : mesh.faces) {
-    const double t = random.uniform(0.2, 0.8);
-    mesh.vertices[f[2]] = mesh.vertices[f[0]] + t * (mesh.vertices[f[1]] - mesh.vertices[f[0]]) +
-                          Eigen::Vector3d::Constant(1e-12);
-  }
-  check_against_brute_force(mesh, unit_lattice(4));
-}
-
-TEST_CASE("Pieces near coordinate 1e6 are those of rational arithmetic",
-          "[geometry][surface_patch]") {
-  Random random(5);
-  const VoxelLattice lattice{Eigen::Vector3d::Constant(1e6), 0.1, Eigen::Vector3i::Constant(4)};
-  check_against_brute_force(loose_triangles(60, [&] { return 1e6 + random.uniform(0.0, 0.4); }),
-                            lattice);
-}
 
 TEST_CASE("The face of a box that lies in a voxel plane belongs to the higher voxel",
           "[geometry][surface_patch]") {
@@ -252,6 +124,82 @@ TEST_CASE("Area weighting and plain averaging differ as documented", "[geometry]
   CHECK((plain[0].outward_normal - Eigen::Vector3d(1, 0, 1).normalized()).norm() < 1e-14);
 }
 
+TEST_CASE("A patch has both normals and the center of area, whatever the options",
+          "[geometry][surface_patch]") {
+  const TriangleMesh mesh = torus(0.05, 0.02, 24, 12);
+  const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 10});
+  const auto weighted = surface_patches(mesh, lattice, {PatchAveraging::AreaWeighted});
+  const auto plain = surface_patches(mesh, lattice, {PatchAveraging::Plain});
+  const auto pieces = clip_by_voxels(mesh, lattice);
+  auto piece = pieces.begin();
+  REQUIRE(weighted.size() == plain.size());
+  for (std::size_t i = 0; i < weighted.size(); ++i) {
+    const SurfacePatch& patch = weighted[i];
+    // The averages from their definitions.
+    double area = 0.0;
+    double count = 0.0;
+    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+    Eigen::Vector3d vector_sum = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+    for (; piece != pieces.end() && piece->voxel == patch.voxel; ++piece) {
+      const Eigen::Vector3d normal = face_normal(mesh, static_cast<std::size_t>(piece->piece.face));
+      area += piece->piece.area;
+      moment += piece->piece.area * piece->piece.centroid;
+      vector_sum += piece->piece.area * normal;
+      normals += normal;
+      count += 1.0;
+    }
+    CHECK(patch.area == Approx(area).epsilon(1e-14));
+    CHECK((patch.area_centroid - moment / area).norm() < 1e-15);
+    CHECK((patch.area_weighted_normal - vector_sum / area).norm() < 1e-14);
+    CHECK((patch.plain_normal - normals / count).norm() < 1e-14);
+    CHECK(plain[i].area == patch.area);
+    CHECK(plain[i].area_centroid == patch.area_centroid);
+    CHECK(plain[i].area_weighted_normal == patch.area_weighted_normal);
+    CHECK(plain[i].plain_normal == patch.plain_normal);
+    CHECK(patch.outward_normal == patch.area_weighted_normal / patch.area_weighted_normal.norm());
+    CHECK(plain[i].outward_normal == patch.plain_normal / patch.plain_normal.norm());
+  }
+  CHECK(piece == pieces.end());
+}
+
+TEST_CASE("A patch's centroid is the nearest point of all its pieces to their mean",
+          "[geometry][surface_patch]") {
+  // Against looking at every piece: the fast path excludes most by a ball about each.
+  for (const TriangleMesh& mesh : {ball(0.05, 4), torus(0.05, 0.02, 60, 30)}) {
+    const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 6});
+    const auto pieces = clip_by_voxels(mesh, lattice);
+    auto piece = pieces.begin();
+    for (const SurfacePatch& patch : surface_patches(mesh, lattice)) {
+      TriangleMesh here;
+      for (; piece != pieces.end() && piece->voxel == patch.voxel; ++piece) {
+        const auto& polygon = piece->piece.polygon;
+        for (std::size_t i = 2; i < polygon.size(); ++i) {
+          const auto n = static_cast<std::int32_t>(here.vertices.size());
+          here.vertices.insert(here.vertices.end(), {polygon[0], polygon[i - 1], polygon[i]});
+          here.faces.push_back({n, n + 1, n + 2});
+        }
+      }
+      const double least = MeshQuery(here).closest_point(patch.area_centroid).squared_distance;
+      CHECK(std::sqrt(least) ==
+            Approx((patch.centroid - patch.area_centroid).norm()).margin(1e-15));
+    }
+  }
+}
+
+TEST_CASE("At 256 voxels along the longest axis of a flat body the patches hold its whole surface",
+          "[geometry][surface_patch]") {
+  TriangleMesh mesh = ball(0.1, 4);
+  for (auto& vertex : mesh.vertices) vertex = vertex.cwiseProduct(Eigen::Vector3d(0.4, 1.0, 0.2));
+  const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 256});
+  // 0.4 and 0.2 of 256 are 102.4 and 51.2: rounded up, and one voxel of margin on each side.
+  CHECK(lattice.counts == Eigen::Vector3i(105, 258, 54));
+  const auto patches = surface_patches(mesh, lattice);
+  CHECK(sum_of_areas(patches) == Approx(surface_area(mesh)).epsilon(1e-12));
+  const VoxelGrid grid = voxelize(MeshQuery(mesh), lattice, patches);
+  CHECK(grid.count(VoxelClass::Partial) == static_cast<std::int64_t>(patches.size()));
+}
+
 TEST_CASE("Patches do not depend on the order of the faces", "[geometry][surface_patch]") {
   // Turned, since in a symmetric position two points of a patch can be equally near to its mean.
   const RigidTransform X(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -276,6 +224,7 @@ TEST_CASE("A mesh that leaves the lattice is refused", "[geometry][surface_patch
   CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(3)), Catch::Contains("leaves the lattice"));
   CHECK_NOTHROW(surface_patches(cube, unit_lattice(4)));
   CHECK_THROWS_AS(surface_patches(cube, VoxelLattice{}), InvalidInput);
+  CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(1291)), Catch::Contains("2^31"));
 }
 
 TEST_CASE("A mesh without faces or of degenerate faces has no patches",

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "geometry/rational_clip.hpp"
 #include "graspfit/geometry/errors.hpp"
@@ -11,7 +13,6 @@
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
-using graspfit::testing::RationalPolygon;
 
 namespace {
 
@@ -38,35 +39,16 @@ double solid_angle(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
 // Classes from the definition: a voxel is partial iff rational clipping leaves a face some area in
 // it; else it is full iff the solid angle at its center says so.
 VoxelGrid brute_force(const TriangleMesh& mesh, const VoxelLattice& lattice) {
+  std::set<std::int64_t> partial;
+  for (const auto& [name, fraction] : graspfit::testing::voxel_fractions(mesh, lattice)) {
+    partial.insert(name.first);
+  }
   VoxelGrid grid{lattice, {}};
   for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
-    const Eigen::Vector3i voxel = lattice.voxel(index);
-    bool is_partial = false;
-    for (std::size_t face = 0; face < mesh.faces.size() && !is_partial; ++face) {
-      const auto triangle = corners(mesh, face);
-      Eigen::AlignedBox3d box;
-      for (const auto& corner : triangle) box.extend(corner);
-      bool is_here = true;
-      for (int axis = 0; axis < 3; ++axis) {
-        is_here &= box.min()[axis] <= lattice.plane(axis, voxel[axis] + 1) &&
-                   box.max()[axis] >= lattice.plane(axis, voxel[axis]);
-      }
-      if (!is_here) continue;
-      RationalPolygon piece(triangle);
-      for (int axis = 0; axis < 3; ++axis) {
-        is_here &= !piece.is_in_plane(axis, lattice.plane(axis, voxel[axis] + 1));
-      }
-      for (int axis = 0; axis < 3 && is_here; ++axis) {
-        piece.clip_slab(axis, lattice.plane(axis, voxel[axis]),
-                        lattice.plane(axis, voxel[axis] + 1));
-        is_here = piece.has_area();
-      }
-      is_partial = is_here;
-    }
-    grid.classes.push_back(is_partial ? VoxelClass::Partial
-                           : solid_angle(mesh, lattice.center(voxel)) > 2.0 * std::numbers::pi
-                               ? VoxelClass::Full
-                               : VoxelClass::Empty);
+    const double angle = solid_angle(mesh, lattice.center(lattice.voxel(index)));
+    grid.classes.push_back(partial.count(index) != 0        ? VoxelClass::Partial
+                           : angle > 2.0 * std::numbers::pi ? VoxelClass::Full
+                                                            : VoxelClass::Empty);
   }
   return grid;
 }
@@ -104,8 +86,18 @@ TEST_CASE("A box that lies across the lattice has the counts of its cross sectio
 }
 
 TEST_CASE("Voxel classes are those of brute force", "[geometry][voxel_grid]") {
-  for (const TriangleMesh& mesh : {ball(1.0, 1), torus(1.0, 0.4, 16, 8), capsule(0.3, 1.0, 8)}) {
-    const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 9});
+  // Lattices of unequal counts, one per body, in a general position and with vertices in planes.
+  const RigidTransform X(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, -2, 3).normalized()));
+  TriangleMesh whole = box({4.0, 2.0, 3.0});
+  for (auto& vertex : whole.vertices) vertex += Eigen::Vector3d(3.0, 3.0, 2.5);
+  const VoxelLattice by_planes{Eigen::Vector3d::Zero(), 0.5, {11, 9, 10}};
+  std::vector<std::pair<TriangleMesh, VoxelLattice>> cases = {{whole, by_planes}};
+  for (const TriangleMesh& mesh :
+       {ball(1.0, 1), torus(1.0, 0.4, 16, 8), capsule(0.3, 1.0, 8),
+        transformed(box({1.0, 0.7, 0.3}), X), transformed(capsule(0.2, 1.0, 8), X)}) {
+    cases.emplace_back(mesh, lattice_around(bounding_box(mesh), {.resolution = 9}));
+  }
+  for (const auto& [mesh, lattice] : cases) {
     const VoxelGrid grid = voxels_of(mesh, lattice);
     CHECK(grid.classes == brute_force(mesh, lattice).classes);
     CHECK(grid.count(VoxelClass::Full) > 0);

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "graspfit/geometry/convex_clip.hpp"
+
 /// \file
 /// A triangle cut by planes, in its barycentric coordinates.
 ///
@@ -13,38 +15,37 @@
 /// vectors. A corner of a cut polygon is where two lines meet: h = A × B up to scale, and oriented
 /// so that h0 + h1 + h2 > 0. So each corner *keeps its origin* (the names of its two lines), and
 /// the side of a third plane at it is the sign of one determinant det(A, B, G) of numbers that come
-/// straight from the input. That sign is decided in doubles with an error bound and, where the
-/// bound does not suffice, in rationals. Coordinates are computed last and decide nothing.
+/// straight from the input.
 ///
 ///     vertex k        lines e_i, e_j      exactly the input
 ///     edge × plane    lines e_i, G
 ///     two planes      lines G, G'
+///
+/// Three stages decide that sign, each where the one before cannot: the distance of the corner's
+/// rounded place from the plane, if it is more than the place can be off; the determinant in
+/// doubles with its error bound; the determinant in rationals.
 
 namespace graspfit::geometry::internal {
-
-/// How often the filters failed, for tests and benchmarks.
-struct ClipCounters {
-  std::uint64_t signs = 0;              ///< Signs asked for at cut corners.
-  std::uint64_t exact_signs = 0;        ///< Of these, decided in rationals.
-  std::uint64_t corners = 0;            ///< Corners computed.
-  std::uint64_t exact_coordinates = 0;  ///< Of these, computed in rationals.
-};
 
 /// A corner of a cut polygon.
 struct CutCorner {
   std::uint32_t line_a = 0;  ///< Lines that meet here; h = A × B.
   std::uint32_t line_b = 0;
-  std::uint32_t edge = 0;        ///< Line of the edge from here to the next corner,
-  bool edge_is_turned = false;   ///< and whether the polygon is on its negative side.
-  std::array<double, 3> h;       ///< A × B in doubles.
-  std::array<double, 3> h_size;  ///< |h − exact| ≤ a few ulps of this.
+  std::uint32_t exact_axes = 0;  ///< Bit k: point[k] is exact.
   double lambda_1 = 0.0;         ///< Barycentric coordinates of vertices 1 and 2.
   double lambda_2 = 0.0;
   Eigen::Vector3d point;
 };
 
+/// A corner by its name, with the edge from it to the next.
+struct CutEdge {
+  std::uint32_t corner;
+  std::uint32_t edge;  ///< Twice the name of its line, plus one if the polygon is on the line's
+                       ///< negative side.
+};
+
 /// Counter-clockwise in the order of the triangle; empty if nothing is left.
-using CutPolygon = std::vector<CutCorner>;
+using CutPolygon = std::vector<CutEdge>;
 
 /// Area and area centroid of a cut polygon.
 struct CutMeasure {
@@ -59,17 +60,20 @@ struct CutMeasure {
 /// a corner on an axis-aligned plane has that plane's coordinate exactly, a vertex is the vertex.
 class TriangleCutter {
  public:
-  /// Precondition: the corners are not collinear. Forgets the planes of the last triangle.
+  TriangleCutter();
+
+  /// Precondition: the corners are not collinear. Forgets corners and planes of the last triangle.
   void reset(const std::array<Eigen::Vector3d, 3>& corners);
 
   /// The whole triangle.
   void whole(CutPolygon& polygon) const;
 
-  /// Line of the plane normal · p = offset, inside where normal · p ≤ offset. Returns its name.
-  std::uint32_t add_plane(const Eigen::Vector3d& normal, double offset);
+  /// Line of the plane normal · p = offset, inside where normal · p ≤ offset. Returns its name;
+  /// names are consecutive. `index` is the plane's name in origins.
+  std::uint32_t add_plane(const Eigen::Vector3d& normal, double offset, int index);
 
   /// Line of the plane p[axis] = coordinate, inside where p[axis] ≤ coordinate.
-  std::uint32_t add_axis_plane(int axis, double coordinate);
+  std::uint32_t add_axis_plane(int axis, double coordinate, int index);
 
   /// The part of `polygon` inside `line`, and, unless null, the part on its other side; parts
   /// without area are empty. A polygon in the plane goes to `in_plane`: to the inside or the other.
@@ -77,37 +81,49 @@ class TriangleCutter {
   void split(const CutPolygon& polygon, std::uint32_t line, InPlane in_plane, CutPolygon& inside,
              CutPolygon* outside);
 
-  CutMeasure measure(const CutPolygon& polygon) const;
+  CutMeasure measure(const CutPolygon& polygon);
 
-  const ClipCounters& counters() const { return counters_; }
+  const CutCorner& corner(const CutEdge& of) const { return corners_[of.corner]; }
+  CornerOrigin origin(const CutEdge& of) const;
+
+  /// Bound on |point[axis] − exact| of every corner of this triangle.
+  double slack(int axis) const { return slack_[axis]; }
+
+  const ClipStatistics& statistics() const { return statistics_; }
 
  private:
   struct Line {
     std::array<double, 3> value;  // G in doubles,
     std::array<double, 3> size;   // |value − exact| ≤ a few ulps of this, and |value| ≤ this.
-    Eigen::Vector3d normal;       // The plane itself, for exact evaluation;
+    Eigen::Vector3d normal;       // The plane itself;
     double offset = 0.0;
-    int axis = -1;    // its axis if it is axis-aligned,
-    int vertex = -1;  // or the index of the unit vector.
+    double slack = 0.0;  // bound on |offset − normal · point| − its exact value at a cut corner.
+    int axis = -1;       // The plane's axis if it is axis-aligned,
+    int vertex = -1;     // or the index of the unit vector.
+    int index = -1;
   };
 
-  int sign_at(const CutCorner& corner, std::uint32_t line);
-  CutCorner meet(std::uint32_t a, bool a_is_turned, std::uint32_t b, bool b_is_turned);
+  int sign_at(std::uint32_t corner, std::uint32_t line);
+  int determinant_sign(const CutCorner& corner, std::uint32_t line);
+  int exact_sign(const CutCorner& corner, std::uint32_t line) const;
+  std::uint32_t meet(std::uint32_t a, std::uint32_t b);
   void place(CutCorner& corner);
+  void place_exactly(CutCorner& corner) const;
   template <typename Number>
   std::array<Number, 3> exact_line(std::uint32_t line) const;
   template <typename Number>
   std::array<Number, 3> exact_corner(std::uint32_t a, std::uint32_t b) const;
-  int exact_sign_at(const CutCorner& corner, std::uint32_t line) const;
-  void place_exactly(CutCorner& corner) const;
   double exact_fraction(const CutPolygon& polygon) const;
 
   std::array<Eigen::Vector3d, 3> vertices_;
   Eigen::Vector3d edge_1_;
   Eigen::Vector3d edge_2_;
+  Eigen::Vector3d slack_;
+  bool is_huge_ = false;  // Differences of coordinates may overflow.
   std::vector<Line> lines_;
+  std::vector<CutCorner> corners_;
   std::vector<int> signs_;
-  ClipCounters counters_;
+  ClipStatistics statistics_;
 };
 
 }  // namespace graspfit::geometry::internal

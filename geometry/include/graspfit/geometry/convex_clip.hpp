@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,8 +33,11 @@ struct ClippedPiece {
 ///
 /// Rounded: which planes cut which edges, and what is empty, are the decisions of real arithmetic
 /// on the given doubles. A corner is within 2^-42 of the triangle's longest edge, plus two ulps of
-/// its largest coordinate, of its exact place; the area is within 1e-12 of the triangle's area. A
-/// triangle that lies *in* a bounding plane counts as inside (half-spaces are closed).
+/// its largest coordinate, of its exact place. The area is within 1e-12 of the triangle's area. The
+/// centroid is within as much of its own place as a corner, plus 4e-12 of the longest edge times
+/// the triangle's area over the piece's. A triangle that lies *in* a bounding plane counts as
+/// inside (half-spaces are closed).
+/// @throws InvalidInput if a half-space is not finite.
 std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const ConvexVolume& volume);
 
@@ -41,5 +45,51 @@ std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
 /// out.
 std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
                                const ConvexVolume& volume);
+
+/// A plane that cut a piece.
+struct CuttingPlane {
+  int axis = -1;  ///< 0…2: the plane `VoxelLattice::plane(axis, index)`. −1: of a ConvexVolume.
+  int index = -1;  ///< Of the lattice's plane, or of the half-space in its volume.
+  bool operator==(const CuttingPlane&) const = default;
+};
+
+/// Where a corner of a piece comes from: all that is needed to compute its exact place.
+struct CornerOrigin {
+  enum class Kind : std::uint8_t {
+    Vertex,        ///< The triangle's corner `vertex`.
+    EdgeAndPlane,  ///< Edge `edge` and `planes[0]`.
+    TwoPlanes,     ///< The triangle's plane and both `planes`, which are not parallel in it.
+  };
+  Kind kind = Kind::Vertex;
+  int vertex = -1;                     ///< 0…2.
+  int edge = -1;                       ///< 0…2: from corner `edge` to the next.
+  std::array<CuttingPlane, 2> planes;  ///< In the order in which they cut.
+  bool operator==(const CornerOrigin&) const = default;
+};
+
+/// How often the fast path could not decide or place something. Every entry counts, none sums.
+struct ClipStatistics {
+  std::int64_t signs = 0;                    ///< Sides of planes asked for, of corners.
+  std::int64_t signs_by_determinant = 0;     ///< Too near for the rounded corner to say.
+  std::int64_t signs_in_rationals = 0;       ///< Of these, in doubles not certain.
+  std::int64_t corners = 0;                  ///< Places of cut corners computed.
+  std::int64_t corners_in_long_doubles = 0;  ///< Of these, in doubles not within the bound.
+  std::int64_t corners_in_rationals = 0;     ///< Nor in the wider type.
+  std::int64_t areas_in_rationals = 0;       ///< Pieces too small for their rounded corners.
+};
+
+/// What `clip` gives, each corner with its origin.
+struct ClippedWithOrigins {
+  std::optional<ClippedPiece> piece;
+  std::vector<CornerOrigin> origins;  ///< One per corner of `piece->polygon`.
+  ClipStatistics statistics;
+};
+
+/// As `clip`, bit for bit, with the origin of every corner.
+///
+/// Exact: the origins are those of real arithmetic. A corner where several planes meet names those
+/// that cut there first.
+ClippedWithOrigins clip_with_origins(const std::array<Eigen::Vector3d, 3>& triangle,
+                                     const ConvexVolume& volume);
 
 }  // namespace graspfit::geometry

@@ -29,17 +29,29 @@ struct SurfacePatch {
   bool has_normal = false;  ///< False where the mean normal before scaling is shorter than 0.1
                             ///< (both sides of a thin part): never a target.
   std::vector<std::int32_t> faces;  ///< Faces with a piece here, ascending.
+
+  // Both averages, whatever the options; `centroid` and `outward_normal` come from one of them.
+
+  /// Center of area, not projected [m].
+  Eigen::Vector3d area_centroid = Eigen::Vector3d::Zero();
+  /// Mean of the pieces' outward unit normals weighted by area: the patch's vector area divided by
+  /// its area. As long as the patch is flat: 1 in a plane, 0 where it is closed.
+  Eigen::Vector3d area_weighted_normal = Eigen::Vector3d::Zero();
+  /// Mean of the pieces' outward unit normals, all alike; not scaled either.
+  Eigen::Vector3d plain_normal = Eigen::Vector3d::Zero();
 };
 
 /// Options of `surface_patches`.
 struct SurfacePatchOptions {
-  PatchAveraging averaging = PatchAveraging::AreaWeighted;
+  PatchAveraging averaging = PatchAveraging::AreaWeighted;  ///< Of `centroid`, `outward_normal`.
 };
 
 /// All patches of a mesh, one per partial voxel, ascending by voxel index.
 ///
 /// Rounded: which triangle has area in which voxel is decided exactly; areas, centroids and normals
-/// are rounded. Degenerate faces have none. @throws InvalidInput if the mesh leaves the lattice.
+/// are rounded (see `clip` for the pieces; sums add an ulp per piece). Degenerate faces have none.
+/// Cost: linear in the number of pieces.
+/// @throws InvalidInput if the mesh leaves the lattice.
 std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
                                           const SurfacePatchOptions& options = {});
 
@@ -48,6 +60,23 @@ struct VoxelPiece {
   std::int64_t voxel = -1;
   ClippedPiece piece;
 };
+
+/// The pieces that `surface_patches` averages: cut by the same code, with the bounds of `clip`, but
+/// that a corner in a voxel plane has that plane's coordinate exactly. By the tie rule the pieces
+/// of a triangle make it up without gap or overlap.
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice);
+
+/// What `clip_by_voxels` gives, each corner with its origin.
+struct VoxelPiecesWithOrigins {
+  std::vector<VoxelPiece> pieces;
+  std::vector<std::vector<CornerOrigin>> origins;  ///< Per piece, one per corner of its polygon.
+  ClipStatistics statistics;
+};
+
+/// As `clip_by_voxels`, bit for bit, with the origin of every corner. Exact: the origins are those
+/// of real arithmetic; a piece's polygon with its corners at the exact places of its origins is
+/// exactly the triangle's part in the voxel.
+VoxelPiecesWithOrigins clip_by_voxels_with_origins(const TriangleMesh& mesh,
+                                                   const VoxelLattice& lattice);
 
 }  // namespace graspfit::geometry
