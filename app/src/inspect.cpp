@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -28,7 +29,6 @@ Command inspect_command() {
   add_option(more, "hand", "NAME|FILE", std::nullopt,
              "make the voxels of the whole interaction volume for this hand and check the object's "
              "size for it; without it only those of the object");
-  add_switch(more, "self-intersections", "also count crossing pairs of faces");
   add_option(
       more, "out", "DIR", std::nullopt,
       "write voxels.vti, score_map.vti, distance_map.vti and patches.ply there, for ParaView "
@@ -47,6 +47,13 @@ void print_row(const std::string& name, const std::string& value) {
 std::string vector_text(const Eigen::Vector3d& v) {
   return '(' + fixed_decimal(v.x(), 6) + ", " + fixed_decimal(v.y(), 6) + ", " +
          fixed_decimal(v.z(), 6) + ')';
+}
+
+/// Four significant digits.
+std::string rounded_text(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
 }
 
 /// "8 vertices, 12 faces, 1 part; closed, manifold, outward; degenerate faces 2": defects only
@@ -68,6 +75,8 @@ std::string analysis_text(const MeshAnalysis& mesh) {
   defect(mesh.num_nonmanifold_edges, "non-manifold edges");
   defect(mesh.num_inconsistent_edges, "edges run through twice in one direction");
   defect(mesh.num_inward_parts, "parts inside-out");
+  if (mesh.num_self_intersections == 0U) text += "; no crossing faces";
+  defect(mesh.num_self_intersections.value_or(0), "pairs of crossing faces");
   return text;
 }
 
@@ -85,7 +94,8 @@ void print_mesh(const grasp::ObjectFile& object) {
   print_row("before repair", analysis_text(object.before));
   for (const geometry::RepairStep& step : record.repairs) {
     print_row("repair", step.what + ' ' + std::to_string(step.count) + ", volume changed by " +
-                            shortest_decimal(step.volume_change) + " m3");
+                            rounded_text(step.volume_change) + " m3, surface by at most " +
+                            rounded_text(step.hausdorff_bound) + " m");
   }
   if (record.repairs.empty()) print_row("repair", "nothing changed");
   print_row("after repair", analysis_text(record.analysis));
@@ -95,7 +105,10 @@ void print_mesh(const grasp::ObjectFile& object) {
 }
 
 void print_mass(const grasp::ObjectModel& object) {
-  print_row("volume", shortest_decimal(object.mass.volume) + " m3");
+  print_row(
+      "volume",
+      shortest_decimal(object.mass.volume) + " m3" +
+          (object.mass.method == geometry::MassMethod::SolidBoundary ? ", parts united" : ""));
   print_row("center of mass", vector_text(object.mass.center_of_mass) + " m");
   print_row("normalizing radius", fixed_decimal(object.normalizing_radius, 6) + " m");
 }
@@ -215,12 +228,6 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   } else if (out) {
     require_solid(object_file);
   }
-  std::optional<std::size_t> crossings;
-  if (flags.has("self-intersections")) {
-    progress.show("self-intersections");
-    crossings = geometry::analyze(object_file.mesh, {.count_self_intersections = true})
-                    .num_self_intersections;
-  }
   if (out) {
     progress.show("writing files");
     write_files(*object, *out);
@@ -228,7 +235,6 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   progress.clear();
 
   print_mesh(object_file);
-  if (crossings) print_row("crossing faces", std::to_string(*crossings) + " pairs");
   if (object) {
     print_mass(*object);
     print_voxels(*object);

@@ -38,6 +38,21 @@ boost::program_options::options_description object_options() {
       "any defect; change nothing [R, A46]");
   add_option(options, "max-hole", "SHARE", shortest_decimal(repair.max_hole_extent_rel),
              "largest hole that repair fills: its extent over the object's, 0 to 1 [R, A46]");
+  add_option(
+      options, "weld", "SHARE", shortest_decimal(repair.weld_distance_rel),
+      "vertices this close become one when the mesh is mended: over the object's extent, 0 to "
+      "0.01; 0: equal ones only");
+  add_option(options, "self-intersections", "leave|report|resolve",
+             std::string(grasp::name_of(repair.self_intersections)),
+             "faces that cross: not looked for, counted, or cut so that only what bounds the solid "
+             "stays; the solid is the same");
+  add_switch(options, "wrap",
+             "last resort for a mesh that stays open or has no volume: a closed surface around it");
+  const geometry::AlphaWrap wrap;
+  add_option(options, "wrap-alpha", "SHARE", shortest_decimal(wrap.alpha_rel),
+             "with --wrap: narrowest gap that it enters, over the object's extent, 0.001 to 1");
+  add_option(options, "wrap-offset", "SHARE", shortest_decimal(wrap.offset_rel),
+             "with --wrap: its distance from the object, over the object's extent, 0.0001 to 1");
   return options;
 }
 
@@ -53,6 +68,13 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags) {
   }
   options.repair.mode = flags.choice<geometry::RepairMode>("repair");
   options.repair.max_hole_extent_rel = flags.number("max-hole");
+  options.repair.weld_distance_rel = flags.number("weld");
+  options.repair.self_intersections =
+      flags.choice<geometry::SelfIntersections>("self-intersections");
+  if (flags.has("wrap")) {
+    options.repair.wrap = geometry::AlphaWrap{.alpha_rel = flags.number("wrap-alpha"),
+                                              .offset_rel = flags.number("wrap-offset")};
+  }
   options.validate();
   return options;
 }

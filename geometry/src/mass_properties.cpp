@@ -5,6 +5,10 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/solid_boundary.hpp"
+#include "internal/disjoint_sets.hpp"
+#include "internal/mesh_edges.hpp"
+#include "internal/overlapping_boxes.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -38,6 +42,39 @@ Moments moments(const TriangleMesh& mesh) {
   return m;
 }
 
+/// Whether the boxes of any two parts meet. Exact, about the cost of the sums.
+bool has_parts_that_may_overlap(const TriangleMesh& mesh) {
+  internal::DisjointSets vertices(mesh.vertices.size());
+  for (const Face& face : mesh.faces) {
+    vertices.unite(face[0], face[1]);
+    vertices.unite(face[1], face[2]);
+  }
+  if (!mesh.faces.empty()) {
+    const std::int32_t only = vertices.root(mesh.faces[0][0]);
+    if (std::all_of(mesh.faces.begin(), mesh.faces.end(),
+                    [&](const Face& face) { return vertices.root(face[0]) == only; })) {
+      return false;
+    }
+  }
+  const std::vector<std::int32_t> set_of_vertex = vertices.numbered();
+  std::int32_t num_sets = 0;
+  for (const std::int32_t set : set_of_vertex) num_sets = std::max(num_sets, set + 1);
+  std::vector<std::int32_t> parts;
+  parts.reserve(mesh.faces.size());
+  for (const Face& face : mesh.faces) parts.push_back(set_of_vertex[face[0]]);
+  return internal::do_boxes_overlap(internal::boxes_of_parts(mesh, parts, num_sets));
+}
+
+/// Whether every edge is run through as often up as down.
+bool is_closed(const TriangleMesh& mesh) {
+  bool is_closed = true;
+  internal::for_each_edge(internal::sorted_sides(mesh), [&](auto first, auto last) {
+    const auto up = std::count_if(first, last, [](const auto& side) { return side.runs_up(); });
+    is_closed = is_closed && 2 * up == last - first;
+  });
+  return is_closed;
+}
+
 }  // namespace
 
 double signed_volume(const TriangleMesh& mesh) {
@@ -53,7 +90,8 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 MassProperties mass_properties(const TriangleMesh& mesh) {
-  const Moments m = moments(mesh);
+  const bool may_overlap = has_parts_that_may_overlap(mesh) && is_closed(mesh);
+  const Moments m = moments(may_overlap ? solid_boundary(mesh) : mesh);
   if (!(m.volume > 0.0)) {
     throw DegenerateGeometry("mass_properties: the volume is " + shortest_decimal(m.volume) +
                              " m^3; a closed mesh with outward faces is needed");
@@ -63,6 +101,7 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
   MassProperties properties;
   properties.volume = m.volume;
   properties.center_of_mass = m.apex + center;
+  properties.method = may_overlap ? MassMethod::SolidBoundary : MassMethod::SignedSum;
   properties.inertia = covariance.trace() * Eigen::Matrix3d::Identity() - covariance;
   return properties;
 }

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
-#include <unordered_map>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "internal/mesh_formats.hpp"
+#include "internal/vertex_welding.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -37,33 +36,6 @@ PolygonSoup parse(std::string_view content, const std::string& format) {
   if (format == "obj") return internal::parse_obj(content);
   if (format == "ply") return internal::parse_ply(content);
   return internal::parse_stl(content);
-}
-
-// One vertex for each position, the first with it; −0 is 0. Returns where each old one went.
-std::vector<std::int32_t> weld(std::vector<Eigen::Vector3d>& vertices) {
-  struct Hash {
-    std::size_t operator()(const std::array<double, 3>& p) const {
-      std::uint64_t h = 0;
-      for (const double x : p) {
-        h = (h ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15;
-        h ^= h >> 32;
-      }
-      return h;
-    }
-  };
-  std::unordered_map<std::array<double, 3>, std::int32_t, Hash> seen;
-  seen.reserve(vertices.size());
-  std::vector<std::int32_t> target(vertices.size());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Eigen::Vector3d p = vertices[i].array() + 0.0;
-    const auto [entry, is_new] =
-        seen.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(kept));
-    if (is_new) vertices[kept++] = p;
-    target[i] = entry->second;
-  }
-  vertices.resize(kept);
-  return target;
 }
 
 // Cuts a polygon into triangles: from its first corner if it is convex, else by cutting off ears,
@@ -138,7 +110,7 @@ MeshFile mesh_of(PolygonSoup soup, const std::string& format, double meters_per_
       throw IoError("vertex " + std::to_string(i) + " is not finite in meters");
     }
   }
-  const std::vector<std::int32_t> target = weld(soup.vertices);
+  const std::vector<std::int32_t> target = internal::weld_equal(soup.vertices);
   report.num_vertices_welded = target.size() - soup.vertices.size();
   for (std::int32_t& corner : soup.corners) corner = target[corner];
   result.mesh.vertices = std::move(soup.vertices);

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
+#include "internal/disjoint_sets.hpp"
 #include "internal/mesh_query_impl.hpp"
 #include "internal/winding.hpp"
 
@@ -39,26 +39,17 @@ void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
 }
 
 std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> root(mesh.vertices.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](std::int32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
+  internal::DisjointSets sets(mesh.vertices.size());
   std::vector<char> is_used(mesh.vertices.size(), 0);
   for (const Face& f : mesh.faces) {
     for (int i = 0; i < 3; ++i) {
       is_used[f[i]] = 1;
-      const std::int32_t a = find(f[i]);
-      const std::int32_t b = find(f[(i + 1) % 3]);
-      root[std::max(a, b)] = std::min(a, b);
+      sets.unite(f[i], f[(i + 1) % 3]);
     }
   }
   std::vector<std::int32_t> result;
-  for (std::size_t v = 0; v < root.size(); ++v) {
-    if (is_used[v] && root[v] == static_cast<std::int32_t>(v)) {
-      result.push_back(static_cast<std::int32_t>(v));
-    }
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(is_used.size()); ++v) {
+    if (is_used[v] && sets.root(v) == v) result.push_back(v);
   }
   return result;
 }

@@ -1,10 +1,13 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
 #include <CGAL/utility.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -12,12 +15,22 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/solid_boundary.hpp"
+#include "internal/crossing_faces.hpp"
+#include "internal/disjoint_sets.hpp"
 #include "internal/mesh_edges.hpp"
+#include "internal/one_sided_distance.hpp"
+#include "internal/vertex_welding.hpp"
 
 namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector3d;
+using internal::DisjointSets;
+using internal::FaceSide;
+using internal::for_each_edge;
+using internal::sorted_sides;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// Whether the three numbers run upward, up to rotation.
@@ -27,6 +40,22 @@ bool is_even(const Face& f) {
 }
 
 /// Each function below changes the mesh and returns how many things it changed.
+
+/// Returns how many vertices became another one, and the farthest way of one of them.
+std::pair<std::size_t, double> weld(TriangleMesh& mesh, double distance) {
+  const std::vector<Vector3d> before = mesh.vertices;
+  const std::vector<std::int32_t> target = distance > 0.0
+                                               ? internal::weld_near(mesh.vertices, distance)
+                                               : internal::weld_equal(mesh.vertices);
+  for (Face& face : mesh.faces) {
+    for (std::int32_t& vertex : face) vertex = target[vertex];
+  }
+  double farthest = 0.0;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    farthest = std::max(farthest, (before[v] - mesh.vertices[target[v]]).norm());
+  }
+  return {before.size() - mesh.vertices.size(), farthest * (1.0 + 0x1p-50)};
+}
 
 std::size_t remove_unused_vertices(TriangleMesh& mesh) {
   std::vector<std::int32_t> new_index(mesh.vertices.size(), -1);
@@ -50,8 +79,7 @@ std::size_t remove_unused_vertices(TriangleMesh& mesh) {
 /// Faces with a repeated vertex bound nothing and go. Collinear faces with three vertices carry the
 /// connection between their neighbors and stay: removing one would open the surface.
 std::size_t remove_collapsed_faces(TriangleMesh& mesh) {
-  return std::erase_if(mesh.faces,
-                       [](const Face& f) { return f[0] == f[1] || f[1] == f[2] || f[2] == f[0]; });
+  return std::erase_if(mesh.faces, internal::has_repeated_vertex);
 }
 
 /// Faces on the same three vertices cancel in pairs of opposite orientation; of those left one
@@ -139,10 +167,7 @@ std::size_t split_nonmanifold(TriangleMesh& mesh) {
   DisjointSets fans(3 * mesh.faces.size());
   const auto join = [&](const FaceSide& a, const FaceSide& b) {
     for (const std::int32_t vertex : {a.low(), a.high()}) {
-      const auto corner = [&](const FaceSide& side) {
-        return 3 * side.face + (side.tail == vertex ? side.corner : (side.corner + 1) % 3);
-      };
-      fans.unite(corner(a), corner(b));
+      fans.unite(a.corner_at(vertex), b.corner_at(vertex));
     }
   };
   for_each_edge(sides, [&](auto first, auto last) {
@@ -239,20 +264,53 @@ std::size_t fill_holes(TriangleMesh& mesh, double largest_extent) {
 }
 
 std::size_t turn_inside_out_parts(TriangleMesh& mesh) {
+  if (mesh.faces.empty()) return 0;
   const std::vector<FaceSide> sides = sorted_sides(mesh);
-  const std::vector<std::int32_t> parts = parts_of_faces(mesh, sides);
-  const std::size_t num_parts =
-      parts.empty() ? 0
-                    : static_cast<std::size_t>(*std::max_element(parts.begin(), parts.end())) + 1;
-  std::vector<bool> is_closed(num_parts, true);
+  const std::vector<std::int32_t> parts = internal::parts_of_faces(mesh, sides);
+  const std::int32_t last_part = *std::max_element(parts.begin(), parts.end());
+  std::vector<bool> is_closed(static_cast<std::size_t>(last_part) + 1, true);
   for_each_edge(sides, [&](auto first, auto last) {
     if (last - first != 2) is_closed[parts[first->face]] = false;
   });
-  const std::vector<std::int32_t> turned = inside_out_parts(mesh, parts, is_closed);
+  const std::vector<std::int32_t> turned = internal::inside_out_parts(mesh, parts, is_closed);
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     if (std::binary_search(turned.begin(), turned.end(), parts[face])) flip(mesh.faces[face]);
   }
   return turned.size();
+}
+
+/// Wraps the faces and orients the wrap outward.
+TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset) {
+  std::vector<Kernel::Point_3> points;
+  for (const Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
+  CGAL::Surface_mesh<Kernel::Point_3> wrap;
+  CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap);
+  TriangleMesh result;
+  for (const auto vertex : wrap.vertices()) {
+    const Kernel::Point_3& p = wrap.point(vertex);
+    result.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto face : wrap.faces()) {
+    Face& corners = result.faces.emplace_back();
+    int k = 0;
+    for (const auto vertex : wrap.vertices_around_face(wrap.halfedge(face))) {
+      corners[k++] = static_cast<std::int32_t>(vertex.idx());
+    }
+  }
+  return result;
+}
+
+/// Whether all faces of `mesh` lie strictly inside the closed surface `wrap`. Exact.
+bool encloses(const TriangleMesh& wrap, const TriangleMesh& mesh) {
+  std::vector<std::int32_t> side(wrap.faces.size(), 0);
+  side.resize(wrap.faces.size() + mesh.faces.size(), 1);
+  if (!internal::crossing_faces(concatenated({wrap, mesh}), side).empty()) return false;
+  const MeshQuery query(wrap);
+  return std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Face& face) {
+    return std::all_of(face.begin(), face.end(), [&](std::int32_t vertex) {
+      return query.containment(mesh.vertices[vertex]) == Containment::Inside;
+    });
+  });
 }
 
 std::string defects_of(const MeshAnalysis& analysis) {
@@ -270,77 +328,248 @@ std::string defects_of(const MeshAnalysis& analysis) {
   return text;
 }
 
+bool is_good(const MeshAnalysis& analysis) {
+  return analysis.is_outward && analysis.is_manifold && defects_of(analysis).empty();
+}
+
+/// Faces of `from` that `to` does not have on the same vertices, in whatever order.
+std::vector<Face> faces_beyond(const std::vector<Face>& from, const std::vector<Face>& to) {
+  const auto sorted = [](Face face) {
+    std::sort(face.begin(), face.end());
+    return face;
+  };
+  std::vector<Face> known;
+  known.reserve(to.size());
+  for (const Face& face : to) known.push_back(sorted(face));
+  std::sort(known.begin(), known.end());
+  std::vector<Face> result;
+  for (const Face& face : from) {
+    if (!std::binary_search(known.begin(), known.end(), sorted(face))) result.push_back(face);
+  }
+  return result;
+}
+
+/// Faces with a repeated vertex that are no edge or vertex of another face of `kept`.
+std::vector<Face> loose_segments(const std::vector<Face>& removed, const std::vector<Face>& kept) {
+  if (removed.empty()) return {};
+  std::vector<std::array<std::int32_t, 2>> edges;
+  for (const Face& f : kept) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
+      edges.push_back({low, low});
+      edges.push_back({low, high});
+      edges.push_back({high, high});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<Face> result;
+  for (const Face& f : removed) {
+    const auto [low, high] = std::minmax({f[0], f[1], f[2]});
+    if (!std::binary_search(edges.begin(), edges.end(), std::array{low, high})) result.push_back(f);
+  }
+  return result;
+}
+
+/// The repair of one mesh, step by step.
+class Repair {
+ public:
+  Repair(const TriangleMesh& mesh, const MeshRepairOptions& options)
+      : options_(options), extent_(longest_extent(mesh)) {
+    result_.mesh = mesh;
+    volume_ = signed_volume(mesh);
+  }
+
+  RepairedMesh run() {
+    result_.before = analyzed(result_.mesh);
+    result_.after = result_.before;
+    if (options_.mode == RepairMode::AsIs) return std::move(result_);
+    if (options_.mode == RepairMode::Strict) refuse_defects();
+    if (options_.mode == RepairMode::Repair) {
+      const TriangleMesh given = options_.wrap ? result_.mesh : TriangleMesh{};
+      if (!is_good(result_.before)) mend();
+      if (!result_.steps.empty()) result_.after = analyzed(result_.mesh);
+      if (options_.self_intersections == SelfIntersections::Resolve) resolve_self_intersections();
+      if (options_.wrap && !is_solid()) wrap(given);
+    }
+    refuse_open();
+    if (!is_solid()) throw DegenerateGeometry("the mesh encloses no volume");
+    return std::move(result_);
+  }
+
+ private:
+  MeshAnalysis analyzed(const TriangleMesh& mesh) const {
+    return analyze(mesh, {.count_self_intersections =
+                              options_.self_intersections != SelfIntersections::Leave});
+  }
+
+  bool is_solid() const { return result_.after.is_closed && volume_ > 0.0; }
+
+  void add_step(const char* what, std::size_t count, double hausdorff_bound) {
+    if (count == 0) return;
+    const double after = signed_volume(result_.mesh);
+    result_.steps.push_back({what, count, after - volume_, hausdorff_bound});
+    volume_ = after;
+  }
+
+  HausdorffOptions distance_options() const {
+    constexpr double kToleranceRel = 1e-4;  // Of the longest extent: a tenth of a voxel and less.
+    const double tolerance = kToleranceRel * extent_;
+    return {.tolerance = tolerance > 0.0 ? tolerance : 1.0, .max_steps = 20'000};
+  }
+
+  /// Bound for removing or adding `faces`: how far they reach from the rest of the surface.
+  double reach_of(const std::vector<Face>& faces, const TriangleMesh& rest) const {
+    if (faces.empty()) return 0.0;
+    if (rest.faces.empty()) return std::numeric_limits<double>::infinity();
+    return internal::one_sided_distance(internal::triangles_of(result_.mesh.vertices, faces),
+                                        MeshQuery(rest), distance_options())
+        .upper;
+  }
+
+  void mend() {
+    TriangleMesh& mesh = result_.mesh;
+    const auto [num_welded, farthest] = weld(mesh, options_.weld_distance_rel * extent_);
+    add_step("welded vertices", num_welded, farthest);
+    drop_collapsed_faces();
+    drop_doubled_faces();
+    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
+    add_step("turned faces", make_consistent(mesh), 0.0);
+    add_step("split non-manifold vertices", split_nonmanifold(mesh), 0.0);
+    if (mesh.faces.empty()) return;
+    const TriangleMesh open = mesh;
+    const std::size_t num_filled =
+        fill_holes(mesh, options_.max_hole_extent_rel * longest_extent(mesh));
+    const std::vector<Face> patches(
+        mesh.faces.begin() + static_cast<std::ptrdiff_t>(open.faces.size()), mesh.faces.end());
+    add_step("filled holes", num_filled, reach_of(patches, open));
+    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
+    if (num_filled > 0) drop_doubled_faces();
+    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
+    add_step("turned parts", turn_inside_out_parts(mesh), 0.0);
+  }
+
+  void drop_collapsed_faces() {
+    std::vector<Face> collapsed;
+    for (const Face& face : result_.mesh.faces) {
+      if (internal::has_repeated_vertex(face)) collapsed.push_back(face);
+    }
+    const std::size_t count = remove_collapsed_faces(result_.mesh);
+    add_step("removed degenerate faces", count,
+             reach_of(loose_segments(collapsed, result_.mesh.faces), result_.mesh));
+  }
+
+  void drop_doubled_faces() {
+    const std::vector<Face> faces = result_.mesh.faces;
+    const std::size_t count = remove_doubled_faces(result_.mesh);
+    if (count == 0) return;
+    add_step("removed doubled faces", count,
+             reach_of(faces_beyond(faces, result_.mesh.faces), result_.mesh));
+  }
+
+  /// Replaces the surface by the boundary of the solid that it means, if that is in order and
+  /// crosses itself less. Rounding the cuts may leave crossings of an ulp; another round on what is
+  /// left takes most of them.
+  void resolve_self_intersections() {
+    const std::size_t before = result_.after.num_self_intersections.value_or(0);
+    if (before == 0 || !result_.after.is_closed) return;
+    constexpr int kMaxRounds = 4;
+    const TriangleMesh given = result_.mesh;
+    std::size_t left = before;
+    for (int round = 0; round < kMaxRounds && left > 0; ++round) {
+      TriangleMesh resolved = solid_boundary(result_.mesh);
+      remove_doubled_faces(resolved);
+      remove_unused_vertices(resolved);
+      if (resolved.faces.empty()) break;
+      split_nonmanifold(resolved);
+      const MeshAnalysis analysis = analyzed(resolved);
+      const bool is_sound = analysis.is_outward && analysis.is_manifold;
+      if (!is_sound || *analysis.num_self_intersections >= left) break;
+      left = *analysis.num_self_intersections;
+      result_.mesh = std::move(resolved);
+      result_.after = analysis;
+    }
+    if (left == before) return;
+    const double bound =
+        hausdorff_distance(MeshQuery(given), MeshQuery(result_.mesh), distance_options()).upper;
+    add_step("resolved self-intersections", before - left, bound);
+  }
+
+  void wrap(const TriangleMesh& given) {
+    const double alpha = options_.wrap->alpha_rel * extent_;
+    const double offset = options_.wrap->offset_rel * extent_;
+    if (!(extent_ > 0.0)) return;
+    TriangleMesh wrapped = alpha_wrap(given, alpha, offset);
+    const MeshAnalysis analysis = analyzed(wrapped);
+    if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given)) return;
+    result_.steps.clear();
+    volume_ = signed_volume(given);
+    const double bound =
+        hausdorff_distance(MeshQuery(given), MeshQuery(wrapped), distance_options()).upper;
+    result_.mesh = std::move(wrapped);
+    result_.after = analysis;
+    add_step("wrapped", result_.mesh.faces.size(), bound);
+  }
+
+  void refuse_defects() const {
+    const MeshAnalysis& mesh = result_.before;
+    std::string defects = defects_of(mesh);
+    if (defects.empty() && !mesh.is_manifold) defects = "pinched vertices";
+    if (mesh.num_self_intersections.value_or(0) > 0) {
+      defects += (defects.empty() ? "" : ", ") + std::to_string(*mesh.num_self_intersections) +
+                 " pairs of crossing faces";
+    }
+    if (!defects.empty()) {
+      throw InvalidInput("the mesh has " + defects + "; strict mode repairs nothing");
+    }
+  }
+
+  void refuse_open() const {
+    if (result_.after.is_closed) return;
+    if (result_.mesh.faces.empty()) {
+      throw DegenerateGeometry("the mesh encloses no volume: its faces cancel each other");
+    }
+    double largest = 0.0;
+    for (const auto& loop : boundary_loops(result_.mesh)) {
+      largest = std::max(largest, loop_extent(result_.mesh, loop));
+    }
+    std::string holes;
+    if (largest > 0.0) {
+      const double share = largest / longest_extent(result_.mesh);
+      holes = "; its largest hole spans " + shortest_decimal(std::round(1000.0 * share) / 1000.0) +
+              " of its longest extent, holes up to " +
+              shortest_decimal(options_.max_hole_extent_rel) + " are filled";
+    }
+    throw InvalidInput(
+        "the mesh is not closed and could not be repaired: " + defects_of(result_.after) + holes);
+  }
+
+  const MeshRepairOptions& options_;
+  const double extent_;
+  RepairedMesh result_;
+  double volume_ = 0.0;
+};
+
+void check_range(const char* field, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  throw InvalidInput(std::string("MeshRepairOptions: ") + field + " = " + shortest_decimal(value) +
+                     ", must be in [" + shortest_decimal(least) + ", " + shortest_decimal(most) +
+                     "]");
+}
+
 }  // namespace
 
 void MeshRepairOptions::validate() const {
-  if (!(max_hole_extent_rel >= 0.0 && max_hole_extent_rel <= 1.0)) {
-    throw InvalidInput("MeshRepairOptions: max_hole_extent_rel = " +
-                       shortest_decimal(max_hole_extent_rel) + ", must be in [0, 1]");
-  }
+  check_range("weld_distance_rel", weld_distance_rel, 0.0, 0.01);
+  check_range("max_hole_extent_rel", max_hole_extent_rel, 0.0, 1.0);
+  if (!wrap) return;
+  check_range("wrap.alpha_rel", wrap->alpha_rel, 1e-3, 1.0);
+  check_range("wrap.offset_rel", wrap->offset_rel, 1e-4, 1.0);
 }
 
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options) {
   options.validate();
-  RepairedMesh result;
-  result.mesh = mesh;
   if (mesh.faces.empty()) throw InvalidInput("the mesh has no faces");
-  result.before = analyze(mesh);
-  if (options.mode == RepairMode::AsIs) {
-    result.after = result.before;
-    return result;
-  }
-  if (options.mode == RepairMode::Strict) {
-    const std::string defects = defects_of(result.before);
-    if (!defects.empty() || !result.before.is_manifold) {
-      throw InvalidInput("the mesh has " + (defects.empty() ? "pinched vertices" : defects) +
-                         "; strict mode repairs nothing");
-    }
-  }
-
-  double volume = signed_volume(result.mesh);
-  const auto step = [&](const char* what, std::size_t count) {
-    if (count == 0) return;
-    const double after = signed_volume(result.mesh);
-    result.steps.push_back({what, count, after - volume});
-    volume = after;
-  };
-  const bool is_good =
-      result.before.is_outward && result.before.is_manifold && defects_of(result.before).empty();
-  if (options.mode == RepairMode::Repair && !is_good) {
-    step("removed degenerate faces", remove_collapsed_faces(result.mesh));
-    step("removed doubled faces", remove_doubled_faces(result.mesh));
-    step("removed unused vertices", remove_unused_vertices(result.mesh));
-    step("turned faces", make_consistent(result.mesh));
-    step("split non-manifold vertices", split_nonmanifold(result.mesh));
-    const double largest_hole = options.max_hole_extent_rel * longest_extent(result.mesh);
-    step("filled holes", fill_holes(result.mesh, largest_hole));
-    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
-    step("removed doubled faces", remove_doubled_faces(result.mesh));
-    step("removed unused vertices", remove_unused_vertices(result.mesh));
-    step("turned parts", turn_inside_out_parts(result.mesh));
-  }
-  result.after = result.steps.empty() ? result.before : analyze(result.mesh);
-
-  if (!result.after.is_closed) {
-    double largest = 0.0;
-    for (const auto& loop : boundary_loops(result.mesh)) {
-      largest = std::max(largest, loop_extent(result.mesh, loop));
-    }
-    std::string holes;
-    if (largest > 0.0) {
-      holes =
-          "; its largest hole spans " +
-          shortest_decimal(std::round(1000.0 * largest / longest_extent(result.mesh)) / 1000.0) +
-          " of its longest extent, holes up to " + shortest_decimal(options.max_hole_extent_rel) +
-          " are filled";
-    }
-    throw InvalidInput(
-        "the mesh is not closed and could not be repaired: " + defects_of(result.after) + holes);
-  }
-  if (!(signed_volume(result.mesh) > 0.0)) {
-    throw DegenerateGeometry("the mesh encloses no volume");
-  }
-  return result;
+  return Repair(mesh, options).run();
 }
 
 }  // namespace graspfit::geometry

@@ -46,10 +46,18 @@ ObjectRecord read_object_record(const JsonNode& node) {
   object.meters_per_file_unit = node.at("meters_per_file_unit").number();
   const JsonNode repair = node.at("repair");
   object.repair.mode = repair.at("mode").choice<geometry::RepairMode>();
+  object.repair.weld_distance_rel = repair.at("weld_distance_rel").number();
   object.repair.max_hole_extent_rel = repair.at("max_hole_extent_rel").number();
+  object.repair.self_intersections =
+      repair.at("self_intersections").choice<geometry::SelfIntersections>();
+  if (const JsonNode wrap = repair.at("wrap"); !wrap.is_null()) {
+    object.repair.wrap = geometry::AlphaWrap{.alpha_rel = wrap.at("alpha_rel").number(),
+                                             .offset_rel = wrap.at("offset_rel").number()};
+  }
   for (const JsonNode& step : repair.at("steps").items()) {
-    object.repairs.push_back(
-        {step.at("what").text(), step.at("count").count(), step.at("volume_change_m3").number()});
+    object.repairs.push_back({step.at("what").text(), step.at("count").count(),
+                              step.at("volume_change_m3").number(),
+                              step.at("hausdorff_bound_m").number()});
   }
   object.analysis = read_mesh_analysis(node.at("mesh"));
   object.center_of_mass_O = node.at("center_of_mass_O_m").vector3();

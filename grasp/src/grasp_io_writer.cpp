@@ -96,15 +96,25 @@ Json mesh_json(const geometry::MeshAnalysis& mesh) {
 Json object_json(const ObjectRecord& object) {
   Json repairs = Json::array();
   for (const geometry::RepairStep& step : object.repairs) {
-    repairs.push_back(
-        {{"what", step.what}, {"count", step.count}, {"volume_change_m3", step.volume_change}});
+    repairs.push_back({{"what", step.what},
+                       {"count", step.count},
+                       {"volume_change_m3", step.volume_change},
+                       {"hausdorff_bound_m", step.hausdorff_bound}});
+  }
+  Json wrap = nullptr;
+  if (object.repair.wrap) {
+    wrap = {{"alpha_rel", object.repair.wrap->alpha_rel},
+            {"offset_rel", object.repair.wrap->offset_rel}};
   }
   return {{"file", object.file},
           {"sha256", object.sha256},
           {"meters_per_file_unit", object.meters_per_file_unit},
           {"repair",
            {{"mode", choice(object.repair.mode)},
+            {"weld_distance_rel", object.repair.weld_distance_rel},
             {"max_hole_extent_rel", object.repair.max_hole_extent_rel},
+            {"self_intersections", choice(object.repair.self_intersections)},
+            {"wrap", wrap},
             {"steps", repairs}}},
           {"mesh", mesh_json(object.analysis)},
           {"center_of_mass_O_m", to_json(object.center_of_mass_O)},

@@ -6,6 +6,7 @@ namespace graspfit::grasp {
 
 using geometry::PatchAveraging;
 using geometry::RepairMode;
+using geometry::SelfIntersections;
 
 template <>
 std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>() {
@@ -106,6 +107,15 @@ std::span<const NamedValue<RepairMode>> named_values<RepairMode>() {
   static constexpr std::array names = {NamedValue<RepairMode>{RepairMode::Repair, "repair"},
                                        NamedValue<RepairMode>{RepairMode::Strict, "strict"},
                                        NamedValue<RepairMode>{RepairMode::AsIs, "as-is"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<SelfIntersections>> named_values<SelfIntersections>() {
+  static constexpr std::array names = {
+      NamedValue<SelfIntersections>{SelfIntersections::Leave, "leave"},
+      NamedValue<SelfIntersections>{SelfIntersections::Report, "report"},
+      NamedValue<SelfIntersections>{SelfIntersections::Resolve, "resolve"}};
   return names;
 }
 

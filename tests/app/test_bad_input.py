@@ -122,7 +122,7 @@ class BadFlags(program.ProgramTest):
                 ("score-threshold", "-0.1", "1", "1.5"), ("theta-max-deg", "0", "-5", "90", "120"),
                 ("resolution", "3", "513", "-30"), ("count", "0", "-1"), ("max-attempts", "0"),
                 ("alpha", "-1"), ("beta", "-0.3"), ("w1", "-1"), ("w2", "-1"), ("w3", "-1"),
-                ("max-hole", "-0.1", "1.1"), ("longest", "0", "-0.15"),
+                ("max-hole", "-0.1", "1.1"), ("weld", "-0.001", "0.011"), ("longest", "0", "-0.15"),
                 ("clip-thickness-mm", "0", "-1"), ("wall-clock-limit-s", "0", "-1"),
                 ("edge-tolerance", "-1"), ("pool-fraction", "0", "1.1"), ("max-seeds", "0"),
                 ("clearance-mm", "-1"), ("mean-filter-radius", "-1"),
@@ -130,6 +130,12 @@ class BadFlags(program.ProgramTest):
             for value in values:
                 with self.subTest(flag=flag, value=value):
                     self.refuse(f"--{flag}", value)
+
+    def test_wrap_out_of_range(self):
+        for flag, *values in (("wrap-alpha", "0", "0.0009", "1.1"), ("wrap-offset", "0", "2")):
+            for value in values:
+                with self.subTest(flag=flag, value=value):
+                    self.refuse("--wrap", f"--{flag}", value, says="wrap")
 
     def test_text_that_is_not_a_number(self):
         for value in ("abc", "1.5x", "0,3", "nan", "inf", "-inf", "1e999", "0x10", "--1", " 1",
@@ -147,7 +153,8 @@ class BadFlags(program.ProgramTest):
 
     def test_unknown_choices(self):
         for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
-                     "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit"):
+                     "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
+                     "self-intersections"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

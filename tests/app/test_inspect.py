@@ -57,13 +57,56 @@ class Inspect(InspectTest):
         self.assert_refused("inspect", path, "--hand", "barrett",
                             says=["30 x 20 x 10", "--longest"])
 
-    def test_crossing_faces_are_counted(self):
+    def write_two_boxes(self):
         a, faces = program.box(0.1, 0.1, 0.1)
         b = [(x + 0.03, y + 0.02, z + 0.01) for x, y, z in a]
-        path = self.write("two.off", program.off_text(
+        return self.write("two.off", program.off_text(
             a + b, faces + [tuple(i + 8 for i in face) for face in faces]))
-        text = self.inspect(path, "--self-intersections")
-        self.assertGreater(int(self.row(text, "crossing faces").split()[0]), 0)
+
+    def crossings(self, text, row):
+        found = re.search(r"pairs of crossing faces (\d+)", self.row(text, row))
+        return int(found[1]) if found else 0
+
+    def test_crossing_faces_are_counted_or_resolved(self):
+        path = self.write_two_boxes()
+        text = self.inspect(path)
+        self.assertEqual(self.crossings(text, "after repair"), 0)  # not looked for
+        # Overlap 0.07 x 0.08 x 0.09 counts once, crossing or not.
+        union = 2 * 0.1 ** 3 - 0.07 * 0.08 * 0.09
+        self.assertTrue(self.row(text, "volume").endswith(" m3, parts united"))
+        self.assertAlmostEqual(float(self.row(text, "volume").split()[0]), union, places=12)
+        text = self.inspect(path, "--self-intersections", "report")
+        pairs = self.crossings(text, "before repair")
+        self.assertGreater(pairs, 0)
+        self.assertEqual(self.crossings(text, "after repair"), pairs)
+        self.assert_refused("inspect", path, "--self-intersections", "report", "--repair", "strict",
+                            says=[f"{pairs} pairs of crossing faces"])
+        text = self.inspect(path, "--self-intersections", "resolve")
+        self.assertIn(f"resolved self-intersections {pairs}, volume changed by -0.000504 m3",
+                      self.row(text, "repair"))
+        self.assertIn("1 part; closed, manifold, outward; no crossing faces",
+                      self.row(text, "after repair"))
+        self.assertAlmostEqual(float(self.row(text, "volume").split()[0]), union, places=12)
+
+    def test_vertices_are_welded_as_far_as_asked(self):
+        vertices, faces = program.box(0.1, 0.1, 0.1)
+        # Every face with three vertices of its own, those of the last one 1e-5 m away.
+        soup = [vertices[v] for face in faces for v in face]
+        soup[-3:] = [(x + 1e-5, y, z) for x, y, z in soup[-3:]]
+        path = self.write("soup.off", program.off_text(
+            soup, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(12)]))
+        self.assert_refused("inspect", path, "--max-hole", "0", says="not closed")
+        text = self.inspect(path, "--weld", "0.001", "--max-hole", "0")
+        self.assertIn("welded vertices 3, volume changed by", self.row(text, "repair"))
+        self.assertIn("surface by at most 1e-05 m", self.row(text, "repair"))
+
+    def test_an_open_mesh_is_wrapped_only_when_asked(self):
+        vertices, faces = program.box(0.1, 0.08, 0.06)
+        path = self.write("tray.off", program.off_text(vertices, faces[2:]))
+        self.assert_refused("inspect", path, says="not closed")
+        text = self.inspect(path, "--wrap", "--wrap-alpha", "0.2", "--wrap-offset", "0.02")
+        self.assertIn("wrapped ", self.row(text, "repair"))
+        self.assertIn("closed, manifold, outward", self.row(text, "after repair"))
 
 
 class VtkFiles(InspectTest):

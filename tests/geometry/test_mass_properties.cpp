@@ -48,6 +48,31 @@ TEST_CASE("A hollow body has the difference", "[geometry][mass_properties]") {
   CHECK(mass_properties(hollow).volume == Approx(56.0));
 }
 
+TEST_CASE("Parts that overlap count once, and the method says so", "[geometry][mass_properties]") {
+  const TriangleMesh cube = box({2, 2, 2});
+  TriangleMesh beside = cube;
+  for (auto& vertex : beside.vertices) vertex += Eigen::Vector3d(1, 0, 0);
+  // A bar of 3 x 2 x 2.
+  const MassProperties bar = mass_properties(concatenated({cube, beside}));
+  CHECK(bar.method == MassMethod::SolidBoundary);
+  CHECK(bar.volume == Approx(12.0));
+  CHECK((bar.center_of_mass - Eigen::Vector3d(0.5, 0, 0)).norm() < 1e-13);
+  const Eigen::Matrix3d expected = Eigen::Vector3d(8, 13, 13).asDiagonal();
+  CHECK((bar.inertia - expected).norm() < 1e-12);
+
+  CHECK(mass_properties(concatenated({ball(1, 3), ball(0.5, 3)})).volume ==
+        Approx(signed_volume(ball(1, 3))));
+  for (auto& vertex : beside.vertices) vertex += Eigen::Vector3d(5, 0, 0);
+  const MassProperties apart = mass_properties(concatenated({cube, beside}));
+  CHECK(apart.method == MassMethod::SignedSum);
+  CHECK(apart.volume == Approx(16.0));
+  CHECK(mass_properties(cube).method == MassMethod::SignedSum);
+  // Open parts bound no solid and are summed as they are.
+  TriangleMesh open = concatenated({cube, cube});
+  open.faces.pop_back();
+  CHECK(mass_properties(open).method == MassMethod::SignedSum);
+}
+
 TEST_CASE("Without volume there are no mass properties", "[geometry][mass_properties]") {
   TriangleMesh inward = box({1, 1, 1});
   for (Face& f : inward.faces) std::swap(f[1], f[2]);

@@ -1,4 +1,9 @@
+#include <CGAL/Gmpq.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/intersections.h>
+
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
@@ -111,6 +116,100 @@ TEST_CASE("Crossing parts are counted as self-intersections only when asked",
   CHECK(*analyze(crossing, {.count_self_intersections = true}).num_self_intersections > 0);
   const TriangleMesh apart = concatenated({box({2, 2, 2}), moved(box({2, 2, 2}), {3, 0, 0})});
   CHECK(*analyze(apart, {.count_self_intersections = true}).num_self_intersections == 0);
+}
+
+TEST_CASE("Faces that share corners cross only beyond them", "[geometry][mesh_analysis]") {
+  // Against the triangle (0,0,0) (4,0,0) (0,4,0): the other's corners, and whether they cross.
+  const std::vector<std::pair<std::vector<Eigen::Vector3d>, bool>> cases = {
+      {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, true},      // the same
+      {{{0, 0, 0}, {4, 0, 0}, {0, -4, 0}}, false},    // beyond the common edge, in the plane
+      {{{0, 0, 0}, {4, 0, 0}, {1, 1, 0}}, true},      // folded onto it
+      {{{0, 0, 0}, {4, 0, 0}, {1, 1, 1e-9}}, false},  // nearly
+      {{{0, 0, 0}, {-4, 0, 0}, {0, -4, 1}}, false},   // a common corner
+      {{{0, 0, 0}, {2, 2, 1}, {2, 2, -1}}, true},     // through it from that corner
+      {{{0, 0, 0}, {2, 0, 0}, {0, 0, 3}}, true},      // along half an edge
+      {{{0, 0, 0}, {-2, 0, 0}, {0, 0, 3}}, false},
+      {{{1, 1, 0}, {1, 1, 3}, {2, 1, 3}}, true},  // touching with a corner
+      {{{1, 1, 1e-9}, {1, 1, 3}, {2, 1, 3}}, false},
+      {{{2, 2, 0}, {4, 4, 1}, {4, 4, -1}}, true},  // touching the long edge
+      {{{5, 0, 0}, {5, 4, 0}, {9, 0, 0}}, false}};
+  for (const auto& [other, is_crossing] : cases) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+    mesh.vertices.insert(mesh.vertices.end(), other.begin(), other.end());
+    // Equal coordinates are a common corner whether or not they have one index.
+    for (std::int32_t turn = 0; turn < 3; ++turn) {
+      mesh.faces = {{0, 1, 2}, {3 + turn, 3 + (turn + 1) % 3, 3 + (turn + 2) % 3}};
+      CHECK(*analyze(mesh, {.count_self_intersections = true}).num_self_intersections ==
+            (is_crossing ? 1 : 0));
+    }
+  }
+}
+
+TEST_CASE("Crossings in triangles on a small grid are those of exact arithmetic",
+          "[geometry][mesh_analysis]") {
+  using Exact = CGAL::Simple_cartesian<CGAL::Gmpq>;
+  Random random(41);
+  for (int round = 0; round < 20; ++round) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 90; ++i) {
+      const auto coordinate = [&] { return static_cast<double>(random.index(4)); };
+      mesh.vertices.emplace_back(coordinate(), coordinate(), coordinate());
+    }
+    for (std::int32_t i = 0; i < 30; ++i) mesh.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    std::vector<Exact::Triangle_3> triangles;
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+      const auto [a, b, c] = corners(mesh, i);
+      const Exact::Triangle_3 triangle({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]});
+      if (!triangle.is_degenerate()) triangles.push_back(triangle);
+    }
+    std::size_t crossings = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto is_corner_of_both = [&](const Exact::Point_3& p) {
+          const auto is_corner = [&](const Exact::Triangle_3& t) {
+            return p == t[0] || p == t[1] || p == t[2];
+          };
+          return is_corner(triangles[i]) && is_corner(triangles[j]);
+        };
+        const auto common = CGAL::intersection(triangles[i], triangles[j]);
+        if (!common) continue;
+        const auto* point = boost::get<Exact::Point_3>(&*common);
+        const auto* segment = boost::get<Exact::Segment_3>(&*common);
+        const bool is_regular = (point != nullptr && is_corner_of_both(*point)) ||
+                                (segment != nullptr && is_corner_of_both(segment->source()) &&
+                                 is_corner_of_both(segment->target()));
+        if (!is_regular) ++crossings;
+      }
+    }
+    CHECK(*analyze(mesh, {.count_self_intersections = true}).num_self_intersections == crossings);
+  }
+}
+
+TEST_CASE("Parts that cross and parts that lie in another are counted when asked",
+          "[geometry][mesh_analysis]") {
+  const TriangleMesh cube = box({2, 2, 2});
+  struct Case {
+    std::vector<TriangleMesh> parts;
+    std::size_t overlapping;
+    std::size_t nested;
+  };
+  const std::vector<Case> cases = {
+      {{cube}, 0, 0},
+      {{cube, moved(cube, {5, 0, 0})}, 0, 0},
+      {{cube, moved(cube, {1, 0.5, 0.25})}, 1, 0},
+      {{cube, moved(cube, {1, 0.5, 0.25}), moved(cube, {2.5, 1, 0.5})}, 2, 0},
+      {{cube, box({1, 1, 1})}, 0, 1},
+      {{box({4, 4, 4}), inward(cube), box({1, 1, 1}), moved(cube, {9, 0, 0})}, 0, 2},
+      {{ball(1, 2), moved(ball(1, 2), {1.5, 1.5, 0})}, 0, 0}  // Only their boxes meet.
+  };
+  for (const auto& [parts, overlapping, nested] : cases) {
+    const MeshAnalysis analysis = analyze(concatenated(parts), {.count_part_overlaps = true});
+    CHECK(analysis.num_overlapping_part_pairs == overlapping);
+    CHECK(analysis.num_nested_parts == nested);
+  }
+  CHECK_FALSE(analyze(cube).num_nested_parts.has_value());
+  CHECK_FALSE(analyze(cube).num_overlapping_part_pairs.has_value());
 }
 
 TEST_CASE("A mesh of nothing is not closed", "[geometry][mesh_analysis]") {

@@ -1,9 +1,15 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/geometry/surface_distance.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
@@ -41,6 +47,34 @@ void check_is_good(const RepairedMesh& repaired, double volume) {
   const RepairedMesh again = repair_mesh(repaired.mesh);
   CHECK(again.steps.empty());
   CHECK(again.mesh == repaired.mesh);
+}
+
+/// Every face with three vertices of its own.
+TriangleMesh soup(const TriangleMesh& mesh) {
+  TriangleMesh result;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const auto first = static_cast<std::int32_t>(result.vertices.size());
+    for (const Eigen::Vector3d& corner : corners(mesh, face)) result.vertices.push_back(corner);
+    result.faces.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+/// The steps' volumes add up, and their bounds hold against the surfaces themselves.
+void check_report(const TriangleMesh& given, const RepairedMesh& repaired) {
+  double volume = signed_volume(given);
+  double bound = 0.0;
+  for (const RepairStep& step : repaired.steps) {
+    CHECK(step.count > 0);
+    CHECK(step.hausdorff_bound >= 0.0);
+    volume += step.volume_change;
+    bound += step.hausdorff_bound;
+  }
+  CHECK(volume == Approx(signed_volume(repaired.mesh)));
+  const double tolerance = 1e-5 * longest_extent(given);
+  const HausdorffDistance distance =
+      hausdorff_distance(MeshQuery(given), MeshQuery(repaired.mesh), {.tolerance = tolerance});
+  CHECK(distance.lower <= bound + 1e-13 * longest_extent(given));
 }
 
 }  // namespace
@@ -176,8 +210,184 @@ TEST_CASE("Strict refuses any defect and as-is keeps every one", "[geometry][mes
   CHECK_FALSE(as_is.after.is_closed);
 }
 
-TEST_CASE("Repair options out of range are refused", "[geometry][mesh_repair]") {
+TEST_CASE("Repair options out of range are refused by name", "[geometry][mesh_repair]") {
+  const TriangleMesh mesh = box({1, 1, 1});
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
-    CHECK_THROWS_AS(repair_mesh(box({1, 1, 1}), {.max_hole_extent_rel = bad}), InvalidInput);
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.max_hole_extent_rel = bad}), Catch::Contains("max_hole"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.weld_distance_rel = bad}), Catch::Contains("weld"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.wrap = AlphaWrap{.alpha_rel = bad}}),
+                      Catch::Contains("alpha_rel"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.wrap = AlphaWrap{.offset_rel = bad}}),
+                      Catch::Contains("offset_rel"));
   }
+}
+
+TEST_CASE("Equal vertices are welded, zeros of either sign too", "[geometry][mesh_repair]") {
+  TriangleMesh mesh = soup(moved(box({1, 1, 1}), {0.5, 0.5, 0.5}));
+  for (std::size_t v = 0; v < mesh.vertices.size(); v += 2) {
+    for (double& x : mesh.vertices[v]) x = x == 0.0 ? -0.0 : x;
+  }
+  const RepairedMesh repaired = repair_mesh(mesh);
+  CHECK(steps_of(repaired) == "welded vertices 28");
+  CHECK(repaired.steps[0].hausdorff_bound == 0.0);
+  check_is_good(repaired, 1.0);
+  for (const Eigen::Vector3d& vertex : repaired.mesh.vertices) {
+    for (const double x : vertex) CHECK_FALSE(std::signbit(x));
+  }
+}
+
+TEST_CASE("Vertices are welded up to the distance given and move no farther",
+          "[geometry][mesh_repair]") {
+  TriangleMesh mesh = soup(ball(1, 1));
+  Random random(3);
+  // Up to 0.8e-3 apart; the extent is 2, so that 0.0005 welds what is 1e-3 apart.
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    for (double& x : v) x += random.uniform(-2e-4, 2e-4);
+  }
+  CHECK_THROWS_AS(repair_mesh(mesh), InvalidInput);
+  const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 5e-4});
+  CHECK(steps_of(repaired) == "welded vertices 198");
+  CHECK(repaired.mesh.vertices.size() == 42);
+  CHECK(repaired.steps[0].hausdorff_bound > 0.0);
+  CHECK(repaired.steps[0].hausdorff_bound <= 1.001e-3);
+  check_report(mesh, repaired);
+  check_is_good(repaired, signed_volume(repaired.mesh));
+}
+
+TEST_CASE("A chain of close vertices does not collapse into one", "[geometry][mesh_repair]") {
+  // A fine ring of a cylinder: neighbors are 0.0063 apart, the weld reaches to every other one.
+  TriangleMesh mesh = cylinder(1, 10, 1000);
+  mesh.vertices.push_back({0, 0, 0});
+  const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 0.0009});
+  CHECK(repaired.steps[0].hausdorff_bound <= 0.0009 * 10 * 1.001);
+  CHECK(signed_volume(repaired.mesh) == Approx(signed_volume(mesh)).epsilon(1e-4));
+  check_report(mesh, repaired);
+}
+
+TEST_CASE("The bound of a step is the distance where that is known", "[geometry][mesh_repair]") {
+  TriangleMesh open = box({1, 1, 4});
+  open.faces.erase(open.faces.begin(), open.faces.begin() + 2);
+  const RepairedMesh filled = repair_mesh(open);
+  // The middle of the plate is half its edge from the rim.
+  CHECK(filled.steps.at(0).hausdorff_bound == Approx(0.5).margin(1e-3));
+  CHECK(filled.steps.at(0).hausdorff_bound >= 0.5);
+  check_report(open, filled);
+
+  TriangleMesh flap = box({1, 1, 1});
+  flap.vertices.push_back({2, 2, 2});
+  flap.faces.push_back({0, 1, 8});
+  flap.faces.push_back({1, 0, 8});
+  const RepairedMesh trimmed = repair_mesh(flap);
+  CHECK(steps_of(trimmed) == "removed doubled faces 2, removed unused vertices 1");
+  CHECK(trimmed.steps[0].hausdorff_bound == Approx(1.5 * std::sqrt(3.0)).epsilon(1e-3));
+  CHECK(trimmed.steps[1].hausdorff_bound == 0.0);
+  check_report(flap, trimmed);
+
+  // A face collapsed to a diagonal through the box, one to an edge, one to a point.
+  for (const auto& [face, bound] :
+       {std::pair{Face{0, 0, 7}, 0.5}, std::pair{Face{0, 1, 1}, 0.0}, {Face{3, 3, 3}, 0.0}}) {
+    TriangleMesh mesh = box({1, 1, 1});
+    mesh.faces.push_back(face);
+    const RepairedMesh repaired = repair_mesh(mesh);
+    CHECK(steps_of(repaired) == "removed degenerate faces 1");
+    CHECK(repaired.steps[0].hausdorff_bound == Approx(bound).margin(1e-3));
+  }
+}
+
+TEST_CASE("Inside-out parts among thousands are told from cavities", "[geometry][mesh_repair]") {
+  std::vector<TriangleMesh> parts = {box({100, 100, 100})};
+  const TriangleMesh hole = inward(box({0.5, 0.5, 0.5}));
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3d at(i % 10 - 4.5, i / 10 % 10 - 4.5, i / 100 - 4.5);
+    parts.push_back(moved(hole, at));
+    parts.push_back(moved(hole, at + Eigen::Vector3d(100, 0, 0)));
+  }
+  const RepairedMesh repaired = repair_mesh(concatenated(parts));
+  CHECK(repaired.before.num_parts == 2001);
+  CHECK(steps_of(repaired) == "turned parts 1000");
+  check_is_good(repaired, 1e6);
+  // A part that only starts inside another is no cavity.
+  const RepairedMesh poking = repair_mesh(concatenated({box({4, 4, 4}), moved(hole, {2, 0, 0})}));
+  CHECK(steps_of(poking) == "turned parts 1");
+}
+
+TEST_CASE("Crossings are reported as asked and refused by strict", "[geometry][mesh_repair]") {
+  const TriangleMesh two = concatenated({box({2, 2, 2}), moved(box({2, 2, 2}), {1, 0.5, 0.25})});
+  CHECK_FALSE(repair_mesh(two).before.num_self_intersections.has_value());
+  CHECK(repair_mesh(two, {.mode = RepairMode::Strict}).mesh == two);
+  for (const RepairMode mode : {RepairMode::Repair, RepairMode::AsIs}) {
+    const RepairedMesh reported =
+        repair_mesh(two, {.mode = mode, .self_intersections = SelfIntersections::Report});
+    CHECK(reported.mesh == two);
+    CHECK(*reported.before.num_self_intersections > 0);
+    CHECK(reported.before.num_self_intersections == reported.after.num_self_intersections);
+  }
+  for (const auto choice : {SelfIntersections::Report, SelfIntersections::Resolve}) {
+    CHECK_THROWS_WITH(repair_mesh(two, {.mode = RepairMode::Strict, .self_intersections = choice}),
+                      Catch::Contains("pairs of crossing faces"));
+    CHECK(repair_mesh(box({1, 1, 1}), {.mode = RepairMode::Strict, .self_intersections = choice})
+              .steps.empty());
+  }
+}
+
+TEST_CASE("Resolving crossings keeps the solid and leaves none", "[geometry][mesh_repair]") {
+  const TriangleMesh cube = box({2, 2, 2});
+  TriangleMesh dented = ball(1, 2);  // One vertex pushed through the opposite side.
+  dented.vertices[5] *= -1.3;
+  const RigidTransform X(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  const MeshRepairOptions resolve{.self_intersections = SelfIntersections::Resolve};
+  for (const TriangleMesh& mesh :
+       {concatenated({cube, moved(cube, {1, 0.5, 0.25})}),
+        concatenated({cube, moved(cube, {1, 0, 0})}),
+        concatenated({cube, transformed(cube, X), ball(1.2, 2)}), dented,
+        concatenated(
+            {torus(2, 0.7, 24, 12), cube, moved(inward(box({0.5, 0.5, 0.5})), {2, 0, 0})})}) {
+    const RepairedMesh repaired = repair_mesh(mesh, resolve);
+    REQUIRE(repaired.steps.size() == 1);
+    CHECK(repaired.steps[0].what == "resolved self-intersections");
+    CHECK(repaired.steps[0].count == *repaired.before.num_self_intersections);
+    CHECK(*repaired.after.num_self_intersections == 0);
+    CHECK(repaired.after.is_outward);
+    CHECK(repaired.after.is_manifold);
+    check_report(mesh, repaired);
+    const MeshQuery before(mesh);
+    const MeshQuery after(repaired.mesh);
+    Random random(17);
+    for (int i = 0; i < 2000; ++i) {
+      const Eigen::Vector3d p(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-2, 2));
+      REQUIRE(before.containment(p) == after.containment(p));
+    }
+    CHECK(repair_mesh(repaired.mesh, resolve).mesh == repaired.mesh);
+  }
+}
+
+TEST_CASE("A wrap closes what nothing else does, around all of it", "[geometry][mesh_repair]") {
+  TriangleMesh half = ball(1, 2);
+  std::erase_if(half.faces, [&](const Face& f) { return half.vertices[f[0]][2] < 0.0; });
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.faces = {{0, 1, 2}};
+  TriangleMesh tray = box({1, 1, 1});
+  tray.faces.erase(tray.faces.begin(), tray.faces.begin() + 2);
+  const AlphaWrap wrap{.alpha_rel = 0.2, .offset_rel = 0.02};
+  for (const TriangleMesh& mesh : {half, sheet, tray}) {
+    CHECK_THROWS_AS(repair_mesh(mesh), Error);
+    CHECK_THROWS_AS(repair_mesh(mesh, {.mode = RepairMode::Strict, .wrap = wrap}), InvalidInput);
+    const RepairedMesh repaired = repair_mesh(mesh, {.wrap = wrap});
+    CHECK(steps_of(repaired) == "wrapped " + std::to_string(repaired.mesh.faces.size()));
+    check_is_good(repaired, signed_volume(repaired.mesh));
+    check_report(mesh, repaired);
+    CHECK(repaired.steps[0].hausdorff_bound >= 0.02 * longest_extent(mesh));
+    const MeshQuery query(repaired.mesh);
+    for (const Face& face : mesh.faces) {
+      for (const std::int32_t v : face) {
+        CHECK(query.containment(mesh.vertices[v]) == Containment::Inside);
+      }
+    }
+  }
+  // Not the first resort.
+  TriangleMesh turned = box({1, 1, 1});
+  turn(turned, 2);
+  CHECK(steps_of(repair_mesh(turned, {.wrap = wrap})) == "turned faces 1");
+  CHECK(repair_mesh(turned, {.mode = RepairMode::AsIs, .wrap = wrap}).mesh == turned);
 }

@@ -1,7 +1,11 @@
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/distance_map.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -19,23 +23,31 @@ using namespace graspfit::geometry;
 
 namespace {
 
+/// One line of the outcome table.
 struct Expected {
-  const char* file;
-  const char* outcome;  ///< Steps of the repair, "good", or the start of the refusal.
+  std::string file;     ///< Below meshes/.
+  std::string outcome;  ///< good, repaired or refused.
+  std::string steps;    ///< Of the repair, with their counts, "; " between them.
+  std::string parts;    ///< After it.
+  std::string volume;   ///< Of the solid, in the file's unit, cubed.
 };
 
-std::string outcome_of(const TriangleMesh& mesh) {
-  try {
-    const RepairedMesh repaired = repair_mesh(mesh);
-    if (repaired.steps.empty()) return "good";
-    std::string text;
-    for (const RepairStep& step : repaired.steps) {
-      text += (text.empty() ? "" : ", ") + step.what + " " + std::to_string(step.count);
+std::vector<Expected> read_table() {
+  std::istringstream text(read_file(graspfit::testing::source_directory() /
+                                    "tests/geometry/assets/shared_mesh_outcomes.csv"));
+  std::string line;
+  std::getline(text, line);
+  REQUIRE(line == "file,outcome,steps,parts,volume");
+  std::vector<Expected> table;
+  while (std::getline(text, line)) {
+    std::istringstream cells(line);
+    Expected row;
+    for (std::string* cell : {&row.file, &row.outcome, &row.steps, &row.parts, &row.volume}) {
+      std::getline(cells, *cell, ',');
     }
-    return text;
-  } catch (const Error& error) {
-    return std::string("refused: ") + error.what();
+    table.push_back(row);
   }
+  return table;
 }
 
 // A solid's voxels, patches and queries have to agree with each other.
@@ -70,50 +82,49 @@ void check_solid(const TriangleMesh& mesh) {
   }
 }
 
-void check_all(const std::vector<Expected>& meshes) {
-  for (const auto& [file, outcome] : meshes) {
-    const auto path = graspfit::testing::find_data(std::string("meshes/") + file);
-    if (!path)
-      GRASPFIT_SKIP_TEST(std::string("meshes/") + file + " is not there; set GRASPFIT_DATA");
-    INFO(file);
-    const TriangleMesh mesh = read_mesh(*path).mesh;
-    const std::string found = outcome_of(mesh);
-    CHECK_THAT(found, Catch::StartsWith(outcome));
-    if (!found.starts_with("refused")) check_solid(repair_mesh(mesh).mesh);
+void check_row(const Expected& expected, const TriangleMesh& mesh) {
+  if (expected.outcome == "refused") {
+    CHECK_THROWS_AS(repair_mesh(mesh), Error);
+    return;
   }
+  const RepairedMesh repaired = repair_mesh(mesh);
+  std::string steps;
+  for (const RepairStep& step : repaired.steps) {
+    steps += (steps.empty() ? "" : "; ") + step.what + " " + std::to_string(step.count);
+    CHECK(step.hausdorff_bound >= 0.0);
+    CHECK(step.hausdorff_bound < longest_extent(mesh));
+  }
+  CHECK(steps == expected.steps);
+  CHECK(expected.outcome == (steps.empty() ? "good" : "repaired"));
+  CHECK(std::to_string(repaired.after.num_parts) == expected.parts);
+  CHECK(repaired.after.is_outward);
+  CHECK(repaired.after.is_manifold);
+  // Sums of 1e5 faces, in any order of evaluation.
+  CHECK(mass_properties(repaired.mesh).volume == Approx(std::stod(expected.volume)).epsilon(1e-9));
+  check_solid(repaired.mesh);
 }
 
 }  // namespace
 
-TEST_CASE("Closed meshes of the paper's objects need no repair", "[geometry][data]") {
-  check_all({{"paper/armadillo.off", "good"},   {"paper/ball.obj", "good"},
-             {"paper/bimba.obj", "good"},       {"paper/bottle.obj", "good"},
-             {"paper/buddha_head.obj", "good"}, {"paper/bunny.off", "good"},
-             {"paper/cage_frame.stl", "good"},  {"paper/dinosaur.off", "good"},
-             {"paper/duck.obj", "good"},        {"paper/flower_pot.obj", "good"},
-             {"paper/horse.off", "good"},       {"paper/kitten.obj", "good"},
-             {"paper/max_planck.obj", "good"},  {"paper/mug.obj", "good"},
-             {"paper/octopus.off", "good"},     {"paper/pegaso.off", "good"},
-             {"paper/shark.obj", "good"},       {"paper/teddy.off", "good"},
-             {"paper/torus.obj", "good"},       {"paper/toy_car_lowpoly.obj", "good"}});
+TEST_CASE("Every shared mesh has the outcome of the table", "[geometry][data]") {
+  for (const Expected& expected : read_table()) {
+    INFO(expected.file);
+    const auto path = graspfit::testing::find_data("meshes/" + expected.file);
+    if (!path) GRASPFIT_SKIP_TEST("meshes/" + expected.file + " is not there; set GRASPFIT_DATA");
+    check_row(expected, read_mesh(*path).mesh);
+  }
 }
 
-TEST_CASE("Everyday meshes are good or repaired", "[geometry][data]") {
-  check_all({{"everyday/bamboo_pen.obj", "good"},
-             {"everyday/banana.obj", "good"},
-             {"everyday/bike_frame.stl", "good"},
-             {"everyday/extra_large_clamp.obj", "good"},
-             {"everyday/hammer.obj", "good"},
-             {"everyday/phillips_screwdriver.obj", "good"},
-             {"everyday/bowl.ply", "removed degenerate faces"},
-             {"everyday/mustard_bottle.obj", "removed degenerate faces"},
-             {"everyday/power_drill.ply", "removed degenerate faces"},
-             {"everyday/tomato_soup_can.obj", "removed degenerate faces"}});
-}
-
-TEST_CASE("Meshes with known defects are repaired or refused in words", "[geometry][data]") {
-  check_all({{"paper/bowling_pin.obj", "split non-manifold vertices 3, filled holes 5"},
-             {"paper/squirrel.off", "split non-manifold vertices"},
-             {"paper/cage.obj", "turned parts 1"},
-             {"paper/toy_car.obj", ""}});
+TEST_CASE("Every shared mesh is in the table", "[geometry][data]") {
+  const auto sources = graspfit::testing::find_data("meshes/SOURCES.md");
+  if (!sources) GRASPFIT_SKIP_TEST("meshes/SOURCES.md is not there; set GRASPFIT_DATA");
+  const std::filesystem::path folder = sources->parent_path();
+  std::set<std::string> listed;
+  for (const Expected& expected : read_table()) listed.insert(expected.file);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || entry.path().extension() == ".md") continue;
+    const std::string name = entry.path().lexically_relative(folder).generic_string();
+    INFO(name);
+    CHECK(listed.contains(name));
+  }
 }

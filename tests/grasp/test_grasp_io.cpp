@@ -50,7 +50,10 @@ grasp::GraspFile sample_file(const fs::path& object_file) {
 
   grasp::GraspFile file;
   file.object = object.record;
-  file.object.repairs = {{"filled holes", 2, 1.25e-7}};
+  file.object.repairs = {{"filled holes", 2, 1.25e-7, 0.003}};
+  file.object.repair.weld_distance_rel = 0.001;
+  file.object.repair.self_intersections = geometry::SelfIntersections::Report;
+  file.object.repair.wrap = geometry::AlphaWrap{.alpha_rel = 0.05, .offset_rel = 0.01};
   file.hand = hands::find_hand("barrett");
   file.link_mesh_sha256.resize(file.hand.links.size());
   for (std::size_t i = 0; i < file.hand.links.size(); ++i) {
@@ -146,6 +149,12 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
   CHECK(read.object.analysis.box.max() == written.object.analysis.box.max());
   REQUIRE(read.object.repairs.size() == 1);
   CHECK(read.object.repairs[0].volume_change == 1.25e-7);
+  CHECK(read.object.repairs[0].hausdorff_bound == 0.003);
+  CHECK(read.object.repair.weld_distance_rel == 0.001);
+  CHECK(read.object.repair.self_intersections == geometry::SelfIntersections::Report);
+  REQUIRE(read.object.repair.wrap);
+  CHECK(read.object.repair.wrap->alpha_rel == 0.05);
+  CHECK(read.object.repair.wrap->offset_rel == 0.01);
   CHECK(read.hand.name == written.hand.name);
   CHECK(read.options.seed == written.options.seed);
   CHECK(read.options.approach_O == written.options.approach_O);
@@ -432,6 +441,7 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
   check(grasp::HullCentroid{});
   check(grasp::PlannerStop{});
   check(geometry::RepairMode{});
+  check(geometry::SelfIntersections{});
   CHECK(grasp::names_of<grasp::Acceptance>() == "valid|usable|quality");
 }
 

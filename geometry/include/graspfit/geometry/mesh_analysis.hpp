@@ -85,9 +85,10 @@ struct MeshRepairOptions {
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
   SelfIntersections self_intersections = SelfIntersections::Leave;
-  std::optional<AlphaWrap> wrap;  ///< The last resort, only where the mesh would be refused as not
-                                  ///< closed or without volume. Empty: refuse.
-  void validate() const;          ///< Throws InvalidInput naming the field and its value.
+  std::optional<AlphaWrap> wrap =
+      std::nullopt;       ///< The last resort, only where the mesh would be refused as not
+                          ///< closed or without volume. Empty: refuse.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One thing that a repair did.

@@ -55,6 +55,9 @@ template <>
 std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>();
 template <>
 std::span<const NamedValue<geometry::RepairMode>> named_values<geometry::RepairMode>();
+template <>
+std::span<const NamedValue<geometry::SelfIntersections>>
+named_values<geometry::SelfIntersections>();
 
 /// The name of a value; empty for a value that the enumeration does not have.
 template <class Enum>

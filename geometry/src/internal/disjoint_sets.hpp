@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace graspfit::geometry::internal {
+
+/// Union–find with path halving; the root of a set is its smallest member.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  std::int32_t root(std::int32_t item) {
+    while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
+    return item;
+  }
+  void unite(std::int32_t a, std::int32_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+  /// The set of every item, numbered by first member.
+  std::vector<std::int32_t> numbered() {
+    std::vector<std::int32_t> number(parent_.size());
+    std::int32_t next = 0;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      const auto item = static_cast<std::int32_t>(i);
+      const std::int32_t first = root(item);  // Numbered by now, unless it is the item itself.
+      number[i] = first == item ? next++ : number[first];
+    }
+    return number;
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+}  // namespace graspfit::geometry::internal
