@@ -82,9 +82,15 @@ std::size_t remove_collapsed_faces(TriangleMesh& mesh) {
   return std::erase_if(mesh.faces, internal::has_repeated_vertex);
 }
 
+/// What becomes of a surface of which every face has its opposite.
+enum class TwoSided {
+  Halved,  ///< It was drawn on both sides throughout: one of each pair stays.
+  Removed  ///< It is a sheet without thickness.
+};
+
 /// Faces on the same three vertices cancel in pairs of opposite orientation; of those left one
-/// stays. Where every face has its opposite, one of each pair is left.
-std::size_t remove_doubled_faces(TriangleMesh& mesh) {
+/// stays.
+std::size_t remove_doubled_faces(TriangleMesh& mesh, TwoSided two_sided) {
   struct Tally {
     int balance = 0;
     int kept = 0;
@@ -95,10 +101,9 @@ std::size_t remove_doubled_faces(TriangleMesh& mesh) {
   };
   std::map<Face, Tally> tallies;
   for (const Face& face : mesh.faces) tallies[key(face)].balance += is_even(face) ? 1 : -1;
-  const bool is_double_sided = std::all_of(tallies.begin(), tallies.end(),
-                                           [](const auto& t) { return t.second.balance == 0; });
-  if (is_double_sided) {
-    // A surface drawn on both sides throughout: the first face of each pair stays.
+  const bool is_two_sided = std::all_of(tallies.begin(), tallies.end(),
+                                        [](const auto& t) { return t.second.balance == 0; });
+  if (is_two_sided && two_sided == TwoSided::Halved) {
     return std::erase_if(mesh.faces,
                          [&](const Face& face) { return tallies[key(face)].kept++ > 0; });
   }
@@ -431,7 +436,7 @@ class Repair {
     const auto [num_welded, farthest] = weld(mesh, options_.weld_distance_rel * extent_);
     add_step("welded vertices", num_welded, farthest);
     drop_collapsed_faces();
-    drop_doubled_faces();
+    drop_doubled_faces(TwoSided::Halved);
     add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
     add_step("turned faces", make_consistent(mesh), 0.0);
     add_step("split non-manifold vertices", split_nonmanifold(mesh), 0.0);
@@ -443,7 +448,7 @@ class Repair {
         mesh.faces.begin() + static_cast<std::ptrdiff_t>(open.faces.size()), mesh.faces.end());
     add_step("filled holes", num_filled, reach_of(patches, open));
     // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
-    if (num_filled > 0) drop_doubled_faces();
+    if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);
     add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
     add_step("turned parts", turn_inside_out_parts(mesh), 0.0);
   }
@@ -458,9 +463,9 @@ class Repair {
              reach_of(loose_segments(collapsed, result_.mesh.faces), result_.mesh));
   }
 
-  void drop_doubled_faces() {
+  void drop_doubled_faces(TwoSided two_sided) {
     const std::vector<Face> faces = result_.mesh.faces;
-    const std::size_t count = remove_doubled_faces(result_.mesh);
+    const std::size_t count = remove_doubled_faces(result_.mesh, two_sided);
     if (count == 0) return;
     add_step("removed doubled faces", count,
              reach_of(faces_beyond(faces, result_.mesh.faces), result_.mesh));
@@ -477,7 +482,7 @@ class Repair {
     std::size_t left = before;
     for (int round = 0; round < kMaxRounds && left > 0; ++round) {
       TriangleMesh resolved = solid_boundary(result_.mesh);
-      remove_doubled_faces(resolved);
+      remove_doubled_faces(resolved, TwoSided::Removed);
       remove_unused_vertices(resolved);
       if (resolved.faces.empty()) break;
       split_nonmanifold(resolved);

@@ -44,7 +44,13 @@ std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, doub
   const double cell_size = 1.001 * distance;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   if (!vertices.empty()) origin = vertices.front();
-  for (const Eigen::Vector3d& p : vertices) origin = origin.cwiseMin(p);
+  Eigen::Vector3d end = origin;
+  for (const Eigen::Vector3d& p : vertices) {
+    origin = origin.cwiseMin(p);
+    end = end.cwiseMax(p);
+  }
+  // Cells this small have no numbers: below an ulp of the extent only equal vertices are welded.
+  if (!((end - origin).maxCoeff() / cell_size < 0x1p60)) return weld_equal(vertices);
   using Cell = std::array<std::int64_t, 3>;
   std::unordered_map<Cell, std::vector<std::int32_t>, Hash<std::int64_t>> kept_in_cell;
   std::vector<std::int32_t> target(vertices.size());
