@@ -67,7 +67,7 @@ inline FaceMeasure face_measure(const std::array<Eigen::Vector3d, 3>& triangle) 
   const double squared = area.squaredNorm();
   if (squared > 0x1p-900 && squared < 0x1p900) {
     result.area = std::sqrt(squared);
-    result.normal = area / result.area;
+    result.normal = area * (1.0 / result.area);
   } else {
     result.area = area.stableNorm();
     result.normal = area.stableNormalized();

@@ -194,7 +194,8 @@ std::array<Number, 3> TriangleCutter::exact_corner(std::uint32_t a, std::uint32_
   return exact_sign(corner, name);
 }
 
-inline int TriangleCutter::sign_at(std::uint32_t name_of_corner, std::uint32_t name) {
+[[gnu::always_inline]] inline int TriangleCutter::sign_at(std::uint32_t name_of_corner,
+                                                          std::uint32_t name) {
   const Line& line = lines_[name];
   const CutCorner& corner = corners_[name_of_corner];
   double value = 0.0;
@@ -216,36 +217,35 @@ inline int TriangleCutter::sign_at(std::uint32_t name_of_corner, std::uint32_t n
 std::uint32_t TriangleCutter::meet(std::uint32_t a, std::uint32_t b) {
   // Counter-clockwise consecutive lines, each with the polygon on its positive side, have
   // h0 + h1 + h2 > 0; turning one of them changes the sign, exchanging the two changes it back.
-  CutCorner corner;
+  ++statistics_.corners;
+  CutCorner& corner = corners_.emplace_back();
   const bool is_turned = ((a ^ b) & 1) != 0;
   corner.line_a = (is_turned ? b : a) / 2;
   corner.line_b = (is_turned ? a : b) / 2;
-  place(corner);
-  corners_.push_back(corner);
+  const Line& p = lines_[std::min(a, b) / 2];
+  const Line& q = lines_[std::max(a, b) / 2];
+  if (p.vertex >= 0 && q.axis >= 0 && !is_huge_) {
+    place_on_edge(corner, p.vertex, q);
+  } else {
+    place(corner, p, q);
+  }
   return static_cast<std::uint32_t>(corners_.size() - 1);
 }
 
-void TriangleCutter::place(CutCorner& corner) {
-  ++statistics_.corners;
-  const auto [first, second] = std::minmax(corner.line_a, corner.line_b);
-  const Line& p = lines_[first];
-  const Line& q = lines_[second];
-  if (p.vertex >= 0 && q.axis >= 0 && !is_huge_) {
-    // An edge that crosses an axis-aligned plane: the two distances have opposite signs and are
-    // each rounded once, so that nothing cancels and the quotient is good to three ulps.
-    const int j = (p.vertex + 1) % 3;
-    const int k = (p.vertex + 2) % 3;
-    const double t = q.value[j] / (q.value[j] - q.value[k]);
-    std::array<double, 3> lambda{};
-    lambda[j] = 1.0 - t;
-    lambda[k] = t;
-    corner.lambda_1 = lambda[1];
-    corner.lambda_2 = lambda[2];
-    corner.point = vertices_[j] + t * (vertices_[k] - vertices_[j]);
-    corner.point[q.axis] = q.offset;
-    corner.exact_axes = 1U << q.axis;
-    return;
-  }
+// An edge that crosses an axis-aligned plane: the two distances have opposite signs and are each
+// rounded once, so that nothing cancels and the quotient is good to three ulps.
+void TriangleCutter::place_on_edge(CutCorner& corner, int vertex, const Line& plane) const {
+  const int j = vertex == 2 ? 0 : vertex + 1;
+  const int k = j == 2 ? 0 : j + 1;
+  const double t = plane.value[j] / (plane.value[j] - plane.value[k]);
+  corner.point = vertices_[j] + t * (vertices_[k] - vertices_[j]);
+  corner.point[plane.axis] = plane.offset;
+  corner.lambda_1 = k == 1 ? t : (j == 1 ? 1.0 - t : 0.0);
+  corner.lambda_2 = k == 2 ? t : (j == 2 ? 1.0 - t : 0.0);
+  corner.exact_axes = 1U << plane.axis;
+}
+
+void TriangleCutter::place(CutCorner& corner, const Line& p, const Line& q) {
   const auto h = cross(lines_[corner.line_a].value, lines_[corner.line_b].value);
   const auto h_size = cross_size(p.size, q.size);
   const double sum = h[0] + h[1] + h[2];
@@ -281,39 +281,43 @@ void TriangleCutter::place(CutCorner& corner) {
 
 void TriangleCutter::split(const CutPolygon& polygon, std::uint32_t line, InPlane in_plane,
                            CutPolygon& inside, CutPolygon* outside) {
-  inside.clear();
-  if (outside != nullptr) outside->clear();
   const std::size_t n = polygon.size();
-  signs_.resize(n + 1);
+  if (signs_.size() < n + 1) signs_.resize(2 * n + 16);
+  int* const signs = signs_.data();
   bool any_inside = false;
   bool any_outside = false;
   for (std::size_t i = 0; i < n; ++i) {
     const int sign = sign_at(polygon[i].corner, line);
-    signs_[i] = sign;
+    signs[i] = sign;
     any_inside |= sign > 0;
     any_outside |= sign < 0;
   }
   statistics_.signs += static_cast<std::int64_t>(n);
   if (!any_outside && (any_inside || in_plane == InPlane::Inside)) {
     inside = polygon;
+    if (outside != nullptr) outside->clear();
     return;
   }
   if (!any_inside) {
+    inside.clear();
     if (outside != nullptr) *outside = polygon;
     return;
   }
-  signs_[n] = signs_[0];
+  signs[n] = signs[0];
+  // A line cuts a convex polygon twice at most.
+  inside.resize(n + 2);
+  CutEdge* in = inside.data();
+  if (outside != nullptr) outside->resize(n + 2);
+  CutEdge* out = outside != nullptr ? outside->data() : nullptr;
   const std::uint32_t cut_inside = 2 * line;
   const std::uint32_t cut_outside = 2 * line + 1;
   for (std::size_t i = 0; i < n; ++i) {
     const CutEdge corner = polygon[i];
-    const int sign = signs_[i];
-    const int next = signs_[i + 1];
-    if (sign >= 0) {
-      inside.push_back({corner.corner, sign == 0 && next < 0 ? cut_inside : corner.edge});
-    }
-    if (sign <= 0 && outside != nullptr) {
-      outside->push_back({corner.corner, sign == 0 && next > 0 ? cut_outside : corner.edge});
+    const int sign = signs[i];
+    const int next = signs[i + 1];
+    if (sign >= 0) *in++ = {corner.corner, sign == 0 && next < 0 ? cut_inside : corner.edge};
+    if (sign <= 0 && out != nullptr) {
+      *out++ = {corner.corner, sign == 0 && next > 0 ? cut_outside : corner.edge};
     }
     if (sign * next >= 0) continue;
     // The edge leaves (+ to −) or enters; seen from the inside, the new line comes after the edge
@@ -321,9 +325,11 @@ void TriangleCutter::split(const CutPolygon& polygon, std::uint32_t line, InPlan
     const bool leaves = sign > 0;
     const std::uint32_t cut =
         leaves ? meet(corner.edge, cut_inside) : meet(cut_inside, corner.edge);
-    inside.push_back({cut, leaves ? cut_inside : corner.edge});
-    if (outside != nullptr) outside->push_back({cut, leaves ? corner.edge : cut_outside});
+    *in++ = {cut, leaves ? cut_inside : corner.edge};
+    if (out != nullptr) *out++ = {cut, leaves ? corner.edge : cut_outside};
   }
+  inside.resize(static_cast<std::size_t>(in - inside.data()));
+  if (outside != nullptr) outside->resize(static_cast<std::size_t>(out - outside->data()));
 }
 
 CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {

@@ -65,7 +65,7 @@ struct DoubleArithmetic {
 // Else every run would give its memory back to the system and get it anew, page by page, or not,
 // depending on the largest piece of memory asked for before.
 void keep_memory() {
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // As much as it takes.
   mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
 }
 

@@ -107,7 +107,8 @@ class TriangleCutter {
   int determinant_sign(const CutCorner& corner, std::uint32_t line);
   int exact_sign(const CutCorner& corner, std::uint32_t line) const;
   std::uint32_t meet(std::uint32_t a, std::uint32_t b);
-  void place(CutCorner& corner);
+  void place_on_edge(CutCorner& corner, int vertex, const Line& plane) const;
+  void place(CutCorner& corner, const Line& p, const Line& q);
   void place_exactly(CutCorner& corner) const;
   template <typename Number>
   std::array<Number, 3> exact_line(std::uint32_t line) const;
