@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "object_loading.hpp"
@@ -29,6 +31,10 @@ Command inspect_command() {
   add_option(more, "hand", "NAME|FILE", std::nullopt,
              "make the voxels of the whole interaction volume for this hand and check the object's "
              "size for it; without it only those of the object");
+  add_option(more, "weak-thickness-mm", "MM", "6",
+             "what counts as fragile: slender features thinner than this; found once per object, "
+             "then read from the user's cache folder");
+  add_switch(more, "no-cache", "find weak features anew, and keep nothing");
   add_option(
       more, "out", "DIR", std::nullopt,
       "write voxels.vti, score_map.vti, distance_map.vti and patches.ply there, for ParaView "
@@ -153,6 +159,59 @@ void print_scores(const grasp::ObjectModel& object, double threshold) {
                 "%) above " + shortest_decimal(threshold));
 }
 
+/// Thickness below which this share of the surface lies.
+double thickness_at(const std::vector<std::pair<double, double>>& thickness_and_area,
+                    double share) {
+  double total = 0.0;
+  for (const auto& [thickness, area] : thickness_and_area) total += area;
+  double sum = 0.0;
+  for (const auto& [thickness, area] : thickness_and_area) {
+    sum += area;
+    if (sum >= share * total) return thickness;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+void print_thickness(const geometry::TriangleMesh& mesh, const geometry::WeakRegions& weak) {
+  std::vector<std::pair<double, double>> thickness_and_area;
+  double area = 0.0;
+  double weak_area = 0.0;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const double own = geometry::vector_area(mesh, face).norm();
+    thickness_and_area.emplace_back(weak.thickness[face], own);
+    area += own;
+    if (weak.is_weak[face]) weak_area += own;
+  }
+  std::sort(thickness_and_area.begin(), thickness_and_area.end());
+  std::string quantiles;
+  for (const auto& [name, share] :
+       {std::pair{"lowest ", 0.0}, {", 5% ", 0.05}, {", median ", 0.5}, {", 95% ", 0.95}}) {
+    quantiles += name + decimal_or_infinity(thickness_at(thickness_and_area, share));
+  }
+  print_row("thickness", quantiles + " m (shares of the surface)");
+  switch (weak.outcome) {
+    case geometry::WeakOutcome::NothingLeft:
+      return print_row("weak", "nothing: the object is thinner than that everywhere");
+    case geometry::WeakOutcome::TooCoarse:
+      return print_row("weak", "not known: the object is too large for that thickness");
+    case geometry::WeakOutcome::Searched:
+      break;
+  }
+  const std::array<const char*, 5> names = {"weak", "too short", "held at several places",
+                                            "held all around", "on their own"};
+  std::array<int, 5> counts{};
+  for (const geometry::WeakRegion& region : weak.regions) {
+    ++counts[static_cast<std::size_t>(region.verdict)];
+  }
+  std::string text = fixed_decimal(100.0 * weak_area / area, 1) +
+                     "% of the surface; thin regions: " + std::to_string(weak.regions.size());
+  for (std::size_t verdict = 0; verdict < counts.size(); ++verdict) {
+    if (counts[verdict] == 0) continue;
+    text += ", " + std::to_string(counts[verdict]) + ' ' + names[verdict];
+  }
+  print_row("weak", text);
+}
+
 /// Values of patches as one per voxel; NaN where there is no surface.
 std::vector<float> per_voxel(const grasp::ObjectModel& object, const std::vector<double>& values) {
   std::vector<float> result(object.patch_of_voxel.size(), std::numeric_limits<float>::quiet_NaN());
@@ -203,6 +262,9 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   grasp::PlannerOptions options;
   read_score_map_flags(flags, options);
   options.validate();
+  geometry::WeakRegionOptions weak_options;
+  weak_options.weak_thickness = 1e-3 * flags.number("weak-thickness-mm");
+  weak_options.validate();
   std::optional<hands::HandModel> hand;
   if (flags.has("hand")) hand = hands::find_hand(flags.text("hand"));
   std::optional<OutputFolder> out;
@@ -228,6 +290,12 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   } else if (out) {
     require_solid(object_file);
   }
+  std::optional<geometry::WeakRegions> weak;
+  if (object) {
+    progress.show("thickness and weak features");
+    weak = geometry::cached_weak_regions(object->query, weak_options,
+                                         {.is_on = !flags.has("no-cache")});
+  }
   if (out) {
     progress.show("writing files");
     write_files(*object, *out);
@@ -239,6 +307,7 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
     print_mass(*object);
     print_voxels(*object);
     print_scores(*object, options.targets.score_threshold);
+    print_thickness(object->query.mesh(), *weak);
   } else {
     print_row("voxels", "none: the surface bounds no solid");
   }

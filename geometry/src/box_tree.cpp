@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace graspfit::geometry::internal {
 namespace {
 
 constexpr std::int32_t kLeafSize = 4;
 constexpr int kNumBins = 16;
+constexpr int kMostDepth = 128;  // More than any tree is deep: the builder halves below level 48.
 
 struct Item {
   Eigen::Vector3d lower;
@@ -130,12 +132,12 @@ class Builder {
   std::vector<Item> items_;
 };
 
-Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
-                                   const Eigen::Vector3d& b) {
+// Share of `b` in the point of the segment from a to b nearest to `point`.
+double closest_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
+                          const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a;
   const double squared = ab.squaredNorm();
-  const double t = squared > 0.0 ? std::clamp((point - a).dot(ab) / squared, 0.0, 1.0) : 0.0;
-  return a + t * ab;
+  return squared > 0.0 ? std::clamp((point - a).dot(ab) / squared, 0.0, 1.0) : 0.0;
 }
 
 }  // namespace
@@ -148,42 +150,125 @@ BoxTree::BoxTree(const TriangleMesh& mesh) {
   }
 }
 
-Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& point,
-                                    const std::array<Eigen::Vector3d, 3>& corners) {
-  // The Voronoi regions of the corners, edges and inside in turn [Ericson 2005, 5.1.5].
+TrianglePoint nearest_on_triangle(const Eigen::Vector3d& point,
+                                  const std::array<Eigen::Vector3d, 3>& corners) {
+  // Regions of the triangle's plane as in [Ericson 2005, 5.1.5]: corners, edges, inside.
   const auto& [a, b, c] = corners;
   const Eigen::Vector3d ab = b - a;
   const Eigen::Vector3d ac = c - a;
   const Eigen::Vector3d ap = point - a;
   const double d1 = ab.dot(ap);
   const double d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  if (d1 <= 0.0 && d2 <= 0.0) return {a, {1, 0, 0}};
   const Eigen::Vector3d bp = point - b;
   const double d3 = ab.dot(bp);
   const double d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return b;
+  if (d3 >= 0.0 && d4 <= d3) return {b, {0, 1, 0}};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 - d3 > 0.0) return a + d1 / (d1 - d3) * ab;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 - d3 > 0.0) {
+    const double t = d1 / (d1 - d3);
+    return {a + t * ab, {1.0 - t, t, 0}};
+  }
   const Eigen::Vector3d cp = point - c;
   const double d5 = ab.dot(cp);
   const double d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return c;
+  if (d6 >= 0.0 && d5 <= d6) return {c, {0, 0, 1}};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 - d6 > 0.0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 - d6 > 0.0) {
+    const double t = d2 / (d2 - d6);
+    return {a + t * ac, {1.0 - t, 0, t}};
+  }
   const double va = d3 * d6 - d5 * d4;
   const double along = (d4 - d3) + (d5 - d6);
   if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 && along > 0.0) {
-    return b + (d4 - d3) / along * (c - b);
+    const double t = (d4 - d3) / along;
+    return {b + t * (c - b), {0, 1.0 - t, t}};
   }
   const double sum = va + vb + vc;
   if (sum > 0.0 && va >= 0.0 && vb >= 0.0 && vc >= 0.0) {
-    return a + vb / sum * ab + vc / sum * ac;
+    const double v = vb / sum;
+    const double w = vc / sum;
+    return {a + v * ab + w * ac, {std::max(0.0, 1.0 - v - w), v, w}};
   }
   // Rounding has the last word in a sliver: the nearest of its edges is then as near as the inside.
-  Eigen::Vector3d best = closest_on_segment(point, a, b);
-  for (const Eigen::Vector3d& candidate :
-       {closest_on_segment(point, b, c), closest_on_segment(point, c, a)}) {
-    if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) best = candidate;
+  TrianglePoint best{a, {1, 0, 0}};
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const double t = closest_on_segment(point, corners[i], corners[j]);
+    TrianglePoint candidate{corners[i] + t * (corners[j] - corners[i]), Eigen::Vector3d::Zero()};
+    candidate.barycentric[i] = 1.0 - t;
+    candidate.barycentric[j] = t;
+    if ((candidate.point - point).squaredNorm() < (best.point - point).squaredNorm()) {
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+QuickHit quick_first_hit(const BoxTree& tree, const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& direction, std::int32_t skipped_face) {
+  struct Entry {
+    std::int32_t node;
+    double t;
+  };
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kMargin = 1e-9;  // Of a triangle's barycentric coordinates.
+  const Eigen::Array3d inverse = direction.array().inverse();
+  QuickHit best;
+  best.t = kInfinity;
+  // Where the ray enters a box; infinity if it misses it. A zero direction gives infinite bounds,
+  // or NaN in a plane of the box: comparisons with it are false, and the box counts as met.
+  const auto enter = [&](const BoxTree::Node& node) {
+    double t_in = 0.0;
+    double t_out = best.t;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double t0 = (node.lower[axis] - origin[axis]) * inverse[axis];
+      const double t1 = (node.upper[axis] - origin[axis]) * inverse[axis];
+      const double t_near = t0 < t1 ? t0 : t1;
+      const double t_far = t0 < t1 ? t1 : t0;
+      t_in = t_near > t_in ? t_near : t_in;
+      t_out = t_far < t_out ? t_far : t_out;
+    }
+    return t_in <= t_out * (1.0 + 1e-12) ? t_in : kInfinity;
+  };
+  std::array<Entry, kMostDepth> stack;
+  int size = 0;
+  stack[size++] = {0, enter(tree.nodes[0])};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.t == kInfinity || entry.t > best.t) continue;
+    const BoxTree::Node& node = tree.nodes[entry.node];
+    if (node.count == 0) {
+      Entry near{entry.node + 1, enter(tree.nodes[entry.node + 1])};
+      Entry far{node.first, enter(tree.nodes[node.first])};
+      if (far.t < near.t) std::swap(near, far);
+      if (far.t < kInfinity) stack[size++] = far;
+      if (near.t < kInfinity) stack[size++] = near;
+      continue;
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [corners, face] = tree.triangles[i];
+      if (face == skipped_face) continue;
+      // [Möller & Trumbore 1997].
+      const Eigen::Vector3d ab = corners[1] - corners[0];
+      const Eigen::Vector3d ac = corners[2] - corners[0];
+      const Eigen::Vector3d h = direction.cross(ac);
+      const double signed_det = ab.dot(h);
+      if (signed_det == 0.0) continue;
+      const double sign = signed_det < 0.0 ? -1.0 : 1.0;
+      const double det = sign * signed_det;
+      const Eigen::Vector3d s = sign * (origin - corners[0]);
+      const double u = s.dot(h);
+      if (!(u >= -kMargin * det && u <= (1.0 + kMargin) * det)) continue;
+      const Eigen::Vector3d q = s.cross(ab);
+      const double v = direction.dot(q);
+      if (!(v >= -kMargin * det && u + v <= (1.0 + kMargin) * det)) continue;
+      const double t = ac.dot(q) / det;
+      if (!(t >= 0.0)) continue;
+      if (t < best.t || (t == best.t && face < tree.triangles[best.triangle].face)) {
+        best = {i, t};
+      }
+    }
   }
   return best;
 }

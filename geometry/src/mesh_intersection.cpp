@@ -195,6 +195,7 @@ class DeepestPoint {
           }
         }
       } else {
+        if (split_along_face(item)) continue;
         const auto& [a, b, c] = item.corners;
         const Vector3d ab = 0.5 * (a + b);
         const Vector3d bc = 0.5 * (b + c);
@@ -213,13 +214,14 @@ class DeepestPoint {
     double bound;
     std::int32_t node;  ///< −1 for a triangle.
     Corners corners;    ///< In the solid's frame.
+    std::int32_t face;  ///< Of the solid, nearest to the middle of the triangle.
     bool operator<(const Item& other) const { return bound < other.bound; }
   };
 
   inline static const Corners kNoCorners = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
 
-  void push(double item_bound, std::int32_t node, const Corners& corners) {
-    if (item_bound > depth) open_.push({item_bound, node, corners});
+  void push(double item_bound, std::int32_t node, const Corners& corners, std::int32_t face) {
+    if (item_bound > depth) open_.push({item_bound, node, corners, face});
   }
 
   void push_node(const BoxTree& surface, std::int32_t index) {
@@ -230,7 +232,7 @@ class DeepestPoint {
     const Vector3d center = 0.5 * (box.lower + box.upper);
     const double radius = 0.5 * (node.upper - node.lower).norm();
     // The distance to a surface changes by at most the distance gone.
-    push(radius - solid_.signed_distance(center), index, kNoCorners);
+    push(radius - solid_.signed_distance(center), index, kNoCorners, -1);
   }
 
   void push_triangle(const Corners& corners) {
@@ -253,7 +255,85 @@ class DeepestPoint {
     for (const Vector3d& corner : corners) {
       to_face = std::max(to_face, (corner - internal::closest_on_triangle(corner, face)).norm());
     }
-    push(std::min(to_face, is_inside ? radius + distance : radius - distance), -1, corners);
+    const double most = std::min(to_face, is_inside ? radius + distance : radius - distance);
+    if (most > depth + tolerance_ && !is_inside && stays_outside(corners)) return;
+    push(most, -1, corners, closest.face);
+  }
+
+  /// Whether a triangle whose middle is outside the solid cannot enter it: it would have to pass
+  /// through the plane of a face near it, but lies on one side of each. Sees at once what touches
+  /// the solid from outside along an edge or a face. False means nothing.
+  bool stays_outside(const Corners& corners) const {
+    const double slack = 1e-12 * solid_.impl().box.diagonal().norm();  // Rounding of the corners.
+    Eigen::AlignedBox3d box(corners[0]);
+    box.extend(corners[1]).extend(corners[2]);
+    box.min().array() -= slack;
+    box.max().array() += slack;
+    const BoxTree& tree = solid_.impl().tree;
+    std::vector<std::int32_t> open = {0};
+    while (!open.empty()) {
+      const std::int32_t index = open.back();
+      const BoxTree::Node& node = tree.nodes[index];
+      open.pop_back();
+      if (!overlap(node.lower, node.upper, {box.min(), box.max()})) continue;
+      if (node.count == 0) {
+        open.push_back(node.first);
+        open.push_back(index + 1);
+      }
+      for (std::int32_t t = 0; t < node.count; ++t) {
+        const Corners& face = tree.triangles[node.first + t].corners;
+        const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+        bool is_above = false;
+        bool is_below = false;
+        for (const Vector3d& corner : corners) {
+          const double height = normal.dot(corner - face[0]);
+          is_above = is_above || height > slack;
+          is_below = is_below || height < -slack;
+        }
+        if (is_above && is_below) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Cuts a triangle where it leaves the prism over a face of the solid on which it nearly lies:
+  /// the part over the face is then no deeper than its height, at once, where halves would have to
+  /// become as small as the tolerance all along the edge. False if that does not apply.
+  bool split_along_face(const Item& item) {
+    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(item.face));
+    const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+    for (const Vector3d& corner : item.corners) {
+      // Also refuses faces without a normal.
+      if (!(std::abs(normal.dot(corner - face[0])) <= depth + tolerance_)) return false;
+    }
+    double farthest = 0.0;
+    std::array<double, 3> beyond{};
+    for (int edge = 0; edge < 3; ++edge) {
+      const Vector3d along = face[(edge + 1) % 3] - face[edge];
+      const Vector3d outward = along.cross(normal).normalized();
+      std::array<double, 3> side;
+      for (int i = 0; i < 3; ++i) side[i] = outward.dot(item.corners[i] - face[edge]);
+      const auto [least, most] = std::minmax_element(side.begin(), side.end());
+      // Slivers that a cut would leave are not worth one.
+      if (-*least <= 1e-3 * *most || *most <= 1e-3 * -*least || *most <= farthest) continue;
+      farthest = *most;
+      beyond = side;
+    }
+    if (farthest == 0.0) return false;
+    for (const double sign : {1.0, -1.0}) {
+      std::array<Vector3d, 4> part;
+      int size = 0;
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        if (sign * beyond[i] >= 0.0) part[size++] = item.corners[i];
+        if (beyond[i] * beyond[j] < 0.0) {
+          part[size++] = item.corners[i] +
+                         beyond[i] / (beyond[i] - beyond[j]) * (item.corners[j] - item.corners[i]);
+        }
+      }
+      for (int i = 2; i < size; ++i) push_triangle({part[0], part[i - 1], part[i]});
+    }
+    return true;
   }
 
   const MeshQuery& solid_;

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
 #include "internal/disjoint_sets.hpp"
 #include "internal/mesh_query_impl.hpp"
+#include "internal/predicates.hpp"
 #include "internal/winding.hpp"
 
 namespace graspfit::geometry {
@@ -54,6 +56,119 @@ std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
   return result;
 }
 
+// The line through an origin and a point `ahead`, both doubles. `ahead` is so far that rounding it
+// turns the line by rounding error only; after that all signs are exact on this very line, and
+// faces on both sides of an edge ask for the same one, so that no line slips through a closed
+// surface.
+class Line {
+ public:
+  struct Meeting {
+    double t;  // In units of ahead − origin.
+    std::array<int, 3> sides;
+    int crossing;
+  };
+
+  Line(const char* who, const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
+       const Eigen::Vector3d& direction)
+      : origin_(origin) {
+    const Eigen::Vector3d unit = direction.stableNormalized();
+    if (!direction.allFinite() || unit.squaredNorm() == 0.0) {
+      throw InvalidInput(std::string(who) + ": the direction has no length");
+    }
+    if (!origin.allFinite()) throw InvalidInput(std::string(who) + ": the origin is not finite");
+    length_ = 2.0 * (box.exteriorDistance(origin) + box.diagonal().norm() + 1e-300);
+    ahead_ = origin + length_ * unit;
+    inverse_ = (ahead_ - origin).cwiseInverse();
+  }
+
+  // Whether the part from..to of the line may meet the box; the answer "no" is certain.
+  bool may_meet(const BoxTree::Node& node, double from, double to) const {
+    constexpr double kSlack = 1e-12;  // Of the line's length; boxes only have to be too large.
+    double t_in = from;
+    double t_out = to;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ahead_[axis] == origin_[axis]) {
+        if (origin_[axis] < node.lower[axis] || origin_[axis] > node.upper[axis]) return false;
+        continue;
+      }
+      double t0 = (node.lower[axis] - origin_[axis]) * inverse_[axis];
+      double t1 = (node.upper[axis] - origin_[axis]) * inverse_[axis];
+      if (t0 > t1) std::swap(t0, t1);
+      t_in = std::max(t_in, t0 - kSlack);
+      t_out = std::min(t_out, t1 + kSlack);
+    }
+    return t_in <= t_out;
+  }
+
+  // Whether the line meets the closed triangle, from the origin on or anywhere; exact.
+  std::optional<Meeting> meet(const std::array<Eigen::Vector3d, 3>& corners, double from) const {
+    const auto& [a, b, c] = corners;
+    Meeting meeting;
+    meeting.sides = {internal::orientation(origin_, ahead_, a, b),
+                     internal::orientation(origin_, ahead_, b, c),
+                     internal::orientation(origin_, ahead_, c, a)};
+    const auto [least, most] = std::minmax_element(meeting.sides.begin(), meeting.sides.end());
+    if (*least < 0 && *most > 0) return std::nullopt;
+    if (*least == 0 && *most == 0) return std::nullopt;  // In its plane: its neighbors count.
+    const int side = internal::orientation(a, b, c, origin_);
+    meeting.t = 0.0;
+    if (side != 0) {
+      const bool is_ahead = side * internal::orientation(a, b, c, ahead_) <= 0;
+      if (!is_ahead && from == 0.0) return std::nullopt;
+      const Eigen::Vector3d normal = (b - a).cross(c - a);
+      const double height = normal.dot(origin_ - a);
+      const double fall = normal.dot(ahead_ - origin_);
+      meeting.t = fall != 0.0 ? -height / fall : 0.0;
+      // Exact signs have the last word over a rounded quotient.
+      meeting.t = is_ahead ? std::clamp(meeting.t, 0.0, 1.0) : std::clamp(meeting.t, -1.0, 0.0);
+    }
+    const int around = moved_side(meeting.sides[0], a, b);
+    const bool crosses = around != 0 && moved_side(meeting.sides[1], b, c) == around &&
+                         moved_side(meeting.sides[2], c, a) == around;
+    meeting.crossing = crosses ? around : 0;
+    return meeting;
+  }
+
+  RayHit hit(const Meeting& meeting, const BoxTree::Triangle& triangle) const {
+    RayHit hit;
+    hit.point = origin_ + meeting.t * (ahead_ - origin_);
+    hit.distance = length_ * meeting.t;
+    hit.face = triangle.face;
+    hit.crossing = meeting.crossing;
+    // A corner's weight is the volume that the line spans with the edge opposite it.
+    const int around = *std::max_element(meeting.sides.begin(), meeting.sides.end()) > 0 ? 1 : -1;
+    const Eigen::Vector3d along = ahead_ - origin_;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const double volume =
+          along.dot((triangle.corners[i] - origin_).cross(triangle.corners[j] - origin_));
+      hit.barycentric[(i + 2) % 3] = meeting.sides[i] == 0 ? 0.0 : std::max(0.0, around * volume);
+    }
+    const double sum = hit.barycentric.sum();
+    if (sum > 0.0 && std::isfinite(1.0 / sum)) {
+      hit.barycentric /= sum;
+    } else {
+      hit.barycentric = internal::nearest_on_triangle(hit.point, triangle.corners).barycentric;
+    }
+    return hit;
+  }
+
+ private:
+  // `side` of the line moved by (ε, ε², ε³) for an infinitely small ε against the line from u to v:
+  // where it is zero, the first of its derivatives (u − v) × (ahead − origin) that is not.
+  int moved_side(int side, const Eigen::Vector3d& u, const Eigen::Vector3d& v) const {
+    for (int axis = 0; axis < 3 && side == 0; ++axis) {
+      side = internal::cross_2d(v, u, origin_, ahead_, (axis + 1) % 3, (axis + 2) % 3);
+    }
+    return side;
+  }
+
+  Eigen::Vector3d origin_;
+  Eigen::Vector3d ahead_;
+  Eigen::Vector3d inverse_;
+  double length_ = 0.0;
+};
+
 const TriangleMesh& checked(const TriangleMesh& mesh) {
   if (mesh.faces.empty()) throw InvalidInput("MeshQuery: the mesh has no faces");
   return mesh;
@@ -91,12 +206,13 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
     if (node.count > 0) {
       for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
         const BoxTree::Triangle& triangle = tree.triangles[i];
-        const Eigen::Vector3d candidate = internal::closest_on_triangle(point, triangle.corners);
-        const double squared = (candidate - point).squaredNorm();
+        const internal::TrianglePoint candidate =
+            internal::nearest_on_triangle(point, triangle.corners);
+        const double squared = (candidate.point - point).squaredNorm();
         // Equally near faces: the least index, whatever the shape of the tree.
         if (squared < best.squared_distance ||
             (squared == best.squared_distance && triangle.face < best.face)) {
-          best = {candidate, squared, triangle.face};
+          best = {candidate.point, squared, triangle.face, candidate.barycentric};
         }
       }
       continue;
@@ -134,62 +250,38 @@ double MeshQuery::signed_distance(const Eigen::Vector3d& point) const {
 
 std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
                                            const Eigen::Vector3d& direction) const {
-  const Eigen::Vector3d unit = direction.stableNormalized();
-  if (!direction.allFinite() || unit.squaredNorm() == 0.0) {
-    throw InvalidInput("MeshQuery::first_hit: the direction has no length");
-  }
-  if (!origin.allFinite()) throw InvalidInput("MeshQuery::first_hit: the origin is not finite");
-  // The ray is the one through origin and `ahead`, as doubles; so far ahead that rounding `ahead`
-  // turns it by rounding error only. Faces on both sides of an edge ask for the same exact sign, so
-  // that no ray slips through a closed surface.
-  const double reach = impl_->box.exteriorDistance(origin) + impl_->box.diagonal().norm() + 1e-300;
-  const Eigen::Vector3d ahead = origin + 2.0 * reach * unit;
-  const Eigen::Vector3d inverse = (ahead - origin).cwiseInverse();
-  const double slack = 1e-12;  // Of the ray's length; boxes only have to be too large.
-
+  const Line line("MeshQuery::first_hit", impl_->box, origin, direction);
   std::optional<RayHit> best;
-  double best_t = 1.0;  // In units of ahead − origin.
+  double best_t = 1.0;
   traverse(
-      impl_->tree,
-      [&](const BoxTree::Node& node) {
-        double t_in = 0.0;
-        double t_out = best_t;
-        for (int axis = 0; axis < 3; ++axis) {
-          if (ahead[axis] == origin[axis]) {
-            if (origin[axis] < node.lower[axis] || origin[axis] > node.upper[axis]) return false;
-            continue;
-          }
-          double t0 = (node.lower[axis] - origin[axis]) * inverse[axis];
-          double t1 = (node.upper[axis] - origin[axis]) * inverse[axis];
-          if (t0 > t1) std::swap(t0, t1);
-          t_in = std::max(t_in, t0 - slack);
-          t_out = std::min(t_out, t1 + slack);
-        }
-        return t_in <= t_out;
-      },
+      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
       [&](const BoxTree::Triangle& triangle) {
-        const auto& [a, b, c] = triangle.corners;
-        const int s0 = internal::orientation(origin, ahead, a, b);
-        const int s1 = internal::orientation(origin, ahead, b, c);
-        const int s2 = internal::orientation(origin, ahead, c, a);
-        if (std::min({s0, s1, s2}) < 0 && std::max({s0, s1, s2}) > 0) return;
-        if (s0 == 0 && s1 == 0 && s2 == 0) return;  // In the triangle's plane: its neighbors count.
-        const Eigen::Vector3d normal = (b - a).cross(c - a);
-        const int side = internal::orientation(a, b, c, origin);
-        double t = 0.0;
-        if (side != 0) {
-          if (side * internal::orientation(a, b, c, ahead) > 0)
-            return;  // Does not reach the plane.
-          const double height = normal.dot(origin - a);
-          const double fall = normal.dot(ahead - origin);
-          t = fall != 0.0 ? std::clamp(-height / fall, 0.0, 1.0) : 0.0;
-        }
-        if (!best || t < best_t || (t == best_t && triangle.face < best->face)) {
-          best_t = t;
-          best = RayHit{origin + t * (ahead - origin), 2.0 * reach * t, triangle.face};
+        const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
+        if (!meeting) return;
+        if (!best || meeting->t < best_t || (meeting->t == best_t && triangle.face < best->face)) {
+          best_t = meeting->t;
+          best = line.hit(*meeting, triangle);
         }
       });
   return best;
+}
+
+std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
+                                        const Eigen::Vector3d& direction, LineKind kind) const {
+  const Line line("MeshQuery::all_hits", impl_->box, origin, direction);
+  const double from = kind == LineKind::Ray ? 0.0 : -1.0;
+  std::vector<RayHit> hits;
+  traverse(
+      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
+      [&](const BoxTree::Triangle& triangle) {
+        if (const auto meeting = line.meet(triangle.corners, from)) {
+          hits.push_back(line.hit(*meeting, triangle));
+        }
+      });
+  std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
+  });
+  return hits;
 }
 
 std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) const {

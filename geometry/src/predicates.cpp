@@ -101,6 +101,17 @@ int orientation_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
   return exact_orientation_2d(a, b, c, u, v);
 }
 
+int cross_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+             const Eigen::Vector3d& d, int u, int v) {
+  const double left = (b[u] - a[u]) * (d[v] - c[v]);
+  const double right = (b[v] - a[v]) * (d[u] - c[u]);
+  const double value = left - right;
+  // Two rounded differences, a product and the last difference, as in the orientation of points.
+  if (is_certain(value, kBound2, std::abs(left) + std::abs(right))) return sign(value);
+  return sign_of((Rational(b[u]) - Rational(a[u])) * (Rational(d[v]) - Rational(c[v])) -
+                 (Rational(b[v]) - Rational(a[v])) * (Rational(d[u]) - Rational(c[u])));
+}
+
 bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return orientation_2d(a, b, c, 0, 1) == 0 && orientation_2d(a, b, c, 1, 2) == 0 &&
          orientation_2d(a, b, c, 2, 0) == 0;

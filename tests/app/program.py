@@ -10,6 +10,10 @@ import unittest
 PROGRAM = os.environ["GRASPFIT"]
 SOURCE_DIR = pathlib.Path(os.environ["GRASPFIT_SOURCE_DIR"])
 
+# Nothing is left in the cache of whoever runs the tests.
+CACHE = tempfile.TemporaryDirectory()
+os.environ["GRASPFIT_CACHE"] = CACHE.name
+
 
 def run(*arguments, cwd=None, env=None, timeout=200):
     """Exit code, standard output and standard error of one run."""

@@ -1,5 +1,6 @@
 """What `graspfit inspect` prints and writes: files that VTK opens."""
 
+import os
 import re
 
 import program
@@ -38,6 +39,31 @@ class Inspect(InspectTest):
         self.assertEqual(sum(counts), lattice[0] * lattice[1] * lattice[2])
         self.assertTrue(self.row(text, "patches").startswith(f"{counts[1]}, "))
         self.assertIn("above 0.6", self.row(text, "above threshold"))
+
+    def test_thickness_and_weak_features(self):
+        # A block with a fin of 3 mm, 25 mm of which stand out on one neck.
+        block, faces = program.box(0.06, 0.04, 0.04)
+        fin, _ = program.box(0.03, 0.003, 0.04)
+        vertices = block + [(x, y, z + 0.025) for x, y, z in fin]
+        faces = faces + [tuple(v + len(block) for v in face) for face in faces]
+        path = self.write("finned.off", program.off_text(vertices, faces))
+        env = dict(os.environ, GRASPFIT_CACHE=str(self.folder / "cache"))
+        done = program.run("inspect", path, "--no-cache", env=env)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        self.assertFalse((self.folder / "cache").exists())
+        self.assertRegex(self.row(done.stdout, "weak"),
+                         r"^\d+\.\d% of the surface; thin regions: 1, 1 weak$")
+        self.assertGreater(float(self.row(done.stdout, "weak").split("%")[0]), 5.0)
+        self.assertRegex(self.row(done.stdout, "thickness"), r"^lowest 0\.00[34]\d, .* m ")
+        # Found once, then read; what is fragile is up to the user.
+        for _ in range(2):
+            self.assertEqual(program.run("inspect", path, env=env).stdout, done.stdout)
+            self.assertEqual(len(list((self.folder / "cache").rglob("*.txt"))), 1)
+        text = self.inspect(path, "--weak-thickness-mm", 2)
+        self.assertEqual(self.row(text, "weak"), "0.0% of the surface; thin regions: 0")
+        self.assertIn("thinner than that everywhere",
+                      self.row(self.inspect(path, "--weak-thickness-mm", 50), "weak"))
+        self.assert_refused("inspect", path, "--weak-thickness-mm", 0, says="weak_thickness")
 
     def test_report_of_defects_and_repairs(self):
         vertices, faces = program.torus()

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
@@ -257,4 +258,191 @@ TEST_CASE("Copies of a query share the tree", "[geometry][mesh_query]") {
   const MeshQuery query(box({1, 1, 1}));
   const MeshQuery copy = query;
   CHECK(&copy.mesh() == &query.mesh());
+}
+
+namespace {
+
+// A triangle soup with whole coordinates in [−3, 3], some of it degenerate.
+TriangleMesh whole_soup(Random& random, int num_faces) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 3 * num_faces; ++i) {
+    mesh.vertices.emplace_back(static_cast<double>(random.index(7)) - 3.0,
+                               static_cast<double>(random.index(7)) - 3.0,
+                               static_cast<double>(random.index(7)) - 3.0);
+  }
+  for (std::int32_t i = 0; i < num_faces; ++i) mesh.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  return mesh;
+}
+
+// Where the line through `origin` along ±`axis` meets a closed triangle, in whole numbers, which
+// doubles hold without rounding: the sides of its edges in the plane across, then the height as a
+// quotient. Empty for triangles seen edge-on.
+std::optional<double> exact_height(const std::array<Eigen::Vector3d, 3>& t,
+                                   const Eigen::Vector3d& origin, int axis) {
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  std::array<double, 3> side;
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d a = t[(i + 1) % 3] - origin;
+    const Eigen::Vector3d b = t[(i + 2) % 3] - origin;
+    side[i] = a[u] * b[v] - a[v] * b[u];
+    sum += side[i];
+  }
+  if (sum == 0.0) return std::nullopt;
+  for (const double s : side) {
+    if (s * sum < 0.0) return std::nullopt;
+  }
+  return (side[0] * t[0][axis] + side[1] * t[1][axis] + side[2] * t[2][axis]) / sum;
+}
+
+void check_weights(const Eigen::Vector3d& weights, const TriangleMesh& mesh, std::int32_t face,
+                   const Eigen::Vector3d& point) {
+  REQUIRE(weights.minCoeff() >= 0.0);
+  REQUIRE(std::abs(weights.sum() - 1.0) < 1e-14);
+  const auto [a, b, c] = corners(mesh, face);
+  REQUIRE((weights[0] * a + weights[1] * b + weights[2] * c - point).norm() < 1e-12);
+}
+
+}  // namespace
+
+TEST_CASE("All hits are those of whole-number arithmetic, edges and vertices included",
+          "[geometry][mesh_query]") {
+  Random random(36);
+  int on_edges = 0;
+  for (int round = 0; round < 40; ++round) {
+    const TriangleMesh mesh = whole_soup(random, 30);
+    const MeshQuery query(mesh);
+    for (int i = 0; i < 40; ++i) {
+      Eigen::Vector3d origin;
+      for (double& x : origin) x = static_cast<double>(random.index(9)) - 4.0;
+      const int axis = static_cast<int>(random.index(3));
+      Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+      direction[axis] = random.index(2) == 0 ? 0.5 : -3.0;
+      const double sign = direction[axis] > 0.0 ? 1.0 : -1.0;
+      std::vector<std::pair<double, std::int32_t>> expected;
+      for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        const auto height = exact_height(corners(mesh, face), origin, axis);
+        if (height) expected.emplace_back(sign * (*height - origin[axis]), face);
+      }
+      for (const LineKind kind : {LineKind::Ray, LineKind::Line}) {
+        const auto hits = query.all_hits(origin, direction, kind);
+        std::vector<std::int32_t> found;
+        for (const RayHit& hit : hits) {
+          found.push_back(hit.face);
+          check_weights(hit.barycentric, mesh, hit.face, hit.point);
+          on_edges += hit.barycentric.minCoeff() == 0.0 ? 1 : 0;
+          const auto match = std::find_if(expected.begin(), expected.end(),
+                                          [&](const auto& e) { return e.second == hit.face; });
+          REQUIRE(match != expected.end());
+          CHECK(std::abs(hit.distance - match->first) < 1e-12);
+        }
+        CHECK(std::is_sorted(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+          return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
+        }));
+        std::sort(found.begin(), found.end());
+        std::vector<std::int32_t> wanted;
+        for (const auto& [distance, face] : expected) {
+          if (kind == LineKind::Line || distance >= 0.0) wanted.push_back(face);
+        }
+        CHECK(found == wanted);
+        if (kind == LineKind::Line) continue;
+        const auto first = query.first_hit(origin, direction);
+        REQUIRE(first.has_value() == !hits.empty());
+        if (first) CHECK(first->face == hits.front().face);
+      }
+    }
+  }
+  CHECK(on_edges > 1000);  // The hard cases do come up.
+}
+
+TEST_CASE("All hits of random lines are those of a loop over all faces", "[geometry][mesh_query]") {
+  const TriangleMesh mesh = torus(1.0, 0.4, 20, 12);
+  const MeshQuery query(mesh);
+  Random random(37);
+  std::size_t most = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d origin = drawn(random, 1.5);
+    const Eigen::Vector3d direction = drawn(random, 1.0);
+    std::vector<std::int32_t> expected;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+      // Cramer's rule: origin + s·direction = a + u·(b − a) + v·(c − a).
+      const auto [a, b, c] = corners(mesh, face);
+      Eigen::Matrix3d m;
+      m << b - a, c - a, -direction;
+      const Eigen::Vector3d uvs = m.inverse() * (origin - a);
+      if (uvs[0] >= 0 && uvs[1] >= 0 && uvs[0] + uvs[1] <= 1 && uvs[2] >= 0) {
+        expected.push_back(static_cast<std::int32_t>(face));
+      }
+    }
+    std::vector<std::int32_t> found;
+    for (const RayHit& hit : query.all_hits(origin, direction)) {
+      found.push_back(hit.face);
+      check_weights(hit.barycentric, mesh, hit.face, hit.point);
+    }
+    std::sort(found.begin(), found.end());
+    CHECK(found == expected);
+    most = std::max(most, found.size());
+  }
+  CHECK(most >= 2);
+}
+
+TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][mesh_query]") {
+  // Whole coordinates: rays run along edges, in faces and through vertices of all three bodies.
+  TriangleMesh octahedron;
+  octahedron.vertices = {{3, 0, 0}, {-3, 0, 0}, {0, 3, 0}, {0, -3, 0}, {0, 0, 3}, {0, 0, -3}};
+  octahedron.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                      {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  const TriangleMesh cube = box({4, 4, 4});
+  const TriangleMesh hollow = concatenated({cube, turned_inward(box({2, 2, 2}))});
+  for (const TriangleMesh& mesh : {octahedron, cube, hollow}) {
+    const MeshQuery query(mesh);
+    for (int i = 0; i < 7 * 7 * 7; ++i) {
+      const Eigen::Vector3d origin(i % 7 - 3, i / 7 % 7 - 3, i / 49 - 3);
+      const bool is_inside = query.containment(origin) == Containment::Inside;
+      const bool is_on = query.containment(origin) == Containment::OnSurface;
+      for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0),
+                                               {-1, 0, 0},
+                                               {0, 1, 0},
+                                               {0, -1, 0},
+                                               {0, 0, 1},
+                                               {0, 0, -1},
+                                               {1, 1, 0},
+                                               {1, -1, 1},
+                                               {2, 1, 0.5}}) {
+        const auto sum = [&](LineKind kind) {
+          int crossings = 0;
+          for (const RayHit& hit : query.all_hits(origin, direction, kind)) {
+            crossings += hit.crossing;
+          }
+          return crossings;
+        };
+        CHECK(sum(LineKind::Line) == 0);
+        if (!is_on) CHECK(sum(LineKind::Ray) == (is_inside ? 1 : 0));
+      }
+    }
+  }
+  // Through the middle of a cube: both triangles of a side are met on their common edge, one
+  // counts.
+  const auto hits = MeshQuery(cube).all_hits({-5, 0, 0}, {1, 0, 0});
+  CHECK(hits.size() == 4);
+  CHECK(std::abs(hits[0].crossing + hits[1].crossing) == 1);
+}
+
+TEST_CASE("Closest points have the weights of their face's corners", "[geometry][mesh_query]") {
+  Random random(38);
+  const TriangleMesh soup = whole_soup(random, 60);
+  const MeshQuery query(soup);
+  for (int i = 0; i < 500; ++i) {
+    const ClosestPoint closest = query.closest_point(drawn(random, 5.0));
+    check_weights(closest.barycentric, soup, closest.face, closest.point);
+  }
+}
+
+TEST_CASE("All hits refuse what first_hit refuses", "[geometry][mesh_query]") {
+  const MeshQuery query(box({1, 1, 1}));
+  CHECK_THROWS_WITH(query.all_hits({0, 0, 0}, {0, 0, 0}),
+                    "MeshQuery::all_hits: the direction has no length");
+  CHECK_THROWS_AS(query.all_hits({std::nan(""), 0, 0}, {1, 0, 0}), InvalidInput);
+  CHECK(query.all_hits({5, 5, 5}, {0, 0, 1}).empty());
 }

@@ -35,9 +35,33 @@ inline double squared_distance(const Eigen::Vector3d& point, const BoxTree::Node
   return (node.lower - point).cwiseMax(point - node.upper).cwiseMax(0.0).squaredNorm();
 }
 
+/// A point of a triangle and its weights of the corners, each ≥ 0, sum 1 up to rounding.
+struct TrianglePoint {
+  Eigen::Vector3d point;
+  Eigen::Vector3d barycentric;
+};
+
 /// The point of a closed triangle nearest to `point`. Approximate to rounding; degenerate triangles
 /// count as the segments or points that they are.
-Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& point,
-                                    const std::array<Eigen::Vector3d, 3>& corners);
+TrianglePoint nearest_on_triangle(const Eigen::Vector3d& point,
+                                  const std::array<Eigen::Vector3d, 3>& corners);
+inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& point,
+                                           const std::array<Eigen::Vector3d, 3>& corners) {
+  return nearest_on_triangle(point, corners).point;
+}
+
+/// First triangle on a ray, and where, in units of the direction.
+struct QuickHit {
+  std::int32_t triangle = -1;  ///< Index into `BoxTree::triangles`; −1: none.
+  double t = 0.0;
+};
+
+/// First hit of the ray from `origin` along `direction` on any face but `skipped_face`, in plain
+/// doubles: for statistics over many rays, not for decisions.
+///
+/// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
+/// of them; one seen edge-on is missed, its neighbors are not. Of equal hits the lowest face.
+QuickHit quick_first_hit(const BoxTree& tree, const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& direction, std::int32_t skipped_face);
 
 }  // namespace graspfit::geometry::internal

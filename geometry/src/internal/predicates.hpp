@@ -19,6 +19,11 @@ int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen:
 int orientation_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                    int u, int v);
 
+/// Sign of the cross product of b − a and d − c in the plane of the coordinates `u` and `v`:
+/// positive if the second points to the left of the first.
+int cross_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+             const Eigen::Vector3d& d, int u, int v);
+
 /// Whether the three points lie on one line.
 bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 

@@ -31,7 +31,8 @@ struct PenetrationOptions {
 ///
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
 /// does not depend on how finely either mesh is cut. Ends when the tolerance is met or after 50 000
-/// steps each way (wide overlaps of faces that nearly coincide); the bound holds either way.
+/// steps each way (wide overlaps of finely cut curved surfaces); the bound holds either way, up to
+/// the rounding of distances.
 /// Cost: that of `do_intersect` if the solids do not intersect.
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         const PenetrationOptions& options = {});

@@ -17,13 +17,26 @@ struct ClosestPoint {
   Eigen::Vector3d point;        ///< [m]. Rounded.
   double squared_distance = 0;  ///< [m²]
   std::int32_t face = -1;
+  Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< Weights of the face's corners, ≥ 0,
+                                                          ///< sum 1 up to rounding.
 };
 
-/// First hit of a ray.
+/// Where a line meets a face.
 struct RayHit {
   Eigen::Vector3d point;  ///< [m]. Rounded.
-  double distance = 0;    ///< Along the unit direction [m].
+  double distance = 0;    ///< Along the unit direction [m]; negative behind the origin of a line.
   std::int32_t face = -1;
+  Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< Weights of the face's corners, ≥ 0,
+                                                          ///< sum 1 up to rounding; exactly zero
+                                                          ///< where the line meets an edge.
+  int crossing = 0;  ///< +1: leaves through the front of the face, −1: enters, 0: left to a
+                     ///< neighbor of the face (see `MeshQuery::all_hits`). Exact.
+};
+
+/// How far a line goes.
+enum class LineKind {
+  Ray,   ///< From the origin on.
+  Line,  ///< Both ways.
 };
 
 /// Spatial queries against one mesh; builds a box tree once and keeps a copy of the mesh.
@@ -51,9 +64,27 @@ class MeshQuery {
   /// Distance to the surface, negative inside; sign exact, magnitude rounded.
   double signed_distance(const Eigen::Vector3d& point) const;
 
-  /// First hit from `origin` along `direction` (need not be unit; zero throws InvalidInput).
+  /// First hit from `origin` along `direction` (need not be unit; zero throws InvalidInput): the
+  /// first of `all_hits`. Cost: about log n.
   std::optional<RayHit> first_hit(const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction) const;
+
+  /// Every face whose closed triangle the line meets, by distance, then by face.
+  ///
+  /// Which faces is exact, for the line through `origin` and a point far ahead of it that is
+  /// rounded once. A line through an edge meets the faces on both sides of it, one through a vertex
+  /// all around it, at equal distances up to rounding. A face in whose plane the line runs is no
+  /// hit (its neighbors are). A ray that starts on a face hits it at distance 0.
+  ///
+  /// To count each passage of the surface once, add up `crossing`: the line is thought moved
+  /// sideways by an infinitely small step, so that it goes through the inside of faces only, and
+  /// hits of faces beside which it then passes have crossing 0. Over a whole line and a closed mesh
+  /// the sum is 0; over a ray it is the winding number at its origin, if that is not on the
+  /// surface.
+  ///
+  /// @throws InvalidInput if the direction has no length or anything is not finite.
+  std::vector<RayHit> all_hits(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                               LineKind kind = LineKind::Ray) const;
 
   /// Indices of all faces whose bounding box meets `box`, ascending. Exact on the given doubles.
   std::vector<std::int32_t> faces_near(const Eigen::AlignedBox3d& box) const;
