@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "graspfit/geometry/convex_polytope.hpp"
+#include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
 
 namespace graspfit::grasp::internal {

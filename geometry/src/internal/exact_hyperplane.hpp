@@ -1,0 +1,120 @@
+#pragma once
+
+#include <gmp.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Hyperplanes through points with double coordinates, in integers: coordinates are differences of
+/// multiples of one power of two per axis, so no division and no common divisor is ever needed.
+
+namespace graspfit::geometry::internal {
+
+/// Largest dimension of a polytope.
+inline constexpr int kMaxDimension = 6;
+
+/// An integer of any size. `mpz()` is for GMP's own functions, which work in place.
+class Integer {
+ public:
+  Integer() { mpz_init(value_); }
+  Integer(const Integer& other) { mpz_init_set(value_, other.value_); }
+  Integer(Integer&& other) noexcept {
+    mpz_init(value_);
+    mpz_swap(value_, other.value_);
+  }
+  Integer& operator=(Integer other) noexcept {
+    mpz_swap(value_, other.value_);
+    return *this;
+  }
+  ~Integer() { mpz_clear(value_); }
+
+  mpz_ptr mpz() { return value_; }
+  mpz_srcptr mpz() const { return value_; }
+  int sign() const { return mpz_sgn(value_); }
+
+  /// Mantissa in [0.5, 1) in magnitude, cut to 53 bits, and exponent; 0 for zero.
+  std::pair<double, long> parts() const {
+    long exponent = 0;
+    const double mantissa = mpz_get_d_2exp(&exponent, value_);
+    return {mantissa, exponent};
+  }
+
+ private:
+  mpz_t value_;
+};
+
+using IntegerVector = std::array<Integer, kMaxDimension>;
+
+/// normal · z − offset for integer points z, positive where det(p_1 − p_0, …, p_{d−1} − p_0, z −
+/// p_0) is: on the outer side of a facet whose corners are in outward order.
+struct IntegerHyperplane {
+  IntegerVector normal;
+  Integer offset;
+};
+
+/// Points on an integer lattice: z_ij = 2^scale_j (p_ij − p_0j), without rounding.
+class IntegerPoints {
+ public:
+  /// One point a column, at least one, all finite; the first becomes the origin.
+  explicit IntegerPoints(const Eigen::Ref<const Eigen::MatrixXd>& points);
+
+  int dimension() const { return dimension_; }
+  int size() const { return static_cast<int>(points_.size()); }
+  int scale(int axis) const { return scales_[axis]; }
+  const IntegerVector& point(int index) const { return points_[index]; }
+
+  /// The hyperplane through as many points as there are axes. All zero if they are dependent.
+  void hyperplane(std::span<const int> corners, IntegerHyperplane& result);
+
+  /// normal · z_index − offset.
+  const Integer& evaluate(const IntegerHyperplane& plane, int index);
+
+ private:
+  /// A number of six 64-bit digits or fewer, two's complement, lowest first.
+  using Digits = std::array<std::uint64_t, kMaxDimension>;
+
+  void find_minors(std::span<const int> corners);
+  void find_narrow_minors(std::span<const int> corners);
+  template <int Size>
+  void expand_narrow_minors(std::span<const int> corners);
+
+  int dimension_;
+  std::array<int, kMaxDimension> scales_ = {};
+  std::vector<IntegerVector> points_;
+  /// The same points where all coordinates are below 2^60: then k × k determinants fit in k digits,
+  /// and need no memory management. Else empty.
+  std::vector<std::array<std::int64_t, kMaxDimension>> narrow_points_;
+  std::vector<std::array<Digits, 2>> narrow_minors_;  // and their negatives
+  std::vector<Integer> minors_;                       // of the rows so far, by set of columns
+  IntegerVector row_;
+  Integer value_;
+};
+
+/// Rows of integers in echelon form, to find the rank of a set of vectors one by one [Bareiss
+/// 1968].
+class IntegerEchelon {
+ public:
+  /// `scales` as in IntegerPoints: of the columns left, the one where a row is largest is taken.
+  IntegerEchelon(int dimension, std::array<int, kMaxDimension> scales)
+      : dimension_(dimension), scales_(scales) {}
+
+  /// Whether `row` is independent of those before; then it counts.
+  bool add(const IntegerVector& row);
+
+  int rank() const { return static_cast<int>(rows_.size()); }
+  /// A column per independent row, such that the rows restricted to these columns are independent.
+  const std::vector<int>& columns() const { return columns_; }
+
+ private:
+  int dimension_;
+  std::array<int, kMaxDimension> scales_;
+  std::vector<IntegerVector> rows_;
+  std::vector<int> columns_;
+};
+
+}  // namespace graspfit::geometry::internal
