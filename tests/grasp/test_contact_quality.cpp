@@ -578,6 +578,26 @@ TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a s
   CHECK(std::abs(solid(0.2) - planar) > 0.1);  // the jump that the notes warn of
 }
 
+TEST_CASE("A fifth contact raised over four is no corner below thickness 0.1, and an apex above",
+          "[grasp][regularity]") {
+  // A rhombus with diagonals 2 and 1.8 and a point over its center: the extent is 2, the thickness
+  // its height. Planar: the rhombus, the point being within, whatever the height.
+  const auto points = [](double height) {
+    return std::vector<Vector3d>{{1, 0, 0}, {0, 0.9, 0}, {-1, 0, 0}, {0, -0.9, 0}, {0, 0, height}};
+  };
+  // Angles 2 atan(0.9) and π − that; all edges are equal.
+  const double planar =
+      std::sqrt(1.0 - 4.0 * std::abs(2.0 * std::atan(0.9) - kPi / 2) / (2.0 * kPi));
+  for (const double height : {0.0, 0.1, 0.2 * (1 - 1e-12)}) {
+    CHECK(regularity(points(height), Regularity::Combined) == Approx(planar).epsilon(1e-9));
+  }
+  // Solid: the apex is nearer to (0, ±0.9, 0), at √(0.81 + h²), than those are to (±1, 0, 0).
+  const double h = 0.2 * (1 + 1e-12);
+  CHECK(regularity(points(h), Regularity::EdgeOnly) ==
+        Approx(std::sqrt((0.81 + h * h) / 1.81)).epsilon(1e-9));
+  CHECK(regularity(points(h), Regularity::Combined) < planar - 0.1);
+}
+
 TEST_CASE("Regularity is continuous away from the documented branches", "[grasp][regularity]") {
   const std::vector<Vector3d> points =
       GENERATE(equator(120, 110), tetrahedron(), bipyramid(), octahedron());
