@@ -503,6 +503,8 @@ class Repair {
     const double alpha = options_.wrap->alpha_rel * extent_;
     const double offset = options_.wrap->offset_rel * extent_;
     if (!(extent_ > 0.0)) return;
+    // CGAL leaves degenerate faces out, and requires that others remain.
+    if (result_.before.num_degenerate_faces == result_.before.num_faces) return;
     TriangleMesh wrapped = alpha_wrap(given, alpha, offset);
     const MeshAnalysis analysis = analyzed(wrapped);
     if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given)) return;

@@ -17,11 +17,39 @@ namespace {
 
 using namespace geometry;
 
-// What is read in thousandths of a second; more of the same finds nothing new.
+// So that an input takes thousandths of a second; more of the same finds nothing new.
 constexpr std::size_t kMostFacesQueried = 300;
+constexpr std::size_t kMostFacesResolved = 60;
 
-// Coordinates whose products of three stay within the range of double (README.md, limits).
+// Coordinates whose products of three stay within the range of double (the module's limits).
 constexpr double kLargestCoordinate = 1e90;
+
+bool is_of_usual_size(const TriangleMesh& mesh) {
+  return bounding_box(mesh).min().cwiseAbs().maxCoeff() < kLargestCoordinate &&
+         bounding_box(mesh).max().cwiseAbs().maxCoeff() < kLargestCoordinate;
+}
+
+// The number of bytes chooses: mostly the default, and each option in one case of eight.
+MeshRepairOptions repair_options(std::string_view input) {
+  MeshRepairOptions options;
+  switch (input.size() % 8) {
+    case 0:
+      options.self_intersections = SelfIntersections::Resolve;
+      break;
+    case 1:
+      options.wrap = AlphaWrap{.alpha_rel = 0.2, .offset_rel = 0.05};
+      break;
+    case 2:
+      options.weld_distance_rel = 0.01;
+      break;
+    case 3:
+      options.mode = RepairMode::Strict;
+      break;
+    default:
+      break;
+  }
+  return options;
+}
 
 void require(bool condition, const char* promise) {
   if (!condition) throw std::logic_error(promise);
@@ -75,7 +103,11 @@ std::string take_mesh_path(std::string_view input) {
     }
     require_round_trips(mesh);
     analyze(mesh, {.count_self_intersections = mesh.faces.size() <= kMostFacesQueried});
-    const RepairedMesh repaired = repair_mesh(mesh);
+    const MeshRepairOptions options = repair_options(input);
+    if (options.self_intersections != SelfIntersections::Leave || options.wrap) {
+      if (mesh.faces.size() > kMostFacesResolved || !is_of_usual_size(mesh)) return "left out";
+    }
+    const RepairedMesh repaired = repair_mesh(mesh, options);
     require(repaired.after.is_closed && repaired.after.is_outward, "repair closes or refuses");
     require(analyze(repaired.mesh).is_closed, "what repair calls closed is closed");
     const bool is_small = repaired.mesh.faces.size() <= kMostFacesQueried;
