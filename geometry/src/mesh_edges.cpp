@@ -3,9 +3,9 @@
 #include <cmath>
 #include <map>
 
-#include "graspfit/geometry/mass_properties.hpp"
 #include "internal/box_tree.hpp"
 #include "internal/disjoint_sets.hpp"
+#include "internal/overlapping_boxes.hpp"
 #include "internal/winding.hpp"
 
 namespace graspfit::geometry::internal {
@@ -25,6 +25,31 @@ void sort_bucket(std::vector<FaceSide>::iterator first, std::vector<FaceSide>::i
     for (; hole != first && by_high(side, *(hole - 1)); --hole) *hole = *(hole - 1);
     *hole = side;
   }
+}
+
+/// Parts with a face whose box meets `box`, ascending.
+std::vector<std::int32_t> parts_near(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+                                     const Eigen::AlignedBox3d& box) {
+  std::vector<std::int32_t> near;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    if (!box.intersects(Eigen::AlignedBox3d(node.lower, node.upper))) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [a, b, c] = tree.triangles[i].corners;
+      const Eigen::AlignedBox3d face(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
+      if (box.intersects(face)) near.push_back(parts[tree.triangles[i].face]);
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
 }
 
 /// Signed volume of every part, from a vertex of its own.
@@ -105,28 +130,46 @@ std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
   }
   if (result.empty() || is_part_closed.size() == 1) return result;
 
-  // One ray per vertex through all faces counts for every part apart. `holders` are the parts that
-  // have held all vertices of a part so far; most parts have none after their first vertex.
   const BoxTree tree(mesh);
-  std::map<std::int32_t, std::vector<std::int32_t>> holders;
-  std::vector<bool> is_seen(mesh.vertices.size(), false);
+  const std::vector<Eigen::AlignedBox3d> boxes = boxes_of_parts(mesh, parts, is_part_closed.size());
+  std::map<std::int32_t, std::vector<std::int32_t>> vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const std::int32_t part = parts[face];
-    if (!is_candidate(part)) continue;
-    for (const std::int32_t vertex : mesh.faces[face]) {
-      const auto known = holders.find(part);
-      if (is_seen[vertex] || (known != holders.end() && known->second.empty())) continue;
-      is_seen[vertex] = true;
-      std::vector<std::int32_t> around = parts_around(tree, parts, mesh.vertices[vertex]);
-      std::erase_if(around, [&](std::int32_t other) {
-        return other == part || !is_part_closed[other] ||
-               (known != holders.end() &&
-                !std::binary_search(known->second.begin(), known->second.end(), other));
-      });
-      holders[part] = std::move(around);
-    }
+    if (!is_candidate(parts[face])) continue;
+    std::vector<std::int32_t>& own = vertices[parts[face]];
+    own.insert(own.end(), mesh.faces[face].begin(), mesh.faces[face].end());
   }
-  std::erase_if(result, [&](std::int32_t part) { return !holders[part].empty(); });
+  const auto is_enclosed = [&](std::int32_t part) {
+    // Parts that keep clear of this one's box hold all of it or nothing: one point tells, and one
+    // off the lines through vertices that boxes are made of needs no rational numbers. Parts that
+    // come near are asked for every vertex.
+    const Eigen::AlignedBox3d& box = boxes[part];
+    const std::vector<std::int32_t> near = parts_near(tree, parts, box);
+    const auto is_near = [&near](std::int32_t other) {
+      return std::binary_search(near.begin(), near.end(), other);
+    };
+    const Eigen::Vector3d within(0.3701, 0.4307, 0.5903);
+    const std::vector<std::int32_t> around =
+        parts_around(tree, parts, box.min() + within.cwiseProduct(box.sizes()));
+    if (std::any_of(around.begin(), around.end(),
+                    [&](std::int32_t other) { return is_part_closed[other] && !is_near(other); })) {
+      return true;
+    }
+    std::vector<std::int32_t> holders = near;
+    std::erase_if(holders, [&](std::int32_t other) {
+      return other == part || !is_part_closed[other] || !boxes[other].contains(box);
+    });
+    std::vector<std::int32_t>& own = vertices[part];
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    for (std::size_t i = 0; i < own.size() && !holders.empty(); ++i) {
+      const std::vector<std::int32_t> here = parts_around(tree, parts, mesh.vertices[own[i]]);
+      std::erase_if(holders, [&](std::int32_t other) {
+        return !std::binary_search(here.begin(), here.end(), other);
+      });
+    }
+    return !holders.empty();
+  };
+  std::erase_if(result, is_enclosed);
   return result;
 }
 

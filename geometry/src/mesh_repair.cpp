@@ -21,6 +21,7 @@
 #include "internal/disjoint_sets.hpp"
 #include "internal/mesh_edges.hpp"
 #include "internal/one_sided_distance.hpp"
+#include "internal/predicates.hpp"
 #include "internal/vertex_welding.hpp"
 
 namespace graspfit::geometry {
@@ -157,11 +158,46 @@ std::size_t make_consistent(TriangleMesh& mesh) {
   return num_turned;
 }
 
-/// Angle of the third corner of a side's face around the edge low → high.
-double angle_around(const TriangleMesh& mesh, const FaceSide& side, const Vector3d& origin,
-                    const Vector3d& x, const Vector3d& y) {
-  const Vector3d third = mesh.vertices[mesh.faces[side.face][(side.corner + 2) % 3]] - origin;
-  return std::atan2(third.dot(y), third.dot(x));
+/// Sides of one edge in the order in which their faces stand around it, counter-clockwise seen from
+/// its higher vertex; exact. Of faces in one place those that run up come first: seen along the
+/// edge they end a wedge of solid, and the others begin one.
+std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSide> sides) {
+  const Vector3d& low = mesh.vertices[sides.front().low()];
+  const Vector3d& high = mesh.vertices[sides.front().high()];
+  const auto third = [&mesh](const FaceSide& side) -> const Vector3d& {
+    return mesh.vertices[mesh.faces[side.face][(side.corner + 2) % 3]];
+  };
+  const auto has_area = [&](const FaceSide& side) {
+    return !internal::are_collinear(low, high, third(side));
+  };
+  const auto found = std::find_if(sides.begin(), sides.end(), has_area);
+  if (found == sides.end()) return sides;
+  const Vector3d reference = third(*found);
+  const Vector3d axis = high - low;
+  struct Item {
+    FaceSide side;
+    int half;  ///< From the reference: 0 there, 1 up to half a turn, 2 there, 3 beyond; −1 no area.
+  };
+  std::vector<Item> items;
+  for (const FaceSide& side : sides) {
+    int half = -1;
+    if (has_area(side)) {
+      const int turn = internal::orientation(low, high, reference, third(side));
+      const bool is_ahead = axis.cross(reference - low).dot(axis.cross(third(side) - low)) > 0.0;
+      half = turn > 0 ? 1 : turn < 0 ? 3 : is_ahead ? 0 : 2;
+    }
+    items.push_back({side, half});
+  }
+  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
+    if (a.half != b.half) return a.half < b.half;
+    if (a.half == 1 || a.half == 3) {
+      const int turn = internal::orientation(low, high, third(a.side), third(b.side));
+      if (turn != 0) return turn > 0;
+    }
+    return a.side.runs_up() && !b.side.runs_up();
+  });
+  for (std::size_t i = 0; i < items.size(); ++i) sides[i] = items[i].side;
+  return sides;
 }
 
 /// Gives every fan of faces around a vertex a vertex of its own. Around an edge with more than two
@@ -179,21 +215,12 @@ std::size_t split_nonmanifold(TriangleMesh& mesh) {
     const auto count = last - first;
     if (count == 2) join(*first, *(first + 1));
     if (count <= 2) return;
-    const Vector3d& origin = mesh.vertices[first->low()];
-    const Vector3d axis = mesh.vertices[first->high()] - origin;
-    const Vector3d x = axis.unitOrthogonal();
-    const Vector3d y = axis.cross(x);
-    std::vector<std::pair<double, FaceSide>> around;
-    for (auto side = first; side != last; ++side) {
-      around.emplace_back(angle_around(mesh, *side, origin, x, y), *side);
-    }
-    std::stable_sort(around.begin(), around.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    const std::vector<FaceSide> around = sorted_around(mesh, {first, last});
     // Seen along the edge, a face that runs down it has the solid on its counter-clockwise side;
     // the next face then runs up and closes that wedge.
     for (std::size_t i = 0; i < around.size(); ++i) {
-      const FaceSide& opening = around[i].second;
-      const FaceSide& closing = around[(i + 1) % around.size()].second;
+      const FaceSide& opening = around[i];
+      const FaceSide& closing = around[(i + 1) % around.size()];
       if (!opening.runs_up() && closing.runs_up()) join(opening, closing);
     }
   });
@@ -244,26 +271,45 @@ double loop_extent(const TriangleMesh& mesh, const std::vector<std::int32_t>& lo
   return box.sizes().maxCoeff();
 }
 
+/// Triangles that close a loop, by their places in it. A loop without area, as where a vertex of
+/// one face lies on an edge of another, gets triangles without area.
+std::vector<Face> patch_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& loop) {
+  const auto point = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[loop[i]]; };
+  std::size_t num_on_line = 2;
+  while (num_on_line < loop.size() &&
+         internal::are_collinear(point(0), point(1), point(num_on_line))) {
+    ++num_on_line;
+  }
+  std::vector<Face> patch;
+  if (loop.size() == 3 || num_on_line == loop.size()) {
+    for (std::int32_t i = 2; i < static_cast<std::int32_t>(loop.size()); ++i) {
+      patch.push_back({0, i - 1, i});
+    }
+    return patch;
+  }
+  std::vector<Kernel::Point_3> points;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    points.emplace_back(point(i).x(), point(i).y(), point(i).z());
+  }
+  std::vector<CGAL::Triple<int, int, int>> triangles;
+  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(triangles));
+  for (const auto& t : triangles) {
+    // The patch runs along the loop where its corners are numbered upward.
+    Face face = {t.first, t.second, t.third};
+    if (!is_even(face)) flip(face);
+    patch.push_back(face);
+  }
+  return patch;
+}
+
 /// Fills holes up to `largest_extent` [m]. Returns how many.
 std::size_t fill_holes(TriangleMesh& mesh, double largest_extent) {
   std::size_t filled = 0;
   for (const std::vector<std::int32_t>& loop : boundary_loops(mesh)) {
     if (loop_extent(mesh, loop) > largest_extent) continue;
-    std::vector<Kernel::Point_3> points;
-    for (const std::int32_t vertex : loop) {
-      const Vector3d& p = mesh.vertices[vertex];
-      points.emplace_back(p.x(), p.y(), p.z());
-    }
-    std::vector<CGAL::Triple<int, int, int>> patch;
-    CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(patch));
-    if (patch.empty()) continue;
-    for (const auto& triangle : patch) {
-      Face face = {loop[triangle.first], loop[triangle.second], loop[triangle.third]};
-      // The patch runs along the loop where its corners are numbered upward.
-      if (!is_even({triangle.first, triangle.second, triangle.third})) flip(face);
-      mesh.faces.push_back(face);
-    }
-    ++filled;
+    const std::vector<Face> patch = patch_of(mesh, loop);
+    for (const Face& f : patch) mesh.faces.push_back({loop[f[0]], loop[f[1]], loop[f[2]]});
+    if (!patch.empty()) ++filled;
   }
   return filled;
 }
@@ -444,8 +490,11 @@ class Repair {
     const TriangleMesh open = mesh;
     const std::size_t num_filled =
         fill_holes(mesh, options_.max_hole_extent_rel * longest_extent(mesh));
-    const std::vector<Face> patches(
-        mesh.faces.begin() + static_cast<std::ptrdiff_t>(open.faces.size()), mesh.faces.end());
+    // Faces without area reach no farther than the rim and the other faces of their patch.
+    std::vector<Face> patches;
+    for (std::size_t face = open.faces.size(); face < mesh.faces.size(); ++face) {
+      if (!internal::is_degenerate(mesh, face)) patches.push_back(mesh.faces[face]);
+    }
     add_step("filled holes", num_filled, reach_of(patches, open));
     // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
     if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);

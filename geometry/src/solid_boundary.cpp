@@ -1,5 +1,7 @@
 #include "graspfit/geometry/solid_boundary.hpp"
 
+// CGAL would print a recommendation of another class wherever two cuts meet in a face.
+#define CGAL_NO_CDT_2_WARNING
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>

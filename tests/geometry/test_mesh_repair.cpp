@@ -167,6 +167,52 @@ TEST_CASE("Solids that touch along an edge or at a vertex come apart", "[geometr
   check_is_good(vertex, 2.0);
 }
 
+TEST_CASE("Solids with a common side cut along other diagonals come apart",
+          "[geometry][mesh_repair]") {
+  // The second box stands on the top of the first and shares its four corners there, 4 to 7; turned
+  // by a quarter its bottom has the other diagonal. Around their common edges two faces stand in
+  // one place.
+  TriangleMesh upper = box({1, 1, 1});
+  for (Eigen::Vector3d& v : upper.vertices) v = Eigen::Vector3d(-v[1], v[0], v[2] + 1.0);
+  const TriangleMesh lower = box({1, 1, 1});
+  TriangleMesh both = concatenated({lower, upper});
+  for (Face& f : both.faces) {
+    for (std::int32_t& v : f) {
+      for (std::int32_t top = 4; top < 8; ++top) {
+        if (both.vertices[v] == both.vertices[top]) v = top;
+      }
+    }
+  }
+  const RepairedMesh repaired = repair_mesh(both);
+  CHECK(repaired.before.num_nonmanifold_edges == 4);
+  CHECK(steps_of(repaired) == "welded vertices 4, split non-manifold vertices 4");
+  CHECK(repaired.after.num_parts == 2);
+  check_is_good(repaired, 2.0);
+}
+
+TEST_CASE("A slit without area is filled with faces without area", "[geometry][mesh_repair]") {
+  // Two or three vertices on an edge of the neighbor.
+  for (const int num_extra : {1, 2, 3}) {
+    TriangleMesh mesh = box({1, 1, 4});
+    const Face face = mesh.faces[5];
+    mesh.faces.erase(mesh.faces.begin() + 5);
+    std::int32_t last = face[0];
+    for (int i = 1; i <= num_extra; ++i) {
+      const double t = i / 4.0;  // Exact: the box's coordinates are powers of two.
+      mesh.vertices.push_back((1.0 - t) * mesh.vertices[face[0]] + t * mesh.vertices[face[1]]);
+      const auto next = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
+      mesh.faces.push_back({last, next, face[2]});
+      last = next;
+    }
+    mesh.faces.push_back({last, face[1], face[2]});
+    const RepairedMesh repaired = repair_mesh(mesh, {.max_hole_extent_rel = 1.0});
+    CHECK(steps_of(repaired) == "filled holes 1");
+    CHECK(repaired.steps[0].hausdorff_bound == 0.0);
+    CHECK(repaired.after.num_degenerate_faces == static_cast<std::size_t>(num_extra));
+    check_is_good(repaired, 4.0);
+  }
+}
+
 TEST_CASE("What cannot be repaired is refused in one line", "[geometry][mesh_repair]") {
   TriangleMesh half = ball(1, 2);
   std::erase_if(half.faces, [&](const Face& f) { return half.vertices[f[0]][2] < 0.0; });
@@ -256,12 +302,12 @@ TEST_CASE("Vertices are welded up to the distance given and move no farther",
 }
 
 TEST_CASE("A chain of close vertices does not collapse into one", "[geometry][mesh_repair]") {
-  // A fine ring of a cylinder: neighbors are 0.0063 apart, the weld reaches to every other one.
-  TriangleMesh mesh = cylinder(1, 10, 1000);
+  // A fine ring of a cylinder: neighbors are 0.0157 apart, the weld reaches to every other one.
+  TriangleMesh mesh = cylinder(1, 2.5, 400);
   mesh.vertices.push_back({0, 0, 0});
-  const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 0.0009});
-  CHECK(repaired.steps[0].hausdorff_bound <= 0.0009 * 10 * 1.001);
-  CHECK(signed_volume(repaired.mesh) == Approx(signed_volume(mesh)).epsilon(1e-4));
+  const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 0.009});
+  CHECK(repaired.steps[0].hausdorff_bound <= 0.009 * 2.5 * 1.001);
+  CHECK(signed_volume(repaired.mesh) == Approx(signed_volume(mesh)).epsilon(1e-3));
   check_report(mesh, repaired);
 }
 

@@ -16,8 +16,8 @@ namespace graspfit::geometry {
 /// edge is run through as often up as down), but rounding may leave crossings of the size of an
 /// ulp, and solids that touch share vertices and edges: `repair_mesh` splits those and tells.
 ///
-/// Cost: that of counting self-intersections, and about a quarter of a millisecond for each face
-/// that takes part in one. Mesh without faces: comes back.
+/// Cost: that of counting self-intersections, and about a fifth of a millisecond for each pair of
+/// faces that cross. A mesh without faces comes back.
 /// @throws InvalidInput if the mesh is not closed in the sense above.
 TriangleMesh solid_boundary(const TriangleMesh& mesh);
 
