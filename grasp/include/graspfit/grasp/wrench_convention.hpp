@@ -44,8 +44,17 @@ struct WrenchSpaceOptions {
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// Tools whose wrench conventions are known.
-enum class WrenchTool { House, GraspIt, Simox, DexNet, Frogger, DexGraspBench };
+/// Tools whose wrench conventions are known: what torques are divided by and taken about, what of a
+/// force is one, and what ε is outside. All but DexGraspBench take them about the center of mass.
+enum class WrenchTool {
+  House,          ///< Largest radius of the surface; unit normal; 0.
+  GraspIt,        ///< Largest radius; unit normal; −1.
+  Simox,          ///< Half the longest extent; unit edge; reports none, 0 stands for it.
+  DexNet,         ///< Median extent; unit normal; 0.
+  Frogger,        ///< 1 m; unit edge of four; signed.
+  DexGraspBench,  ///< Mean distance of the contacts from their centroid, about that centroid; unit
+                  ///< normal; reports the residual of a balance instead, 0 stands for it.
+};
 
 /// Everything that ε and the volume depend on besides the contacts. It goes where the numbers go:
 /// two values are comparable only if these agree.
@@ -72,21 +81,9 @@ struct WrenchObject {
 WrenchObject wrench_object(const geometry::TriangleMesh& mesh_O,
                            const Eigen::Vector3d& center_of_mass_O);
 
-/// The convention of a tool at the given friction:
-///
-///     tool            torque scale                           about             force outside House
-///     largest radius                         center of mass    unit normal   0 GraspIt largest
-///     radius                         center of mass    unit normal   −1 Simox           half the
-///     longest extent                center of mass    unit edge     0 DexNet          median
-///     extent                          center of mass    unit normal   0 Frogger         1 m center
-///     of mass    unit edge     signed DexGraspBench   mean distance of contacts from their   their
-///     centroid    unit normal   0
-///                     centroid
-///
-/// Eight edges; Frogger four. Simox and DexGraspBench report no ε outside (the latter measures the
-/// residual of a balance); 0 stands for it. Azimuths of edges are ours: with few edges ε is the
-/// tool's up to the turn of its pyramids. Friction limits and contact models that go beyond that
-/// (soft fingers) are not covered.
+/// The convention of a tool at the given friction, as `WrenchTool` says it. Eight edges; Frogger
+/// four. Azimuths of edges are ours: with few edges ε is the tool's up to the turn of its pyramids.
+/// Friction limits and contact models that go beyond that (soft fingers) are not covered.
 /// @throws InvalidInput if the torque scale comes out not positive, as for no contacts or all
 /// contacts in one point with DexGraspBench.
 WrenchConvention wrench_convention(WrenchTool tool, const WrenchObject& object,
