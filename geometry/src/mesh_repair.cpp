@@ -464,8 +464,9 @@ class Repair {
 
   HausdorffOptions distance_options() const {
     constexpr double kToleranceRel = 1e-4;  // Of the longest extent: a tenth of a voxel and less.
+    constexpr int kMaxSteps = 4'000;        // The bound holds as it is then; it is not worth more.
     const double tolerance = kToleranceRel * extent_;
-    return {.tolerance = tolerance > 0.0 ? tolerance : 1.0, .max_steps = 20'000};
+    return {.tolerance = tolerance > 0.0 ? tolerance : 1.0, .max_steps = kMaxSteps};
   }
 
   /// Bound for removing or adding `faces`: how far they reach from the rest of the surface.
