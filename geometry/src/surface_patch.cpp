@@ -447,6 +447,7 @@ std::size_t expected_patches(const TriangleMesh& mesh, const VoxelLattice& latti
   const Eigen::Vector3d n = lattice.counts.cast<double>();
   const double most = 2.0 * (n[0] * n[1] + n[1] * n[2] + n[2] * n[0]);
   const double expected = 1.125 * 1.5 * area / (lattice.voxel_size * lattice.voxel_size);
+  if (!std::isfinite(expected)) return 0;  // So small that squares of lengths vanish.
   return static_cast<std::size_t>(std::min(expected, most));
 }
 
