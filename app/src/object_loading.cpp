@@ -75,6 +75,11 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags) {
     options.repair.wrap = geometry::AlphaWrap{.alpha_rel = flags.number("wrap-alpha"),
                                               .offset_rel = flags.number("wrap-offset")};
   }
+  for (const char* flag : {"wrap-alpha", "wrap-offset"}) {
+    if (!flags.has("wrap") && !flags.is_default(flag)) {
+      throw UsageError("--" + std::string(flag) + " means nothing without --wrap");
+    }
+  }
   options.validate();
   return options;
 }

@@ -136,6 +136,7 @@ class BadFlags(program.ProgramTest):
             for value in values:
                 with self.subTest(flag=flag, value=value):
                     self.refuse("--wrap", f"--{flag}", value, says="wrap")
+            self.refuse(f"--{flag}", "0.1", says=["without --wrap"])
 
     def test_text_that_is_not_a_number(self):
         for value in ("abc", "1.5x", "0,3", "nan", "inf", "-inf", "1e999", "0x10", "--1", " 1",
