@@ -1,6 +1,7 @@
 #include "internal/box_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -217,13 +218,14 @@ QuickHit quick_first_hit(const BoxTree& tree, const Eigen::Vector3d& origin,
   QuickHit best;
   best.t = kInfinity;
   // Where the ray enters a box; infinity if it misses it. A zero direction gives infinite bounds,
-  // or NaN in a plane of the box: comparisons with it are false, and the box counts as met.
+  // or NaN in a plane of the box, which the ray then does not leave: no bound.
   const auto enter = [&](const BoxTree::Node& node) {
     double t_in = 0.0;
     double t_out = best.t;
     for (int axis = 0; axis < 3; ++axis) {
       const double t0 = (node.lower[axis] - origin[axis]) * inverse[axis];
       const double t1 = (node.upper[axis] - origin[axis]) * inverse[axis];
+      if (std::isnan(t0) || std::isnan(t1)) continue;
       const double t_near = t0 < t1 ? t0 : t1;
       const double t_far = t0 < t1 ? t1 : t0;
       t_in = t_near > t_in ? t_near : t_in;

@@ -118,6 +118,36 @@ TEST_CASE("One straight ray measures the thickness itself", "[geometry][shape_di
   }
 }
 
+TEST_CASE("A straight ray along the edges of a grid meets the wall behind it",
+          "[geometry][shape_diameter]") {
+  // Small faces over a wall of unit squares, each above an edge between two of them: that is where
+  // boxes of the tree end.
+  TriangleMesh mesh;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 17; ++i) mesh.vertices.emplace_back(i, j, 0.0);
+  }
+  for (std::int32_t j = 0; j < 2; ++j) {
+    for (std::int32_t i = 0; i < 16; ++i) {
+      const std::int32_t v = 17 * j + i;
+      mesh.faces.push_back({v, v + 17, v + 1});  // The wall looks down.
+      mesh.faces.push_back({v + 1, v + 17, v + 18});
+    }
+  }
+  const std::size_t num_of_wall = mesh.faces.size();
+  for (int i = 1; i < 16; ++i) {
+    const auto v = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.emplace_back(i - 0.25, 0.5, 1.0);
+    mesh.vertices.emplace_back(i + 0.25, 0.5, 1.0);
+    mesh.vertices.emplace_back(i, 0.75, 1.0);
+    mesh.faces.push_back({v, v + 1, v + 2});
+  }
+  const ShapeDiameter measured =
+      shape_diameter(MeshQuery(mesh), {.num_rays = 1, .cone_angle_deg = 0.0});
+  for (std::size_t face = num_of_wall; face < mesh.faces.size(); ++face) {
+    CHECK(measured.thickness[face] == Approx(1.0));
+  }
+}
+
 TEST_CASE("Faces without an opposite wall are infinitely thick", "[geometry][shape_diameter]") {
   const double infinity = std::numeric_limits<double>::infinity();
   TriangleMesh mesh;
