@@ -128,7 +128,7 @@ void sort_names(std::vector<PieceName>& names, std::vector<PieceName>& scratch,
   constexpr int kDigitBits = 11;
   scratch.resize(names.size());
   const auto order_by = [&](std::int32_t PieceName::*key, std::int32_t num_keys) {
-    for (int shift = 0; ((num_keys - 1) >> shift) > 0; shift += kDigitBits) {
+    for (int shift = 0; (std::int64_t{num_keys - 1} >> shift) > 0; shift += kDigitBits) {
       const auto digit = [&](const PieceName& name) {
         return static_cast<std::size_t>(name.*key >> shift) & ((1 << kDigitBits) - 1);
       };

@@ -1,6 +1,8 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <vector>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
@@ -215,6 +217,27 @@ TEST_CASE("Patches do not depend on the order of the faces", "[geometry][surface
     CHECK(a[i].area == Approx(b[i].area).epsilon(1e-13));
     CHECK((a[i].centroid - b[i].centroid).norm() < 1e-15);
   }
+}
+
+TEST_CASE("Patches ascend by voxel in layers of more than 2^22 voxels",
+          "[geometry][surface_patch]") {
+  const VoxelLattice lattice{Eigen::Vector3d::Zero(), 1.0, {2100, 2100, 1}};
+  Random random(31);
+  TriangleMesh mesh;
+  std::set<std::int64_t> expected;
+  for (std::int32_t i = 0; i < 300; ++i) {
+    const Eigen::Vector3i voxel(static_cast<int>(random.index(2100)),
+                                static_cast<int>(random.index(2100)), 0);
+    expected.insert(lattice.index(voxel));
+    for (const Eigen::Vector3d& place :
+         {Eigen::Vector3d(0.3, 0.3, 0.5), {0.6, 0.3, 0.5}, {0.3, 0.6, 0.5}}) {
+      mesh.vertices.push_back(voxel.cast<double>() + place);
+    }
+    mesh.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  std::vector<std::int64_t> found;
+  for (const SurfacePatch& patch : surface_patches(mesh, lattice)) found.push_back(patch.voxel);
+  CHECK(found == std::vector<std::int64_t>(expected.begin(), expected.end()));
 }
 
 TEST_CASE("A mesh that leaves the lattice is refused", "[geometry][surface_patch]") {
