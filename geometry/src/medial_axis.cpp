@@ -15,6 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Normals may be off unit length by this: they come from rounded arithmetic.
+constexpr double kUnitLengthTolerance = 1e-6;
+
 double angle_deg(const Vector3d& u, const Vector3d& v) {
   return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
 }
@@ -77,11 +80,16 @@ std::vector<MedialBall> medial_balls(const MeshQuery& object,
                                      const MedialBallOptions& options) {
   options.validate();
   for (const SurfaceSample& sample : samples) {
-    if (sample.face >= 0 && static_cast<std::size_t>(sample.face) < object.mesh().faces.size()) {
-      continue;
+    if (sample.face < 0 || static_cast<std::size_t>(sample.face) >= object.mesh().faces.size()) {
+      throw InvalidInput("medial_balls: a sample is on face " + std::to_string(sample.face) +
+                         " of " + std::to_string(object.mesh().faces.size()));
     }
-    throw InvalidInput("medial_balls: a sample is on face " + std::to_string(sample.face) + " of " +
-                       std::to_string(object.mesh().faces.size()));
+    // A face without area has no normal; its samples have no balls.
+    const double length = sample.normal.norm();
+    if (!sample.point.allFinite() ||
+        !(length == 0.0 || std::abs(length - 1.0) <= kUnitLengthTolerance)) {
+      throw InvalidInput("medial_balls: a sample's point must be finite and its normal unit");
+    }
   }
   std::vector<std::optional<MedialBall>> found(samples.size());
   internal::parallel_for(samples.size(), options.num_threads, [&](std::size_t i) {

@@ -142,6 +142,11 @@ TEST_CASE("Samples beside the mesh and bad options of balls are refused",
   CHECK_THROWS_AS(medial_balls(cube, samples, {.min_object_angle_deg = 181}), InvalidInput);
   CHECK_THROWS_AS(medial_balls(cube, samples, {.min_radius_rel = -0.1}), InvalidInput);
   CHECK_THROWS_AS(medial_balls(cube, samples, {.emptiness_tolerance = 0.0}), InvalidInput);
+  samples[3].normal *= 2.0;
+  CHECK_THROWS_WITH(medial_balls(cube, samples),
+                    "medial_balls: a sample's point must be finite and its normal unit");
+  samples[3].normal.setZero();
+  CHECK_NOTHROW(medial_balls(cube, samples));
   samples[3].face = 12;
   CHECK_THROWS_WITH(medial_balls(cube, samples), "medial_balls: a sample is on face 12 of 12");
 }

@@ -49,7 +49,8 @@ struct MedialBallOptions {
 ///
 /// The result is in the order of `samples`. Approximate: balls are empty to the stated tolerance
 /// and touch the surface at both contacts to rounding. Cost: about ten closest points per sample.
-/// @throws InvalidInput if a sample's face does not exist.
+/// @throws InvalidInput if a sample's face does not exist, its point is not finite, or its normal
+/// is not unit within 1e-6. A zero normal, that of a face without area, has no ball.
 std::vector<MedialBall> medial_balls(const MeshQuery& object,
                                      std::span<const SurfaceSample> samples,
                                      const MedialBallOptions& options = {});
