@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -40,6 +41,22 @@ std::vector<std::size_t> polygon_around(const std::vector<Vector3d>& points,
     std::reverse(order.begin(), order.end());
   }
   return polygon;
+}
+
+/// Indices of distinct points, ascending; of equal ones the first.
+std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
+  const auto place = [&](std::size_t i) {
+    return std::tie(points[i].x(), points[i].y(), points[i].z());
+  };
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  order.erase(std::unique(order.begin(), order.end(),
+                          [&](std::size_t a, std::size_t b) { return place(a) == place(b); }),
+              order.end());
+  std::sort(order.begin(), order.end());
+  return order;
 }
 
 Vector3d mean_of(std::span<const Vector3d> points, const std::vector<std::size_t>& indices) {
@@ -150,12 +167,7 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
     return hull;
   }
 
-  std::vector<std::size_t> distinct;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool is_new = std::none_of(distinct.begin(), distinct.end(),
-                                     [&](std::size_t k) { return points[k] == points[i]; });
-    if (is_new) distinct.push_back(i);
-  }
+  const std::vector<std::size_t> distinct = distinct_points(points);
   const Vector3d mean = mean_of(points, distinct);
   Eigen::Matrix3Xd centered(3, distinct.size());
   for (std::size_t k = 0; k < distinct.size(); ++k) {

@@ -129,10 +129,12 @@ class Line {
     return meeting;
   }
 
+  double distance(const Meeting& meeting) const { return length_ * meeting.t; }
+
   RayHit hit(const Meeting& meeting, const BoxTree::Triangle& triangle) const {
     RayHit hit;
     hit.point = origin_ + meeting.t * (ahead_ - origin_);
-    hit.distance = length_ * meeting.t;
+    hit.distance = distance(meeting);
     hit.face = triangle.face;
     hit.crossing = meeting.crossing;
     // A corner's weight is the volume that the line spans with the edge opposite it.
@@ -258,7 +260,10 @@ std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
       [&](const BoxTree::Triangle& triangle) {
         const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
         if (!meeting) return;
-        if (!best || meeting->t < best_t || (meeting->t == best_t && triangle.face < best->face)) {
+        // As `all_hits` orders them: by the rounded distance, then by face.
+        const double distance = line.distance(*meeting);
+        if (!best || distance < best->distance ||
+            (distance == best->distance && triangle.face < best->face)) {
           best_t = meeting->t;
           best = line.hit(*meeting, triangle);
         }

@@ -24,8 +24,8 @@ using Index = std::int64_t;
 
 constexpr double kHalfDiagonal = 0.8660254037844387;  // Of a voxel, in voxels: √3 / 2.
 constexpr int kLeastResolution = 16;                  // Enough for any object smaller than a ball.
-constexpr double kFillet =
-    0.5;  // Of the radius: depth of residue along a crease that is no feature.
+// Of the radius: depth of residue along a crease that is no feature.
+constexpr double kFillet = 0.5;
 constexpr double kFewestVoxelsPerThickness = 2.0;  // Fewer do not show the ball as one.
 
 /// Calls visit(neighbor) for the voxels of the 3 × 3 × 3 block around `voxel` that exist.
