@@ -173,7 +173,6 @@ std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSi
   const auto found = std::find_if(sides.begin(), sides.end(), has_area);
   if (found == sides.end()) return sides;
   const Vector3d reference = third(*found);
-  const Vector3d axis = high - low;
   struct Item {
     FaceSide side;
     int half;  ///< From the reference: 0 there, 1 up to half a turn, 2 there, 3 beyond; −1 no area.
@@ -183,7 +182,13 @@ std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSi
     int half = -1;
     if (has_area(side)) {
       const int turn = internal::orientation(low, high, reference, third(side));
-      const bool is_ahead = axis.cross(reference - low).dot(axis.cross(third(side) - low)) > 0.0;
+      bool is_ahead = false;
+      for (int u = 0; u < 3 && turn == 0; ++u) {
+        const int v = (u + 1) % 3;
+        const int seen = internal::orientation_2d(low, high, reference, u, v);
+        is_ahead = seen != 0 && seen == internal::orientation_2d(low, high, third(side), u, v);
+        if (seen != 0) break;
+      }
       half = turn > 0 ? 1 : turn < 0 ? 3 : is_ahead ? 0 : 2;
     }
     items.push_back({side, half});
