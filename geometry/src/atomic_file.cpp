@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -26,22 +28,25 @@ std::string reason() { return std::strerror(errno); }
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::filesystem::path& beside) {
-    const std::string pattern = beside.string() + ".XXXXXX";
-    name_.assign(pattern.begin(), pattern.end());
-    name_.push_back('\0');
-    descriptor_ = ::mkstemp(name_.data());
+    // Unlike mkstemp, open gives the file the mode of any new one without asking for the umask,
+    // which could only be read by changing it under other threads.
+    static std::atomic<std::uint64_t> next{0};
+    do {
+      name_ = beside.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(next++);
+      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
     const int error = errno;
     close();
-    if (created() && !released_) ::unlink(name_.data());
+    if (created() && !released_) ::unlink(name_.c_str());
     errno = error;
   }
 
   bool created() const { return created_ || descriptor_ >= 0; }
-  const char* name() const { return name_.data(); }
+  const char* name() const { return name_.c_str(); }
 
   bool write(std::string_view content) {
     created_ = true;
@@ -53,10 +58,7 @@ class TemporaryFile {
       }
       content.remove_prefix(static_cast<std::size_t>(written));
     }
-    // mkstemp makes a file for its owner only; the result gets what open() would have given it.
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    return ::fchmod(descriptor_, 0666 & ~mask) == 0 && ::fsync(descriptor_) == 0;
+    return ::fsync(descriptor_) == 0;
   }
   bool close() {
     const int descriptor = descriptor_;
@@ -66,7 +68,7 @@ class TemporaryFile {
   void release() { released_ = true; }
 
  private:
-  std::vector<char> name_;
+  std::string name_;
   int descriptor_ = -1;
   bool created_ = false;
   bool released_ = false;

@@ -22,14 +22,15 @@ std::size_t count_doubled(const TriangleMesh& mesh, const std::vector<FaceSide>&
   const auto across = [&mesh](const FaceSide& side) {
     return mesh.faces[side.face][side.corner == 0 ? 2 : side.corner - 1];
   };
+  std::vector<std::pair<std::int32_t, std::int32_t>> around;  // vertex across, face
   internal::for_each_edge(sides, [&](auto first, auto last) {
-    for (auto a = first; a != last; ++a) {
-      for (auto b = last - first == 2 ? a + 1 : first; b != last; ++b) {
-        if (a == b || across(*a) != across(*b)) continue;
-        candidates.push_back(a->face);
-        candidates.push_back(b->face);
-        break;
-      }
+    around.clear();
+    for (auto side = first; side != last; ++side) around.emplace_back(across(*side), side->face);
+    if (around.size() > 2) std::sort(around.begin(), around.end());
+    for (std::size_t i = 1; i < around.size(); ++i) {
+      if (around[i].first != around[i - 1].first) continue;
+      candidates.push_back(around[i - 1].second);
+      candidates.push_back(around[i].second);
     }
   });
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {

@@ -264,7 +264,10 @@ class DeepestPoint {
   /// through the plane of a face near it, but lies on one side of each. Sees at once what touches
   /// the solid from outside along an edge or a face. False means nothing.
   bool stays_outside(const Corners& corners) const {
-    const double slack = 1e-12 * solid_.impl().box.diagonal().norm();  // Rounding of the corners.
+    // Rounding of the corners, which is that of the largest coordinate far from the origin.
+    const Eigen::AlignedBox3d& whole = solid_.impl().box;
+    const double slack = 1e-12 * whole.diagonal().norm() +
+                         1e-15 * whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
     Eigen::AlignedBox3d box(corners[0]);
     box.extend(corners[1]).extend(corners[2]);
     box.min().array() -= slack;

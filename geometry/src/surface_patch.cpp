@@ -161,6 +161,9 @@ class VoxelCutter {
     if (lattice.counts.cast<double>().prod() > std::numeric_limits<std::int32_t>::max()) {
       throw InvalidInput("the lattice has more than 2^31 - 1 voxels");
     }
+    if (lattice.counts.maxCoeff() > 1 << 29) {
+      throw InvalidInput("the lattice has more than 2^29 voxels along an axis");
+    }
   }
 
   // Calls `take(layer, first voxel)` for every layer that holds pieces, from below.

@@ -67,7 +67,7 @@ std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, doub
           {cell[0] + neighbor % 3 - 1, cell[1] + neighbor / 3 % 3 - 1, cell[2] + neighbor / 9 - 1});
       if (found == kept_in_cell.end()) continue;
       for (const std::int32_t other : found->second) {
-        if (other < first && (vertices[other] - p).squaredNorm() <= distance * distance) {
+        if (other < first && (vertices[other] - p).stableNorm() <= distance) {
           first = other;
         }
       }

@@ -28,6 +28,9 @@ class ExactRational {
  public:
   ExactRational();              ///< Zero.
   ExactRational(double value);  ///< Exactly `value`. @throws InvalidInput if it is not finite.
+  // Copied where others are moved: no number is ever left without its value.
+  ExactRational(const ExactRational&) = default;
+  ExactRational& operator=(const ExactRational&) = default;
 
   double to_double() const;         ///< A double next to it: off by at most one ulp.
   int sign() const;                 ///< −1, 0 or 1.

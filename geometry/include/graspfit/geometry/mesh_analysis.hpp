@@ -71,8 +71,9 @@ enum class SelfIntersections {
 struct AlphaWrap {
   double alpha_rel = 0.02;    ///< Narrowest gap that is entered, over the longest extent, in
                               ///< [1e-3, 1]. Smaller follows the mesh better and costs more.
-  double offset_rel = 0.002;  ///< Distance of the wrap from the mesh, over the longest extent, in
-                              ///< [1e-4, 1].
+  double offset_rel = 0.002;  ///< Distance of the wrap's vertices from the mesh, over the longest
+                              ///< extent, in [1e-4, 1]. Across gaps that are not entered its faces
+                              ///< are farther away.
 };
 
 /// Limits of `repair_mesh`.

@@ -48,7 +48,7 @@ struct WrenchSpaceOptions {
 /// force is one, and what ε is outside. All but DexGraspBench take them about the center of mass.
 enum class WrenchTool {
   House,          ///< Largest radius of the surface; unit normal; 0.
-  GraspIt,        ///< Largest radius; unit normal; −1.
+  GraspIt,        ///< Largest radius, here from the center of mass; unit normal; −1.
   Simox,          ///< Half the longest extent; unit edge; reports none, 0 stands for it.
   DexNet,         ///< Median extent; unit normal; 0.
   Frogger,        ///< 1 m; unit edge of four; signed.
