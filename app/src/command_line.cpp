@@ -135,6 +135,20 @@ std::vector<double> Flags::numbers(const std::string& name) const {
   return numbers;
 }
 
+std::vector<std::pair<std::string, double>> Flags::settings(const std::string& name) const {
+  std::vector<std::pair<std::string, double>> settings;
+  for (const std::string& word : words(name)) {
+    const std::size_t sign = word.find('=');
+    if (sign == std::string::npos || sign == 0) {
+      throw UsageError("--" + name + " \"" + word + "\" is not NAME=VALUE");
+    }
+    settings.emplace_back(
+        word.substr(0, sign),
+        parse_number<double>(name + ' ' + word.substr(0, sign), word.substr(sign + 1), "a number"));
+  }
+  return settings;
+}
+
 std::string help_text(const Command& command) {
   std::ostringstream text;
   text << "Usage: graspfit " << command.name << ' ' << command.positional << " [options]\n\n"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exit_codes.hpp"
@@ -67,6 +68,8 @@ class Flags {
     }
     return *value;
   }
+  /// NAME=VALUE,... with numbers as values.
+  std::vector<std::pair<std::string, double>> settings(const std::string& name) const;
 
  private:
   std::string positional_name_;

@@ -12,6 +12,7 @@ namespace graspfit::app {
 ExitCode run_plan(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
+ExitCode run_shape(const std::vector<std::string>& arguments);
 
 /// The program's version and those of the compiler and the libraries it was built with.
 std::string version_text();

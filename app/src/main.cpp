@@ -21,6 +21,7 @@ const char* const kUsage =
     "  graspfit plan OBJECT          grasps of a mesh: file, table, posed meshes, pictures\n"
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
+    "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "\n"
     "graspfit COMMAND --help lists a command's options with their defaults and units.\n";
 
@@ -32,13 +33,14 @@ void print_error(const std::string& command, const std::string& what) {
 
 ExitCode run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    throw UsageError("no command given; there are plan, inspect and evaluate (see --help)");
+    throw UsageError("no command given; there are plan, inspect, evaluate and shape (see --help)");
   }
   const std::string& command = arguments[0];
   const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
   if (command == "plan") return run_plan(rest);
   if (command == "inspect") return run_inspect(rest);
   if (command == "evaluate") return run_evaluate(rest);
+  if (command == "shape") return run_shape(rest);
   if (command == "--help" || command == "-h" || command == "help") {
     std::fputs(kUsage, stdout);
     return kSuccess;
@@ -47,14 +49,15 @@ ExitCode run(const std::vector<std::string>& arguments) {
     std::fputs(version_text().c_str(), stdout);
     return kSuccess;
   }
-  throw UsageError("unknown command \"" + command + "\"; there are plan, inspect and evaluate");
+  throw UsageError("unknown command \"" + command +
+                   "\"; there are plan, inspect, evaluate and shape");
 }
 
 /// Every exception ends here as one line and an exit code.
 ExitCode run_and_report(const std::vector<std::string>& arguments) {
   const bool has_command =
-      !arguments.empty() &&
-      (arguments[0] == "plan" || arguments[0] == "inspect" || arguments[0] == "evaluate");
+      !arguments.empty() && (arguments[0] == "plan" || arguments[0] == "inspect" ||
+                             arguments[0] == "evaluate" || arguments[0] == "shape");
   const std::string command = has_command ? arguments[0] : "";
   try {
     return run(arguments);

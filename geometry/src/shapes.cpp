@@ -8,40 +8,16 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "internal/shape_limits.hpp"
+#include "internal/turned_surface.hpp"
 
 namespace graspfit::geometry {
 namespace {
 
-using std::numbers::pi;
-
-void require_positive(const char* shape, const char* name, double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) {
-    throw InvalidInput(std::string(shape) + ": " + name + " is " + shortest_decimal(value) +
-                       ", must be positive");
-  }
-}
-
-void require_range(const char* shape, const char* name, int value, int least, int most) {
-  if (value < least || value > most) {
-    throw InvalidInput(std::string(shape) + ": " + name + " is " + std::to_string(value) +
-                       ", must be in [" + std::to_string(least) + ", " + std::to_string(most) +
-                       "]");
-  }
-}
-
-constexpr int kMostSegments = 1 << 14;
-
-// Cosine and sine of the angle i/n of a turn, exact at the quarters.
-std::pair<double, double> turn(int i, int n) {
-  const std::int64_t quarter = 4LL * i;
-  if (quarter % n == 0) {
-    constexpr int kCos[] = {1, 0, -1, 0};
-    const auto q = static_cast<int>(quarter / n % 4);
-    return {kCos[q], kCos[(q + 3) % 4]};
-  }
-  const double angle = 2.0 * pi * i / n;
-  return {std::cos(angle), std::sin(angle)};
-}
+using internal::kMostSegments;
+using internal::require_positive;
+using internal::require_range;
+using internal::turn;
 
 }  // namespace
 

@@ -200,7 +200,7 @@ class Pictures(program.ProgramTest):
 class Help(program.ProgramTest):
     def test_help_and_version(self):
         for arguments in (["--help"], ["plan", "--help"], ["inspect", "--help"],
-                          ["evaluate", "-h"]):
+                          ["evaluate", "-h"], ["shape", "--help"]):
             done = program.run(*arguments)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn("Usage: graspfit", done.stdout)

@@ -1,0 +1,158 @@
+#pragma once
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+/// \file
+/// Closed, outward, manifold meshes of everyday things, built in code. Every dimension is in meters
+/// and has the value of a real object as its default; the frame's z axis points up.
+///
+/// Turned shapes (bottle, bowling pin, flower pot) have their vertices on the exact profile turned
+/// around z, with `segments` (a multiple of 4, from 12) vertices in a ring, fewer near the axis.
+/// Blended shapes (mug, bowling ball, octopus, wire cage) are the zero level of distance
+/// functions: vertices lie on it to 1e-12 of the longest extent, and extents are exact since the
+/// points that touch the bounding box are vertices. `segments` sets the resolution as stated at
+/// each shape; surfaces and volumes converge with its square. The same arguments give the same
+/// bytes. All throw InvalidInput that names the field and its value: for a dimension that is not
+/// positive or does not fit the others, for too few segments, and where segments are too coarse
+/// for a blended shape.
+
+namespace graspfit::geometry {
+
+/// A filled bottle (nothing inside), standing on z = 0, axis z. Default: a 0.75 l wine bottle.
+struct BottleDimensions {
+  double height = 0.300;           ///< z of the mouth.
+  double body_diameter = 0.0745;   ///< Widest.
+  double neck_diameter = 0.0290;   ///< Of the straight neck, below the body's.
+  double shoulder_bottom = 0.185;  ///< z where the lines of body and shoulder meet.
+  double shoulder_top = 0.220;     ///< z where the lines of shoulder and neck meet.
+  double shoulder_radius = 0.055;  ///< Of the arcs that round these two corners.
+  double base_radius = 0.005;      ///< Rounding of the bottom edge.
+  double lip_radius = 0.003;       ///< Rounding of the edge of the mouth.
+  void validate() const;           ///< Throws InvalidInput.
+};
+
+/// `segments` vertices around; arcs of the profile are cut as finely as the body is around.
+TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
+
+/// A ten-pin bowling pin standing on z = 0, axis z. Its proportions are those of the drawing of the
+/// [USBC Equipment Specifications]: diameters of 2.031 in at the base, 2.828 at 0.75 in, 3.906 at
+/// 2.25, 4.510 at 3.375, 4.766 at 4.5 (the widest), 4.563 at 5.875, 3.703 at 7.25, 2.472 at 8.625,
+/// 1.965 at 9.375, 1.797 at 10 (the neck), 1.870 at 10.875, 2.094 at 11.75, 2.406 at 12.625, 2.547
+/// at 13.5 (the head), a top of radius 1.273 in, a bottom edge of radius 5/32 in. In between run
+/// cubic splines, level where the pin is widest and narrowest. The cup in the base is left out, and
+/// the base's 2.031 in are where the sides would meet the floor without the rounding.
+struct BowlingPinDimensions {
+  double height = 0.381;  ///< 15 in; all the rest scales with it.
+  void validate() const;  ///< Throws InvalidInput.
+};
+
+/// `segments` vertices around; the profile is cut as finely as the belly is around.
+TriangleMesh bowling_pin(const BowlingPinDimensions& dimensions = {}, int segments = 96);
+
+/// A hollow flower pot without a drain hole, standing on z = 0, axis z: a conical wall that is
+/// equally thick at every height and ends in a cylindrical collar.
+struct FlowerPotDimensions {
+  double height = 0.130;
+  double top_diameter = 0.150;    ///< Of the collar, outside.
+  double base_diameter = 0.100;   ///< Where wall and floor would meet outside without rounding.
+  double wall_thickness = 0.006;  ///< Horizontally; of the floor too.
+  double rim_height = 0.030;      ///< Of the collar.
+  double rim_thickness = 0.010;   ///< Of the collar at the top, more than the wall's.
+  double edge_radius = 0.0018;    ///< Rounding of all edges.
+  void validate() const;          ///< Throws InvalidInput.
+};
+
+/// `segments` vertices around; arcs get at least eight edges a half turn.
+TriangleMesh flower_pot(const FlowerPotDimensions& dimensions = {}, int segments = 120);
+
+/// A hollow mug standing on z = 0, axis z, with a handle towards +x. The wall is all that lies
+/// within half its thickness of a flat floor that turns up into a cylinder, so its rim is round;
+/// the handle a round bar along a rectangle with rounded corners, at half height. Genus 1.
+struct MugDimensions {
+  double height = 0.095;
+  double diameter = 0.082;          ///< Outside, without the handle.
+  double wall_thickness = 0.005;    ///< Of the floor too.
+  double base_radius = 0.010;       ///< Rounding of the bottom edge, outside; at least the wall's.
+  double handle_height = 0.064;     ///< From the handle's lowest to its highest point.
+  double handle_clearance = 0.027;  ///< Between wall and handle: room for fingers.
+  double handle_thickness = 0.011;  ///< Diameter of its bar.
+  double handle_radius = 0.024;     ///< Of the corners of the bar's center line.
+  double fillet = 0.004;            ///< Radius between wall and handle.
+  void validate() const;            ///< Throws InvalidInput.
+};
+
+/// Edges of 1/`segments` of the outer circumference. Extents: x from −diameter/2 to diameter/2 +
+/// handle_clearance + handle_thickness.
+TriangleMesh mug(const MugDimensions& dimensions = {}, int segments = 150);
+
+/// A bowling ball centered at the origin with three blind holes with round ends around +z: a thumb
+/// hole at −x that points to the center, two finger holes at +x, parallel, halfway between them the
+/// center. Symmetric about y = 0. Default: 8.5 in [USBC Equipment Specifications].
+struct BowlingBallDimensions {
+  double diameter = 0.2159;
+  double finger_diameter = 0.025;
+  double finger_depth = 0.060;    ///< Along the axis, from the ball's surface to the hole's end.
+  double finger_spacing = 0.034;  ///< Between the axes of the finger holes.
+  double thumb_diameter = 0.028;
+  double thumb_depth = 0.070;  ///< As finger_depth.
+  double span = 0.095;         ///< Chord of the ball between the thumb's axis and the point halfway
+                               ///< between the fingers'.
+  double edge_radius = 0.004;  ///< Rounding of the holes' edges.
+  void validate() const;       ///< Throws InvalidInput.
+};
+
+/// Edges of 1/`segments` of the circumference.
+TriangleMesh bowling_ball(const BowlingBallDimensions& dimensions = {}, int segments = 220);
+
+/// An octopus on z = 0: a capsule-shaped mantle around the z axis and eight arms in the directions
+/// k · 45° from +x. The center line of an arm is an arc of a circle in the plane through the z
+/// axis: it starts in the mantle, at a third of its radius, 55° downwards, and ends 35° upwards. At
+/// a point of that line the arm's radius falls linearly along the line from root to tip. Genus 0,
+/// symmetric in x, y and x = y.
+struct OctopusDimensions {
+  double height = 0.160;  ///< z of the top of the mantle.
+  double mantle_diameter = 0.090;
+  double mantle_height = 0.110;  ///< From its lowest to its highest point; more than its diameter.
+  double arm_reach = 0.180;      ///< From the z axis to the end of an arm.
+  double arm_root_diameter = 0.028;
+  double arm_tip_diameter = 0.012;  ///< Less than at the root.
+  double fillet = 0.006;            ///< Radius between arms and mantle.
+  void validate() const;            ///< Throws InvalidInput.
+};
+
+/// Edges of 1/`segments` of the mantle's circumference.
+TriangleMesh octopus(const OctopusDimensions& dimensions = {}, int segments = 100);
+
+/// A cage of round bars on z = 0 around the z axis: a frame of two rectangles with rounded corners,
+/// below and above, thinner bars between them on all four sides, and as many across each frame,
+/// along y. Genus 6 bars_per_side + 1.
+struct WireCageDimensions {
+  double width = 0.160;   ///< Along x, outside.
+  double depth = 0.120;   ///< Along y, outside.
+  double height = 0.120;  ///< Along z, outside.
+  double frame_diameter = 0.009;
+  double bar_diameter = 0.0055;  ///< By at least 2 fillet less than the frame's.
+  double corner_radius = 0.020;  ///< Of the corners of the frame's center line.
+  double fillet = 0.0015;        ///< Radius between bars and frame.
+  int bars_per_side = 3;         ///< 1 to 50, at equal distances.
+  void validate() const;         ///< Throws InvalidInput.
+};
+
+/// Edges of 1/`segments` of a bar's circumference.
+TriangleMesh wire_cage(const WireCageDimensions& dimensions = {}, int segments = 10);
+
+/// A table on z = 0 around the z axis: a box on four square legs, all edges sharp, 172 faces whose
+/// corners are exact to rounding. Genus 0.
+struct TableDimensions {
+  double length = 1.20;  ///< Along x.
+  double width = 0.70;   ///< Along y.
+  double height = 0.74;
+  double top_thickness = 0.03;
+  double leg_width = 0.06;
+  double leg_inset = 0.04;  ///< From the edges of the top to the legs.
+  void validate() const;    ///< Throws InvalidInput.
+};
+
+TriangleMesh table(const TableDimensions& dimensions = {});
+
+}  // namespace graspfit::geometry
