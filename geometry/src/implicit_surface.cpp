@@ -482,7 +482,10 @@ TriangleMesh polygonize(const ImplicitSolid& solid, double edge_length) {
     surface.relax(mesh.vertices, neighbors(mesh.faces, mesh.vertices.size()), is_fixed);
   }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (!is_fixed[i]) mesh.vertices[i] = surface.projected(mesh.vertices[i]);
+    if (is_fixed[i]) continue;
+    // Flat sides of the box are met exactly; that moves no vertex by more than the tolerance.
+    mesh.vertices[i] =
+        surface.projected(mesh.vertices[i]).cwiseMax(solid.box.min()).cwiseMin(solid.box.max());
   }
   Flipper(mesh).run();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {

@@ -14,7 +14,6 @@ namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector2d;
-using internal::kMostSegments;
 using internal::require_below;
 using internal::require_positive;
 using internal::require_range;
@@ -22,7 +21,7 @@ using std::numbers::pi;
 
 // Four-fold, so that the widest ring touches all sides of the box.
 void require_segments(const char* shape, int segments) {
-  require_range(shape, "segments", segments, 12, kMostSegments);
+  require_range(shape, "segments", segments, 12, 2048);  // 10 million faces of a bottle
   if (segments % 4 != 0) {
     throw InvalidInput(std::string(shape) + ": segments is " + std::to_string(segments) +
                        ", must be a multiple of 4");

@@ -24,6 +24,12 @@ std::pair<double, double> turn(int i, int n) {
   return {std::cos(angle), std::sin(angle)};
 }
 
+namespace {
+
+constexpr int kMostEdges = 1 << 13;  // along one side of a profile
+
+}  // namespace
+
 std::vector<Vector2d> rounded_profile(const char* shape, const std::vector<ProfileCorner>& corners,
                                       double edge_length) {
   std::vector<Vector2d> points = {corners.front().point};
@@ -31,6 +37,11 @@ std::vector<Vector2d> rounded_profile(const char* shape, const std::vector<Profi
     const Vector2d start = points.back();
     const double length = (end - start).norm();
     if (length == 0.0) return;
+    if (!(length < kMostEdges * edge_length)) {
+      throw InvalidInput(std::string(shape) + ": a side of " + shortest_decimal(length) +
+                         " m is too long for edges of " + shortest_decimal(edge_length) +
+                         " m; lower segments");
+    }
     const int steps = std::max(1, static_cast<int>(std::ceil(length / edge_length)));
     for (int i = 1; i < steps; ++i) points.push_back(start + (end - start) * i / steps);
     points.push_back(end);

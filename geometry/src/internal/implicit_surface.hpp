@@ -16,7 +16,7 @@ struct ImplicitSolid {
   std::string name;  ///< For messages.
   std::function<double(const Eigen::Vector3d&)> field;
   double slope_bound = 1.0;  ///< |field(p) − field(q)| ≤ slope_bound · |p − q|.
-  Eigen::AlignedBox3d box;   ///< Holds the solid [m].
+  Eigen::AlignedBox3d box;   ///< Of the solid, touched by it [m].
   int genus = 0;             ///< Of its surface, which is one part.
   /// Points of the surface that become vertices: where the box is touched, so that the mesh is as
   /// large as the solid.

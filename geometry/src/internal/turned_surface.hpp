@@ -19,7 +19,8 @@ struct ProfileCorner {
 
 /// Points along the polygon with its corners rounded by arcs: lines cut into edges of at most
 /// `edge_length`, arcs also into at least eight edges a half turn. First and last corner are ends.
-/// @throws InvalidInput naming `shape` and the field of a rounding that does not fit.
+/// @throws InvalidInput naming `shape` and the field of a rounding that does not fit, and for a
+/// side of more than 2^13 edges.
 std::vector<Eigen::Vector2d> rounded_profile(const char* shape,
                                              const std::vector<ProfileCorner>& corners,
                                              double edge_length);

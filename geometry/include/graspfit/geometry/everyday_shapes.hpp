@@ -7,14 +7,17 @@
 /// and has the value of a real object as its default; the frame's z axis points up.
 ///
 /// Turned shapes (bottle, bowling pin, flower pot) have their vertices on the exact profile turned
-/// around z, with `segments` (a multiple of 4, from 12) vertices in a ring, fewer near the axis.
-/// Blended shapes (mug, bowling ball, octopus, wire cage) are the zero level of distance
-/// functions: vertices lie on it to 1e-12 of the longest extent, and extents are exact since the
-/// points that touch the bounding box are vertices. `segments` sets the resolution as stated at
-/// each shape; surfaces and volumes converge with its square. The same arguments give the same
-/// bytes. All throw InvalidInput that names the field and its value: for a dimension that is not
-/// positive or does not fit the others, for too few segments, and where segments are too coarse
-/// for a blended shape.
+/// around z, with `segments` (a multiple of 4 from 12 to 2048) vertices in a ring, fewer near the
+/// axis. Blended shapes (mug, bowling ball, octopus, wire cage) are the zero level of distance
+/// functions: vertices lie on it to 1e-12 of the longest extent, and faces have angles above 25
+/// degrees at the default dimensions. Where two solids meet, the edge is filled or rounded with
+/// about the stated radius; everything farther than that from one of them is exactly the other.
+///
+/// Bounding boxes are those of the exact shapes, to rounding, however few the segments. Surfaces
+/// and volumes converge with the square of the edge length. The same arguments give the same bytes.
+/// All throw InvalidInput that names the field and its value: for a dimension that is not positive
+/// or does not fit the others, for segments out of range, and where edges are too long for the
+/// features of a blended shape (its topology is checked) or too many.
 
 namespace graspfit::geometry {
 
@@ -34,13 +37,13 @@ struct BottleDimensions {
 /// `segments` vertices around; arcs of the profile are cut as finely as the body is around.
 TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
 
-/// A ten-pin bowling pin standing on z = 0, axis z. Its proportions are those of the drawing of the
-/// [USBC Equipment Specifications]: diameters of 2.031 in at the base, 2.828 at 0.75 in, 3.906 at
-/// 2.25, 4.510 at 3.375, 4.766 at 4.5 (the widest), 4.563 at 5.875, 3.703 at 7.25, 2.472 at 8.625,
-/// 1.965 at 9.375, 1.797 at 10 (the neck), 1.870 at 10.875, 2.094 at 11.75, 2.406 at 12.625, 2.547
-/// at 13.5 (the head), a top of radius 1.273 in, a bottom edge of radius 5/32 in. In between run
-/// cubic splines, level where the pin is widest and narrowest. The cup in the base is left out, and
-/// the base's 2.031 in are where the sides would meet the floor without the rounding.
+/// A ten-pin bowling pin standing on z = 0, axis z, with the diameters of the drawing in the
+/// [USBC Equipment Specifications]: 2.031 in at the base, 2.828 at a height of 0.75 in, 3.906 at
+/// 2.25, 4.510 at 3.375, 4.766 at 4.5 (the belly, its widest), 4.563 at 5.875, 3.703 at 7.25, 2.472
+/// at 8.625, 1.965 at 9.375, 1.797 at 10 (the neck), 1.870 at 10.875, 2.094 at 11.75, 2.406 at
+/// 12.625, 2.547 at 13.5 (the head), with a top of radius 1.273 in and a bottom edge of radius
+/// 5/32 in. Cubic splines run in between, level at belly, neck and head. The cup in the base is
+/// left out, and the base's diameter is where the sides would meet the floor without the rounding.
 struct BowlingPinDimensions {
   double height = 0.381;  ///< 15 in; all the rest scales with it.
   void validate() const;  ///< Throws InvalidInput.
