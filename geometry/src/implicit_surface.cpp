@@ -358,8 +358,8 @@ class Flipper {
     edges.reserve(twin_.size());
     valence_.assign(mesh.vertices.size(), 0);
     for (std::size_t h = 0; h < twin_.size(); ++h) {
-      const auto [low, high] = std::minmax(from(h), to(h));
-      edges.push_back({low, high, static_cast<std::int32_t>(h)});
+      edges.push_back(
+          {std::min(from(h), to(h)), std::max(from(h), to(h)), static_cast<std::int32_t>(h)});
       ++valence_[from(h)];
     }
     std::sort(edges.begin(), edges.end());
