@@ -35,6 +35,7 @@ Command inspect_command() {
              "what counts as fragile: slender features thinner than this; found once per object, "
              "then read from the user's cache folder");
   add_switch(more, "no-cache", "find weak features anew, and keep nothing");
+  add_switch(more, "no-thickness", "leave out thickness and weak features, the slowest part");
   add_option(
       more, "out", "DIR", std::nullopt,
       "write voxels.vti, score_map.vti, distance_map.vti and patches.ply there, for ParaView "
@@ -291,7 +292,7 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
     require_solid(object_file);
   }
   std::optional<geometry::WeakRegions> weak;
-  if (object) {
+  if (object && !flags.has("no-thickness")) {
     progress.show("thickness and weak features");
     weak = geometry::cached_weak_regions(object->query, weak_options,
                                          {.is_on = !flags.has("no-cache")});
@@ -307,7 +308,7 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
     print_mass(*object);
     print_voxels(*object);
     print_scores(*object, options.targets.score_threshold);
-    print_thickness(object->query.mesh(), *weak);
+    if (weak) print_thickness(object->query.mesh(), *weak);
   } else {
     print_row("voxels", "none: the surface bounds no solid");
   }

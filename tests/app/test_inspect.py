@@ -64,6 +64,9 @@ class Inspect(InspectTest):
         self.assertIn("thinner than that everywhere",
                       self.row(self.inspect(path, "--weak-thickness-mm", 50), "weak"))
         self.assert_refused("inspect", path, "--weak-thickness-mm", 0, says="weak_thickness")
+        plain = self.inspect(path, "--no-thickness")
+        self.assertEqual(plain.splitlines(), [line for line in done.stdout.splitlines()
+                                              if not line.startswith(("thickness", "weak"))])
 
     def test_report_of_defects_and_repairs(self):
         vertices, faces = program.torus()
