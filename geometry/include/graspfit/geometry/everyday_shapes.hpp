@@ -42,8 +42,10 @@ TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
 /// 2.25, 4.510 at 3.375, 4.766 at 4.5 (the belly, its widest), 4.563 at 5.875, 3.703 at 7.25, 2.472
 /// at 8.625, 1.965 at 9.375, 1.797 at 10 (the neck), 1.870 at 10.875, 2.094 at 11.75, 2.406 at
 /// 12.625, 2.547 at 13.5 (the head), with a top of radius 1.273 in and a bottom edge of radius
-/// 5/32 in. Cubic splines run in between, level at belly, neck and head. The cup in the base is
-/// left out, and the base's diameter is where the sides would meet the floor without the rounding.
+/// 5/32 in. Published pages confirm height, base, belly, neck and head; the rest are the figures
+/// commonly quoted, not compared with the drawing itself. Cubic splines run in between, level at
+/// belly, neck and head. The cup in the base is left out, and the base's diameter is where the
+/// sides would meet the floor without the rounding.
 struct BowlingPinDimensions {
   double height = 0.381;  ///< 15 in; all the rest scales with it.
   void validate() const;  ///< Throws InvalidInput.
