@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -335,12 +337,39 @@ std::size_t turn_inside_out_parts(TriangleMesh& mesh) {
   return turned.size();
 }
 
-/// Wraps the faces and orients the wrap outward.
-TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset) {
+/// Ends a wrap that does not end by itself: CGAL's refinement goes round in circles where rounding
+/// puts a new point on an old one, as on a needle of 3e8 times its thickness.
+class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
+ public:
+  struct Exceeded {};
+
+  explicit WrapLimit(std::int64_t most_facets) : facets_left_(most_facets) {}
+
+  template <class Wrapper, class Gate>
+  void before_facet_treatment(const Wrapper&, const Gate&) {
+    if (--facets_left_ < 0) throw Exceeded();
+  }
+
+ private:
+  std::int64_t facets_left_;
+};
+
+/// Wraps the faces and orients the wrap outward. No faces if CGAL does not come to an end.
+TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, double extent) {
   std::vector<Kernel::Point_3> points;
   for (const Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
   CGAL::Surface_mesh<Kernel::Point_3> wrap;
-  CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap);
+  // A surface has on the order of (extent / alpha)^2 facets of size alpha. Wraps of scans, cars
+  // and open tubes take 20 to 80 times as many steps.
+  constexpr double kMostStepsRel = 2000.0;
+  const double size = extent / alpha;
+  WrapLimit limit(static_cast<std::int64_t>(kMostStepsRel * (size * size + 10.0)));
+  try {
+    CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap, CGAL::parameters::default_values(),
+                       CGAL::parameters::visitor(std::ref(limit)));
+  } catch (const WrapLimit::Exceeded&) {
+    return {};
+  }
   TriangleMesh result;
   for (const auto vertex : wrap.vertices()) {
     const Kernel::Point_3& p = wrap.point(vertex);
@@ -560,7 +589,8 @@ class Repair {
     if (!(extent_ > 0.0)) return;
     // CGAL leaves degenerate faces out, and requires that others remain.
     if (result_.before.num_degenerate_faces == result_.before.num_faces) return;
-    TriangleMesh wrapped = alpha_wrap(given, alpha, offset);
+    TriangleMesh wrapped = alpha_wrap(given, alpha, offset, extent_);
+    if (wrapped.faces.empty()) return;
     const MeshAnalysis analysis = analyzed(wrapped);
     if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given)) return;
     result_.steps.clear();

@@ -67,7 +67,8 @@ enum class SelfIntersections {
 
 /// A closed surface wrapped around whatever the mesh is [CGAL Alpha_wrap_3; Portaneri et al. 2022].
 /// It lies outside the mesh and shrinks into no gap narrower than `alpha`. It is made of the mesh
-/// as given, so it is then the only step of the repair.
+/// as given, so it is then the only step of the repair. It is not made where CGAL's refinement
+/// would not come to an end (a needle 3e8 times as long as thick): the work is bounded.
 struct AlphaWrap {
   double alpha_rel = 0.02;    ///< Narrowest gap that is entered, over the longest extent, in
                               ///< [1e-3, 1]. Smaller follows the mesh better and costs more.
