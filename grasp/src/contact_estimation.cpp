@@ -19,7 +19,8 @@ using geometry::RigidTransform;
 constexpr double kThinRel = 1e-9;            // height over length of a triangle
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
 
-/// Faces whose boxes meet the prism over the pad's outline, and some more; ascending.
+/// Faces whose boxes meet the prism over the pad's outline that reaches as high as its clip volume,
+/// and some more; ascending.
 ///
 /// Asked tile by tile: the box of a whole pad that stands oblique in O is mostly air, and holds
 /// several times the faces that are near the pad.
@@ -30,10 +31,11 @@ std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double th
   constexpr double kRoundingRel = 1e-12;  // far above the rounding of tiles and half-spaces
   Eigen::AlignedBox2d outline;
   for (const Eigen::Vector2d& corner : pad.outline) outline.extend(corner);
-  const double edge = std::max(thickness, outline.sizes().maxCoeff() / kTilesAlongPad);
+  const double height = hands::pad_height(pad) + thickness;
+  const double edge = std::max(height, outline.sizes().maxCoeff() / kTilesAlongPad);
   const Eigen::Array2i counts = (outline.sizes().array() / edge).ceil().cast<int>().max(1);
   const Eigen::Vector2d tile = outline.sizes().array() / counts.cast<double>();
-  const Vector3d half_sizes_C(tile.x() / 2, tile.y() / 2, thickness / 2);
+  const Vector3d half_sizes_C(tile.x() / 2, tile.y() / 2, height / 2);
   const Vector3d half_sizes_O = X_OC.linear().cwiseAbs() * half_sizes_C;
 
   std::vector<std::int32_t> faces;
@@ -43,7 +45,7 @@ std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double th
       const Vector3d center_O = X_OC * (Vector3d(corner.x(), corner.y(), 0.0) + half_sizes_C);
       const double slack =
           kRoundingRel * (center_O.cwiseAbs().maxCoeff() + X_OC.translation().norm() +
-                          outline.sizes().norm() + thickness);
+                          outline.sizes().norm() + height);
       const Vector3d half = half_sizes_O.array() + slack;
       const std::vector<std::int32_t> found =
           object.faces_near(Eigen::AlignedBox3d(center_O - half, center_O + half));
@@ -82,8 +84,9 @@ Placement placement(const std::array<Vector3d, 3>& triangle, const geometry::Con
 /// Sums over the pieces of surface inside a clip volume.
 class SurfaceMean {
  public:
-  SurfaceMean(geometry::PatchAveraging averaging, const RigidTransform& X_CO)
-      : averaging_(averaging), X_CO_(X_CO) {}
+  SurfaceMean(geometry::PatchAveraging averaging, const hands::ContactPad& pad,
+              const RigidTransform& X_CO)
+      : averaging_(averaging), pad_(pad), X_CO_(X_CO) {}
 
   void add(std::span<const Vector3d> polygon_O, double area, const Vector3d& centroid_O,
            const Vector3d& outward_normal_O) {
@@ -93,17 +96,18 @@ class SurfaceMean {
     centroid_O_ += weight * centroid_O;
     outward_normal_O_ += weight * outward_normal_O;
     for (const Vector3d& corner_O : polygon_O) {
-      lowest_ = std::min(lowest_, (X_CO_ * corner_O).z());
+      lowest_ = std::min(lowest_, hands::height_over_pad(pad_, X_CO_ * corner_O));
     }
   }
 
   double area() const { return area_; }
-  double lowest() const { return lowest_; }  ///< Smallest height over the pad's plane.
+  double lowest() const { return lowest_; }  ///< Smallest height of a corner over the pad.
   Vector3d centroid_O() const { return centroid_O_ / weight_; }
   Vector3d outward_normal_O() const { return outward_normal_O_ / weight_; }
 
  private:
   geometry::PatchAveraging averaging_;
+  const hands::ContactPad& pad_;
   RigidTransform X_CO_;
   double area_ = 0.0;
   double weight_ = 0.0;
@@ -136,7 +140,7 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   const geometry::ConvexVolume volume_O =
       hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
   const RigidTransform X_CO = X_OC.inverse();
-  SurfaceMean mean(options.averaging, X_CO);
+  SurfaceMean mean(options.averaging, pad, X_CO);
   std::vector<std::int32_t> cut_faces;
   for (const std::int32_t face : faces) {
     const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);

@@ -50,9 +50,8 @@ Json conventions() {
       {"contact",
        "object surface inside the pad's clip volume: point and normal are means over the clipped "
        "pieces, the point projected to the surface; area_m2 is their area; pad_boundary_distance_m "
-       "is "
-       "the distance of the point, in the pad's plane, from the outline; gap_m is the smallest "
-       "height of the surface over that plane; weak is null where it is not known"},
+       "is the distance of the point, in the pad's plane, from the outline; gap_m is the smallest "
+       "height of the surface over the pad; weak is null where it is not known"},
       {"m",
        "m1^w1 * m2^w2 * m3^w3; 0 if there are fewer than two contacts, no stable pair, or m3 <= 0"},
       {"m1",

@@ -194,6 +194,7 @@ class TreeBuilder {
     Link link;
     link.name = name;
     link.parent_link = parent;
+    link.inertia = urdf_.links[link_of_.at(name)].inertia;
     if (above != nullptr && above->type == UrdfJoint::Type::Fixed) {
       link.X_PL_fixed = above->X_PJ;
     } else if (above != nullptr) {
@@ -349,6 +350,8 @@ class SidecarResolver {
       }
       result.X_LC = source.X_LC;
       result.outline = source.outline;
+      result.surface = source.surface;
+      result.planes = surface_planes(result);
       result.clip_thickness = source.clip_thickness;
       model_.pads.push_back(std::move(result));
     }

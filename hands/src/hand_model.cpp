@@ -6,6 +6,7 @@
 #include <set>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/convex_polytope.hpp"
 #include "graspfit/geometry/errors.hpp"
 
 namespace graspfit::hands {
@@ -62,12 +63,28 @@ double distance_inside(const std::vector<Side>& lines, const Eigen::Vector2d& po
   return lines.empty() ? 0.0 : std::max(least, 0.0);
 }
 
+/// Corners of the hull whose upper side is the pad: the outline at z = 0, then the surface's.
+std::vector<Eigen::Vector3d> hull_points(const ContactPad& pad) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector2d& corner : pad.outline) {
+    points.emplace_back(corner.x(), corner.y(), 0.0);
+  }
+  points.insert(points.end(), pad.surface.begin(), pad.surface.end());
+  return points;
+}
+
 double shoelace(const std::vector<Eigen::Vector2d>& outline) {
   double twice = 0.0;
   for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
     twice += cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
   }
   return 0.5 * twice;
+}
+
+void require_thickness(const char* function, const ContactPad& pad, double thickness) {
+  if (thickness > 0.0 && std::isfinite(thickness)) return;
+  throw InvalidInput(std::string(function) + ": pad " + pad.name + ": thickness " +
+                     shortest_decimal(thickness) + " is not positive");
 }
 
 /// Collects what every check of `validate` needs: the hand's name and a way to complain.
@@ -106,12 +123,22 @@ class Checker {
     }
   }
 
+  void inertia(const Link& link) const {
+    if (!link.inertia) return;
+    const std::string what = "link " + link.name + ": ";
+    require(std::isfinite(link.inertia->mass) && link.inertia->mass >= 0.0,
+            what + "mass " + shortest_decimal(link.inertia->mass) + " is negative or not finite");
+    require(link.inertia->center_L.allFinite(), what + "center of mass is not finite");
+    require(link.inertia->inertia_L.allFinite(), what + "inertia is not finite");
+  }
+
   void links() const {
     require(!model_.links.empty(), "no links");
     require_distinct_names(model_.links, "link");
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       const Link& link = model_.links[i];
       const std::string what = "link " + link.name;
+      inertia(link);
       if (i == 0) {
         require(link.parent_link == -1 && link.parent_joint == -1,
                 what + ": the root has a parent");
@@ -222,6 +249,7 @@ class Checker {
       }
       require_pose(pad.X_LC, what + ": frame");
       outline(pad.outline, what);
+      surface(pad, what);
       require(
           !pad.clip_thickness || (std::isfinite(*pad.clip_thickness) && *pad.clip_thickness > 0.0),
           what + ": clip thickness is not positive");
@@ -244,6 +272,33 @@ class Checker {
         require(side.inward.dot(point) - side.offset >= -slack, what + ": outline is not convex");
       }
     }
+  }
+
+  void surface(const ContactPad& pad, const std::string& what) const {
+    require(pad.surface.empty() == pad.planes.empty(),
+            what + ": surface and planes do not belong together");
+    if (pad.surface.empty()) return;
+    const std::vector<Side> lines = sides(pad.outline);
+    // Rounding of decimal input, relative to the pad's size.
+    const double slack = 1e-9 * std::sqrt(shoelace(pad.outline));
+    // The pad is the hull: what lies this little below it may stay, as rounding of points on a
+    // straight line does.
+    constexpr double kDentRel = 1e-3;  // of the pad's size
+    double height = 0.0;
+    for (std::size_t i = 0; i < pad.surface.size(); ++i) {
+      const Eigen::Vector3d& point = pad.surface[i];
+      const std::string which = what + ": surface point " + std::to_string(i);
+      require(point.allFinite(), which + " is not finite");
+      require(point.z() >= 0.0, which + " lies behind the pad's plane");
+      for (const Side& side : lines) {
+        require(side.inward.dot(point.head<2>()) - side.offset >= -slack,
+                which + " lies beside the outline");
+      }
+      require(height_over_pad(pad, point) >= -kDentRel * std::sqrt(shoelace(pad.outline)),
+              which + " lies below the others: the surface is not convex");
+      height = std::max(height, point.z());
+    }
+    require(height > slack, what + ": its surface does not rise over its plane");
   }
 
   void palm() const {
@@ -344,18 +399,75 @@ double largest_boundary_distance(const ContactPad& pad) {
   return largest;
 }
 
-geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
-  if (!(thickness > 0.0) || !std::isfinite(thickness)) {
-    throw InvalidInput("clip_volume_C: pad " + pad.name + ": thickness " +
-                       shortest_decimal(thickness) + " is not positive");
+std::vector<geometry::HalfSpace> surface_planes(const ContactPad& pad) {
+  std::vector<geometry::HalfSpace> planes;
+  if (pad.surface.empty()) return planes;
+  const std::vector<Eigen::Vector3d> points = hull_points(pad);
+  // Facets steeper than this stand on the outline: walls that the outline's sides give already.
+  constexpr double kWall = 1e-6;  // cosine; a facet of the bulge leans by far more
+  constexpr double kSame = 1e-9;  // difference of unit normals of coplanar facets
+  for (const geometry::HullFacet& facet : geometry::convex_hull(points).facets) {
+    const Eigen::Vector3d& a = points[facet[0]];
+    const Eigen::Vector3d normal = (points[facet[1]] - a).cross(points[facet[2]] - a).normalized();
+    if (!(normal.z() > kWall)) continue;
+    const bool is_known = std::any_of(
+        planes.begin(), planes.end(),
+        [&](const geometry::HalfSpace& plane) { return (plane.normal - normal).norm() < kSame; });
+    if (!is_known) planes.push_back({normal, normal.dot(a)});
   }
+  return planes;
+}
+
+double height_over_pad(const ContactPad& pad, const Eigen::Vector3d& point_C) {
+  if (pad.planes.empty()) return point_C.z();
+  double height = -std::numeric_limits<double>::infinity();
+  for (const geometry::HalfSpace& plane : pad.planes) {
+    height = std::max(height, (plane.normal.dot(point_C) - plane.offset) / plane.normal.z());
+  }
+  return height;
+}
+
+double pad_height(const ContactPad& pad) {
+  double height = 0.0;
+  for (const Eigen::Vector3d& point : pad.surface) height = std::max(height, point.z());
+  return height;
+}
+
+geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
+  require_thickness("clip_volume_C", pad, thickness);
   geometry::ConvexVolume volume;
   for (const Side& side : sides(pad.outline)) {
     volume.push_back({Eigen::Vector3d(-side.inward.x(), -side.inward.y(), 0.0), -side.offset});
   }
   volume.push_back({-Eigen::Vector3d::UnitZ(), 0.0});
-  volume.push_back({Eigen::Vector3d::UnitZ(), thickness});
+  if (pad.planes.empty()) volume.push_back({Eigen::Vector3d::UnitZ(), thickness});
+  // Seen along z the surface ends at the outline, so that moving it along z sweeps no further
+  // walls.
+  for (const geometry::HalfSpace& plane : pad.planes) {
+    volume.push_back({plane.normal, plane.offset + plane.normal.z() * thickness});
+  }
   return volume;
+}
+
+TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness) {
+  require_thickness("clip_volume_mesh_C", pad, thickness);
+  std::vector<Eigen::Vector3d> points = hull_points(pad);
+  const std::size_t num_points = points.size();
+  for (std::size_t i = 0; i < num_points; ++i) {
+    points.push_back(points[i] + thickness * Eigen::Vector3d::UnitZ());
+  }
+  const geometry::ConvexHull3 hull = geometry::convex_hull(points);
+  // Corners only: points of the pad that ended up inside the hull are left out.
+  std::vector<std::int32_t> number(points.size(), -1);
+  TriangleMesh mesh;
+  for (const std::size_t vertex : hull.vertices) {
+    number[vertex] = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(points[vertex]);
+  }
+  for (const geometry::HullFacet& facet : hull.facets) {
+    mesh.faces.push_back({number[facet[0]], number[facet[1]], number[facet[2]]});
+  }
+  return mesh;
 }
 
 geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C,

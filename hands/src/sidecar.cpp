@@ -140,7 +140,7 @@ SidecarFinger finger(const Item& item) {
 }
 
 SidecarPad pad(const Item& item) {
-  item.require_fields({"name", "link", "finger", "frame", "outline_m", "clip"});
+  item.require_fields({"name", "link", "finger", "frame", "outline_m", "surface_m", "clip"});
   SidecarPad result;
   result.name = item.at("name").name();
   result.link = item.at("link").name();
@@ -156,9 +156,22 @@ SidecarPad pad(const Item& item) {
   for (const Item& corner : item.at("outline_m").array()) {
     result.outline.push_back(corner.vector<2>());
   }
+  if (const auto surface = item.find("surface_m")) {
+    for (const Item& point : surface->array()) result.surface.push_back(point.vector<3>());
+    if (result.surface.empty()) surface->fail("is empty; leave it out where the pad is flat");
+  }
   if (const auto clip = item.find("clip")) {
     clip->require_fields({"kind", "thickness_m"});
-    if (clip->at("kind").name() != "prism") clip->at("kind").fail("is not \"prism\"");
+    const std::string kind = clip->at("kind").name();
+    const std::string expected = result.surface.empty() ? "prism" : "offset";
+    if (kind != "prism" && kind != "offset") {
+      clip->at("kind").fail("is neither \"prism\" nor \"offset\"");
+    }
+    if (kind != expected) {
+      clip->at("kind").fail("is \"" + kind + "\", but the clip volume of a " +
+                            (result.surface.empty() ? "flat pad" : "pad with surface_m") +
+                            " is \"" + expected + "\"");
+    }
     if (const auto thickness = clip->find("thickness_m")) {
       result.clip_thickness = thickness->number();
       if (*result.clip_thickness <= 0.0) thickness->fail("is not positive");

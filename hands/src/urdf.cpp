@@ -159,6 +159,25 @@ class Parser {
     return result;
   }
 
+  /// Mass, and where given center of mass and inertia; the latter turned into the link's axes.
+  LinkInertia inertia(const XMLElement& e, const std::string& item) const {
+    LinkInertia result;
+    const XMLElement* mass = e.FirstChildElement("mass");
+    if (mass == nullptr) fail(e, item + ": <inertial> without <mass>");
+    result.mass = number(*mass, "value", item);
+    if (result.mass < 0.0) fail(*mass, item + ": <mass> is negative");
+    const geometry::RigidTransform X_LI = origin(e, item);
+    result.center_L = X_LI.translation();
+    if (const XMLElement* tensor = e.FirstChildElement("inertia")) {
+      const auto entry = [&](const char* name) { return number_or(*tensor, name, 0.0, item); };
+      Eigen::Matrix3d inertia_I;
+      inertia_I << entry("ixx"), entry("ixy"), entry("ixz"), entry("ixy"), entry("iyy"),
+          entry("iyz"), entry("ixz"), entry("iyz"), entry("izz");
+      result.inertia_L = X_LI.linear() * inertia_I * X_LI.linear().transpose();
+    }
+    return result;
+  }
+
   UrdfLink link(const XMLElement& e) {
     UrdfLink result;
     result.name = text_of(e, "name", "link");
@@ -172,6 +191,7 @@ class Parser {
          c = c->NextSiblingElement("collision")) {
       result.collision.push_back(shape(*c, item));
     }
+    if (const XMLElement* i = e.FirstChildElement("inertial")) result.inertia = inertia(*i, item);
     return result;
   }
 

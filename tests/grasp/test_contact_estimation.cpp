@@ -65,6 +65,28 @@ TEST_CASE("On a flat face the contact is the pad's own rectangle", "[grasp][cont
   CHECK_FALSE(contact->weak.has_value());
 }
 
+TEST_CASE("A curved pad touches where its offset surface reaches, and its gap is that of its top",
+          "[grasp][contact_estimation]") {
+  // A roof over the 2 x 4 cm outline, ridge of height 5 mm along x: half a millimeter above a flat
+  // face the volume, 2 mm over the roof, covers |y| <= 20 mm (2 - 0.5) / 5.
+  const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
+  hands::HandModel hand = pad_hand(1, 0.02, 0.04);
+  hands::ContactPad& roof = hand.pads[1];
+  const double height = 0.005;
+  roof.surface = {{0.01, 0, height}, {-0.01, 0, height}};
+  roof.planes = hands::surface_planes(roof);
+  const double gap = 0.0005;
+  const auto contact = estimate_contact(hand, 1, above(0, 0, 0.1, height + gap), box, kOptions);
+  REQUIRE(contact);
+  CHECK(contact->area == Approx(0.02 * 2 * 0.02 * (kThickness - gap) / height).epsilon(1e-9));
+  CHECK(contact->gap == Approx(gap).epsilon(1e-9));
+  CHECK((contact->inward_normal_O + Vector3d::UnitZ()).norm() < kRounding);
+  CHECK((contact->point_O - Vector3d(0, 0, 0.1)).norm() < kRounding);
+  CHECK(contact->pad_boundary_distance == Approx(0.01).epsilon(1e-9));  // in the plane, as if flat
+  CHECK_FALSE(
+      estimate_contact(hand, 1, above(0, 0, 0.1, height + 1.01 * kThickness), box, kOptions));
+}
+
 TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estimation]") {
   // The pad's middle is over the edge x = 0.1: half its width, 1 cm, is above the top face, and the
   // side wall runs down through the volume from the top to its end, 2 - 0.5 mm.

@@ -46,6 +46,11 @@ def main():
     for hand in hands:
         sidecar = json.loads((hand / f"{hand.name}.graspfit.json").read_text(encoding="utf-8"))
         problems += [f"{hand.name}: {e.json_path}: {e.message}" for e in validator.iter_errors(sidecar)]
+    curved = [pad for hand in hands
+              for pad in json.loads((hand / f"{hand.name}.graspfit.json").read_text(encoding="utf-8"))["pads"]
+              if "surface_m" in pad]
+    if not curved:
+        problems.append("no hand has a curved pad")
     # The schema must also say no: a misspelled field, a pad without an outline, a wrong version.
     def broken(change):
         value = json.loads(json.dumps(sidecar))
@@ -57,6 +62,8 @@ def main():
             ("a pad without outline", lambda v: v["pads"][0].pop("outline_m")),
             ("another version", lambda v: v["format"].update(version=2)),
             ("a closing sign of 2", lambda v: v["closing"].update(thumb_proximal=2)),
+            ("a surface behind its pad", lambda v: v["pads"][0].update(surface_m=[[0, 0, -0.001]])),
+            ("an unknown kind of clip volume", lambda v: v["pads"][0]["clip"].update(kind="ball")),
             ("a clip volume of no thickness", lambda v: v["pads"][0]["clip"].update(thickness_m=0))]:
         if validator.is_valid(broken(change)):
             problems.append(f"the schema accepts {what}")

@@ -310,6 +310,64 @@ TEST_CASE("Names and values in a sidecar are checked against the description", "
       "outline has no area");
 }
 
+TEST_CASE("A curved pad is read, and one that is not convex is refused with its point",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const std::string end = "[-0.01, -0.01]]}";
+  const auto curved = [&](const std::string& fields) {
+    return write_hand(folder, kUrdf, with(kSidecar, end, "[-0.01, -0.01]], " + fields + "}"));
+  };
+  const HandModel hand = hands::read_hand_model(
+      curved(R"("surface_m": [[0, 0, 0.004], [0.004, 0, 0.003]], "clip": {"kind": "offset"})"));
+  REQUIRE(hand.pads[0].surface.size() == 2);
+  CHECK(hand.pads[0].surface[1] == Vector3d(0.004, 0, 0.003));
+  CHECK(hands::pad_height(hand.pads[0]) == 0.004);
+  CHECK(hand.pads[0].planes.size() >= 4);
+  using geometry::InvalidInput;
+  const auto bad = [&](const std::string& fields, const std::string& about) {
+    check_refused<InvalidInput>(curved(fields), "pinch.graspfit.json", about);
+  };
+  bad(R"("surface_m": [])", "pads[0].surface_m: is empty");
+  bad(R"("surface_m": [[0, 0]])", "pads[0].surface_m[0]: has 2 of 3 numbers");
+  bad(R"("surface_m": [[0, 0, -0.001]])", "surface point 0 lies behind the pad's plane");
+  bad(R"("surface_m": [[0.02, 0, 0.001]])", "surface point 0 lies beside the outline");
+  bad(R"("surface_m": [[0.008, 0, 0.003], [0, 0, 0.001], [-0.008, 0, 0.003]])",
+      "surface point 1 lies below the others");
+  bad(R"("surface_m": [[0, 0, 0.004]], "clip": {"kind": "prism"})",
+      "the clip volume of a pad with surface_m is \"offset\"");
+  bad(R"("clip": {"kind": "offset"})", "the clip volume of a flat pad is \"prism\"");
+  bad(R"("clip": {"kind": "box"})", "is neither \"prism\" nor \"offset\"");
+}
+
+TEST_CASE("Masses are read where they are given, inertia turned into the link's axes",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const std::string old = R"(<link name="right"/>)";
+  const auto hand_with = [&](const std::string& inertial) {
+    return write_hand(
+        folder,
+        with(kUrdf, old, "<link name=\"right\"><inertial>" + inertial + "</inertial></link>"));
+  };
+  // A quarter turn about z swaps x and y: ixx and iyy change places, ixy its sign.
+  const HandModel hand = hands::read_hand_model(
+      hand_with(R"(<origin xyz="0.1 0 -0.2" rpy="0 0 1.5707963267948966"/><mass value="0.25"/>
+                   <inertia ixx="1e-4" ixy="2e-5" ixz="0" iyy="3e-4" iyz="0" izz="4e-4"/>)"));
+  const auto& inertia = hand.links[static_cast<std::size_t>(hand.link_index("right"))].inertia;
+  REQUIRE(inertia.has_value());
+  CHECK(inertia->mass == 0.25);
+  CHECK(inertia->center_L == Vector3d(0.1, 0, -0.2));
+  Eigen::Matrix3d expected;
+  expected << 3e-4, -2e-5, 0, -2e-5, 1e-4, 0, 0, 0, 4e-4;
+  CHECK((inertia->inertia_L - expected).norm() < 1e-18);
+  CHECK_FALSE(hand.links[0].inertia.has_value());
+  check_refused<geometry::InvalidInput>(hand_with(""), "pinch.urdf",
+                                        "link right: <inertial> without <mass>");
+  check_refused<geometry::InvalidInput>(hand_with(R"(<mass value="-1"/>)"), "pinch.urdf",
+                                        "link right: <mass> is negative");
+  check_refused<geometry::InvalidInput>(hand_with(R"(<mass value="nan"/>)"), "pinch.urdf",
+                                        "is not finite");
+}
+
 TEST_CASE("A description without sidecar says which file is missing", "[hands][hand_io]") {
   const Folder folder;
   check_refused<geometry::IoError>(folder.write("pinch.urdf", kUrdf), "pinch.urdf",

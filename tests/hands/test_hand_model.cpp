@@ -2,7 +2,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/geometry/convex_polytope.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/random.hpp"
 #include "graspfit/hands/hand_model.hpp"
 #include "support/catch.hpp"
 
@@ -144,6 +148,123 @@ TEST_CASE("The clip volume is the prism over the outline, in any frame", "[hands
   CHECK_THROWS_AS(hands::clip_volume_C(pad, std::nan("")), geometry::InvalidInput);
 }
 
+/// A half ellipsoid's upper part over a decagon: corners of the rim raised, a ring, the top.
+ContactPad dome() {
+  ContactPad pad;
+  pad.name = "dome";
+  const auto height = [](double x, double y) {
+    return 0.008 * std::sqrt(1 - x * x / 1.4e-4 - y * y / 1e-4) - 0.003;
+  };
+  for (const double share : {1.0, 0.6}) {
+    for (int k = 0; k < 10; ++k) {
+      const double a = 2 * std::numbers::pi * (k + 0.5) / 10;
+      const double x = share * 0.010 * std::cos(a), y = share * 0.008 * std::sin(a);
+      if (share == 1.0) pad.outline.emplace_back(x, y);
+      pad.surface.emplace_back(x, y, height(x, y));
+    }
+  }
+  pad.surface.emplace_back(0, 0, height(0, 0));
+  pad.planes = hands::surface_planes(pad);
+  return pad;
+}
+
+bool contains(const geometry::ConvexVolume& volume, const Vector3d& p, double slack = 0.0) {
+  return std::all_of(volume.begin(), volume.end(), [&](const geometry::HalfSpace& h) {
+    return h.normal.dot(p) <= h.offset + slack;
+  });
+}
+
+TEST_CASE(
+    "The clip volume of a curved pad is the hull of its surface and of the same moved outward",
+    "[hands][hand_model]") {
+  const ContactPad pad = dome();
+  constexpr double kThickness = 0.0015;
+  // The oracle: the hull as CGAL finds it.
+  std::vector<Vector3d> points;
+  for (const Vector2d& corner : pad.outline) points.emplace_back(corner.x(), corner.y(), 0.0);
+  points.insert(points.end(), pad.surface.begin(), pad.surface.end());
+  for (const Vector3d& point : pad.surface)
+    points.push_back(point + kThickness * Vector3d::UnitZ());
+  for (const Vector2d& corner : pad.outline) {
+    points.emplace_back(corner.x(), corner.y(), kThickness);
+  }
+  const geometry::ConvexHull3 hull = geometry::convex_hull(points);
+  geometry::ConvexVolume expected;
+  for (const geometry::HullFacet& facet : hull.facets) {
+    const Vector3d n = (points[facet[1]] - points[facet[0]])
+                           .cross(points[facet[2]] - points[facet[0]])
+                           .normalized();
+    expected.push_back({n, n.dot(points[facet[0]])});
+  }
+  const geometry::ConvexVolume volume = hands::clip_volume_C(pad, kThickness);
+  // Both directions: the volume's corners ...
+  for (const Vector3d& point : points) CHECK(contains(volume, point, 1e-15));
+  // ... and nothing more: random points are inside both or outside both, but for a band of
+  // rounding.
+  geometry::Random random(2);
+  int num_inside = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vector3d p(random.uniform(-0.011, 0.011), random.uniform(-0.009, 0.009),
+                     random.uniform(-0.001, 0.008));
+    if (contains(expected, p, 1e-12) != contains(expected, p, -1e-12)) continue;
+    CHECK(contains(volume, p) == contains(expected, p));
+    num_inside += contains(volume, p) ? 1 : 0;
+  }
+  CHECK(num_inside > 5000);
+  CHECK(volume.size() == pad.outline.size() + 1 + pad.planes.size());
+}
+
+TEST_CASE("The mesh of a clip volume is closed and bounds the same volume", "[hands][hand_model]") {
+  constexpr double kThickness = 0.0015;
+  for (const ContactPad& pad : {dome(), rectangle(0.04, 0.02)}) {
+    const geometry::TriangleMesh mesh = hands::clip_volume_mesh_C(pad, kThickness);
+    const geometry::MeshAnalysis analysis = geometry::analyze(mesh);
+    CHECK(analysis.is_closed);
+    CHECK(analysis.is_outward);
+    const geometry::ConvexVolume volume = hands::clip_volume_C(pad, kThickness);
+    for (const Vector3d& vertex : mesh.vertices) CHECK(contains(volume, vertex, 1e-15));
+    for (const geometry::HalfSpace& half_space : volume) {  // every half-space has a face in it
+      int num_in_plane = 0;
+      for (const Vector3d& vertex : mesh.vertices) {
+        num_in_plane += half_space.normal.dot(vertex) > half_space.offset - 1e-12 ? 1 : 0;
+      }
+      CHECK(num_in_plane >= 3);
+    }
+  }
+  CHECK(geometry::signed_volume(hands::clip_volume_mesh_C(rectangle(0.04, 0.02), kThickness)) ==
+        Approx(0.04 * 0.02 * kThickness).epsilon(1e-12));
+  CHECK_THROWS_AS(hands::clip_volume_mesh_C(dome(), -1.0), geometry::InvalidInput);
+}
+
+TEST_CASE("Heights over a curved pad vanish on its corners, and it has those of its plane if flat",
+          "[hands][hand_model]") {
+  const ContactPad pad = dome();
+  for (const Vector3d& point : pad.surface) {
+    CHECK(std::abs(hands::height_over_pad(pad, point)) < 1e-15);
+    CHECK(hands::height_over_pad(pad, point + Vector3d(0, 0, 0.002)) == Approx(0.002));
+  }
+  CHECK(hands::pad_height(pad) == Approx(0.005).epsilon(1e-12));
+  // d of M1 stays in the plane: the dome does not change it.
+  ContactPad flat = pad;
+  flat.surface.clear();
+  flat.planes.clear();
+  CHECK(hands::boundary_distance(pad, {0.004, 0.001}) ==
+        hands::boundary_distance(flat, {0.004, 0.001}));
+  CHECK(hands::pad_height(flat) == 0.0);
+  CHECK(hands::height_over_pad(flat, {0.004, 0.001, -0.0007}) == -0.0007);
+  CHECK(hands::surface_planes(flat).empty());
+}
+
+TEST_CASE("Coplanar facets of a curved pad count once", "[hands][hand_model]") {
+  // A roof over a square: two slopes, each a rectangle that the hull cuts into triangles.
+  ContactPad roof = rectangle(0.02, 0.02);
+  roof.surface = {{0.01, 0, 0.005}, {-0.01, 0, 0.005}};
+  roof.planes = hands::surface_planes(roof);
+  REQUIRE(roof.planes.size() == 2);
+  CHECK(hands::height_over_pad(roof, {0.003, 0.004, 0.003}) == Approx(0.0).margin(1e-15));
+  CHECK(hands::height_over_pad(roof, {0.003, -0.004, 0.004}) == Approx(0.001));
+}
+
 TEST_CASE("A model that makes no sense is refused in one line that names the item",
           "[hands][hand_model]") {
   CHECK_NOTHROW(hands::validate(small_hand()));
@@ -195,6 +316,30 @@ TEST_CASE("A model that makes no sense is refused in one line that names the ite
   refused([](HandModel& h) { h.pads[0].outline[1] = {-0.009, -0.004}; }, "not convex");
   refused([](HandModel& h) { h.pads[0].outline = {{0, 0}, {1, 1}, {2, 2}}; }, "no area");
   refused([](HandModel& h) { h.pads[0].X_LC.linear() *= 2.0; }, "frame is not a rotation");
+  const auto bulge = [](HandModel& h, std::vector<Vector3d> points) {
+    h.pads[0].surface = std::move(points);
+    h.pads[0].planes = hands::surface_planes(h.pads[0]);
+  };
+  refused([](HandModel& h) { h.pads[0].surface = {{0, 0, 0.001}}; }, "do not belong together");
+  refused(
+      [&](HandModel& h) {
+        bulge(h, {{0, 0, 0.002}, {0.005, 0, -0.001}});
+      },
+      "pad pad: surface point 1 lies behind");
+  refused([&](HandModel& h) { bulge(h, {{0.011, 0, 0.001}}); }, "point 0 lies beside the outline");
+  refused(
+      [&](HandModel& h) {
+        bulge(h, {{-0.009, 0, 0.003}, {0, 0, 0.001}, {0.009, 0, 0.003}});
+      },
+      "point 1 lies below the others: the surface is not convex");
+  refused([&](HandModel& h) { bulge(h, {{0, 0, 1e-12}}); }, "does not rise");
+  refused([](HandModel& h) { h.links[1].inertia = hands::LinkInertia{.mass = -1.0}; },
+          "link near: mass -1 is negative");
+  refused(
+      [](HandModel& h) {
+        h.links[1].inertia = hands::LinkInertia{.center_L = Vector3d(0, std::nan(""), 0)};
+      },
+      "link near: center of mass");
   refused([](HandModel& h) { h.palm.direction_H = Vector3d(0, 0, 2); }, "palm direction");
   refused([](HandModel& h) { h.palm.link = 1; }, "root link");
   refused([](HandModel& h) { h.exclusions.push_back({0, 9}); }, "index 9");

@@ -314,29 +314,19 @@ function marksOf(grasp) {
     }
   }
   if (layers.clips) {
-    for (const prism of prismsOf(grasp)) {
-      const n = prism.length / 2;
-      for (let i = 0; i < n; ++i) {
-        const j = (i + 1) % n;
-        tube(prism[i], prism[j], 0.0014 * s, kColors.clip);
-        tube(prism[n + i], prism[n + j], 0.0014 * s, kColors.clip);
-        tube(prism[i], prism[n + i], 0.0014 * s, kColors.clip);
-      }
+    for (const {points, edges} of clipVolumesOf(grasp)) {
+      for (const [i, j] of edges) tube(points[i], points[j], 0.0014 * s, kColors.clip);
     }
   }
   return marks;
 }
 
-// Corners of each pad's clip volume: those on the pad, then those above them.
-function prismsOf(grasp) {
-  const prisms = [];
-  for (const pad of data.hand.pads) {
-    if (!(pad.thickness > 0)) continue;
+// Corners, faces and edges of the pads' clip volumes, placed by a grasp.
+function clipVolumesOf(grasp) {
+  return data.hand.pads.filter((pad) => pad.clip).map((pad) => {
     const X_OC = multiply(grasp.X_OL[pad.link], pad.X_LC);
-    prisms.push([0, pad.thickness].flatMap(
-        (z) => pad.outline.map((corner) => mapped(X_OC, [...corner, z]))));
-  }
-  return prisms;
+    return {...pad.clip, points: pad.clip.points.map((point) => mapped(X_OC, point))};
+  });
 }
 
 // Faces seen through: the contact polygon of three contacts, the sides of clip volumes.
@@ -353,17 +343,8 @@ function sheetsOf(grasp) {
   }
   if (grasp && layers.clips) {
     const rgba = hex(kColors.clip, 0.28);
-    for (const prism of prismsOf(grasp)) {
-      const n = prism.length / 2;
-      for (let i = 0; i < n; ++i) {
-        const j = (i + 1) % n;
-        triangle(prism[i], prism[j], prism[n + j], rgba);
-        triangle(prism[i], prism[n + j], prism[n + i], rgba);
-        if (i > 0 && i + 1 < n) {
-          triangle(prism[0], prism[i + 1], prism[i], rgba);
-          triangle(prism[n], prism[n + i], prism[n + i + 1], rgba);
-        }
-      }
+    for (const {points, faces} of clipVolumesOf(grasp)) {
+      for (const [i, j, k] of faces) triangle(points[i], points[j], points[k], rgba);
     }
   }
   return {position: new Float32Array(position), normal: new Float32Array(normal),

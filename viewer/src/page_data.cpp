@@ -1,12 +1,15 @@
 #include "internal/page_data.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -85,18 +88,38 @@ Json links(const hands::HandModel& hand) {
   return list;
 }
 
+/// Corners, triangles and edges of a clip volume, in the pad's frame; edges where faces meet at an
+/// angle.
+Json clip_volume(const hands::ContactPad& pad, double thickness) {
+  const TriangleMesh mesh_C = hands::clip_volume_mesh_C(pad, thickness);
+  Json points = Json::array();
+  for (const Eigen::Vector3d& vertex : mesh_C.vertices) points.push_back(to_json(vertex));
+  Json faces = Json::array();
+  Json edges = Json::array();
+  std::map<std::pair<std::int32_t, std::int32_t>, Eigen::Vector3d> normal_at;
+  for (std::size_t f = 0; f < mesh_C.faces.size(); ++f) {
+    const geometry::Face& face = mesh_C.faces[f];
+    faces.push_back({face[0], face[1], face[2]});
+    const Eigen::Vector3d normal = geometry::face_normal(mesh_C, f);
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = face[k];
+      const std::int32_t b = face[(k + 1) % 3];
+      const auto [other, is_first] = normal_at.emplace(std::minmax(a, b), normal);
+      constexpr double kFlat = 1e-6;  // 1 - cosine: the hull cuts flat sides into triangles
+      if (!is_first && other->second.dot(normal) < 1.0 - kFlat) edges.push_back({a, b});
+    }
+  }
+  return {{"points", points}, {"faces", faces}, {"edges", edges}};
+}
+
 Json pads(const PageInput& input) {
   Json list = Json::array();
   for (const hands::ContactPad& pad : input.hand.pads) {
-    Json outline = Json::array();
-    for (const Eigen::Vector2d& corner : pad.outline) {
-      outline.push_back({corner.x(), corner.y()});
-    }
+    const double thickness = pad.clip_thickness.value_or(input.clip_thickness);
     list.push_back({{"name", pad.name},
                     {"link", pad.link},
                     {"X_LC", to_json(pad.X_LC)},
-                    {"outline", outline},
-                    {"thickness", pad.clip_thickness.value_or(input.clip_thickness)}});
+                    {"clip", thickness > 0.0 ? clip_volume(pad, thickness) : Json(nullptr)}});
   }
   return list;
 }

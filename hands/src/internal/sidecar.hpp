@@ -28,6 +28,7 @@ struct SidecarPad {
   std::string finger;  ///< A finger's name or "palm".
   geometry::RigidTransform X_LC = geometry::RigidTransform::Identity();
   std::vector<Eigen::Vector2d> outline;
+  std::vector<Eigen::Vector3d> surface;  ///< Empty for a flat pad.
   std::optional<double> clip_thickness;
 };
 

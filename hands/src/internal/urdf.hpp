@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "graspfit/geometry/rigid_transform.hpp"
+#include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -36,6 +37,7 @@ struct UrdfLink {
   std::string name;
   std::vector<UrdfGeometry> visual;
   std::vector<UrdfGeometry> collision;
+  std::optional<LinkInertia> inertia;
 };
 
 struct UrdfMimic {

@@ -22,13 +22,14 @@ struct ContactEstimationOptions {
 /// Contact of one pad: the object's triangles clipped by the pad's clip volume. Point and normal
 /// are the mean over the pieces, the point projected to the nearest point of the surface; size is
 /// the pieces' total area; boundary distance is that of the point dropped onto the pad's plane; gap
-/// is the lowest corner of a piece. Empty if no piece has area, or the mean normal vanishes
-/// (shorter than 0.1), as on a plate thinner than the clip volume.
+/// is the height over the pad of the lowest corner of a piece. Empty if no piece has area, or the
+/// mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip volume.
 ///
-/// `is_target` and `weak` are left at their defaults. Surface behind the pad's plane is not seen,
-/// and walls inside the volume count with their area whichever way they face. Rounded; which
-/// triangles are cut is decided exactly on the clip volume's half-spaces as rounded to frame O.
-/// Cost: a box query where nothing is near, else linear in the triangles near the pad.
+/// `is_target` and `weak` are left at their defaults. Surface behind the pad's plane is not seen;
+/// surface inside the bulge of a curved pad is, and there the link has entered the object. Walls
+/// inside the volume count with their area whichever way they face. Rounded; which triangles are cut
+/// is decided exactly on the clip volume's half-spaces as rounded to frame O. Cost: a box query
+/// where nothing is near, else linear in the triangles near the pad.
 /// @throws InvalidInput for bad options or a pad that the hand does not have.
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
                                         const geometry::RigidTransform& X_OC,

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::hands {
+
+/// Velocity of a point that is fixed to a link, per unit of every joint's velocity: 6 × joints.
+///
+/// Column j is [linear; angular]: the velocity of the point `point_L` (given in the link's frame)
+/// and the angular velocity of its link, both in the frame O of the palm pose, while joint j alone
+/// moves and the palm stands still [m, rad per rad or m]. Columns of joints that do not carry the
+/// link are zero; a coupled joint has a column of its own, see `folded`. Rounded: the exact
+/// derivative of `forward_kinematics`, no differences. Cost: linear in the links.
+/// @throws InvalidInput for a link index or a number of joint positions that is not the model's.
+Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
+                                                        const HandConfiguration& configuration,
+                                                        int link, const Eigen::Vector3d& point_L);
+
+/// Indices of the independent joints (the intrinsic DOFs), ascending.
+std::vector<int> independent_joints(const HandModel& model);
+
+/// A matrix with one column per joint made into one with one column per independent joint, in the
+/// order of `independent_joints`: a leader's column takes up its followers', times their ratio.
+///
+/// The derivative of `apply_couplings` followed by forward kinematics wherever no follower stands
+/// at its own limit or has broken away; there the follower's share has to be left out.
+/// @throws InvalidInput if the columns are not the model's joints.
+Eigen::MatrixXd folded(const HandModel& model, const Eigen::MatrixXd& per_joint);
+
+}  // namespace graspfit::hands
