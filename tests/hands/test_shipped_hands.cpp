@@ -146,7 +146,7 @@ TEST_CASE("Flat pads of the grippers are a part of their link's mesh", "[hands][
   }
 }
 
-TEST_CASE("Curved pads lie on their link's skin, face outward and follow it to 0.45 mm",
+TEST_CASE("Curved pads lie on their link's skin, face outward and follow it to 0.4 mm",
           "[hands][shipped_hands]") {
   std::size_t num_curved = 0;
   for (const auto& [name, hand] : shipped()) {
@@ -168,7 +168,7 @@ TEST_CASE("Curved pads lie on their link's skin, face outward and follow it to 0
         const Vector3d vertex_C = X_CL * vertex;
         if (vertex_C.z() < 0.0 || hands::boundary_distance(pad, vertex_C.head<2>()) == 0.0)
           continue;
-        CHECK(std::abs(hands::height_over_pad(pad, vertex_C)) < 0.45e-3);
+        CHECK(std::abs(hands::height_over_pad(pad, vertex_C)) < 0.4e-3);
         ++num_under;
       }
       CHECK(num_under > 5);

@@ -171,7 +171,7 @@ def fingertip(length, r0, r1):
     """The end of a finger: flatter toward its tip at x = length, with the pulp on the closing side and
     the bed of the nail on the back."""
     core = round_cone((0, 0, 0), (length - r1, 0.12 * r0, 0), NEST * r0, r1)
-    pulp = ellipsoid((0.6 * length, 0.22 * r0, 0.0), (0.4 * length, 0.84 * r0, 0.88 * r0))
+    pulp = ellipsoid((0.54 * length, 0.22 * r0, 0.0), (0.37 * length, 0.84 * r0, 0.88 * r0))
     nail = half_space((0.72 * length, -0.56 * r0, 0.0), (0.2, -1.0, 0.0))
     return cut(1.2, blend(4.0, core, pulp), nail)
 
@@ -262,7 +262,7 @@ def pads(p, bodies):
         for k, part in enumerate(parts):
             link = f"{digit}_{part}"
             if part == "distal":
-                add(f"{link}_pad", link, digit, (0.62 * l[k], 0.0, 0.0), tilted(14.0), 0.33 * l[k], 0.7 * r[k])
+                add(f"{link}_pad", link, digit, (0.58 * l[k], 0.0, 0.0), tilted(14.0), 0.3 * l[k], 0.68 * r[k])
             elif part != "metacarpal":
                 add(f"{link}_pad", link, digit, (0.5 * l[k], 0.0, 0.0), tilted(0.0), 0.27 * l[k], 0.68 * r[k])
     # On the palm along the surface's own normal.
@@ -384,7 +384,7 @@ def human_source(p, meshes):
               "the pad's z; the pad's plane goes through the lowest corner of its rim, and 2 inner rings and the "
               "middle follow the skin. Fingertip pads lean 14 degrees toward the tip, where a pinch touches. Corners "
               "lie on the smooth surface from which the meshes are made, the meshes' vertices too: between them both "
-              "run a little below it, each on its own; they differ by less than 0.45 mm.",
+              "run a little below it, each on its own; they differ by less than 0.4 mm.",
               "- The palm's pad is the only part of the palm that bulges; it leans 18 degrees from the palm "
               "direction toward the fingers.",
               "", "## Sizes of the meshes (mm)", "", *mesh_sizes(meshes),

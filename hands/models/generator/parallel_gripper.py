@@ -82,7 +82,7 @@ def gripper_body(p):
     b = MeshBuilder()
     radius, flange_height = p["flange"]
     bottom = -height
-    edge = [(bottom - flange_height + 1.0 - math.sin(math.radians(a)) + 0.0, 1.0 - math.cos(math.radians(a)))
+    edge = [(bottom - flange_height + 1.0 - math.sin(math.radians(a)), 1.0 - math.cos(math.radians(a)))
             for a in (90.0, 45.0, 0.0)]
     rings = [b.add_ring([(x, y, h) for x, y in circle(radius - d, 64)]) for h, d in [*edge, (bottom, 0.0)]]
     b.cap(rings[0], outward_up=False)
@@ -94,9 +94,10 @@ def gripper_body(p):
             -length / 2 + d, length / 2 - d, -width / 2 + d, width / 2 - d, corner - 0.6 * d, 6)])
 
     seam, seam_width, seam_depth = p["groove"]
-    low_edge = [(bottom + (0.0 - h), d) for h, d in reversed(fillet_levels(0.0, fillet, 5))]
+    low_edge = [(bottom - h, d) for h, d in reversed(fillet_levels(0.0, fillet, 5))]
     levels = (low_edge
-              + [(seam - seam_width, 0.0), (seam - seam_width + 0.3, seam_depth), (seam - 0.3, seam_depth), (seam, 0.0)]
+              + [(seam - seam_width, 0.0), (seam - seam_width + 0.3, seam_depth), (seam - 0.3, seam_depth),
+                 (seam, 0.0)]
               + fillet_levels(0.0, fillet, 5))
     sides = [outline(h, d) for h, d in levels]
     b.flat(sides[0], [rings[-1]], outward_up=False)
@@ -149,18 +150,20 @@ def gripper_jaw(p):
     inner = step
     foot = [ring(base + height, inner + 1.4, inner + root + 8.0, half_width + 4.0, edge + 1.0)]
     for h, d in ((1.5, 3.6), (4.0, 1.6), (8.0, 0.0)):
-        foot.append(ring(base + height + h, inner + 0.4 * (d > 1.0), inner + root + 0.9 * d, half_width + 0.5 * d, edge))
+        foot.append(ring(base + height + h, inner + 0.4 * (d > 1.0), inner + root + 0.9 * d,
+                         half_width + 0.5 * d, edge))
     end = half_pad + p["finger_end"]
 
     def depth_at(h):
         low = base + height + 8.0
         return root + (tip - root) * max(0.0, (h - low) / (end - low))
 
-    levels = [(-half_pad - step, inner), (-half_pad, 0.0), (half_pad, 0.0), (end - 1.5, 0.2 + inner * 0.3),
-              (end - 0.4, 0.8 + inner * 0.4), (end, 2.0 + inner * 0.5)]
-    shank = foot + [ring(h, x, max(x + 3.0, inner + depth_at(h) - (2.0 if h == end else 0.6 if h > end - 1.0 else 0.0)),
-                         half_width - (1.6 if h == end else 0.5 if h > end - 1.0 else 0.0), edge)
-                    for h, x in levels]
+    # Height, inner side, how much the other sides are rounded off.
+    levels = [(-half_pad - step, inner, 0.0), (-half_pad, 0.0, 0.0), (half_pad, 0.0, 0.0),
+              (end - 1.5, 0.2 + inner * 0.3, 0.0), (end - 0.4, 0.8 + inner * 0.4, 0.5),
+              (end, 2.0 + inner * 0.5, 1.6)]
+    shank = foot + [ring(h, x, max(x + 3.0, inner + depth_at(h) - 1.2 * d), half_width - d, edge)
+                    for h, x, d in levels]
     b.flat(carriage[-1], [shank[0]], outward_up=True)
     for lower, upper in zip(shank, shank[1:]):
         b.strip(lower, upper)
@@ -187,7 +190,7 @@ def gripper_urdf(p, meshes, name, colors):
 def gripper_sidecar(p, name, description):
     pads = [flat_pad(f"{side}_pad", f"{side}_jaw", side, [0.0, 0.0, 0.0],
                      # z = -x of the jaw, x along the finger
-                     [np.array([0.0, 0, 1]), np.array([0, -1.0, 0]), np.array([-1.0, 0, 0])],
+                     [np.array([0.0, 0, 1]), np.array([0, 1.0, 0]), np.array([-1.0, 0, 0])],
                      rectangle(p["pad_length"], p["pad_width"])) for side in SIDES]
     # The strip of the top between the slots and between the open carriages.
     pads.append(flat_pad("palm_pad", "body", "palm", [0.0, 0.0, 0.0], np.eye(3),
