@@ -27,8 +27,8 @@ struct ContactEstimationOptions {
 ///
 /// `is_target` and `weak` are left at their defaults. Surface behind the pad's plane is not seen;
 /// surface inside the bulge of a curved pad is, and there the link has entered the object. Walls
-/// inside the volume count with their area whichever way they face. Rounded; which triangles are cut
-/// is decided exactly on the clip volume's half-spaces as rounded to frame O. Cost: a box query
+/// inside the volume count with their area whichever way they face. Rounded; which triangles are
+/// cut is decided exactly on the clip volume's half-spaces as rounded to frame O. Cost: a box query
 /// where nothing is near, else linear in the triangles near the pad.
 /// @throws InvalidInput for bad options or a pad that the hand does not have.
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
