@@ -124,8 +124,13 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
     return Matrix4d(rotation_z(theta * kDegree) * m);
   };
   Matrix4d base = Matrix4d::Identity();
-  base.topLeftCorner<3, 3>() << -0.1486, 0.2665, -0.9522, -0.9003, 0.3618, 0.2418, 0.4089, 0.8933,
-      0.1862;
+  // The file gives the rotation with four digits: x as it stands, y made orthogonal to it.
+  Matrix3d in_file;
+  in_file << -0.1486, 0.2665, -0.9522, -0.9003, 0.3618, 0.2418, 0.4089, 0.8933, 0.1862;
+  const Vector3d x = in_file.col(0).normalized();
+  const Vector3d y = (in_file.col(1) - x.dot(in_file.col(1)) * x).normalized();
+  base.topLeftCorner<3, 3>() << x, y, x.cross(y);
+  REQUIRE((base.topLeftCorner<3, 3>() - in_file).norm() < 3e-4);  // nine entries, twice 5e-5 each
   base.topRightCorner<3, 1>() << -50.62, -11.51, 18.93;
 
   geometry::Random random(17);
@@ -162,8 +167,7 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
                            dh(q("thumb_ip") / kDegree + 85, 0, 90);
     const Vector3d tip_G = (chain * Eigen::Vector4d(0, 0, 37, 1)).head<3>();
     const RigidTransform& X = X_OL[static_cast<std::size_t>(human().link_index("thumb_distal"))];
-    // The file gives the thumb's base rotation with 4 digits: 1e-4 of 130 mm.
-    CHECK((X * Vector3d(37 * kMillimeter, 0, 0) - in_H(tip_G) * kMillimeter).norm() < 1.5e-5);
+    CHECK((X * Vector3d(37 * kMillimeter, 0, 0) - in_H(tip_G) * kMillimeter).norm() < 1e-12);
   }
 }
 
