@@ -6,7 +6,7 @@
 #include <set>
 
 #include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/convex_polytope.hpp"
+#include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/errors.hpp"
 
 namespace graspfit::hands {

@@ -204,6 +204,74 @@ SidecarCoupling coupling(const Item& item) {
   return result;
 }
 
+constexpr const char* kConventions =
+    "Meters, radians. rotation_wxyz is a unit quaternion [w, x, y, z]. Pad frame in its link's "
+    "frame: z leaves the link, x and y in the pad's plane. Palm center and direction in the root "
+    "link's frame. Members left out (fingers, pads, palm, closing, exclusions) are derived from "
+    "the description.";
+
+template <int Size>
+nlohmann::ordered_json list_of_numbers(const Eigen::Matrix<double, Size, 1>& v) {
+  return std::vector<double>(v.data(), v.data() + Size);
+}
+
+nlohmann::ordered_json to_json(const SidecarFinger& finger) {
+  nlohmann::ordered_json out{{"name", finger.name},
+                             {"thumb", finger.is_thumb},
+                             {"links", finger.links},
+                             {"joints", finger.joints}};
+  if (finger.swing_joint) out["swing_joint"] = *finger.swing_joint;
+  if (finger.tip_pad) out["tip_pad"] = *finger.tip_pad;
+  return out;
+}
+
+nlohmann::ordered_json to_json(const SidecarPad& pad) {
+  const Eigen::Quaterniond q(pad.X_LC.linear());
+  nlohmann::ordered_json out{{"name", pad.name},
+                             {"link", pad.link},
+                             {"finger", pad.finger},
+                             {"frame",
+                              {{"translation_m", list_of_numbers<3>(pad.X_LC.translation())},
+                               {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}}}}};
+  out["outline_m"] = nlohmann::ordered_json::array();
+  for (const Eigen::Vector2d& corner : pad.outline) {
+    out["outline_m"].push_back(list_of_numbers<2>(corner));
+  }
+  if (!pad.surface.empty()) {
+    out["surface_m"] = nlohmann::ordered_json::array();
+    for (const Eigen::Vector3d& point : pad.surface) {
+      out["surface_m"].push_back(list_of_numbers<3>(point));
+    }
+  }
+  out["clip"]["kind"] = pad.surface.empty() ? "prism" : "offset";
+  out["clip"]["thickness_m"] = nullptr;
+  if (pad.clip_thickness) out["clip"]["thickness_m"] = *pad.clip_thickness;
+  return out;
+}
+
+nlohmann::ordered_json to_json(const SidecarPalm& palm) {
+  nlohmann::ordered_json out{{"link", palm.link},
+                             {"center_m", list_of_numbers<3>(palm.center_H)},
+                             {"direction", list_of_numbers<3>(palm.direction_H)}};
+  if (palm.pad) out["pad"] = *palm.pad;
+  return out;
+}
+
+nlohmann::ordered_json to_json(const SidecarCoupling& coupling) {
+  return {{"joint", coupling.joint},
+          {"leader", coupling.leader},
+          {"ratio", coupling.ratio},
+          {"offset", coupling.offset},
+          {"breakaway", coupling.breakaway}};
+}
+
+template <typename Items>
+nlohmann::ordered_json list_of(const Items& items) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const auto& item : items) out.push_back(to_json(item));
+  return out;
+}
+
 /// What the parser said, without its own prefix "[json.exception.parse_error.101] ".
 std::string plain(const json::exception& error) {
   const std::string what = error.what();
@@ -226,23 +294,58 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   check_format(root);
 
   Sidecar sidecar;
-  for (const Item& item : root.at("fingers").array()) sidecar.fingers.push_back(finger(item));
-  for (const Item& item : root.at("pads").array()) sidecar.pads.push_back(pad(item));
-  sidecar.palm = palm(root.at("palm"));
-  for (const auto& [joint, item] : root.at("closing").entries()) {
-    const double sign = item.number();
-    if (sign != -1.0 && sign != 0.0 && sign != 1.0) item.fail("is none of -1, 0, 1");
-    sidecar.closing[joint] = static_cast<int>(sign);
+  if (const auto fingers = root.find("fingers")) {
+    sidecar.fingers.emplace();
+    for (const Item& item : fingers->array()) sidecar.fingers->push_back(finger(item));
   }
-  for (const Item& item : root.at("couplings").array()) {
-    sidecar.couplings.push_back(coupling(item));
+  if (const auto pads = root.find("pads")) {
+    sidecar.pads.emplace();
+    for (const Item& item : pads->array()) sidecar.pads->push_back(pad(item));
   }
-  for (const Item& item : root.at("exclusions").array()) {
-    const std::vector<std::string> pair = item.names();
-    if (pair.size() != 2) item.fail("is not a pair of links");
-    sidecar.exclusions.emplace_back(pair[0], pair[1]);
+  if (const auto its_palm = root.find("palm")) sidecar.palm = palm(*its_palm);
+  if (const auto closing = root.find("closing")) {
+    sidecar.closing.emplace();
+    for (const auto& [joint, item] : closing->entries()) {
+      const double sign = item.number();
+      if (sign != -1.0 && sign != 0.0 && sign != 1.0) item.fail("is none of -1, 0, 1");
+      (*sidecar.closing)[joint] = static_cast<int>(sign);
+    }
+  }
+  if (const auto couplings = root.find("couplings")) {
+    sidecar.couplings.emplace();
+    for (const Item& item : couplings->array()) sidecar.couplings->push_back(coupling(item));
+  }
+  if (const auto exclusions = root.find("exclusions")) {
+    sidecar.exclusions.emplace();
+    for (const Item& item : exclusions->array()) {
+      const std::vector<std::string> pair = item.names();
+      if (pair.size() != 2) item.fail("is not a pair of links");
+      sidecar.exclusions->emplace_back(pair[0], pair[1]);
+    }
   }
   return sidecar;
+}
+
+std::string sidecar_text(const Sidecar& sidecar, const std::string& hand,
+                         const std::string& description) {
+  nlohmann::ordered_json root;
+  root["format"] = {{"name", kFormat}, {"version", kVersion}};
+  root["hand"] = hand;
+  root["description"] = description;
+  root["conventions"] = kConventions;
+  if (sidecar.fingers) root["fingers"] = list_of(*sidecar.fingers);
+  if (sidecar.pads) root["pads"] = list_of(*sidecar.pads);
+  if (sidecar.palm) root["palm"] = to_json(*sidecar.palm);
+  if (sidecar.closing) {
+    root["closing"] = nlohmann::ordered_json::object();
+    for (const auto& [joint, sign] : *sidecar.closing) root["closing"][joint] = sign;
+  }
+  if (sidecar.couplings) root["couplings"] = list_of(*sidecar.couplings);
+  if (sidecar.exclusions) {
+    root["exclusions"] = nlohmann::ordered_json::array();
+    for (const auto& [a, b] : *sidecar.exclusions) root["exclusions"].push_back({a, b});
+  }
+  return root.dump(1) + '\n';
 }
 
 }  // namespace graspfit::hands::internal

@@ -23,9 +23,9 @@ using tinyxml2::XMLElement;
 /// Reads one file: every complaint names the file, the line and the item.
 class Parser {
  public:
-  explicit Parser(std::string file) : file_(std::move(file)) {}
+  Parser(std::string file, Findings& findings) : file_(std::move(file)), findings_(findings) {}
 
-  Urdf parse(const std::string& text) {
+  RobotDescription parse(const std::string& text) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
       throw IoError(file_ + ": empty file");
     tinyxml2::XMLDocument document;
@@ -38,15 +38,17 @@ class Parser {
       throw IoError(file_ + ": not a URDF: its root element is <" +
                     (root ? std::string(root->Name()) : std::string()) + ">, not <robot>");
     }
-    Urdf urdf;
+    RobotDescription urdf;
     urdf.name = text_of(*root, "name", "robot");
     for (const XMLElement* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string_view tag = e->Name();
       if (tag.substr(0, 6) == "xacro:") {
         fail(*e, "<" + std::string(tag) + ">: this is a xacro file; expand it to a URDF first");
       }
-      if (tag == "link") urdf.links.push_back(link(*e));
-      if (tag == "joint") urdf.joints.push_back(joint(*e));
+      findings_.attempt([&] {
+        if (tag == "link") urdf.links.push_back(link(*e));
+        if (tag == "joint") urdf.joints.push_back(joint(*e));
+      });
     }
     return urdf;
   }
@@ -130,8 +132,8 @@ class Parser {
     return X;
   }
 
-  UrdfGeometry shape(const XMLElement& e, const std::string& item) const {
-    UrdfGeometry result;
+  DescribedGeometry shape(const XMLElement& e, const std::string& item) const {
+    DescribedGeometry result;
     result.X_LG = origin(e, item);
     const XMLElement* holder = e.FirstChildElement("geometry");
     const XMLElement* kind = holder ? holder->FirstChildElement() : nullptr;
@@ -142,14 +144,15 @@ class Parser {
       if (!(size[0] > 0.0 && size[1] > 0.0 && size[2] > 0.0)) {
         fail(*kind, item + ": <box> has a size that is not positive");
       }
-      result.shape = UrdfBox{{size[0], size[1], size[2]}};
+      result.shape = BoxShape{{size[0], size[1], size[2]}};
     } else if (tag == "cylinder") {
-      result.shape = UrdfCylinder{positive(*kind, "radius", item), positive(*kind, "length", item)};
+      result.shape =
+          CylinderShape{positive(*kind, "radius", item), positive(*kind, "length", item)};
     } else if (tag == "sphere") {
-      result.shape = UrdfSphere{positive(*kind, "radius", item)};
+      result.shape = SphereShape{positive(*kind, "radius", item)};
     } else if (tag == "mesh") {
-      UrdfMesh mesh{text_of(*kind, "filename", item),
-                    vector_or(*kind, "scale", Eigen::Vector3d::Ones(), item)};
+      MeshFileShape mesh{text_of(*kind, "filename", item),
+                         vector_or(*kind, "scale", Eigen::Vector3d::Ones(), item)};
       if ((mesh.scale.array() == 0.0).any()) fail(*kind, item + ": <mesh> has a scale of zero");
       result.shape = mesh;
     } else {
@@ -178,8 +181,8 @@ class Parser {
     return result;
   }
 
-  UrdfLink link(const XMLElement& e) {
-    UrdfLink result;
+  DescribedLink link(const XMLElement& e) {
+    DescribedLink result;
     result.name = text_of(e, "name", "link");
     const std::string item = "link " + result.name;
     if (!link_names_.insert(result.name).second) fail(e, "two links named " + result.name);
@@ -195,13 +198,13 @@ class Parser {
     return result;
   }
 
-  UrdfJoint joint(const XMLElement& e) {
-    UrdfJoint result;
+  DescribedJoint joint(const XMLElement& e) {
+    DescribedJoint result;
     result.name = text_of(e, "name", "joint");
     const std::string item = "joint " + result.name;
     if (!joint_names_.insert(result.name).second) fail(e, "two joints named " + result.name);
     const std::string type = text_of(e, "type", item);
-    using Type = UrdfJoint::Type;
+    using Type = DescribedJoint::Type;
     if (type == "fixed") {
       result.type = Type::Fixed;
     } else if (type == "revolute") {
@@ -245,22 +248,23 @@ class Parser {
       }
     }
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
-      result.mimic =
-          UrdfMimic{text_of(*mimic, "joint", item), number_or(*mimic, "multiplier", 1.0, item),
-                    number_or(*mimic, "offset", 0.0, item)};
+      result.coupling = DescribedCoupling{text_of(*mimic, "joint", item),
+                                          number_or(*mimic, "multiplier", 1.0, item),
+                                          number_or(*mimic, "offset", 0.0, item), false};
     }
     return result;
   }
 
   std::string file_;
+  Findings& findings_;
   std::set<std::string> link_names_;
   std::set<std::string> joint_names_;
 };
 
 }  // namespace
 
-Urdf parse_urdf(const std::string& text, const std::string& file) {
-  return Parser(file).parse(text);
+RobotDescription parse_urdf(const std::string& text, const std::string& file, Findings& findings) {
+  return Parser(file, findings).parse(text);
 }
 
 }  // namespace graspfit::hands::internal

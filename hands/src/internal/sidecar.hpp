@@ -47,17 +47,28 @@ struct SidecarCoupling {
   bool breakaway = false;
 };
 
+/// What a member holds is taken; a member that is not there is derived from the description.
 struct Sidecar {
-  std::vector<SidecarFinger> fingers;
-  std::vector<SidecarPad> pads;
-  SidecarPalm palm;
-  std::map<std::string, int> closing;
-  std::vector<SidecarCoupling> couplings;
-  std::vector<std::pair<std::string, std::string>> exclusions;
+  std::optional<std::vector<SidecarFinger>> fingers;
+  std::optional<std::vector<SidecarPad>> pads;
+  std::optional<SidecarPalm> palm;
+  std::optional<std::map<std::string, int>> closing;
+  /// Over the description's own; not there: the description's alone.
+  std::optional<std::vector<SidecarCoupling>> couplings;
+  std::optional<std::vector<std::pair<std::string, std::string>>> exclusions;
+
+  /// Nothing is left to derive.
+  bool is_complete() const { return fingers && pads && palm && closing && exclusions; }
 };
 
 /// Parses the text of a sidecar: structure, types and ranges of single values.
 /// @throws IoError or InvalidInput, prefixed by `file` and the item.
 Sidecar parse_sidecar(const std::string& text, const std::string& file);
+
+/// The text of a sidecar, as `parse_sidecar` reads it back: numbers in the fewest digits that give
+/// the same doubles, members that are not there left out.
+/// `hand` is the name that people see, `description` one sentence on where it comes from.
+std::string sidecar_text(const Sidecar& sidecar, const std::string& hand,
+                         const std::string& description);
 
 }  // namespace graspfit::hands::internal

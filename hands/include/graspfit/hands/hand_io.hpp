@@ -1,23 +1,46 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
+#include "graspfit/hands/hand_finding.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::hands {
 
-/// Reads a hand: a URDF and, beside it, the sidecar `<stem>.graspfit.json` (schema:
-/// hands/models/hand_sidecar.schema.json) that says what a URDF cannot: fingers, thumb, pads, clip
-/// volumes, palm frame, closing signs, couplings with breakaway, collision exclusions. Coupled
-/// joints of the sidecar override `<mimic>` tags.
+/// A hand and what its reader noticed and did on the way.
+struct HandReading {
+  HandModel model;
+  std::vector<HandFinding> findings;  ///< In the order in which they came up; no faults.
+};
+
+/// Reads a hand: a robot description and, if it is there, the sidecar `<stem>.graspfit.json` beside
+/// it (schema: hands/models/hand_sidecar.schema.json) that says what descriptions cannot: fingers,
+/// thumb, pads, clip volumes, palm frame, closing signs, couplings with breakaway, collision
+/// exclusions. Members that the sidecar leaves out are derived from the tree and the meshes (see
+/// hands/README.md for the rules) and noted. Couplings of the sidecar override the description's.
 ///
-/// Link meshes are the URDF's collision geometry (visual geometry where a link has none): mesh
-/// files relative to the URDF or `package://`, with scale; boxes, cylinders and spheres are
-/// tessellated. Several geometries of one link are concatenated.
+/// Descriptions, told apart by their root element: URDF (`<robot>` with links), MJCF (`<mujoco>`;
+/// needs a build with MuJoCo), GraspIt! robot XML (`<robot>` with `<palm>` and `<chain>`s).
+///
+/// Link meshes are the collision geometry (visual geometry where a link has none): mesh files
+/// relative to the description or `package://`, with scale; primitives are tessellated. Several
+/// geometries of one link are concatenated. Open ones are closed and noted.
 /// @throws IoError (file, what) for missing or malformed files and meshes.
 /// @throws InvalidInput (file, item, value) for a description that makes no sense: cyclic tree, no
 /// movable joint, NaN, duplicate names, zero axis, limits missing or reversed, unknown names in the
 /// sidecar, pads without area.
-HandModel read_hand_model(const std::filesystem::path& urdf_file);
+HandReading read_hand(const std::filesystem::path& description_file);
+
+/// The model of `read_hand`. @throws the same.
+HandModel read_hand_model(const std::filesystem::path& description_file);
+
+/// Where the sidecar of a description is looked for: its extension replaced by `.graspfit.json`.
+std::filesystem::path sidecar_file_of(const std::filesystem::path& description_file);
+
+/// The text of a complete sidecar for a description: what is beside it already is kept, the rest
+/// derived. @throws as `read_hand`.
+std::string derived_sidecar_text(const std::filesystem::path& description_file);
 
 }  // namespace graspfit::hands
