@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,9 +14,11 @@
 #include "graspfit/geometry/weak_regions.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
 using namespace graspfit::geometry;
+using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
@@ -58,25 +59,6 @@ double weak_share(const TriangleMesh& mesh, const WeakRegions& found,
   REQUIRE(all > 0.0);
   return weak / all;
 }
-
-// A new folder, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (fs::temp_directory_path() / "graspfit-test-XXXXXX").string();
-    REQUIRE(::mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    fs::permissions(path_, fs::perms::owner_all, error);
-    fs::remove_all(path_, error);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 }  // namespace
 
@@ -278,9 +260,10 @@ TEST_CASE("The key of the cache changes with all that the result depends on",
 TEST_CASE("A second search is read from the cache, damaged files are found again",
           "[geometry][weak_regions]") {
   const TemporaryFolder folder;
-  const WeakRegionCache cache{.folder = folder.path() / "new/folder"};
+  const ContentCache cache{.folder = folder.path() / "new/folder"};
   const MeshQuery drum(drum_with_stem(0.004, 0.03));
-  const fs::path file = *cache.folder / (weak_region_key(drum.mesh(), {}) + ".txt");
+  const fs::path file =
+      *cache.folder / "weak_regions" / (weak_region_key(drum.mesh(), {}) + ".txt");
   const WeakRegions found = find_weak_regions(drum);
   CHECK(cached_weak_regions(drum, {}, cache) == found);
   const std::string text = read_file(file);
@@ -323,45 +306,12 @@ TEST_CASE("A cache that is off, or that cannot be written, is no error",
   write_file_atomically(folder.path() / "file", "");
   CHECK(cached_weak_regions(drum, {}, {.folder = folder.path() / "file"}) == found);
   CHECK(cached_weak_regions(drum, {}, {.folder = folder.path() / "file/below"}) == found);
-  const fs::path taken = folder.path() / (weak_region_key(drum.mesh(), {}) + ".txt");
+  const fs::path taken =
+      folder.path() / "weak_regions" / (weak_region_key(drum.mesh(), {}) + ".txt");
   fs::create_directories(taken);
   CHECK(cached_weak_regions(drum, {}, {.folder = folder.path()}) == found);
   CHECK(fs::is_directory(taken));
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 2);  // No temporary file stays.
-}
-
-TEST_CASE("The cache is where the environment says, and nowhere without a home",
-          "[geometry][weak_regions]") {
-  const TemporaryFolder folder;
-  const MeshQuery drum(drum_with_stem(0.004, 0.006));
-  const std::string name = weak_region_key(drum.mesh(), {}) + ".txt";
-  const std::vector<const char*> variables = {"GRASPFIT_CACHE", "XDG_CACHE_HOME", "HOME"};
-  std::vector<std::optional<std::string>> before;
-  for (const char* variable : variables) {
-    const char* value = std::getenv(variable);
-    before.push_back(value ? std::optional<std::string>(value) : std::nullopt);
-    ::unsetenv(variable);
-  }
-  cached_weak_regions(drum);  // Nowhere to write to.
-  CHECK(fs::is_empty(folder.path()));
-  const std::vector<std::pair<const char*, const char*>> places = {
-      {"HOME", "home/.cache/graspfit/weak_regions"},
-      {"XDG_CACHE_HOME", "xdg/graspfit/weak_regions"},
-      {"GRASPFIT_CACHE", "own/weak_regions"}};
-  for (const auto& [variable, place] : places) {
-    const fs::path value = folder.path() / *fs::path(place).begin();
-    ::setenv(variable, value.c_str(), 1);  // Each goes before those set so far.
-    cached_weak_regions(drum);
-    CHECK(fs::is_regular_file(folder.path() / place / name));
-    fs::remove_all(value);
-  }
-  ::setenv("GRASPFIT_CACHE", "relative/path", 1);  // Ignored: it would follow the working folder.
-  cached_weak_regions(drum);
-  CHECK(fs::is_regular_file(folder.path() / places[1].second / name));
-  for (std::size_t i = 0; i < variables.size(); ++i) {
-    ::unsetenv(variables[i]);
-    if (before[i]) ::setenv(variables[i], before[i]->c_str(), 1);
-  }
 }
 
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "graspfit/geometry/content_cache.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/shape_diameter.hpp"
 
@@ -102,24 +102,17 @@ enum class FacePaint { Weak, Sound };
 /// @throws InvalidInput for a face that does not exist.
 WeakRegions painted(WeakRegions regions, std::span<const std::int32_t> faces, FacePaint paint);
 
-/// Where results are kept between runs.
-struct WeakRegionCache {
-  bool is_on = true;
-  std::optional<std::filesystem::path> folder = {};  ///< Default: `weak_regions` in
-                                                     ///< `$GRASPFIT_CACHE`, or else in `graspfit`
-                                                     ///< of the user's cache folder
-                                                     ///< (`$XDG_CACHE_HOME` or `~/.cache`).
-};
+/// The kind of entry that `cached_weak_regions` keeps.
+inline constexpr std::string_view kWeakRegionKind = "weak_regions";
 
 /// SHA-256 of all that the result depends on: vertices, faces, options but for the number of
 /// threads, and the version of the algorithm.
 std::string weak_region_key(const TriangleMesh& mesh, const WeakRegionOptions& options);
 
-/// As `find_weak_regions`, but a result found before is read from `<folder>/<key>.txt`, and a new
-/// one written there, atomically. Files that are damaged, or not ours, are as good as none and
-/// replaced. A folder that cannot be written to, or no home to put one in, is no error: nothing is
-/// kept.
+/// As `find_weak_regions`, but a result found before is read from the cache, and a new one kept
+/// there. Entries that are damaged, or not ours, are as good as none and replaced. A folder that
+/// cannot be written to, or no home to put one in, is no error: nothing is kept.
 WeakRegions cached_weak_regions(const MeshQuery& object, const WeakRegionOptions& options = {},
-                                const WeakRegionCache& cache = {});
+                                const ContentCache& cache = {});
 
 }  // namespace graspfit::geometry
