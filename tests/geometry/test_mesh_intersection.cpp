@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "graspfit/geometry/errors.hpp"
@@ -108,6 +109,44 @@ TEST_CASE("Intersection agrees with a test of all pairs of vertices and faces",
   }
   CHECK(hits > 30);
   CHECK(hits < 170);
+}
+
+TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh moved there",
+          "[geometry][mesh_intersection]") {
+  // What is moved there needs no turned boxes and no inverse. Also with poses whose rotation is one
+  // to the digits of a file only, and far from the origin.
+  const std::vector<std::pair<TriangleMesh, TriangleMesh>> solids = {
+      {ball(1.0, 2), box({0.7, 1.1, 0.4})},
+      {torus(1.0, 0.3, 24, 12), torus(0.8, 0.2, 16, 8)},
+      {box({2, 2, 2}), box({1, 2, 3})}};
+  Random random(43);
+  int touches = 0;
+  for (int i = 0; i < 90; ++i) {
+    const auto& [mesh_a, mesh_b] = solids[i % solids.size()];
+    RigidTransform X = drawn_pose(random, 1.0);
+    if (i % 2 == 1) X.linear() = (X.linear() * 1e6).array().round() / 1e6;
+    const double far = i % 5 == 0 ? 1000.0 : 0.0;
+    const MeshQuery a(transformed(mesh_a, shift(far, 0, 0)));
+    const MeshQuery b(mesh_b);
+    const Eigen::Vector3d direction = drawn_pose(random, 1.0).linear().col(0);
+    double inside = 0.0, outside = 10.0;
+    const auto intersects = [&](double way) {
+      X.translation() = way * direction + Eigen::Vector3d(far, 0, 0);
+      const bool found = do_intersect(a, b, X);
+      CHECK(found ==
+            do_intersect(a, MeshQuery(transformed(mesh_b, X)), RigidTransform::Identity()));
+      return found;
+    };
+    // Through the middle of a ring, the start is free too; then there is no touch to look for.
+    if (!intersects(inside)) continue;
+    REQUIRE_FALSE(intersects(outside));
+    for (double middle = 5.0; inside < middle && middle < outside;
+         middle = 0.5 * (inside + outside)) {
+      (intersects(middle) ? inside : outside) = middle;
+    }
+    ++touches;
+  }
+  CHECK(touches >= 60);  // all balls and boxes
 }
 
 TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
