@@ -184,8 +184,12 @@ std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& 
 /// Best-first search for the point of one surface that is deepest inside another solid.
 class DeepestPoint {
  public:
-  DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface, double tolerance)
-      : solid_(solid), X_(X_solid_surface), tolerance_(tolerance) {}
+  DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface,
+               const PenetrationOptions& options)
+      : solid_(solid),
+        X_(X_solid_surface),
+        tolerance_(options.tolerance),
+        enough_(options.enough) {}
 
   double depth = 0.0;                 ///< Deepest point found.
   double bound = 0.0;                 ///< No point is deeper.
@@ -196,7 +200,7 @@ class DeepestPoint {
     // Ties over a wide flat overlap would be cut forever; the bound says honestly how far this got.
     constexpr int kLargestWork = 50000;
     for (int work = 0; work < kLargestWork && !open_.empty(); ++work) {
-      if (open_.top().bound <= depth + tolerance_) break;
+      if (open_.top().bound <= depth + tolerance_ || depth > enough_) break;
       const Item item = open_.top();
       open_.pop();
       if (item.node >= 0) {
@@ -357,6 +361,7 @@ class DeepestPoint {
   const MeshQuery& solid_;
   const RigidTransform X_;
   const double tolerance_;
+  const double enough_;
   std::priority_queue<Item> open_;
 };
 
@@ -405,6 +410,10 @@ void PenetrationOptions::validate() const {
     throw InvalidInput("PenetrationOptions: tolerance = " + shortest_decimal(tolerance) +
                        ", must be finite and > 0 m");
   }
+  if (!(enough >= 0.0)) {
+    throw InvalidInput("PenetrationOptions: enough = " + shortest_decimal(enough) +
+                       ", must be >= 0 m");
+  }
 }
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
@@ -426,9 +435,9 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   Penetration result;
   result.intersects = do_intersect(a, b, X_AB);
   if (!result.intersects) return result;
-  DeepestPoint in_a(a, X_AB, options.tolerance);
+  DeepestPoint in_a(a, X_AB, options);
   in_a.search(b.impl().tree);
-  DeepestPoint in_b(b, X_AB.inverse(), options.tolerance);
+  DeepestPoint in_b(b, X_AB.inverse(), options);
   in_b.search(a.impl().tree);
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);

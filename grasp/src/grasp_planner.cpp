@@ -11,6 +11,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_workspace.hpp"
 #include "internal/option_check.hpp"
 #include "internal/stopwatch.hpp"
 #include "internal/target_marks.hpp"
@@ -75,10 +76,10 @@ void check_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand
 }
 
 /// Largest distance between two of the fingertips [m].
-double widest_opening(const TipDistances& distances, const std::vector<int>& fingers) {
+double widest_opening(const hands::TipDistances& distances, const std::vector<int>& fingers) {
   double widest = 0.0;
   for (const int a : fingers) {
-    for (const int b : fingers) widest = std::max(widest, distances.ranges[a][b].largest);
+    for (const int b : fingers) widest = std::max(widest, distances[a][b].largest);
   }
   return widest;
 }
@@ -121,7 +122,7 @@ class Run {
         options_(with_planner_rules(object, hand, options)),
         fingers_(requested_fingers(hand, options)),
         fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
-        distances_(tip_distances(hand)) {
+        distances_(hands::tip_distances(hand)) {
     context_.center_of_mass_O = object.mass.center_of_mass;
     context_.normalizing_radius = object.normalizing_radius;
     context_.hand = &hand_;
@@ -359,7 +360,7 @@ class Run {
   const PlannerOptions options_;
   const std::vector<int> fingers_;
   const FittingHand fitting_hand_;
-  const TipDistances distances_;
+  const hands::TipDistances distances_;
   QualityContext context_;
   ContactEstimationOptions contact_options_;
   PlannerResult result_;

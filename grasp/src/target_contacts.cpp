@@ -8,7 +8,6 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
-#include "graspfit/hands/forward_kinematics.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -24,23 +23,10 @@ void require(bool holds, const std::string& field, const std::string& value,
   if (!holds) throw InvalidInput("TargetOptions: " + field + " = " + value + ", must be " + range);
 }
 
-/// Independent joints that move a link of finger `a` or `b`.
-std::vector<int> joints_of_pair(const hands::HandModel& hand, int a, int b) {
-  std::vector<int> joints;
-  for (int finger : {a, b}) {
-    for (int joint : hand.fingers[finger].joints) {
-      while (hand.joints[joint].coupling) joint = hand.joints[joint].coupling->leader;
-      if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
-    }
-  }
-  std::sort(joints.begin(), joints.end());
-  return joints;
-}
-
 /// The search of one target set: all state of the paper's section 6.
 class Selection {
  public:
-  Selection(const ObjectModel& object, const TipDistances& distances,
+  Selection(const ObjectModel& object, const hands::TipDistances& distances,
             const std::vector<int>& fingers, const TargetOptions& options, geometry::Random& random)
       : object_(object),
         distances_(distances),
@@ -93,7 +79,7 @@ class Selection {
     for (std::size_t a = first_a; a < last_a; ++a) {
       for (std::size_t b = 1; b < fingers_.size(); ++b) {
         if (a == b) continue;
-        const TipDistanceRange& range = distances_.ranges[fingers_[a]][fingers_[b]];
+        const hands::DistanceRange& range = distances_[fingers_[a]][fingers_[b]];
         if (distance >= range.smallest && distance <= range.largest) return true;
       }
     }
@@ -175,7 +161,7 @@ class Selection {
   }
 
   const ObjectModel& object_;
-  const TipDistances& distances_;
+  const hands::TipDistances& distances_;
   const std::vector<int>& fingers_;
   const TargetOptions& options_;
   geometry::Random& random_;
@@ -211,61 +197,8 @@ Vector3d TargetContacts::centroid() const {
   return contacts.empty() ? sum : Vector3d(sum / static_cast<double>(contacts.size()));
 }
 
-TipDistances tip_distances(const hands::HandModel& hand, int samples_per_joint) {
-  if (samples_per_joint < 2) {
-    throw InvalidInput("tip_distances: samples_per_joint = " + std::to_string(samples_per_joint) +
-                       ", must be >= 2");
-  }
-  constexpr double kLargestGrid = 20000;  // beyond it, as many seeded random configurations
-  const std::size_t num_fingers = hand.fingers.size();
-  TipDistances distances;
-  distances.ranges.assign(num_fingers, std::vector<TipDistanceRange>(num_fingers));
-  for (std::size_t a = 0; a < num_fingers; ++a) {
-    for (std::size_t b = a + 1; b < num_fingers; ++b) {
-      if (hand.fingers[a].tip_pad < 0 || hand.fingers[b].tip_pad < 0) continue;
-      const std::vector<int> joints =
-          joints_of_pair(hand, static_cast<int>(a), static_cast<int>(b));
-      const double grid = std::pow(samples_per_joint, static_cast<double>(joints.size()));
-      const bool is_grid = grid <= kLargestGrid;
-      const auto num_samples = static_cast<std::int64_t>(std::min(grid, kLargestGrid));
-      geometry::Random random(a * num_fingers + b);
-      hands::HandConfiguration configuration = hands::open_configuration(hand);
-      TipDistanceRange range{std::numeric_limits<double>::infinity(), 0.0};
-      for (std::int64_t sample = 0; sample < num_samples; ++sample) {
-        std::int64_t digits = sample;
-        for (const int joint : joints) {
-          const hands::Joint& limits = hand.joints[joint];
-          const double share =
-              is_grid ? static_cast<double>(digits % samples_per_joint) / (samples_per_joint - 1)
-                      : random.uniform();
-          digits /= samples_per_joint;
-          configuration.q[joint] = limits.lower + share * (limits.upper - limits.lower);
-        }
-        // Positions that a breakaway joint kept from the sample before are not wanted here.
-        for (std::size_t joint = 0; joint < hand.joints.size(); ++joint) {
-          if (hand.joints[joint].coupling) {
-            configuration.q[static_cast<Eigen::Index>(joint)] = hand.joints[joint].closing_sign < 0
-                                                                    ? hand.joints[joint].upper
-                                                                    : hand.joints[joint].lower;
-          }
-        }
-        hands::apply_couplings(hand, configuration.q);
-        const std::vector<geometry::RigidTransform> X_OL =
-            hands::forward_kinematics(hand, configuration);
-        const double distance =
-            (hands::pad_pose(hand, hand.fingers[a].tip_pad, X_OL).translation() -
-             hands::pad_pose(hand, hand.fingers[b].tip_pad, X_OL).translation())
-                .norm();
-        range.smallest = std::min(range.smallest, distance);
-        range.largest = std::max(range.largest, distance);
-      }
-      distances.ranges[a][b] = distances.ranges[b][a] = range;
-    }
-  }
-  return distances;
-}
-
-TargetSelection select_target_contacts(const ObjectModel& object, const TipDistances& distances,
+TargetSelection select_target_contacts(const ObjectModel& object,
+                                       const hands::TipDistances& distances,
                                        const std::vector<int>& fingers,
                                        const TargetOptions& options, geometry::Random& random) {
   options.validate();

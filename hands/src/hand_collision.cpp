@@ -72,20 +72,39 @@ HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& o
   return result;
 }
 
-HandCollision::Result HandCollision::against_self(const std::vector<RigidTransform>& X_OL) const {
+template <class Visit>
+void HandCollision::for_each_near_pair(const std::vector<RigidTransform>& X_OL,
+                                       const Visit& visit) const {
   require_poses(model_, X_OL);
-  Result result;
   for (std::size_t a = 0; a < links_.size(); ++a) {
     if (!links_[a]) continue;
     for (std::size_t b = a + 1; b < links_.size(); ++b) {
       if (!links_[b] || model_.is_excluded(static_cast<int>(a), static_cast<int>(b))) continue;
       const RigidTransform X_AB = X_OL[a].inverse() * X_OL[b];
       if (!may_meet(boxes_[a], boxes_[b], X_AB)) continue;
-      take_deeper(result, geometry::penetration(*links_[a], *links_[b], X_AB), static_cast<int>(a),
-                  static_cast<int>(b));
+      if (!visit(static_cast<int>(a), static_cast<int>(b), X_AB)) return;
     }
   }
+}
+
+HandCollision::Result HandCollision::against_self(const std::vector<RigidTransform>& X_OL) const {
+  Result result;
+  for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {
+    take_deeper(result, geometry::penetration(*links_[a], *links_[b], X_AB), a, b);
+    return true;
+  });
   return result;
+}
+
+bool HandCollision::overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const {
+  bool overlaps = false;
+  for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {
+    const geometry::Penetration found = geometry::penetration(
+        *links_[a], *links_[b], X_AB, {.tolerance = 0.5 * depth, .enough = depth});
+    overlaps = found.depth > depth;
+    return !overlaps;
+  });
+  return overlaps;
 }
 
 }  // namespace graspfit::hands

@@ -162,6 +162,13 @@ TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
     // The deepest point of b is its pole towards a's center, that of a likewise; both are
     // ra + rb − apart deep as long as they are not past the other's center.
     CHECK(p.depth == Approx(0.13 - apart).margin(1.1e-5 + 0.13 * flatness));
+    // Stopped early, it has found enough if there is as much, and its bound holds.
+    for (const double enough : {0.0, 0.5 * p.depth, 2.0 * p.depth}) {
+      const Penetration early =
+          penetration(a, b, shift(0.6 * apart, 0.8 * apart, 0.0), {.enough = enough});
+      CHECK((early.depth > enough) == (p.depth > enough));
+      CHECK(early.depth_bound >= p.depth);
+    }
   }
 }
 
@@ -239,10 +246,14 @@ TEST_CASE("Witness points lie on both surfaces at their distance",
   }
 }
 
-TEST_CASE("A tolerance that is not positive is refused", "[geometry][mesh_intersection]") {
+TEST_CASE("A tolerance that is not positive, or less than nothing as enough, is refused",
+          "[geometry][mesh_intersection]") {
   const MeshQuery cube(box({2, 2, 2}));
   for (const double bad : {0.0, -1.0, std::nan("")}) {
     CHECK_THROWS_AS(penetration(cube, cube, shift(0, 0, 0), {.tolerance = bad}), InvalidInput);
+  }
+  for (const double bad : {-1.0, std::nan("")}) {
+    CHECK_THROWS_AS(penetration(cube, cube, shift(0, 0, 0), {.enough = bad}), InvalidInput);
   }
 }
 

@@ -32,8 +32,8 @@ inline std::string unsaid(const std::string& message, const std::string& field,
 inline constexpr double kRounding = 1e-12;
 
 /// Whether `distance` lies in one of `ranges`.
-inline bool in_some_range(double distance, const std::vector<grasp::TipDistanceRange>& ranges) {
-  for (const grasp::TipDistanceRange& range : ranges) {
+inline bool in_some_range(double distance, const std::vector<hands::DistanceRange>& ranges) {
+  for (const hands::DistanceRange& range : ranges) {
     if (distance >= range.smallest - kRounding && distance <= range.largest + kRounding) {
       return true;
     }
@@ -44,7 +44,7 @@ inline bool in_some_range(double distance, const std::vector<grasp::TipDistanceR
 /// Every requirement of section 6 on a set of target contacts, evaluated from scratch: one line for
 /// each that is broken. `fingers` as given to `select_target_contacts`, the seed's first.
 inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& object,
-                                                    const grasp::TipDistances& distances,
+                                                    const hands::TipDistances& distances,
                                                     const std::vector<int>& fingers,
                                                     const grasp::TargetOptions& options,
                                                     const grasp::TargetContacts& targets) {
@@ -86,11 +86,11 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
   }
 
   // |V1V2| has to be in reach of the seed's finger and another; so has every further target (A18).
-  std::vector<grasp::TipDistanceRange> seed_ranges, other_ranges;
+  std::vector<hands::DistanceRange> seed_ranges, other_ranges;
   for (std::size_t a = 1; a < fingers.size(); ++a) {
-    seed_ranges.push_back(distances.ranges[fingers[0]][fingers[a]]);
+    seed_ranges.push_back(distances[fingers[0]][fingers[a]]);
     for (std::size_t b = a + 1; b < fingers.size(); ++b) {
-      other_ranges.push_back(distances.ranges[fingers[a]][fingers[b]]);
+      other_ranges.push_back(distances[fingers[a]][fingers[b]]);
     }
   }
   const double first_edge = (contacts[1].point_O - contacts[0].point_O).norm();

@@ -217,7 +217,7 @@ std::vector<std::string> broken_promises(const Run& run, const PlannerResult& re
 
   // Each grasp.
   const std::vector<int> fingers = grasp::requested_fingers(hand, options);
-  const grasp::TipDistances distances = grasp::tip_distances(hand);
+  const hands::TipDistances distances = hands::tip_distances(hand);
   grasp::TargetOptions target_options = options.targets;
   if (target_options.min_separation == 0.0) {
     target_options.min_separation = std::numeric_limits<double>::infinity();

@@ -423,7 +423,7 @@ TEST_CASE("The guarantees of fitting hold on every shape, however the fit ends",
   int num_formed = 0;
   for (const Case& shape : cases) {
     const Scene scene(shape.mesh);
-    const grasp::TipDistances distances = grasp::tip_distances(scene.hand);
+    const hands::TipDistances distances = hands::tip_distances(scene.hand);
     grasp::TargetOptions target_options;
     target_options.min_separation = 0.023;
     for (int seed = 1; seed <= 6; ++seed) {

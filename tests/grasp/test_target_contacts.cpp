@@ -16,7 +16,6 @@
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
-#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
@@ -30,8 +29,8 @@ using grasp::PairRule;
 using grasp::TargetFailure;
 using grasp::TargetOptions;
 using grasp::TargetSelection;
-using grasp::TipDistanceRange;
-using grasp::TipDistances;
+using hands::DistanceRange;
+using hands::TipDistances;
 using testing::broken_requirements;
 using testing::unsaid;
 
@@ -40,19 +39,18 @@ constexpr double kPi = std::numbers::pi;
 
 /// Fingers whose every pair reaches the same distances.
 TipDistances equal_reach(int num_fingers, double smallest, double largest) {
-  TipDistances distances;
-  distances.ranges.assign(num_fingers, std::vector<TipDistanceRange>(num_fingers));
+  TipDistances distances(num_fingers, std::vector<DistanceRange>(num_fingers));
   for (int a = 0; a < num_fingers; ++a) {
     for (int b = 0; b < num_fingers; ++b) {
-      if (a != b) distances.ranges[a][b] = {smallest, largest};
+      if (a != b) distances[a][b] = {smallest, largest};
     }
   }
   return distances;
 }
 
-void set_range(TipDistances& distances, int a, int b, TipDistanceRange range) {
-  distances.ranges[a][b] = range;
-  distances.ranges[b][a] = range;
+void set_range(TipDistances& distances, int a, int b, DistanceRange range) {
+  distances[a][b] = range;
+  distances[b][a] = range;
 }
 
 grasp::ObjectModel object_of(const geometry::TriangleMesh& mesh) {
@@ -220,7 +218,7 @@ TEST_CASE("Targets of the Barrett hand on the bunny meet every requirement",
   if (!file) GRASPFIT_SKIP_TEST("bunny00.off of libcgal-demo is not unpacked; run ./quickstart");
   const geometry::TriangleMesh read = geometry::repair_mesh(geometry::read_mesh(*file).mesh).mesh;
   const hands::HandModel hand = hands::find_hand("barrett");
-  const TipDistances distances = grasp::tip_distances(hand);
+  const TipDistances distances = hands::tip_distances(hand);
   const std::vector<int> fingers = {hand.thumb(), hand.finger_index("finger_1"),
                                     hand.finger_index("finger_2")};
   for (const double longest : {0.09, 0.15, 0.30}) {
@@ -634,114 +632,6 @@ TEST_CASE("The centroid of targets is the midpoint, the triangle's centroid, the
   CHECK((targets.centroid() - Vector3d(2, 2, 2)).norm() < 1e-15);
   add(2, 2, 6);
   CHECK((targets.centroid() - Vector3d(2, 2, 3)).norm() < 1e-15);
-}
-
-// ---------------------------------------------------------------------------------------------
-// Tip distances
-
-/// Smallest and largest distance of two fingers' tip pads over a grid of the independent joints
-/// that is finer than the one tested.
-TipDistanceRange searched_range(const hands::HandModel& hand, int finger_a, int finger_b,
-                                int samples) {
-  std::vector<int> free_joints;
-  for (const int finger : {finger_a, finger_b}) {
-    for (const int joint : hand.fingers[finger].joints) {
-      const auto& coupling = hand.joints[joint].coupling;
-      const int independent = coupling ? coupling->leader : joint;
-      if (std::find(free_joints.begin(), free_joints.end(), independent) == free_joints.end()) {
-        free_joints.push_back(independent);
-      }
-    }
-  }
-  hands::HandConfiguration configuration = hands::open_configuration(hand);
-  TipDistanceRange range{std::numeric_limits<double>::infinity(), 0.0};
-  std::vector<int> step(free_joints.size(), 0);
-  while (true) {
-    for (std::size_t i = 0; i < free_joints.size(); ++i) {
-      const hands::Joint& joint = hand.joints[free_joints[i]];
-      configuration.q[free_joints[i]] =
-          joint.lower + (joint.upper - joint.lower) * step[i] / (samples - 1);
-    }
-    // From the coupled position, not from a breakaway left behind by the step before.
-    for (std::size_t i = 0; i < hand.joints.size(); ++i) {
-      if (const auto& coupling = hand.joints[i].coupling) {
-        configuration.q[i] =
-            std::clamp(coupling->ratio * configuration.q[coupling->leader] + coupling->offset,
-                       hand.joints[i].lower, hand.joints[i].upper);
-      }
-    }
-    const auto X_OL = hands::forward_kinematics(hand, configuration);
-    const double distance =
-        (hands::pad_pose(hand, hand.fingers[finger_a].tip_pad, X_OL) * Vector3d(Vector3d::Zero()) -
-         hands::pad_pose(hand, hand.fingers[finger_b].tip_pad, X_OL) * Vector3d(Vector3d::Zero()))
-            .norm();
-    range.smallest = std::min(range.smallest, distance);
-    range.largest = std::max(range.largest, distance);
-    std::size_t i = 0;
-    while (i < step.size() && ++step[i] == samples) step[i++] = 0;
-    if (i == step.size()) return range;
-  }
-}
-
-TEST_CASE("Tip distances of the Barrett hand are those of its kinematics",
-          "[grasp][target_contacts]") {
-  const hands::HandModel hand = hands::find_hand("barrett");
-  const TipDistances distances = grasp::tip_distances(hand);
-  REQUIRE(distances.ranges.size() == hand.fingers.size());
-  const int thumb = hand.thumb();
-  for (std::size_t a = 0; a < hand.fingers.size(); ++a) {
-    REQUIRE(distances.ranges[a].size() == hand.fingers.size());
-    CHECK(distances.ranges[a][a].smallest == 0.0);
-    CHECK(distances.ranges[a][a].largest == 0.0);
-    for (std::size_t b = a + 1; b < hand.fingers.size(); ++b) {
-      const TipDistanceRange range = distances.ranges[a][b];
-      INFO(hand.fingers[a].name << " and " << hand.fingers[b].name << ": " << range.smallest
-                                << " to " << range.largest);
-      CHECK(range.smallest == distances.ranges[b][a].smallest);
-      CHECK(range.largest == distances.ranges[b][a].largest);
-
-      // Opposed tips meet (notes 22.1).
-      CHECK(range.smallest >= 0.0);
-      CHECK(range.smallest < 0.030);
-
-      // Published: at full opening a tip reaches 162.8 mm from the palm's axis, opposed tips are
-      // about 325 mm apart (notes 22.1). With the thumb: sqrt(25² + 325.6²) = 326.6 mm. Fingers 1
-      // and 2, whose bases are 50 mm apart, at spread 90°: 375.6 mm. The pad's center lies on the
-      // distal link of 56 mm, 26.8 mm from its joint and 6.8 mm off its axis, so within
-      // sqrt(29.2² + 6.8²) < 30 mm of the tip point: at most 60 mm less than the tips, and not more
-      // since the pad is on the inner side.
-      const bool with_thumb = static_cast<int>(a) == thumb || static_cast<int>(b) == thumb;
-      const double tips = with_thumb ? 0.3266 : 0.3756;
-      CHECK(range.largest < tips);
-      CHECK(range.largest > tips - 0.060);
-
-      // A search on a grid twice as fine cannot find much beyond: between two grid points of the
-      // coarse grid a joint is at most half a step away, 3.0° of a proximal joint and 3.9° of
-      // the spread; a pad is at most 0.14 m from those axes. Two fingers, two joints each.
-      const TipDistanceRange searched =
-          searched_range(hand, static_cast<int>(a), static_cast<int>(b), 47);
-      const double half_step = 2.0 * 0.14 * (3.1 + 4.0) * kPi / 180.0;
-      CHECK(range.smallest >= searched.smallest - half_step);
-      CHECK(range.smallest <= searched.smallest + half_step);
-      // The widest opening is at joint limits, but for the spread, in which it is stationary:
-      // an error of second order, below 0.14 m · 0.068².
-      CHECK(std::abs(range.largest - searched.largest) < 1e-3);
-    }
-  }
-}
-
-TEST_CASE("A finer sampling of the joints only widens the tip distances",
-          "[grasp][target_contacts]") {
-  // 2n − 1 samples between the same limits hold the n samples.
-  const hands::HandModel hand = hands::find_hand("barrett");
-  const TipDistances coarse = grasp::tip_distances(hand, 9);
-  const TipDistances fine = grasp::tip_distances(hand, 17);
-  for (std::size_t a = 0; a < hand.fingers.size(); ++a) {
-    for (std::size_t b = 0; b < hand.fingers.size(); ++b) {
-      CHECK(fine.ranges[a][b].smallest <= coarse.ranges[a][b].smallest + 1e-12);
-      CHECK(fine.ranges[a][b].largest >= coarse.ranges[a][b].largest - 1e-12);
-    }
-  }
 }
 
 }  // namespace

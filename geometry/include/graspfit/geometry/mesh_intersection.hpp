@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
 
@@ -23,17 +25,19 @@ struct Penetration {
 /// Limits of `penetration`.
 struct PenetrationOptions {
   double tolerance = 1e-5;  ///< Stop when depth_bound − depth is below this [m], > 0.
-  void validate() const;    ///< Throws InvalidInput naming the field and its value.
+  double enough = std::numeric_limits<double>::infinity();  ///< Stop when depth is above this [m],
+                                                            ///< ≥ 0: how deep does not matter.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Depth of the overlap: the larger of the greatest distance to A's surface over the points of B's
 /// surface that lie inside A, and the same with A and B exchanged.
 ///
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
-/// does not depend on how finely either mesh is cut. Ends when the tolerance is met or after 50 000
-/// steps each way (wide overlaps of finely cut curved surfaces); the bound holds either way, up to
-/// the rounding of distances.
-/// Cost: that of `do_intersect` if the solids do not intersect.
+/// does not depend on how finely either mesh is cut. Ends when the tolerance is met, `enough`
+/// exceeded or after 50 000 steps each way (wide overlaps of finely cut curved surfaces); the bound
+/// holds either way, up to the rounding of distances. Cost: that of `do_intersect` if the solids do
+/// not intersect.
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         const PenetrationOptions& options = {});
 

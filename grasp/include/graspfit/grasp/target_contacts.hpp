@@ -8,7 +8,7 @@
 
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/grasp/object_model.hpp"
-#include "graspfit/hands/hand_model.hpp"
+#include "graspfit/hands/hand_workspace.hpp"
 
 namespace graspfit::grasp {
 
@@ -17,19 +17,6 @@ enum class PairRule {
   Seed,      ///< With the seed (the thumb's target) [R].
   AllPairs,  ///< With every earlier target; feasible for at most four (the literal reading).
 };
-
-/// Smallest and largest distance between two tip pads' centers over the hand's configurations [m].
-struct TipDistanceRange {
-  double smallest = 0.0;
-  double largest = 0.0;
-};
-
-/// Tip distance ranges of every pair of fingers, by sampling independent joints on a grid (A18).
-/// `ranges[a][b]` is symmetric; the diagonal and fingers without a fingertip pad have zero.
-struct TipDistances {
-  std::vector<std::vector<TipDistanceRange>> ranges;
-};
-TipDistances tip_distances(const hands::HandModel& hand, int samples_per_joint = 24);
 
 /// Parameters of target selection (paper section 6; notes A17–A20).
 struct TargetOptions {
@@ -91,7 +78,8 @@ struct TargetSelection {
 /// `fingers` are the fingers to serve, the seed's first (the thumb where it is among them, A22).
 /// The selection uses, for each further contact, the union of the ranges of the fingers not yet
 /// served; assignment follows in `assign_fingers`. @throws InvalidInput for fewer than two fingers.
-TargetSelection select_target_contacts(const ObjectModel& object, const TipDistances& distances,
+TargetSelection select_target_contacts(const ObjectModel& object,
+                                       const hands::TipDistances& distances,
                                        const std::vector<int>& fingers,
                                        const TargetOptions& options, geometry::Random& random);
 

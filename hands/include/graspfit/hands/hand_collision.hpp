@@ -36,7 +36,15 @@ class HandCollision {
   /// Link against link, exclusions of the model left out.
   Result against_self(const std::vector<RigidTransform>& X_OL) const;
 
+  /// Whether some link overlaps another, exclusions left out, by more than `depth` [m] > 0: true is
+  /// certain, false may be wrong by half of it. Much cheaper than a depth where they do.
+  bool overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const;
+
  private:
+  /// Calls `visit(a, b, X_AB)` for pairs whose boxes are not apart, until it returns false.
+  template <class Visit>
+  void for_each_near_pair(const std::vector<RigidTransform>& X_OL, const Visit& visit) const;
+
   HandModel model_;
   std::vector<std::optional<geometry::MeshQuery>> links_;  ///< Empty for links without faces.
   std::vector<Eigen::AlignedBox3d> boxes_;                 ///< Of the link meshes, in L.
