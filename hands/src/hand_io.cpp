@@ -1,5 +1,7 @@
 #include "graspfit/hands/hand_io.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -41,15 +43,22 @@ Sources read_sources(const fs::path& description_file, Findings& findings) {
   const internal::RobotDescription description =
       internal::parse_robot_file(text, description_file, findings);
   Sources sources;
-  sources.tree = internal::build_tree(description, file);
-  sources.tree.description_file = file;
-  sources.tree.description_sha256 = geometry::sha256_hex(text);
-
   const fs::path sidecar_file = sidecar_file_of(description_file);
   std::error_code error;
-  if (fs::is_regular_file(sidecar_file, error)) {
+  const bool has_sidecar = fs::is_regular_file(sidecar_file, error);
+  if (has_sidecar) {
     sources.sidecar_text = geometry::read_file(sidecar_file);
     sources.sidecar = internal::parse_sidecar(sources.sidecar_text, sidecar_file.string());
+  }
+  // An unknown link is left for `resolve` to complain about.
+  std::optional<std::string> palm_link;
+  for (const internal::DescribedLink& link : description.links) {
+    if (sources.sidecar.palm && sources.sidecar.palm->link == link.name) palm_link = link.name;
+  }
+  sources.tree = internal::build_tree(description, file, palm_link, findings);
+  sources.tree.description_file = file;
+  sources.tree.description_sha256 = geometry::sha256_hex(text);
+  if (has_sidecar) {
     sources.tree.sidecar_file = sidecar_file.string();
     sources.tree.sidecar_sha256 = geometry::sha256_hex(sources.sidecar_text);
   }
@@ -59,9 +68,12 @@ Sources read_sources(const fs::path& description_file, Findings& findings) {
   internal::follow_first_leaders(file, sources.tree);
 
   for (const internal::DescribedLink& source : description.links) {
-    Link& link = sources.tree.links[static_cast<std::size_t>(sources.tree.link_index(source.name))];
+    const auto link =
+        std::find_if(sources.tree.links.begin(), sources.tree.links.end(),
+                     [&](const Link& candidate) { return candidate.name == source.name; });
+    if (link == sources.tree.links.end()) continue;  // left out before the palm
     findings.attempt(
-        [&] { internal::read_link_surface(source, description_file, link, findings); });
+        [&] { internal::read_link_surface(source, description_file, *link, findings); });
   }
   return sources;
 }

@@ -17,8 +17,12 @@ using geometry::InvalidInput;
 /// the names that the tree gives them resolved. Surfaces are read later.
 class TreeBuilder {
  public:
-  TreeBuilder(const RobotDescription& description, std::string file)
-      : description_(description), file_(std::move(file)) {}
+  TreeBuilder(const RobotDescription& description, std::string file,
+              std::optional<std::string> root, Findings& findings)
+      : description_(description),
+        file_(std::move(file)),
+        root_(std::move(root)),
+        findings_(findings) {}
 
   HandModel build() {
     if (description_.links.empty()) fail("no links");
@@ -58,6 +62,8 @@ class TreeBuilder {
         }
       }
     }
+    const std::string root = root_ ? *root_ : palm_below(roots[0]);
+    if (root != roots[0]) begin_at(root);
     couplings();
     exclusions();
     return std::move(model_);
@@ -95,6 +101,62 @@ class TreeBuilder {
     }
   }
 
+  /// Movable joints on a link and on those that are fixed to it.
+  std::vector<const DescribedJoint*> joints_on(const std::string& link) const {
+    std::vector<const DescribedJoint*> result;
+    for (const DescribedJoint& joint : description_.joints) {
+      if (joint.parent != link) continue;
+      if (joint.type != DescribedJoint::Type::Fixed) {
+        result.push_back(&joint);
+        continue;
+      }
+      const auto further = joints_on(joint.child);
+      result.insert(result.end(), further.begin(), further.end());
+    }
+    return result;
+  }
+
+  /// The first link below (or at) `root` on which more than one movable joint hangs; `root` itself
+  /// if there is none.
+  std::string palm_below(const std::string& root) const {
+    std::string link = root;
+    while (true) {
+      const auto joints = joints_on(link);
+      if (joints.size() > 1) return link;
+      if (joints.empty()) return root;
+      link = joints[0]->child;
+    }
+  }
+
+  /// Builds the tree once more from another root.
+  void begin_at(const std::string& root) {
+    const HandModel whole = std::move(model_);
+    model_ = {};
+    model_.name = whole.name;
+    added_.clear();
+    add(root, -1, nullptr);
+    if (model_.joints.empty()) fail("palm: no movable joint hangs below link " + root);
+    std::string links;
+    std::string joints;
+    for (const Link& link : whole.links) {
+      if (!added_.contains(link.name)) links += (links.empty() ? "" : ", ") + link.name;
+    }
+    for (const Joint& joint : whole.joints) {
+      const bool is_kept = std::any_of(model_.joints.begin(), model_.joints.end(),
+                                       [&](const Joint& kept) { return kept.name == joint.name; });
+      if (!is_kept) joints += (joints.empty() ? "" : ", ") + joint.name;
+    }
+    findings_.note("link " + root, "is the palm and the root of the hand; left out are links " +
+                                       links + (joints.empty() ? "" : " and joints " + joints));
+  }
+
+  bool is_left_out(const std::string& joint_name) const {
+    return std::any_of(description_.joints.begin(), description_.joints.end(),
+                       [&](const DescribedJoint& joint) {
+                         return joint.name == joint_name && !added_.contains(joint.child);
+                       });
+  }
+
   int joint(const std::string& name, const std::string& item) const {
     for (std::size_t j = 0; j < model_.joints.size(); ++j) {
       if (model_.joints[j].name == name) return static_cast<int>(j);
@@ -105,6 +167,12 @@ class TreeBuilder {
   void couplings() {
     for (const DescribedJoint& source : description_.joints) {
       if (!source.coupling || source.type == DescribedJoint::Type::Fixed) continue;
+      if (is_left_out(source.name)) continue;
+      if (is_left_out(source.coupling->joint)) {
+        findings_.suspicious("joint " + source.name, "follows joint " + source.coupling->joint +
+                                                         ", which is left out: taken as free");
+        continue;
+      }
       const std::string item = "joint " + source.name + " follows another";
       const DescribedCoupling& coupling = *source.coupling;
       model_.joints[static_cast<std::size_t>(joint(source.name, item))].coupling = Coupling{
@@ -114,12 +182,18 @@ class TreeBuilder {
 
   void exclusions() {
     for (const auto& [a, b] : description_.exclusions) {
+      if (link_of_.contains(a) && link_of_.contains(b) &&
+          (!added_.contains(a) || !added_.contains(b))) {
+        continue;
+      }
       model_.exclusions.push_back({model_.link_index(a), model_.link_index(b)});
     }
   }
 
   const RobotDescription& description_;
   std::string file_;
+  std::optional<std::string> root_;
+  Findings& findings_;
   std::map<std::string, std::size_t> link_of_;
   std::set<std::string> added_;
   HandModel model_;
@@ -127,8 +201,9 @@ class TreeBuilder {
 
 }  // namespace
 
-HandModel build_tree(const RobotDescription& description, const std::string& file) {
-  return TreeBuilder(description, file).build();
+HandModel build_tree(const RobotDescription& description, const std::string& file,
+                     const std::optional<std::string>& root, Findings& findings) {
+  return TreeBuilder(description, file, root, findings).build();
 }
 
 }  // namespace graspfit::hands::internal

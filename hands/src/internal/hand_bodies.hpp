@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::hands::internal {
+
+/// Links that fixed joints join: what moves as one.
+struct Body {
+  std::vector<int> links;  ///< Ascending; the first is the one that hangs on `joint`.
+  int joint = -1;          ///< The movable joint above it; −1 for the root.
+  int parent = -1;         ///< Body that the joint hangs on; −1 for the root.
+  std::vector<int> children;
+  TriangleMesh mesh;  ///< All its links' surfaces, in the frame of its first link.
+};
+
+/// The bodies of a tree, parents first; body 0 holds the root link.
+std::vector<Body> bodies_of(const HandModel& tree);
+
+/// The index of every link's body.
+std::vector<int> body_of_links(const std::vector<Body>& bodies, std::size_t num_links);
+
+/// Poses of a body's links in the frame of its first link, in the order of `Body::links`.
+std::vector<RigidTransform> poses_in_body(const HandModel& tree, const Body& body);
+
+}  // namespace graspfit::hands::internal
