@@ -67,14 +67,11 @@ constexpr int kBlock = 16;
 
 }  // namespace
 
-float SignedDistanceMap::at(const Eigen::Vector3d& point) const {
-  const Eigen::Array3d place = (point - lattice.origin).array() / lattice.voxel_size;
+float SignedDistanceMap::at_beyond(const Eigen::Vector3d& place) const {
   const Eigen::Array3d top = lattice.counts.cast<double>().array() - 1.0;
-  const Eigen::Vector3i voxel = place.floor().max(0.0).min(top).cast<int>();
-  const float value = at(voxel);
-  if ((place >= 0.0).all() && (place < top + 1.0).all()) return value;
-  const double beyond = (place - voxel.cast<double>().array() - 0.5).matrix().norm();
-  return value + static_cast<float>(beyond);
+  const Eigen::Vector3i voxel = place.array().floor().max(0.0).min(top).cast<int>();
+  const double beyond = (place - voxel.cast<double>() - Eigen::Vector3d::Constant(0.5)).norm();
+  return at(voxel) + static_cast<float>(beyond);
 }
 
 SignedDistanceMap signed_distance_map(const VoxelGrid& grid) {

@@ -18,7 +18,18 @@ struct SignedDistanceMap {
 
   /// Value of the voxel that holds `point`; outside the lattice the index is clamped and the
   /// distance (in voxels) to the clamped voxel's center is added.
-  float at(const Eigen::Vector3d& point) const;
+  float at(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d place = (point - lattice.origin) / lattice.voxel_size;
+    // The fitting loop lives on this: inside, cutting off is rounding down.
+    const bool is_inside = place[0] >= 0.0 && place[0] < lattice.counts[0] && place[1] >= 0.0 &&
+                           place[1] < lattice.counts[1] && place[2] >= 0.0 &&
+                           place[2] < lattice.counts[2];
+    return is_inside ? at(Eigen::Vector3i(place.cast<int>())) : at_beyond(place);
+  }
+
+ private:
+  /// `place` is a point beyond the lattice, in voxels from its origin.
+  float at_beyond(const Eigen::Vector3d& place) const;
 };
 
 /// Exact squared Euclidean transform in linear time [Felzenszwalb & Huttenlocher 2012].
