@@ -50,7 +50,9 @@ std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand) {
 
 hands::HandModel read_recorded_hand(const RecordedHand& record, const fs::path& grasp_folder) {
   hands::HandModel hand = hands::read_hand_model(find_description(record, grasp_folder));
-  check_hash("the sidecar " + hand.sidecar_file, hand.sidecar_sha256, record.sidecar_sha256);
+  check_hash(hand.sidecar_file.empty() ? "what is derived from " + hand.description_file
+                                       : "the sidecar " + hand.sidecar_file,
+             hand.sidecar_sha256, record.sidecar_sha256);
   const std::vector<std::string> hashes = link_mesh_hashes(hand);
   if (hashes.size() != record.link_mesh_sha256.size()) {
     throw geometry::IoError("the hand has " + std::to_string(hashes.size()) +

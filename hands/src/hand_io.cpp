@@ -79,9 +79,12 @@ Sources read_sources(const fs::path& description_file, Findings& findings) {
 }
 
 /// The whole hand from its sources: what no sidecar says is derived.
-HandModel assemble(const fs::path& description_file, Findings& findings) {
+HandReading assemble(const fs::path& description_file, Findings& findings) {
   Sources sources = read_sources(description_file, findings);
-  HandModel model = sources.tree;
+  HandReading reading;
+  reading.description = sources.sidecar.description;
+  HandModel& model = reading.model;
+  model = sources.tree;
   const std::string file =
       model.sidecar_file.empty() ? description_file.string() : model.sidecar_file;
   internal::Sidecar sidecar = sources.sidecar;
@@ -95,7 +98,7 @@ HandModel assemble(const fs::path& description_file, Findings& findings) {
   } catch (const InvalidInput& invalid) {
     throw InvalidInput(file + ": " + invalid.what());
   }
-  return model;
+  return reading;
 }
 
 }  // namespace
@@ -106,8 +109,7 @@ fs::path sidecar_file_of(const fs::path& description_file) {
 
 HandReading read_hand(const fs::path& description_file) {
   Findings findings(Findings::AtFault::Throw);
-  HandReading reading;
-  reading.model = assemble(description_file, findings);
+  HandReading reading = assemble(description_file, findings);
   reading.findings = findings.list();
   return reading;
 }
@@ -119,10 +121,13 @@ HandModel read_hand_model(const fs::path& description_file) {
 std::string derived_sidecar_text(const fs::path& description_file) {
   Findings findings(Findings::AtFault::Throw);
   const Sources sources = read_sources(description_file, findings);
+  const std::string description =
+      sources.sidecar.description.empty()
+          ? "Derived by graspfit from " + description_file.filename().string() +
+                "; edit what is wrong, delete a member to derive it again."
+          : sources.sidecar.description;
   return internal::sidecar_text(internal::completed(sources.tree, sources.sidecar, findings),
-                                sources.tree.name,
-                                "Derived by graspfit from " + description_file.filename().string() +
-                                    "; edit what is wrong, delete a member to derive it again.");
+                                sources.tree.name, description);
 }
 
 }  // namespace graspfit::hands

@@ -80,21 +80,26 @@ fs::path shipped_hand_file(const std::string& name) {
   return folder / name / (name + ".urdf");
 }
 
-HandModel find_hand(const std::string& name_or_file) {
+fs::path find_hand_file(const std::string& name_or_file) {
   const fs::path path = name_or_file;
   std::error_code error;
   const bool is_file_name = path.has_parent_path() || path.has_extension();
   if (!is_file_name) {
     const std::vector<std::string> names = shipped_hands();
     if (std::find(names.begin(), names.end(), name_or_file) != names.end()) {
-      return read_hand_model(shipped_hand_file(name_or_file));
+      return shipped_hand_file(name_or_file);
     }
     if (!fs::exists(path, error)) {
       throw geometry::InvalidInput("no hand " + name_or_file + ": shipped hands are " +
-                                   list(names) + "; or give the path of a URDF file");
+                                   list(names) +
+                                   "; or give the path of a URDF, MJCF or GraspIt! XML file");
     }
   }
-  return read_hand_model(path);
+  return path;
+}
+
+HandModel find_hand(const std::string& name_or_file) {
+  return read_hand_model(find_hand_file(name_or_file));
 }
 
 }  // namespace graspfit::hands

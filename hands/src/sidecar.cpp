@@ -73,6 +73,11 @@ class Item {
     return result;
   }
 
+  std::string text() const {
+    if (!value_.is_string()) fail("is not a text");
+    return value_.get<std::string>();
+  }
+
   std::string name() const {
     if (!value_.is_string() || value_.get_ref<const std::string&>().empty()) {
       fail("is not a name (a text that is not empty)");
@@ -294,6 +299,7 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   check_format(root);
 
   Sidecar sidecar;
+  if (const auto description = root.find("description")) sidecar.description = description->text();
   if (const auto fingers = root.find("fingers")) {
     sidecar.fingers.emplace();
     for (const Item& item : fingers->array()) sidecar.fingers->push_back(finger(item));

@@ -49,6 +49,7 @@ struct SidecarCoupling {
 
 /// What a member holds is taken; a member that is not there is derived from the description.
 struct Sidecar {
+  std::string description;  ///< One sentence for people; empty where the file has none.
   std::optional<std::vector<SidecarFinger>> fingers;
   std::optional<std::vector<SidecarPad>> pads;
   std::optional<SidecarPalm> palm;

@@ -12,6 +12,7 @@ namespace graspfit::hands {
 /// A hand and what its reader noticed and did on the way.
 struct HandReading {
   HandModel model;
+  std::string description;            ///< A sentence for people, from the sidecar; may be empty.
   std::vector<HandFinding> findings;  ///< In the order in which they came up; no faults.
 };
 

@@ -15,8 +15,13 @@ std::vector<std::string> shipped_hands();
 /// of that name.
 std::filesystem::path shipped_hand_file(const std::string& name);
 
-/// A hand by the name of a shipped one ("barrett") or by the path of a URDF file; shipped hands are
-/// read by the same reader as anybody's. @throws as `read_hand_model` and `shipped_hand_file`.
+/// The description of a hand by the name of a shipped one ("barrett"), or the path as given.
+/// @throws InvalidInput that lists the shipped hands, if it is neither a name of one nor looks like
+/// a path nor is there.
+std::filesystem::path find_hand_file(const std::string& name_or_file);
+
+/// A hand by the name of a shipped one ("barrett") or by the path of a description; shipped hands
+/// are read by the same reader as anybody's. @throws as `read_hand_model` and `find_hand_file`.
 HandModel find_hand(const std::string& name_or_file);
 
 }  // namespace graspfit::hands
