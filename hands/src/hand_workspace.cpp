@@ -78,6 +78,9 @@ struct Tip {
 class Hand {
  public:
   explicit Hand(const HandModel& model) : model_(model), open_(open_configuration(model).q) {
+    for (const ContactPad& pad : model.pads) {
+      contact_points_C_.emplace_back(0.0, 0.0, -height_over_pad(pad, Vector3d::Zero()));
+    }
     // Where a breakaway joint keeps nothing but what its coupling asks for.
     for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
       const Joint& description = model.joints[joint];
@@ -99,7 +102,7 @@ class Hand {
   Tip tip(int pad, const std::vector<RigidTransform>& X_HL) const {
     if (pad == kPalm) return {model_.palm.center_H, model_.palm.direction_H};
     const RigidTransform X_HC = pad_pose(model_, pad, X_HL);
-    return {X_HC.translation(), X_HC.linear().col(2)};
+    return {X_HC * contact_points_C_[static_cast<std::size_t>(pad)], X_HC.linear().col(2)};
   }
 
   int link_of(int pad) const { return pad == kPalm ? 0 : model_.pads[pad].link; }
@@ -108,7 +111,8 @@ class Hand {
   /// do not move: the sum, over the joints that follow it, of the tip's largest distance from them.
   double speed(int pad, int leader, const std::vector<int>& standing) const {
     if (pad == kPalm) return 0.0;
-    double reach = model_.pads[pad].X_LC.translation().norm();
+    double reach =
+        (model_.pads[pad].X_LC * contact_points_C_[static_cast<std::size_t>(pad)]).norm();
     double total = 0.0;
     int link = link_of(pad);
     for (; model_.links[link].parent_link >= 0; link = model_.links[link].parent_link) {
@@ -133,6 +137,7 @@ class Hand {
  private:
   const HandModel& model_;
   VectorXd open_;
+  std::vector<Vector3d> contact_points_C_;  ///< Of every pad: its surface over the frame's origin.
 };
 
 /// Positions of some independent joints: a grid, or, with `per_joint` 0, `count` random ones.

@@ -401,6 +401,26 @@ TEST_CASE("A finer sampling of the joints only widens the tip distances",
   }
 }
 
+TEST_CASE("A human thumb meets every finger, and spans what a hand of its length spans",
+          "[hands][hand_workspace]") {
+  // Pads that face each other come within a few millimeters of touching, at the index and middle
+  // finger, where thumbs are opposed. The widest is less than what thumb and little finger span
+  // stretched out, about the length of the hand (212 mm, GraspIt!'s size) and a half.
+  const HandModel hand = hands::find_hand("human_hand");
+  const HandWorkspace workspace = hands::hand_workspace(hand);
+  for (const char* name : {"index", "middle"}) {
+    CAPTURE(name, workspace.graspable_diameter[hand.finger_index(name)].smallest);
+    CHECK(workspace.graspable_diameter[hand.finger_index(name)].smallest < 0.010);
+  }
+  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
+    if (static_cast<int>(f) == hand.thumb()) continue;
+    const DistanceRange& range = workspace.graspable_diameter[f];
+    CHECK(range.largest > 0.100);
+    CHECK(range.largest <= workspace.tip_to_tip[f][hand.thumb()].largest);
+    CHECK(range.largest < 1.5 * 0.212);
+  }
+}
+
 TEST_CASE("Grippers grasp from nothing to their stroke", "[hands][hand_workspace]") {
   // Robotiq 2F-85: stroke 85 mm; Franka hand: 2 × 40 mm (notes 22.3).
   for (const auto& [name, stroke] :
@@ -434,10 +454,12 @@ TEST_CASE("Ranges of every shipped hand hold the distances of 1000 random config
       const auto X_OL = hands::forward_kinematics(hand, c);
       for (std::size_t a = 0; a < hand.fingers.size(); ++a) {
         for (std::size_t b = a + 1; b < hand.fingers.size(); ++b) {
-          const double distance =
-              (hands::pad_pose(hand, hand.fingers[a].tip_pad, X_OL).translation() -
-               hands::pad_pose(hand, hand.fingers[b].tip_pad, X_OL).translation())
-                  .norm();
+          const auto contact_point = [&](std::size_t finger) -> Vector3d {
+            const int pad = hand.fingers[finger].tip_pad;
+            const double height = -hands::height_over_pad(hand.pads[pad], Vector3d::Zero());
+            return hands::pad_pose(hand, pad, X_OL) * Vector3d(0, 0, height);
+          };
+          const double distance = (contact_point(a) - contact_point(b)).norm();
           const DistanceRange& range = tips[a][b];
           const double out = std::max(range.smallest - distance, distance - range.largest);
           beyond = std::max(beyond, out);

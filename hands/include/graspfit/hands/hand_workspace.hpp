@@ -25,7 +25,8 @@ using TipDistances = std::vector<std::vector<DistanceRange>>;
 /// What a hand can reach, whatever it holds: computed once per hand. Couplings are kept; a
 /// breakaway joint goes no farther than its coupling.
 struct HandWorkspace {
-  /// Between the tip pads' contact points of two fingers: symmetric, zero on the diagonal and for
+  /// Between the tip pads' contact points of two fingers, where a pad's surface is over the origin
+  /// of its frame (the origin itself, if it is flat): symmetric, zero on the diagonal and for
   /// fingers without a tip pad (notes A18). The hand may touch itself.
   TipDistances tip_to_tip;
   /// Palm center to a finger's tip pad; zero without one. The hand may touch itself.
