@@ -24,46 +24,20 @@ class TreeBuilder {
         root_(std::move(root)),
         findings_(findings) {}
 
-  HandModel build() {
-    if (description_.links.empty()) fail("no links");
-    for (std::size_t i = 0; i < description_.links.size(); ++i)
-      link_of_[description_.links[i].name] = i;
-    std::map<std::string, std::string> joint_above;
-    for (const DescribedJoint& joint : description_.joints) {
-      for (const std::string& end : {joint.parent, joint.child}) {
-        if (!link_of_.contains(end)) fail("joint " + joint.name + ": no link named " + end);
-      }
-      const auto [other, is_new] = joint_above.emplace(joint.child, joint.name);
-      if (!is_new) {
-        fail("link " + joint.child + " hangs on two joints, " + other->second + " and " +
-             joint.name);
-      }
-    }
-    std::vector<std::string> roots;
-    for (const DescribedLink& link : description_.links) {
-      if (!joint_above.contains(link.name)) roots.push_back(link.name);
-    }
-    if (roots.empty()) fail("the links form a cycle: every one is the child of a joint");
-    if (roots.size() > 1) {
-      fail("links " + roots[0] + " and " + roots[1] + " are both roots: no joint joins them");
-    }
-    if (std::all_of(
-            description_.joints.begin(), description_.joints.end(),
-            [](const DescribedJoint& j) { return j.type == DescribedJoint::Type::Fixed; })) {
-      fail("no movable joint");
-    }
+  std::optional<HandModel> build() {
+    const std::string root = checked_root();
+    if (!is_tree_) return std::nullopt;
     model_.name = description_.name;
-    add(roots[0], -1, nullptr);
-    if (model_.links.size() != description_.links.size()) {
-      for (const DescribedLink& link : description_.links) {
-        if (!added_.contains(link.name)) {
-          fail("the links form a cycle: link " + link.name + " is not reached from root " +
-               roots[0]);
-        }
+    add(root, -1, nullptr);
+    for (const DescribedLink& link : description_.links) {
+      if (!added_.contains(link.name)) {
+        fault("the links form a cycle: link " + link.name + " is not reached from root " + root);
+        break;  // the rest of the cycle says no more
       }
     }
-    const std::string root = root_ ? *root_ : palm_below(roots[0]);
-    if (root != roots[0]) begin_at(root);
+    if (!is_tree_) return std::nullopt;
+    const std::string palm = root_ ? *root_ : palm_below(root);
+    if (palm != root) begin_at(palm);
     couplings();
     exclusions();
     return std::move(model_);
@@ -71,6 +45,49 @@ class TreeBuilder {
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(file_ + ": " + what); }
+
+  /// What keeps the links from being one tree with something to move.
+  void fault(const std::string& what) {
+    is_tree_ = false;
+    findings_.attempt([&] { fail(what); });
+  }
+
+  /// The only link without a joint above it. Whatever is wrong with the links' connections becomes
+  /// a fault, but for cycles apart from the root.
+  std::string checked_root() {
+    if (description_.links.empty()) {
+      fault("no links");
+      return "";
+    }
+    for (std::size_t i = 0; i < description_.links.size(); ++i) {
+      link_of_.emplace(description_.links[i].name, i);
+    }
+    std::map<std::string, std::string> joint_above;
+    for (const DescribedJoint& joint : description_.joints) {
+      for (const std::string& end : {joint.parent, joint.child}) {
+        if (!link_of_.contains(end)) fault("joint " + joint.name + ": no link named " + end);
+      }
+      const auto [other, is_new] = joint_above.emplace(joint.child, joint.name);
+      if (!is_new) {
+        fault("link " + joint.child + " hangs on two joints, " + other->second + " and " +
+              joint.name);
+      }
+    }
+    std::vector<std::string> roots;
+    for (const DescribedLink& link : description_.links) {
+      if (!joint_above.contains(link.name)) roots.push_back(link.name);
+    }
+    if (roots.empty()) fault("the links form a cycle: every one is the child of a joint");
+    for (std::size_t i = 1; i < roots.size(); ++i) {
+      fault("links " + roots[0] + " and " + roots[i] + " are both roots: no joint joins them");
+    }
+    if (std::all_of(
+            description_.joints.begin(), description_.joints.end(),
+            [](const DescribedJoint& j) { return j.type == DescribedJoint::Type::Fixed; })) {
+      fault("no movable joint");
+    }
+    return roots.empty() ? "" : roots[0];
+  }
 
   void add(const std::string& name, int parent, const DescribedJoint* above) {
     const int index = static_cast<int>(model_.links.size());
@@ -175,8 +192,13 @@ class TreeBuilder {
       }
       const std::string item = "joint " + source.name + " follows another";
       const DescribedCoupling& coupling = *source.coupling;
-      model_.joints[static_cast<std::size_t>(joint(source.name, item))].coupling = Coupling{
-          joint(coupling.joint, item), coupling.multiplier, coupling.offset, coupling.breakaway};
+      findings_.attempt(
+          [&] {
+            model_.joints[static_cast<std::size_t>(joint(source.name, item))].coupling =
+                Coupling{joint(coupling.joint, item), coupling.multiplier, coupling.offset,
+                         coupling.breakaway};
+          },
+          "joint " + source.name);
     }
   }
 
@@ -194,6 +216,7 @@ class TreeBuilder {
   std::string file_;
   std::optional<std::string> root_;
   Findings& findings_;
+  bool is_tree_ = true;
   std::map<std::string, std::size_t> link_of_;
   std::set<std::string> added_;
   HandModel model_;
@@ -201,8 +224,8 @@ class TreeBuilder {
 
 }  // namespace
 
-HandModel build_tree(const RobotDescription& description, const std::string& file,
-                     const std::optional<std::string>& root, Findings& findings) {
+std::optional<HandModel> build_tree(const RobotDescription& description, const std::string& file,
+                                    const std::optional<std::string>& root, Findings& findings) {
   return TreeBuilder(description, file, root, findings).build();
 }
 

@@ -1,8 +1,7 @@
 #include "internal/urdf.hpp"
 
-#include <tinyxml2.h>
-
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -10,42 +9,46 @@
 #include <string_view>
 
 #include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "internal/xml_source.hpp"
 
 namespace graspfit::hands::internal {
 
 namespace {
 
-using geometry::InvalidInput;
-using geometry::IoError;
 using tinyxml2::XMLElement;
 
-/// Reads one file: every complaint names the file, the line and the item.
-class Parser {
+/// How far from 1 the length of an axis may be that means a unit vector: 0.577 0.577 0.577, with
+/// three digits, has the length 0.9994.
+constexpr double kUnitSlack = 2e-3;
+/// Revolute limits beyond a turn [rad], and prismatic ones beyond the reach of any hand [m]: other
+/// units, degrees and millimeters.
+constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-3;
+constexpr double kLongestStroke = 1.0;
+
+/// For people: four digits.
+std::string rounded(double value) {
+  char text[32];
+  const auto [end, error] =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4);
+  return {text, end};
+}
+
+/// Reads one file. Where faults are collected, an item keeps whatever of it can be read.
+class Parser : private XmlSource {
  public:
-  Parser(std::string file, Findings& findings) : file_(std::move(file)), findings_(findings) {}
+  Parser(std::string file, Findings& findings) : XmlSource(std::move(file)), findings_(findings) {}
 
   RobotDescription parse(const std::string& text) {
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-      throw IoError(file_ + ": empty file");
     tinyxml2::XMLDocument document;
-    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-      throw IoError(file_ + ": line " + std::to_string(document.ErrorLineNum()) + ": not XML (" +
-                    std::string(document.ErrorName()) + ")");
-    }
-    const XMLElement* root = document.RootElement();
-    if (root == nullptr || std::string_view(root->Name()) != "robot") {
-      throw IoError(file_ + ": not a URDF: its root element is <" +
-                    (root ? std::string(root->Name()) : std::string()) + ">, not <robot>");
-    }
+    const XMLElement& root = XmlSource::parse(text, "robot", "a URDF", document);
     RobotDescription urdf;
-    urdf.name = text_of(*root, "name", "robot");
-    for (const XMLElement* e = root->FirstChildElement(); e; e = e->NextSiblingElement()) {
+    findings_.attempt([&] { urdf.name = text_of(root, "name", "robot"); });
+    for (const XMLElement* e = root.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string_view tag = e->Name();
-      if (tag.substr(0, 6) == "xacro:") {
-        fail(*e, "<" + std::string(tag) + ">: this is a xacro file; expand it to a URDF first");
-      }
       findings_.attempt([&] {
+        if (tag.substr(0, 6) == "xacro:") {
+          fail(*e, "<" + std::string(tag) + ">: this is a xacro file; expand it to a URDF first");
+        }
         if (tag == "link") urdf.links.push_back(link(*e));
         if (tag == "joint") urdf.joints.push_back(joint(*e));
       });
@@ -54,57 +57,6 @@ class Parser {
   }
 
  private:
-  [[noreturn]] void fail(const XMLElement& at, const std::string& what) const {
-    throw InvalidInput(file_ + ": line " + std::to_string(at.GetLineNum()) + ": " + what);
-  }
-
-  /// A required attribute that is not empty.
-  std::string text_of(const XMLElement& e, const char* attribute, const std::string& item) const {
-    const char* value = e.Attribute(attribute);
-    if (value == nullptr || *value == '\0') {
-      fail(e, item + ": <" + e.Name() + "> has no " + attribute);
-    }
-    return value;
-  }
-
-  /// `count` numbers separated by blanks.
-  std::vector<double> parse_numbers(const XMLElement& e, std::string_view text, std::size_t count,
-                                    const std::string& item) const {
-    std::vector<double> values;
-    const char* at = text.data();
-    const char* const end = text.data() + text.size();
-    const auto complain = [&](const std::string& why) {
-      fail(e, item + ": <" + e.Name() + "> \"" + std::string(text) + "\" " + why);
-    };
-    while (true) {
-      while (at != end && (*at == ' ' || *at == '\t' || *at == '\n' || *at == '\r')) ++at;
-      if (at == end) break;
-      if (*at == '+') ++at;
-      double value = 0.0;
-      const auto [rest, error] = std::from_chars(at, end, value);
-      const bool ends_here =
-          rest == end || *rest == ' ' || *rest == '\t' || *rest == '\n' || *rest == '\r';
-      if (error != std::errc() || !ends_here) complain("is not a number");
-      if (!std::isfinite(value)) complain("is not finite");
-      values.push_back(value);
-      at = rest;
-    }
-    if (values.size() != count) {
-      complain("has " + std::to_string(values.size()) + " of " + std::to_string(count) +
-               " numbers");
-    }
-    return values;
-  }
-
-  double number(const XMLElement& e, const char* attribute, const std::string& item) const {
-    return parse_numbers(e, text_of(e, attribute, item), 1, item)[0];
-  }
-
-  double number_or(const XMLElement& e, const char* attribute, double otherwise,
-                   const std::string& item) const {
-    return e.Attribute(attribute) ? number(e, attribute, item) : otherwise;
-  }
-
   double positive(const XMLElement& e, const char* attribute, const std::string& item) const {
     const double value = number(e, attribute, item);
     if (value <= 0.0)
@@ -115,7 +67,7 @@ class Parser {
   Eigen::Vector3d vector_or(const XMLElement& e, const char* attribute,
                             const Eigen::Vector3d& otherwise, const std::string& item) const {
     if (!e.Attribute(attribute)) return otherwise;
-    const std::vector<double> v = parse_numbers(e, e.Attribute(attribute), 3, item);
+    const std::vector<double> v = numbers(e, e.Attribute(attribute), 3, item);
     return {v[0], v[1], v[2]};
   }
 
@@ -140,7 +92,7 @@ class Parser {
     if (kind == nullptr) fail(e, item + ": <" + e.Name() + "> without geometry");
     const std::string_view tag = kind->Name();
     if (tag == "box") {
-      const std::vector<double> size = parse_numbers(*kind, text_of(*kind, "size", item), 3, item);
+      const std::vector<double> size = numbers(*kind, text_of(*kind, "size", item), 3, item);
       if (!(size[0] > 0.0 && size[1] > 0.0 && size[2] > 0.0)) {
         fail(*kind, item + ": <box> has a size that is not positive");
       }
@@ -186,36 +138,89 @@ class Parser {
     result.name = text_of(e, "name", "link");
     const std::string item = "link " + result.name;
     if (!link_names_.insert(result.name).second) fail(e, "two links named " + result.name);
-    for (const XMLElement* v = e.FirstChildElement("visual"); v;
-         v = v->NextSiblingElement("visual")) {
-      result.visual.push_back(shape(*v, item));
+    const auto shapes = [&](const char* tag) {
+      std::vector<DescribedGeometry> parts;
+      for (const XMLElement* at = e.FirstChildElement(tag); at; at = at->NextSiblingElement(tag)) {
+        findings_.attempt([&] { parts.push_back(shape(*at, item)); }, item);
+      }
+      return parts;
+    };
+    result.visual = shapes("visual");
+    result.collision = shapes("collision");
+    if (const XMLElement* i = e.FirstChildElement("inertial")) {
+      findings_.attempt([&] { result.inertia = inertia(*i, item); }, item);
     }
-    for (const XMLElement* c = e.FirstChildElement("collision"); c;
-         c = c->NextSiblingElement("collision")) {
-      result.collision.push_back(shape(*c, item));
-    }
-    if (const XMLElement* i = e.FirstChildElement("inertial")) result.inertia = inertia(*i, item);
     return result;
+  }
+
+  DescribedJoint::Type type(const XMLElement& e, const std::string& item) const {
+    using Type = DescribedJoint::Type;
+    const std::string text = text_of(e, "type", item);
+    if (text == "fixed") return Type::Fixed;
+    if (text == "revolute") return Type::Revolute;
+    if (text == "continuous") return Type::Continuous;
+    if (text == "prismatic") return Type::Prismatic;
+    fail(e, item + ": type " + text + " is none of fixed, revolute, continuous, prismatic");
+  }
+
+  void axis(const XMLElement& e, const std::string& item, DescribedJoint& result) {
+    const XMLElement* axis = e.FirstChildElement("axis");
+    if (axis == nullptr) return;
+    const Eigen::Vector3d given = vector_or(*axis, "xyz", Eigen::Vector3d::UnitX(), item);
+    const double length = given.norm();
+    if (length == 0.0) fail(*axis, item + ": axis 0 0 0");
+    result.axis = given / length;
+    if (std::abs(length - 1.0) > kUnitSlack) {
+      findings_.suspicious(
+          item, line(*axis) + "its axis has length " + rounded(length) +
+                    ", not 1; a URDF says nothing by that length. If it is the ratio of a "
+                    "transmission, add a coupling with ratio " +
+                    rounded(length) + " to the sidecar");
+    }
+  }
+
+  void limits(const XMLElement& e, const std::string& item, DescribedJoint& result) {
+    if (result.type == DescribedJoint::Type::Continuous) {
+      // One turn: what lies beyond is the same pose.
+      result.lower = -std::numbers::pi;
+      result.upper = std::numbers::pi;
+      return;
+    }
+    const XMLElement* limit = e.FirstChildElement("limit");
+    if (limit == nullptr || (!limit->Attribute("lower") && !limit->Attribute("upper"))) {
+      fail(e, item + ": no limits");
+    }
+    result.lower = number_or(*limit, "lower", 0.0, item);
+    result.upper = number_or(*limit, "upper", 0.0, item);
+    const std::string range = "limits " + geometry::shortest_decimal(result.lower) + " to " +
+                              geometry::shortest_decimal(result.upper);
+    if (result.lower > result.upper) fail(*limit, item + ": " + range + " are reversed");
+    for (const char* end : {"lower", "upper"}) {
+      if (!limit->Attribute(end)) {
+        findings_.note(item, line(*limit) + "no " + end + " limit; read as 0");
+      }
+    }
+    if (result.lower == result.upper) {
+      findings_.suspicious(item, line(*limit) + range + ": it cannot move");
+    }
+    const bool is_revolute = result.type == DescribedJoint::Type::Revolute;
+    const double farthest = std::max(std::abs(result.lower), std::abs(result.upper));
+    if (farthest > (is_revolute ? kFullTurn : kLongestStroke)) {
+      findings_.suspicious(
+          item, line(*limit) + range + " are read as " +
+                    (is_revolute ? "radians; are they degrees?" : "meters; are they millimeters?"));
+    }
   }
 
   DescribedJoint joint(const XMLElement& e) {
     DescribedJoint result;
     result.name = text_of(e, "name", "joint");
     const std::string item = "joint " + result.name;
-    if (!joint_names_.insert(result.name).second) fail(e, "two joints named " + result.name);
-    const std::string type = text_of(e, "type", item);
-    using Type = DescribedJoint::Type;
-    if (type == "fixed") {
-      result.type = Type::Fixed;
-    } else if (type == "revolute") {
-      result.type = Type::Revolute;
-    } else if (type == "continuous") {
-      result.type = Type::Continuous;
-    } else if (type == "prismatic") {
-      result.type = Type::Prismatic;
-    } else {
-      fail(e, item + ": type " + type + " is none of fixed, revolute, continuous, prismatic");
-    }
+    const auto attempt = [&](const auto& step) { findings_.attempt(step, item); };
+    attempt([&] {
+      if (!joint_names_.insert(result.name).second) fail(e, "two joints named " + result.name);
+    });
+    attempt([&] { result.type = type(e, item); });
     const auto end_link = [&](const char* tag) {
       const XMLElement* child = e.FirstChildElement(tag);
       if (child == nullptr) fail(e, item + ": no <" + tag + ">");
@@ -223,39 +228,21 @@ class Parser {
     };
     result.parent = end_link("parent");
     result.child = end_link("child");
-    result.X_PJ = origin(e, item);
-    if (result.type == Type::Fixed) return result;
+    attempt([&] { result.X_PJ = origin(e, item); });
+    if (result.type == DescribedJoint::Type::Fixed) return result;
 
-    if (const XMLElement* axis = e.FirstChildElement("axis")) {
-      result.axis = vector_or(*axis, "xyz", Eigen::Vector3d::UnitX(), item);
-      if (result.axis.norm() == 0.0) fail(*axis, item + ": axis 0 0 0");
-      result.axis.normalize();
-    }
-    const XMLElement* limit = e.FirstChildElement("limit");
-    if (result.type == Type::Continuous) {
-      // One turn: what lies beyond is the same pose.
-      result.lower = -std::numbers::pi;
-      result.upper = std::numbers::pi;
-    } else {
-      if (limit == nullptr || (!limit->Attribute("lower") && !limit->Attribute("upper"))) {
-        fail(e, item + ": no limits");
-      }
-      result.lower = number_or(*limit, "lower", 0.0, item);
-      result.upper = number_or(*limit, "upper", 0.0, item);
-      if (result.lower > result.upper) {
-        fail(*limit, item + ": limits " + geometry::shortest_decimal(result.lower) + " to " +
-                         geometry::shortest_decimal(result.upper) + " are reversed");
-      }
-    }
-    if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
+    attempt([&] { axis(e, item, result); });
+    attempt([&] { limits(e, item, result); });
+    attempt([&] {
+      const XMLElement* mimic = e.FirstChildElement("mimic");
+      if (mimic == nullptr) return;
       result.coupling = DescribedCoupling{text_of(*mimic, "joint", item),
                                           number_or(*mimic, "multiplier", 1.0, item),
                                           number_or(*mimic, "offset", 0.0, item), false};
-    }
+    });
     return result;
   }
 
-  std::string file_;
   Findings& findings_;
   std::set<std::string> link_names_;
   std::set<std::string> joint_names_;

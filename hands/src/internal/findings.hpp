@@ -25,15 +25,15 @@ class Findings {
   }
 
   /// Runs a step that can be left out. Its geometry::Error goes on to the caller, or, when faults
-  /// are collected, becomes one. Returns whether the step went through.
+  /// are collected, becomes one about `item`. Returns whether the step went through.
   template <class Step>
-  bool attempt(const Step& step) {
+  bool attempt(const Step& step, const std::string& item = "") {
     try {
       step();
       return true;
     } catch (const geometry::Error& error) {
       if (at_fault_ == AtFault::Throw) throw;
-      list_.push_back({FindingKind::Fault, "", error.what()});
+      list_.push_back({FindingKind::Fault, item, error.what()});
       has_faults_ = true;
       return false;
     }

@@ -17,9 +17,12 @@ namespace graspfit::hands::internal {
 /// hangs on the root (and the links fixed to it), its child becomes the root, if joints branch
 /// further on. What is left out is noted, and so is a coupling to a joint that is: the follower
 /// then becomes independent.
-/// @throws InvalidInput, prefixed by `file`, for a cycle, two roots, no movable joint, names that
-/// nothing bears.
-HandModel build_tree(const RobotDescription& description, const std::string& file,
-                     const std::optional<std::string>& root, Findings& findings);
+///
+/// Faults, prefixed by `file`: a cycle, two roots, no movable joint, names that nothing bears.
+/// Empty after a fault of the tree itself where they are collected; couplings with a fault are left
+/// out.
+/// @throws InvalidInput at the first fault where they are thrown.
+std::optional<HandModel> build_tree(const RobotDescription& description, const std::string& file,
+                                    const std::optional<std::string>& root, Findings& findings);
 
 }  // namespace graspfit::hands::internal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -19,9 +20,42 @@ struct HandCheck {
 };
 
 /// Reads a hand as `read_hand` does, but goes on after every fault that lets it, and looks for what
-/// a reader accepts and its author hardly meant: axes that are not unit (a lost transmission
-/// ratio), joints that look coupled and are not, zero-width limits, open or overlapping meshes,
-/// fingers that never close or whose tips never meet. Bad content is reported, never thrown.
+/// a reader accepts and its author hardly meant. Bad content is reported, never thrown.
+///
+/// Faults are those of `read_hand`, all of a description's links, joints and meshes, and the first
+/// of a sidecar. After a fault nothing is derived, and what needs the whole hand is not looked at.
+///
+/// Suspicious, beside what the readers notice (axes that are not unit in a URDF: a lost
+/// transmission ratio; limits of no width; limits beyond a turn or a meter: other units):
+/// - A hand that ends in a body without a mesh, or whose palm has none: nothing there can touch.
+/// - Center of mass farther outside a link's box than half its diagonal, and inertia whose
+///   principal moments no body has (negative, or one larger than the other two together), or whose
+///   radius of gyration is below a twentieth of the diagonal or above all of it: other units, or
+///   another link's. A solid box has 0.29 of it, whatever its shape, a hollow one at most 0.5.
+/// - Joints that look coupled and are not, where the sidecar says nothing of couplings (an empty
+///   list there says: none):
+///   - The last joint of a finger has less than half the range of the one before it about a
+///     parallel axis: the mark of a geared end joint (Barrett: 48 of 144 degrees). Independently
+///     driven neighbors have like ranges.
+///   - Two joints on the palm swing mirror images of one finger by a right angle or more, apart
+///     from flexing: such fingers are regrouped by one drive (Barrett's spread). Abduction is far
+///     narrower.
+///   - Two sliding joints on the palm, parallel, of equal stroke and with nothing behind them: the
+///     jaws of a parallel gripper.
+///   - More than 20 joints and no coupling: no built hand drives more one by one (the Shadow hand
+///     has 24 joints and 20 motors). Up to 20 it is a note that names the pairs.
+/// - A closing joint that travels less than 0.1 rad or 1 mm, or whose travel takes the pad that it
+///   moves backward; a finger without closing joint, or whose tip does not come nearer to the palm
+///   or to any other tip by a tenth when it closes: closing signs or limits.
+/// - Thumb and fingers between whose tips no ball fits (`hand_workspace`): they do not meet. If the
+///   thumb meets another finger, it is a note.
+/// - Links that overlap in the open configuration and are not excluded from collision.
+///
+/// Notes: what the readers did (meshes closed and how far they moved, meshes and members derived),
+/// links between joints without mesh, links without mass, joints of no finger, the pairs that are
+/// excluded from collision.
+///
+/// Cost: that of reading, and one `hand_workspace`.
 /// @throws IoError only if the file cannot be read.
 HandCheck check_hand(const std::filesystem::path& description_file);
 

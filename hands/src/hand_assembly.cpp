@@ -1,0 +1,113 @@
+#include "internal/hand_assembly.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/hand_io.hpp"
+#include "internal/derivation.hpp"
+#include "internal/hand_tree.hpp"
+#include "internal/link_surfaces.hpp"
+#include "internal/robot_file.hpp"
+#include "internal/sidecar_resolution.hpp"
+
+namespace graspfit::hands::internal {
+
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::InvalidInput;
+using geometry::IoError;
+
+void require_file(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw IoError(file.string() + ": no such hand description");
+  if (!fs::is_regular_file(file, error)) throw IoError(file.string() + ": is not a file");
+}
+
+}  // namespace
+
+HandSources read_sources(const fs::path& description_file, Findings& findings) {
+  require_file(description_file);
+  const std::string file = description_file.string();
+  const std::string text = geometry::read_file(description_file);
+  HandSources sources;
+  const bool is_robot = findings.attempt(
+      [&] { sources.description = parse_robot_file(text, description_file, findings); });
+  if (!is_robot) return sources;
+  const std::vector<DescribedLink>& links = sources.description.links;
+
+  const fs::path sidecar_file = sidecar_file_of(description_file);
+  std::error_code error;
+  std::string sidecar_text;
+  const bool has_sidecar = fs::is_regular_file(sidecar_file, error);
+  if (has_sidecar) {
+    findings.attempt([&] {
+      sidecar_text = geometry::read_file(sidecar_file);
+      sources.sidecar = parse_sidecar(sidecar_text, sidecar_file.string());
+    });
+  }
+  // An unknown link is left for `resolve` to complain about.
+  std::optional<std::string> palm_link;
+  for (const DescribedLink& link : links) {
+    if (sources.sidecar.palm && sources.sidecar.palm->link == link.name) palm_link = link.name;
+  }
+  findings.attempt(
+      [&] { sources.tree = build_tree(sources.description, file, palm_link, findings); });
+  if (sources.tree) {
+    HandModel& tree = *sources.tree;
+    tree.description_file = file;
+    tree.description_sha256 = geometry::sha256_hex(text);
+    if (has_sidecar) {
+      tree.sidecar_file = sidecar_file.string();
+      tree.sidecar_sha256 = geometry::sha256_hex(sidecar_text);
+    }
+    findings.attempt([&] {
+      const auto& couplings = sources.sidecar.couplings;
+      if (couplings) set_couplings(*couplings, sidecar_file.string(), tree);
+      follow_first_leaders(couplings ? sidecar_file.string() : file, tree);
+    });
+  }
+  for (const DescribedLink& source : links) {
+    Link aside;  // without a tree too: a mesh that is not there is worth saying at once
+    Link* link = &aside;
+    if (sources.tree) {
+      const auto found =
+          std::find_if(sources.tree->links.begin(), sources.tree->links.end(),
+                       [&](const Link& candidate) { return candidate.name == source.name; });
+      if (found == sources.tree->links.end()) continue;  // left out before the palm
+      link = &*found;
+    }
+    findings.attempt([&] { read_link_surface(source, description_file, *link, findings); },
+                     "link " + source.name);
+  }
+  return sources;
+}
+
+std::optional<HandModel> assemble(const HandSources& sources, Findings& findings) {
+  // After a fault names can still be checked, but nothing sensible derived.
+  if (!sources.tree || (findings.has_faults() && !sources.sidecar.is_complete())) {
+    return std::nullopt;
+  }
+  HandModel model = *sources.tree;
+  const std::string file = model.sidecar_file.empty() ? model.description_file : model.sidecar_file;
+  const bool is_whole = findings.attempt([&] {
+    Sidecar sidecar = sources.sidecar;
+    if (!sidecar.is_complete()) {
+      sidecar = completed(*sources.tree, sidecar, findings);
+      model.sidecar_sha256 = geometry::sha256_hex(sidecar_text(sidecar, model.name, ""));
+    }
+    resolve(sidecar, file, model);
+    try {
+      validate(model);
+    } catch (const InvalidInput& invalid) {
+      throw InvalidInput(file + ": " + invalid.what());
+    }
+  });
+  if (!is_whole || findings.has_faults()) return std::nullopt;
+  return model;
+}
+
+}  // namespace graspfit::hands::internal
