@@ -139,8 +139,11 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     std::fputs(help_text(command).c_str(), stdout);
     return kSuccess;
   }
-  const grasp::PlannerOptions options = read_planner_flags(flags);
+  grasp::PlannerOptions options = read_planner_flags(flags);
   const hands::HandModel hand = hands::find_hand(flags.text("hand"));
+  if (flags.is_default("contacts") && !flags.has("fingers")) {
+    options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
+  }
   grasp::requested_fingers(hand, options);  // what the hand cannot do is said before any work
   std::optional<OutputFolder> out;
   if (flags.has("out")) {

@@ -70,7 +70,8 @@ po::options_description planner_options() {
              "the fingers that must touch, by the hand's names (Barrett: finger_1, finger_2, "
              "thumb)");
   add_integer(request, "contacts", static_cast<std::uint64_t>(defaults.num_contacts),
-              "without --fingers: how many fingers must touch, the thumb first; at least 2 [P]");
+              "without --fingers: how many fingers must touch, the thumb first; at least 2 and, if "
+              "not given, no more than the hand has [P]");
   add_choice(request, "style", defaults.style, "where targets go: to the fingertips [P]");
   add_option(request, "approach", "X,Y,Z", std::nullopt,
              "wanted direction of the palm, toward the object, in the object's frame [P; reading: "

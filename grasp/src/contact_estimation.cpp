@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "graspfit/geometry/convex_clip.hpp"
 #include "internal/option_check.hpp"
@@ -57,12 +58,14 @@ std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double th
   return faces;
 }
 
-/// A triangle against a convex volume, as far as rounded numbers can tell.
-enum class Placement { Outside, Inside, Unsure };
-
-/// Outside and Inside are certain; they spare the exact clip most triangles.
-Placement placement(const std::array<Vector3d, 3>& triangle, const geometry::ConvexVolume& volume) {
-  bool is_inside = true;
+/// The half-spaces of a convex volume that may cut a triangle, as far as rounded numbers can tell:
+/// none where it certainly lies inside. Empty where it certainly lies outside.
+///
+/// Spares the exact clip most triangles, and the others most of the many half-spaces of a curved
+/// pad; those left out do not change a bit of its result.
+std::optional<geometry::ConvexVolume> cutting_half_spaces(const std::array<Vector3d, 3>& triangle,
+                                                          const geometry::ConvexVolume& volume) {
+  geometry::ConvexVolume cutting;
   for (const geometry::HalfSpace& half_space : volume) {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -lowest;
@@ -75,10 +78,73 @@ Placement placement(const std::array<Vector3d, 3>& triangle, const geometry::Con
     }
     // Six roundings of terms no larger than `magnitude`, doubled.
     const double rounding = 12 * std::numeric_limits<double>::epsilon() * magnitude;
-    if (lowest - half_space.offset > rounding) return Placement::Outside;
-    is_inside = is_inside && highest - half_space.offset < -rounding;
+    if (lowest - half_space.offset > rounding) return std::nullopt;
+    if (highest - half_space.offset >= -rounding) cutting.push_back(half_space);
   }
-  return is_inside ? Placement::Inside : Placement::Unsure;
+  return cutting;
+}
+
+/// A triangle that only the exact clip can measure.
+struct CutFace {
+  std::int32_t face = -1;
+  geometry::ConvexVolume cutting;
+};
+
+/// The part of a convex polygon where a plane of the pad's surface is at most `height` below.
+std::vector<Vector3d> part_within(const std::vector<Vector3d>& polygon_C,
+                                  const geometry::HalfSpace& plane, double height) {
+  const auto excess = [&](const Vector3d& point_C) {
+    return (plane.normal.dot(point_C) - plane.offset) / plane.normal.z() - height;
+  };
+  std::vector<Vector3d> part;
+  for (std::size_t i = 0; i < polygon_C.size(); ++i) {
+    const Vector3d& a = polygon_C[i];
+    const Vector3d& b = polygon_C[(i + 1) % polygon_C.size()];
+    const double at_a = excess(a), at_b = excess(b);
+    if (at_a <= 0.0) part.push_back(a);
+    if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0)) {
+      part.push_back(a + at_a / (at_a - at_b) * (b - a));
+    }
+  }
+  return part;
+}
+
+/// Smallest height of a convex polygon over the pad, or `known` where that is less. Over a flat pad
+/// a corner is lowest; over a bulge, whose height under the polygon is concave, it may be any
+/// point.
+double lowest_over_pad(const hands::ContactPad& pad, const std::vector<Vector3d>& polygon_C,
+                       double known) {
+  constexpr double kTolerance = 1e-12;  // [m]; rounding of coordinates of 0.1 m, some of them
+  double high = known;
+  for (const Vector3d& corner_C : polygon_C) {
+    high = std::min(high, hands::height_over_pad(pad, corner_C));
+  }
+  // Over each plane by itself a corner is lowest: the largest of these heights is a lower bound,
+  // and planes that never reach above it do not matter.
+  double low = -std::numeric_limits<double>::infinity();
+  std::vector<double> tops;
+  for (const geometry::HalfSpace& plane : pad.planes) {
+    double bottom = std::numeric_limits<double>::infinity();
+    double top = -bottom;
+    for (const Vector3d& corner_C : polygon_C) {
+      const double height = (plane.normal.dot(corner_C) - plane.offset) / plane.normal.z();
+      bottom = std::min(bottom, height);
+      top = std::max(top, height);
+    }
+    low = std::max(low, bottom);
+    tops.push_back(top);
+  }
+  if (pad.planes.empty()) return high;
+  while (high - low > kTolerance) {
+    const double middle = low + 0.5 * (high - low);
+    if (!(low < middle && middle < high)) break;
+    std::vector<Vector3d> part = polygon_C;
+    for (std::size_t k = 0; k < pad.planes.size() && !part.empty(); ++k) {
+      if (tops[k] > middle) part = part_within(part, pad.planes[k], middle);
+    }
+    (part.empty() ? low : high) = middle;
+  }
+  return high;
 }
 
 /// Sums over the pieces of surface inside a clip volume.
@@ -95,13 +161,13 @@ class SurfaceMean {
     weight_ += weight;
     centroid_O_ += weight * centroid_O;
     outward_normal_O_ += weight * outward_normal_O;
-    for (const Vector3d& corner_O : polygon_O) {
-      lowest_ = std::min(lowest_, hands::height_over_pad(pad_, X_CO_ * corner_O));
-    }
+    polygon_C_.clear();
+    for (const Vector3d& corner_O : polygon_O) polygon_C_.push_back(X_CO_ * corner_O);
+    lowest_ = lowest_over_pad(pad_, polygon_C_, lowest_);
   }
 
   double area() const { return area_; }
-  double lowest() const { return lowest_; }  ///< Smallest height of a corner over the pad.
+  double lowest() const { return lowest_; }  ///< Smallest height of a piece over the pad.
   Vector3d centroid_O() const { return centroid_O_ / weight_; }
   Vector3d outward_normal_O() const { return outward_normal_O_ / weight_; }
 
@@ -109,6 +175,7 @@ class SurfaceMean {
   geometry::PatchAveraging averaging_;
   const hands::ContactPad& pad_;
   RigidTransform X_CO_;
+  std::vector<Vector3d> polygon_C_;
   double area_ = 0.0;
   double weight_ = 0.0;
   double lowest_ = std::numeric_limits<double>::infinity();
@@ -141,25 +208,28 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
       hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
   const RigidTransform X_CO = X_OC.inverse();
   SurfaceMean mean(options.averaging, pad, X_CO);
-  std::vector<std::int32_t> cut_faces;
+  std::vector<CutFace> cut_faces;
   for (const std::int32_t face : faces) {
     const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);
-    const Placement place = placement(triangle, volume_O);
-    if (place == Placement::Outside) continue;
+    std::optional<geometry::ConvexVolume> cutting = cutting_half_spaces(triangle, volume_O);
+    if (!cutting) continue;
     const auto& [a, b, c] = triangle;
     const Vector3d twice_area = (b - a).cross(c - a);
     // Whether a triangle this thin has area at all is for the exact clip to say.
     const bool is_thin =
         twice_area.norm() <= kThinRel * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
-    if (place == Placement::Unsure || is_thin) {
-      cut_faces.push_back(face);
+    if (!cutting->empty() || is_thin) {
+      cut_faces.push_back({face, std::move(*cutting)});
     } else {
       mean.add(triangle, 0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized());
     }
   }
-  for (const geometry::ClippedPiece& piece : geometry::clip(object.mesh(), cut_faces, volume_O)) {
-    mean.add(piece.polygon, piece.area, piece.centroid,
-             geometry::face_normal(object.mesh(), piece.face));
+  for (const CutFace& cut : cut_faces) {
+    if (const auto piece =
+            geometry::clip(geometry::corners(object.mesh(), cut.face), cut.cutting)) {
+      mean.add(piece->polygon, piece->area, piece->centroid,
+               geometry::face_normal(object.mesh(), cut.face));
+    }
   }
   if (!(mean.area() > 0.0)) return std::nullopt;
   const Vector3d outward_normal_O = mean.outward_normal_O();

@@ -29,7 +29,7 @@ double finger_error(const hands::HandModel& hand, const hands::HandConfiguration
     const hands::Joint& joint = hand.joints[*finger.swing_joint];
     pivot = (X_OL[joint.parent_link] * joint.X_PJ).translation();
   }
-  const Vector3d tip = hands::pad_pose(hand, finger.tip_pad, X_OL).translation();
+  const Vector3d tip = hands::pad_contact_point(hand, finger.tip_pad, X_OL);
   const Vector3d axis = (configuration.X_OH.linear() * hand.palm.direction_H).normalized();
   return azimuth_error(tip - pivot, target.point_O - pivot, axis);
 }
@@ -140,19 +140,88 @@ double swing_error(const hands::HandModel& hand, const hands::HandConfiguration&
   return sum;
 }
 
+bool is_one_sided(const hands::HandModel& hand) {
+  const hands::HandConfiguration open = hands::open_configuration(hand);
+  const std::vector<RigidTransform> X_HL = hands::forward_kinematics(hand, open);
+  const Vector3d& axis = hand.palm.direction_H;
+  const Vector3d zero_azimuth = axis.unitOrthogonal();
+  std::vector<double> azimuths;
+  for (const hands::Finger& finger : hand.fingers) {
+    if (finger.tip_pad < 0) continue;
+    const Vector3d tip = hands::pad_contact_point(hand, finger.tip_pad, X_HL);
+    azimuths.push_back(azimuth_error(zero_azimuth, tip - hand.palm.center_H, axis));
+  }
+  if (azimuths.empty()) return false;
+  std::sort(azimuths.begin(), azimuths.end());
+  double gap = azimuths.front() + 2.0 * kPi - azimuths.back();
+  for (std::size_t i = 1; i < azimuths.size(); ++i) {
+    gap = std::max(gap, azimuths[i] - azimuths[i - 1]);
+  }
+  // Opposite jaws leave half a turn on either side, up to the rounding of the description.
+  constexpr double kRounding = 1e-6;  // [rad]
+  return gap > kPi + kRounding;
+}
+
+Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
+                       const std::vector<RigidTransform>& X_OL, const TargetContacts& targets) {
+  const RigidTransform& X_OH = X_OL[hand.palm.link];
+  const Vector3d palm_center = X_OH * hand.palm.center_H;
+  if (!is_hand_one_sided) return palm_center;
+  Vector3d to_tips = Vector3d::Zero();
+  for (const TargetContact& target : targets.contacts) {
+    to_tips +=
+        hands::pad_contact_point(hand, hand.fingers[target.finger].tip_pad, X_OL) - palm_center;
+  }
+  to_tips /= static_cast<double>(targets.contacts.size());
+  const Vector3d axis = (X_OH.linear() * hand.palm.direction_H).normalized();
+  return palm_center + to_tips - to_tips.dot(axis) * axis;
+}
+
+int closing_joint(const hands::HandModel& hand, const hands::Finger& finger) {
+  int leader = -1;
+  for (const int joint : finger.joints) {
+    const hands::Joint& description = hand.joints[joint];
+    if (description.closing_sign == 0) continue;
+    if (!description.coupling) return joint;
+    if (leader < 0) leader = description.coupling->leader;
+  }
+  return leader;
+}
+
+std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger) {
+  std::vector<int> joints;
+  for (const int joint : finger.joints) {
+    const hands::Joint& description = hand.joints[joint];
+    const bool closes_alone = description.closing_sign != 0 && !description.coupling;
+    if (closes_alone && joint != closing_joint(hand, finger)) joints.push_back(joint);
+  }
+  return joints;
+}
+
+double distal_change(const hands::HandModel& hand, const std::vector<RigidTransform>& X_OL,
+                     int joint, const TargetContact& target) {
+  const hands::Joint& description = hand.joints[joint];
+  const Vector3d pad_normal =
+      hands::pad_pose(hand, hand.fingers[target.finger].tip_pad, X_OL).linear() * Vector3d::UnitZ();
+  const Vector3d axis =
+      X_OL[description.parent_link].linear() * (description.X_PJ.linear() * description.axis_J);
+  return azimuth_error(pad_normal, -target.outward_normal_O, axis.normalized());
+}
+
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const Vector3d& direction_O, double distance) {
   hands::HandConfiguration configuration = hands::open_configuration(hand);
   configuration.X_OH.linear() =
       Eigen::Quaterniond::FromTwoVectors(hand.palm.direction_H, direction_O).toRotationMatrix();
-  const Vector3d palm_center = targets.centroid() - distance * direction_O;
-  configuration.X_OH.translation() = palm_center - configuration.X_OH.linear() * hand.palm.center_H;
+  std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
+  const Vector3d pivot = targets.centroid() - distance * direction_O;
+  configuration.X_OH.pretranslate(pivot - turning_point(hand, is_one_sided(hand), X_OL, targets));
   const TargetContact& seed = targets.contacts.front();
-  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
-  const Vector3d tip = hands::pad_pose(hand, hand.fingers[seed.finger].tip_pad, X_OL).translation();
-  const double angle = azimuth_error(tip - palm_center, seed.point_O - palm_center, direction_O);
-  configuration.X_OH = turned(configuration.X_OH, palm_center, direction_O, angle);
+  X_OL = hands::forward_kinematics(hand, configuration);
+  const Vector3d tip = hands::pad_contact_point(hand, hand.fingers[seed.finger].tip_pad, X_OL);
+  const double angle = azimuth_error(tip - pivot, seed.point_O - pivot, direction_O);
+  configuration.X_OH = turned(configuration.X_OH, pivot, direction_O, angle);
   configuration.q = aligned_swing(hand, configuration, targets);
   return configuration;
 }
@@ -189,27 +258,39 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
   const Vector3d direction = placement.direction_O.normalized();
   const hands::HandConfiguration start =
       aligned_open_hand(hand, targets, direction, hands::largest_reach(hand));
-  const Vector3d center = start.X_OH * hand.palm.center_H;
+  const Vector3d center =
+      turning_point(hand, is_one_sided(hand), hands::forward_kinematics(hand, start), targets);
   double largest = 0.0;
   for (const TargetContact& target : targets.contacts) {
     const hands::Finger& finger = hand.fingers[target.finger];
-    const auto closing = std::find_if(finger.joints.begin(), finger.joints.end(), [&](int joint) {
-      return hand.joints[joint].closing_sign != 0 && !hand.joints[joint].coupling;
-    });
-    if (closing == finger.joints.end()) continue;
-    const hands::Joint& joint = hand.joints[*closing];
+    const int closing = closing_joint(hand, finger);
+    if (closing < 0) continue;
+    const std::vector<int> distal = distal_joints(hand, finger);
+    const hands::Joint& joint = hand.joints[closing];
     const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
     const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
     hands::HandConfiguration trial = start;
-    const auto pad_at = [&](double share) {
+    const auto links_at = [&](double share) {
       trial.q = start.q;  // a breakaway joint must not keep the position of a more closed sample
-      trial.q[*closing] = open + share * (closed - open);
+      trial.q[closing] = open + share * (closed - open);
       hands::apply_couplings(hand, trial.q);
-      return hands::pad_pose(hand, finger.tip_pad, hands::forward_kinematics(hand, trial));
+      std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, trial);
+      for (const int other : distal) {  // as step 5 of the loop will
+        trial.q[other] = std::clamp(trial.q[other] + distal_change(hand, X_OL, other, target),
+                                    hand.joints[other].lower, hand.joints[other].upper);
+        hands::apply_couplings(hand, trial.q);
+        X_OL = hands::forward_kinematics(hand, trial);
+      }
+      return X_OL;
+    };
+    const auto tip_at = [&](double share) {
+      return hands::pad_contact_point(hand, finger.tip_pad, links_at(share));
     };
     // Along the direction in which the open finger looks, so that a pad beyond the axis counts as
     // closer.
-    Vector3d outward = pad_at(0.0).translation() - center;
+    Vector3d outward =
+        hands::pad_contact_point(hand, finger.tip_pad, hands::forward_kinematics(hand, start)) -
+        center;
     outward -= outward.dot(direction) * direction;
     outward.normalize();
     const auto distance_from_axis = [&](const Vector3d& point) {
@@ -217,11 +298,11 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
     };
     const double wanted = distance_from_axis(target.point_O);
     double before = 0.0;
-    double excess_before = distance_from_axis(pad_at(0.0).translation()) - wanted;
+    double excess_before = distance_from_axis(tip_at(0.0)) - wanted;
     double share = 0.0;
     for (int sample = 1; sample <= kSamples && excess_before > 0.0; ++sample) {
       share = static_cast<double>(sample) / kSamples;
-      const double excess = distance_from_axis(pad_at(share).translation()) - wanted;
+      const double excess = distance_from_axis(tip_at(share)) - wanted;
       if (excess <= 0.0) {
         share = before + (share - before) * excess_before / (excess_before - excess);
         break;
@@ -229,7 +310,8 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
       before = share;
       excess_before = excess;
     }
-    const Vector3d pad_normal = pad_at(share).linear() * Vector3d::UnitZ();
+    const Vector3d pad_normal =
+        hands::pad_pose(hand, finger.tip_pad, links_at(share)).linear() * Vector3d::UnitZ();
     const Vector3d inward = -target.outward_normal_O;
     largest =
         std::max(largest, std::atan2(pad_normal.cross(inward).norm(), pad_normal.dot(inward)));

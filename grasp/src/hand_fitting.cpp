@@ -39,7 +39,8 @@ struct Part {
   int pad = -1;
   int tip_link = -1;
   std::size_t target = 0;  ///< Index into the target set.
-  int closing_joint = -1;  ///< The proximal joint; the distal one after a breakaway.
+  int closing_joint = -1;  ///< The proximal joint; the distal one after a breakaway. Fingers that
+                           ///< move together share it.
   int breakaway_joint =
       -1;  ///< The joint that goes on when the proximal link is blocked; −1 if none.
   std::vector<int> distal_joints;  ///< Independent joints beyond the proximal one (step 5).
@@ -57,7 +58,8 @@ class Loop {
         targets_(targets),
         contact_options_(contact_options),
         options_(options),
-        voxel_size_(object.grid.lattice.voxel_size) {
+        voxel_size_(object.grid.lattice.voxel_size),
+        is_one_sided_(is_one_sided(hand.model())) {
     for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
       moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
     }
@@ -108,16 +110,12 @@ class Loop {
     const hands::Finger& finger = model_.fingers[part.finger];
     part.pad = finger.tip_pad;
     part.tip_link = model_.pads[part.pad].link;
+    part.closing_joint = closing_joint(model_, finger);
+    part.distal_joints = distal_joints(model_, finger);
     for (const int joint : finger.joints) {
       const hands::Joint& description = model_.joints[joint];
-      if (description.closing_sign == 0) continue;
-      if (description.coupling) {
-        if (description.coupling->breakaway) part.breakaway_joint = joint;
-      } else if (part.closing_joint < 0) {
-        part.closing_joint = joint;
-      } else {
-        part.distal_joints.push_back(joint);
-      }
+      const bool can_go_on = description.coupling && description.coupling->breakaway;
+      if (description.closing_sign != 0 && can_go_on) part.breakaway_joint = joint;
     }
     parts_.push_back(part);
   }
@@ -136,7 +134,6 @@ class Loop {
   Vector3d palm_direction() const {
     return (configuration_.X_OH.linear() * model_.palm.direction_H).normalized();
   }
-  Vector3d palm_center() const { return configuration_.X_OH * model_.palm.center_H; }
   const Vector3d& target_point(const Part& part) const {
     return targets_.contacts[part.target].point_O;
   }
@@ -287,7 +284,7 @@ class Loop {
     double step = step_at(distance_over(moved_links_[joint])) / lever(joint) *
                   model_.joints[joint].closing_sign;
     for (int halving = 0; halving <= options_.max_halvings; ++halving, step /= 2) {
-      if (try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint])) return;
+      if (try_closing(joint, step)) return;
     }
     // Blocked at the tip means done; blocked farther back lets the clutch free the distal joint
     // (A27).
@@ -297,6 +294,40 @@ class Loop {
     }
   }
 
+  /// Closes a joint by `step`. Where several fingers hang on it and one of them is stopped, the
+  /// hand moves so that this one stays where it is and the others close, as far in all (A44).
+  bool try_closing(int joint, double step) {
+    if (try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint])) {
+      return true;
+    }
+    const Part* const stopped = stopped_part_sharing(joint);
+    if (!stopped) return false;
+    hands::HandConfiguration candidate = with_joint(joint, configuration_.q[joint] + step / 2);
+    const Vector3d moved_by =
+        hands::pad_contact_point(model_, stopped->pad,
+                                 hands::forward_kinematics(model_, candidate)) -
+        hands::pad_contact_point(model_, stopped->pad, X_OL_);
+    candidate.X_OH.pretranslate(-moved_by);
+    return try_move(candidate, all_links_);
+  }
+
+  /// The part on whose account the last motion was not possible, if its closing joint closes others
+  /// too.
+  const Part* stopped_part_sharing(int joint) const {
+    const Part* stopped = nullptr;
+    int num_sharing = 0;
+    for (const Part& part : parts_) {
+      if (part.closing_joint != joint) continue;
+      ++num_sharing;
+      const std::vector<int>& links = model_.fingers[part.finger].links;
+      const bool is_in_the_way =
+          blocking_link_ < 0 ? part.state == Part::State::Touching
+                             : std::find(links.begin(), links.end(), blocking_link_) != links.end();
+      if (!stopped && is_in_the_way) stopped = &part;
+    }
+    return num_sharing > 1 ? stopped : nullptr;
+  }
+
   /// Closes a touching finger on until the guard stops even the smallest motion.
   void settle(Part& part) {
     double motion = options_.small_step * voxel_size_;
@@ -304,9 +335,7 @@ class Loop {
       const int joint = part.closing_joint;
       const double step = motion / lever(joint) * model_.joints[joint].closing_sign;
       const bool is_at_limit = is_at_closing_limit(joint);
-      const bool is_done =
-          is_at_limit ||
-          !try_move(with_joint(joint, configuration_.q[joint] + step), moved_links_[joint]);
+      const bool is_done = is_at_limit || !try_closing(joint, step);
       if (is_done) motion /= 2;
       // The tip may go on where only the link behind it is stopped.
       const bool is_stopped_behind =
@@ -343,7 +372,7 @@ class Loop {
   void translate_to_targets() {
     Vector3d tips = Vector3d::Zero();
     for (const Part& part : parts_) {
-      tips += hands::pad_pose(model_, part.pad, X_OL_).translation();
+      tips += hands::pad_contact_point(model_, part.pad, X_OL_);
     }
     const Vector3d wanted = targets_.centroid() - tips / static_cast<double>(parts_.size());
     move_hand(wanted.norm(), [&](double share) {
@@ -355,11 +384,10 @@ class Loop {
   /// Step 3: about the palm direction, until the thumb looks at the seed.
   void turn_to_seed() {
     const Vector3d axis = palm_direction();
-    const Vector3d pivot = palm_center();
+    const Vector3d pivot = turning_point(model_, is_one_sided_, X_OL_, targets_);
     const Part& seed = parts_.front();
-    const double angle =
-        azimuth_error(hands::pad_pose(model_, seed.pad, X_OL_).translation() - pivot,
-                      target_point(seed) - pivot, axis);
+    const double angle = azimuth_error(hands::pad_contact_point(model_, seed.pad, X_OL_) - pivot,
+                                       target_point(seed) - pivot, axis);
     double reach = 0.0;
     for (const int link : all_links_) {
       reach =
@@ -390,12 +418,7 @@ class Loop {
   /// target's.
   void align_distal(const Part& part) {
     for (const int joint : part.distal_joints) {
-      const Vector3d pad_normal =
-          hands::pad_pose(model_, part.pad, X_OL_).linear() * Vector3d::UnitZ();
-      const Vector3d axis = X_OL_[model_.joints[joint].parent_link].linear() *
-                            (model_.joints[joint].X_PJ.linear() * model_.joints[joint].axis_J);
-      const double change = azimuth_error(
-          pad_normal, -targets_.contacts[part.target].outward_normal_O, axis.normalized());
+      const double change = distal_change(model_, X_OL_, joint, targets_.contacts[part.target]);
       if (std::abs(change) < 1e-6) continue;
       const double limit = step_at(distance_over(moved_links_[joint])) / lever(joint);
       double step = std::clamp(change, -limit, limit);
@@ -433,6 +456,7 @@ class Loop {
   const ContactEstimationOptions& contact_options_;
   const FittingOptions& options_;
   const double voxel_size_;
+  const bool is_one_sided_;
   std::vector<std::vector<int>> moved_links_;  ///< Per joint.
   std::vector<int> all_links_;
   std::vector<Part> parts_;  ///< One per target, the seed's first.

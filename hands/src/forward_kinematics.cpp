@@ -44,6 +44,12 @@ std::vector<RigidTransform> forward_kinematics(const HandModel& model,
   return X_OL;
 }
 
+Eigen::Vector3d pad_contact_point(const HandModel& model, int pad,
+                                  const std::vector<RigidTransform>& X_OL) {
+  const RigidTransform X_OC = pad_pose(model, pad, X_OL);
+  return X_OC.translation() + pad_contact_point_C(model.pads[pad]).z() * X_OC.linear().col(2);
+}
+
 std::vector<int> links_moved_by(const HandModel& model, int joint) {
   if (joint < 0 || joint >= static_cast<int>(model.joints.size())) {
     throw geometry::InvalidInput("hand " + model.name + ": joint " + std::to_string(joint) +

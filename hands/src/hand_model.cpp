@@ -433,6 +433,10 @@ double pad_height(const ContactPad& pad) {
   return height;
 }
 
+Eigen::Vector3d pad_contact_point_C(const ContactPad& pad) {
+  return {0.0, 0.0, std::max(0.0, -height_over_pad(pad, Eigen::Vector3d::Zero()))};
+}
+
 geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
   require_thickness("clip_volume_C", pad, thickness);
   geometry::ConvexVolume volume;

@@ -97,6 +97,10 @@ TEST_CASE("Link meshes have the stated sizes", "[hands][barrett]") {
     CHECK(((high - size).array() > -1.0).all());
   };
   check("palm", {89, 109, 90}, {89, 109, 96});
+  // D_w of Barrett's wiki: 76 mm from the wrist plane to the knuckle axes, which GraspIt! puts 3.32
+  // mm below the palm.
+  CHECK(geometry::bounding_box(link("palm").mesh_L).min().z() ==
+        Approx(-0.076 - 0.00332).margin(1e-9));
   check("finger_1_proximal_link", {92, 26, 19}, {92, 26, 21});
   check("thumb_distal_link", {68, 20, 23}, {68, 20, 23});
   // Knuckle: cylinder r 15 x 24 at its end (jhu-lcsr/barrett_model).
@@ -104,6 +108,19 @@ TEST_CASE("Link meshes have the stated sizes", "[hands][barrett]") {
   CHECK(knuckle.sizes().y() == Approx(0.024).margin(1e-6));
   CHECK(knuckle.max().z() == Approx(0.015).margin(2e-4));
   CHECK(knuckle.max().x() == Approx(0.065).margin(5e-4));
+}
+
+TEST_CASE("Links of the Barrett hand have the published masses", "[hands][barrett]") {
+  // jhu-lcsr/barrett_model, models/hand.urdf.xacro [kg].
+  for (const Link& l : barrett().links) {
+    CAPTURE(l.name);
+    REQUIRE(l.inertia.has_value());
+    const double expected = l.name == "palm"                     ? 0.50573
+                            : l.name.ends_with("knuckle")        ? 0.14109
+                            : l.name.ends_with("_proximal_link") ? 0.062139
+                                                                 : 0.041377;
+    CHECK(l.inertia->mass == expected);
+  }
 }
 
 TEST_CASE("Every pad is a flat part of its link's mesh: a contact of the pad is one of the mesh",

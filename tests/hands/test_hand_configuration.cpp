@@ -43,6 +43,7 @@ TEST_CASE("A joint that opens as it grows starts at its upper limit; a neutral o
 
 TEST_CASE("Distal joints follow by one third and the second spread joint by one",
           "[hands][hand_configuration]") {
+  // GraspIt!'s d/3; OpenRAVE's 0.33333; Barrett's gears, 125:1 over 93.75:1 less one.
   Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
   at(q, "finger_1_spread") = 0.9;
   at(q, "finger_1_proximal") = 1.5;
@@ -58,6 +59,9 @@ TEST_CASE("Distal joints follow by one third and the second spread joint by one"
 TEST_CASE(
     "After breakaway a distal joint keeps what it closed beyond its coupling, up to its limit",
     "[hands][hand_configuration]") {
+  // Barrett's TorqueSwitch (support wiki, BH8-262 and BH8-280): a clutch frees a blocked proximal
+  // link and the motor goes on closing the distal one; its range of 48 degrees is that of
+  // jhu-lcsr/barrett_model.
   Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
   at(q, "finger_1_proximal") = 0.6;  // asks for 0.2
   at(q, "finger_1_distal") = 0.7;    // has gone on

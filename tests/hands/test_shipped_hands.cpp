@@ -177,6 +177,30 @@ TEST_CASE("Curved pads lie on their link's skin, face outward and follow it to 0
   CHECK(num_curved == 4 * (4 * 3 + 2 + 1));
 }
 
+TEST_CASE("The point of a pad that touches lies on the link's skin, of a flat pad at its frame",
+          "[hands][shipped_hands]") {
+  for (const auto& [name, hand] : shipped()) {
+    const auto X_OL = hands::forward_kinematics(hand, closed_by(hand, 0.3));
+    for (std::size_t p = 0; p < hand.pads.size(); ++p) {
+      const ContactPad& pad = hand.pads[p];
+      CAPTURE(name, pad.name);
+      const Vector3d point_C = hands::pad_contact_point_C(pad);
+      CHECK(point_C.head<2>().norm() == 0.0);
+      CHECK(std::abs(hands::height_over_pad(pad, point_C)) < 1e-15);
+      const RigidTransform X_OC = hands::pad_pose(hand, static_cast<int>(p), X_OL);
+      const Vector3d point_O = hands::pad_contact_point(hand, static_cast<int>(p), X_OL);
+      if (pad.surface.empty()) {
+        CHECK(point_O == X_OC.translation());
+      } else {
+        CHECK((point_O - X_OC * point_C).norm() < 1e-15);
+        CHECK(point_C.z() > 0.8 * hands::pad_height(pad));
+        const geometry::MeshQuery skin(link_of(hand, pad).mesh_L);
+        CHECK(std::sqrt(skin.closest_point(pad.X_LC * point_C).squared_distance) < 0.3e-3);
+      }
+    }
+  }
+}
+
 TEST_CASE("No shipped hand touches itself open or half closed", "[hands][shipped_hands]") {
   for (const auto& [name, hand] : shipped()) {
     const hands::HandCollision collision(hand);

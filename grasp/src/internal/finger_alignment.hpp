@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
@@ -32,8 +33,34 @@ Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
 double swing_error(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
                    const TargetContacts& targets);
 
-/// The hand open, its palm direction along `direction_O` (unit), the palm center `distance` before
-/// the targets' centroid, the seed's finger turned to the seed, the others swung to their targets.
+/// Whether all fingertips of the open hand lie to one side of its palm center, seen along the palm
+/// direction: such a hand, as the human one, holds things before its fingers, not before its palm.
+bool is_one_sided(const hands::HandModel& hand);
+
+/// The point that is placed before the targets and about which the hand turns: the palm center [P];
+/// of a one-sided hand the point at the palm center's height before the middle of the fingertips
+/// with targets, or the targets would lie behind the bases of its fingers [R, A28].
+Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
+                              const std::vector<geometry::RigidTransform>& X_OL,
+                              const TargetContacts& targets);
+
+/// The joint that closes a finger: the first independent one that closes or, where all of them
+/// follow (a gripper's second jaw), the leader of the first; −1 if none closes.
+int closing_joint(const hands::HandModel& hand, const hands::Finger& finger);
+
+/// The finger's independent closing joints beyond the first, proximal to distal.
+std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger);
+
+/// By how much a distal joint of the target's finger would have to turn for the reversed normal of
+/// the fingertip to agree with the target's, seen along the joint's axis [rad] (section 8, step 5).
+double distal_change(const hands::HandModel& hand,
+                     const std::vector<geometry::RigidTransform>& X_OL, int joint,
+                     const TargetContact& target);
+
+/// The hand open, its palm direction along `direction_O` (unit), its turning point `distance`
+/// before the targets' centroid, the seed's finger turned to the seed, the others swung to their
+/// targets. A thumb that swings by itself stands where the others' swings come closest to their
+/// targets (A28).
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const Eigen::Vector3d& direction_O, double distance);

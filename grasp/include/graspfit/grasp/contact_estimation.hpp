@@ -22,8 +22,9 @@ struct ContactEstimationOptions {
 /// Contact of one pad: the object's triangles clipped by the pad's clip volume. Point and normal
 /// are the mean over the pieces, the point projected to the nearest point of the surface; size is
 /// the pieces' total area; boundary distance is that of the point dropped onto the pad's plane; gap
-/// is the height over the pad of the lowest corner of a piece. Empty if no piece has area, or the
-/// mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip volume.
+/// is the smallest height of a piece over the pad's surface along its z. Empty if no piece has
+/// area, or the mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip
+/// volume.
 ///
 /// `is_target` and `weak` are left at their defaults. Surface behind the pad's plane is not seen;
 /// surface inside the bulge of a curved pad is, and there the link has entered the object. Walls

@@ -18,6 +18,11 @@ inline RigidTransform pad_pose(const HandModel& model, int pad,
   return X_OL[model.pads[pad].link] * model.pads[pad].X_LC;
 }
 
+/// The point of a pad that is meant to touch (`pad_contact_point_C`), given the link poses. Of a
+/// flat pad exactly the origin of its frame.
+Eigen::Vector3d pad_contact_point(const HandModel& model, int pad,
+                                  const std::vector<RigidTransform>& X_OL);
+
 /// Links that move when joint `joint` moves (children of its child link, through couplings of other
 /// joints too), ascending.
 std::vector<int> links_moved_by(const HandModel& model, int joint);

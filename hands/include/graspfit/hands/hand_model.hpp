@@ -165,6 +165,11 @@ double height_over_pad(const ContactPad& pad, const Eigen::Vector3d& point_C);
 /// Height of the pad's highest point over its plane [m]; 0 for a flat one.
 double pad_height(const ContactPad& pad);
 
+/// The point of the pad that is meant to touch, in C: over the origin of the pad's frame, on its
+/// surface; the origin itself of a flat pad, and where the surface does not reach over it. Whatever
+/// is to be brought to an object is this point. Rounded.
+Eigen::Vector3d pad_contact_point_C(const ContactPad& pad);
+
 /// The paper's clip volume in frame C, the pad's surface offset by `thickness` along its normal
 /// (> 0, else InvalidInput), as half-spaces: of a flat pad the prism over the outline, of a bulging
 /// one the hull of the surface and of the same moved by `thickness` along z. The bulge itself is

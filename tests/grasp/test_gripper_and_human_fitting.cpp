@@ -1,0 +1,208 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grasp/target_oracle.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace graspfit;
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+using grasp::FittingResult;
+using grasp::FittingStop;
+using grasp::PalmPlacement;
+using grasp::TargetContacts;
+using std::numbers::pi;
+using testing::angle_between;
+
+grasp::PlannerOptions with_contacts(int number) {
+  grasp::PlannerOptions options;
+  options.num_contacts = number;
+  return options;
+}
+
+/// An object prepared for a hand, and the hand for it.
+struct Scene {
+  Scene(const geometry::TriangleMesh& mesh, const std::string& hand_name, int num_contacts)
+      : hand(hands::find_hand(hand_name)),
+        object(grasp::prepare_object(mesh, hand, with_contacts(num_contacts))),
+        fitting_hand(hand, grasp::FittingOptions{}.sample_spacing * object.grid.lattice.voxel_size),
+        fingers(grasp::requested_fingers(hand, with_contacts(num_contacts))) {
+    contact_options.clip_thickness = grasp::clip_thickness({}, object.grid.lattice.voxel_size);
+  }
+
+  TargetContacts assigned(const TargetContacts& targets, const PalmPlacement& placement) const {
+    return grasp::assign_fingers(hand, targets, fingers, placement);
+  }
+  FittingResult fit(const TargetContacts& assigned_targets, const PalmPlacement& placement) const {
+    return grasp::fit_hand(fitting_hand, object, assigned_targets, placement, contact_options, {});
+  }
+
+  hands::HandModel hand;
+  grasp::ObjectModel object;
+  grasp::FittingHand fitting_hand;
+  std::vector<int> fingers;  ///< Thumb first.
+  grasp::ContactEstimationOptions contact_options;
+};
+
+TargetContacts targets_at(const std::vector<Vector3d>& points,
+                          const std::vector<Vector3d>& outward_normals) {
+  TargetContacts targets;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    grasp::TargetContact target;
+    target.point_O = points[i];
+    target.outward_normal_O = outward_normals[i].normalized();
+    target.score = 1.0;
+    targets.contacts.push_back(target);
+  }
+  return targets;
+}
+
+/// `v` without its part along the unit `axis`.
+Vector3d seen_along(const Vector3d& axis, const Vector3d& v) { return v - axis.dot(v) * axis; }
+
+TEST_CASE(
+    "A gripper whose targets are off the object's middle moves over and touches on both sides",
+    "[grasp][hand_fitting]") {
+  // Targets whose middle is `off` beside the middle of a box 40 mm wide: one jaw meets the box 2
+  // `off` before the other, and the hand has to give way by `off` (notes A44).
+  const Scene scene(geometry::box({0.04, 0.08, 0.03}), "parallel_gripper", 2);
+  for (const double off : {0.0, 0.004, -0.004, 0.012}) {
+    CAPTURE(off);
+    const PalmPlacement placement{-Vector3d::UnitZ()};
+    const TargetContacts targets = scene.assigned(
+        targets_at({{0.02 + off, 0, 0}, {-0.02 + off, 0, 0}}, {{1, 0, 0}, {-1, 0, 0}}), placement);
+    const FittingResult result = scene.fit(targets, placement);
+    CHECK(result.stop == FittingStop::Contact);
+    CHECK(result.initial.X_OH.translation().x() == Approx(off).margin(1e-9));
+    // Both jaws rest on the box within the tolerance of settling, so the gripper is in its middle.
+    const double settled = grasp::FittingOptions{}.settle_tolerance;
+    CHECK(result.configuration.X_OH.translation().x() == Approx(0.0).margin(2 * settled));
+    CHECK(result.configuration.q[0] == Approx(0.02).margin(2 * settled));
+    CHECK(result.configuration.q[0] == result.configuration.q[1]);
+    for (const grasp::Contact& contact : result.contacts) {
+      if (contact.finger < 0) continue;
+      CHECK(contact.is_target);
+      CHECK(contact.gap < 4 * settled);
+    }
+    CHECK(std::count_if(result.contacts.begin(), result.contacts.end(),
+                        [](const grasp::Contact& c) { return c.is_target; }) == 2);
+  }
+}
+
+TEST_CASE("A gripper that meets nothing closes to its limit and says what it missed",
+          "[grasp][hand_fitting]") {
+  const Scene scene(geometry::box({0.04, 0.08, 0.03}), "parallel_gripper", 2);
+  const PalmPlacement placement{-Vector3d::UnitZ()};
+  const TargetContacts targets = scene.assigned(
+      targets_at({{0.02, 0.5, 0}, {-0.02, 0.5, 0}}, {{1, 0, 0}, {-1, 0, 0}}), placement);
+  const FittingResult result = scene.fit(targets, placement);
+  CHECK(result.stop == FittingStop::MissedContact);
+  CHECK(result.configuration.q[0] == 0.0);
+  CHECK(result.contacts.empty());
+}
+
+TEST_CASE("Fingers of the human hand swing toward their targets as far as their limits let them",
+          "[grasp][hand_fitting]") {
+  // Notes A28: abduction toward the target's projection, clamped. The thumb does so by the first of
+  // its two base joints; the second closes it. Against a fine search over every joint's range.
+  const double radius = 0.035;
+  const Scene scene(geometry::ball(radius), "human_hand", 3);
+  const hands::HandModel& hand = scene.hand;
+  const PalmPlacement placement{-Vector3d::UnitZ()};
+  int num_clamped = 0, num_free = 0;
+  for (const double spread : {0.2, 0.6, 1.0}) {
+    std::vector<Vector3d> points, normals;
+    for (const double angle : {0.0, pi - spread, pi + spread}) {
+      normals.push_back({std::cos(angle), std::sin(angle), 0.0});
+      points.push_back(radius * normals.back());
+    }
+    const TargetContacts targets = scene.assigned(targets_at(points, normals), placement);
+    const hands::HandConfiguration initial = scene.fit(targets, placement).initial;
+    for (const grasp::TargetContact& target : targets.contacts) {
+      const hands::Finger& finger = hand.fingers[target.finger];
+      CAPTURE(spread, finger.name);
+      const hands::Joint& swing = hand.joints[*finger.swing_joint];
+      const auto error_at = [&](double position) {
+        hands::HandConfiguration c = initial;
+        c.q[*finger.swing_joint] = position;
+        const auto X_OL = hands::forward_kinematics(hand, c);
+        const Vector3d axis = placement.direction_O;
+        const Vector3d base = X_OL[swing.child_link].translation();
+        const Vector3d tip = hands::pad_contact_point(hand, finger.tip_pad, X_OL);
+        return angle_between(seen_along(axis, tip - base), seen_along(axis, target.point_O - base));
+      };
+      double least = std::numeric_limits<double>::infinity();
+      for (int k = 0; k <= 1000; ++k) {
+        least = std::min(least, error_at(swing.lower + k * (swing.upper - swing.lower) / 1000));
+      }
+      const double error = error_at(initial.q[*finger.swing_joint]);
+      CHECK(error <= least + 1e-3);
+      (error < 2e-3 ? num_free : num_clamped) += 1;
+    }
+  }
+  CHECK(num_free > 0);
+  CHECK(num_clamped > 0);
+}
+
+TEST_CASE("The human hand closes before its fingers, which do not cross", "[grasp][hand_fitting]") {
+  // Its palm lies beside its fingertips: with the palm center before the targets, as the paper
+  // places it, they would be behind the bases of index and middle finger, which then cross.
+  const double radius = 0.035;
+  const Scene scene(geometry::ball(radius), "human_hand", 3);
+  const PalmPlacement placement{-Vector3d::UnitZ()};
+  for (const double spread : {0.6, 1.0}) {
+    for (const double turn : {0.0, 2.0}) {
+      CAPTURE(spread, turn);
+      std::vector<Vector3d> points, normals;
+      for (const double angle : {turn, turn + pi - spread, turn + pi + spread}) {
+        normals.push_back({std::cos(angle), std::sin(angle), 0.0});
+        points.push_back(radius * normals.back());
+      }
+      const TargetContacts targets = scene.assigned(targets_at(points, normals), placement);
+      const FittingResult result = scene.fit(targets, placement);
+      CHECK(result.stop == FittingStop::Contact);
+      const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
+      CHECK_FALSE(
+          scene.fitting_hand.collision().against_object(scene.object.query, X_OL).intersects);
+      CHECK_FALSE(scene.fitting_hand.collision().against_self(X_OL).intersects);
+    }
+  }
+}
+
+TEST_CASE("The fingertips that pinch are points of the skin, not of the bone behind it",
+          "[grasp][hand_fitting]") {
+  // Where both tips rest on the ball, their contact points are at its surface or, where a pad
+  // leans, a little above it; the frames of the pads lie 3 mm behind.
+  const double radius = 0.02;
+  const Scene scene(geometry::ball(radius, 5), "human_hand", 2);
+  const PalmPlacement placement{-Vector3d::UnitZ()};
+  const TargetContacts targets = scene.assigned(
+      targets_at({{radius, 0, 0}, {-radius, 0, 0}}, {{1, 0, 0}, {-1, 0, 0}}), placement);
+  const FittingResult result = scene.fit(targets, placement);
+  REQUIRE(result.stop == FittingStop::Contact);
+  const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
+  for (const int finger : scene.fingers) {
+    const int pad = scene.hand.fingers[finger].tip_pad;
+    const Vector3d point = hands::pad_contact_point(scene.hand, pad, X_OL);
+    const Vector3d origin = hands::pad_pose(scene.hand, pad, X_OL).translation();
+    CHECK((point - origin).norm() == Approx(hands::pad_height(scene.hand.pads[pad])).epsilon(0.1));
+    CHECK(point.norm() > radius - 0.2e-3);  // the skin's facets run a little below the pad's
+    CHECK(origin.norm() > point.norm() + 1e-3);
+  }
+}
+
+}  // namespace
