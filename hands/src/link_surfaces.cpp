@@ -12,6 +12,7 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "internal/description_package.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -27,22 +28,6 @@ struct Overloaded : Alternatives... {
 };
 template <typename... Alternatives>
 Overloaded(Alternatives...) -> Overloaded<Alternatives...>;
-
-/// The folder that a description may refer to: that of the nearest package.xml above the file, or
-/// else the file's own folder.
-fs::path package_folder(const fs::path& description_file) {
-  const fs::path folder = fs::weakly_canonical(description_file).parent_path();
-  std::error_code error;
-  for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
-    if (fs::exists(at / "package.xml", error)) return at;
-  }
-  return folder;
-}
-
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
 
 /// The file that `name` of a <mesh> means. `package://NAME/rest` is looked for in the folders named
 /// NAME above the description, then in the package's folder and the description's own.

@@ -64,7 +64,7 @@ struct DescribedCoupling {
   std::string joint;
   double multiplier = 1.0;
   double offset = 0.0;
-  bool breakaway = false;  ///< As `Coupling::breakaway`; only GraspIt! XML can say so.
+  bool breakaway = false;  ///< As `Coupling::breakaway`; GraspIt! XML and MJCF's tendons say so.
 };
 
 struct DescribedJoint {

@@ -1,0 +1,123 @@
+#include "internal/mujoco_model.hpp"
+
+#include <array>
+#include <clocale>
+#include <locale>
+#include <mutex>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::hands::internal {
+
+namespace {
+
+using geometry::IoError;
+using Handler = void (*)(const char*);
+
+/// MuJoCo's texts have several lines.
+std::string one_line(const std::string& text) {
+  std::string line;
+  bool is_break = false;
+  for (const char c : text) {
+    if (c == '\n' || c == '\r') {
+      is_break = true;
+      continue;
+    }
+    if (is_break && !line.empty()) line += line.back() == ':' ? " " : "; ";
+    is_break = false;
+    line += c;
+  }
+  return line;
+}
+
+/// Where this thread's warnings go; the handlers are the same for all threads.
+thread_local std::vector<std::string>* warnings_of_this_thread = nullptr;
+Handler others_warning_handler = nullptr;
+Handler others_error_handler = nullptr;
+
+void take_warning(const char* message) {
+  if (warnings_of_this_thread != nullptr) {
+    warnings_of_this_thread->push_back(one_line(message));
+  } else if (others_warning_handler != nullptr) {
+    others_warning_handler(message);
+  }
+}
+
+/// MuJoCo does not go on after an error: its handler must not return.
+void take_error(const char* message) {
+  if (warnings_of_this_thread == nullptr && others_error_handler != nullptr) {
+    others_error_handler(message);
+  }
+  throw IoError(one_line(message));
+}
+
+/// Our handlers, while it lives.
+class Handlers {
+ public:
+  explicit Handlers(std::vector<std::string>& warnings) {
+    others_warning_handler = mju_user_warning;
+    others_error_handler = mju_user_error;
+    warnings_of_this_thread = &warnings;
+    mju_user_warning = take_warning;
+    mju_user_error = take_error;
+  }
+  ~Handlers() {
+    mju_user_warning = others_warning_handler;
+    mju_user_error = others_error_handler;
+    warnings_of_this_thread = nullptr;
+  }
+  Handlers(const Handlers&) = delete;
+  Handlers& operator=(const Handlers&) = delete;
+};
+
+/// Decimal points in new streams, while it lives. MuJoCo reads numbers through streams of C++'s
+/// global locale; for C's functions it takes care itself. Does nothing in the usual program, whose
+/// global locale is the classic one, whatever `setlocale` was told.
+class ClassicNumbers {
+ public:
+  ClassicNumbers() {
+    const auto& numbers = std::use_facet<std::numpunct<char>>(before_);
+    is_changed_ = numbers.decimal_point() != '.' || !numbers.grouping().empty();
+    // A locale with a facet of its own has no name, so C's locale stays as it is.
+    if (is_changed_) std::locale::global(std::locale(before_, new std::numpunct<char>));
+  }
+  ~ClassicNumbers() {
+    if (!is_changed_) return;
+    // A locale that has a name would set C's locale, too.
+    const char* name = std::setlocale(LC_ALL, nullptr);
+    const std::string c_locale = name ? name : "C";
+    std::locale::global(before_);
+    std::setlocale(LC_ALL, c_locale.c_str());
+  }
+  ClassicNumbers(const ClassicNumbers&) = delete;
+  ClassicNumbers& operator=(const ClassicNumbers&) = delete;
+
+ private:
+  std::locale before_;  ///< The global one.
+  bool is_changed_ = false;
+};
+
+std::mutex mutex;
+
+}  // namespace
+
+MujocoModel load_mujoco_model(const std::filesystem::path& file) {
+  const std::lock_guard lock(mutex);
+  MujocoModel result;
+  const Handlers handlers(result.warnings);
+  const ClassicNumbers numbers;
+  std::array<char, 1000> message{};
+  try {
+    result.model.reset(mj_loadXML(file.string().c_str(), nullptr, message.data(),
+                                  static_cast<int>(message.size())));
+  } catch (const std::exception& error) {  // MuJoCo's own are all caught by it
+    throw IoError(file.string() + ": MuJoCo: " + error.what());
+  }
+  mj_freeLastXML();
+  if (!result.model) throw IoError(file.string() + ": MuJoCo: " + one_line(message.data()));
+  // A warning of the model's compiler.
+  if (message.front() != '\0') result.warnings.push_back(one_line(message.data()));
+  return result;
+}
+
+}  // namespace graspfit::hands::internal
