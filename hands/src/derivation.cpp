@@ -464,10 +464,13 @@ class Deriver {
   std::optional<Facing> facing(const Chain& chain, std::size_t number, const VectorXd& q) const {
     const Body& body = bodies_[at(chain.bodies[number])];
     if (body.mesh.faces.empty()) return std::nullopt;
-    // The nearest closing joint above says what drives it.
+    // The nearest closing joint above says what drives it. What only an opposing joint moves faces
+    // nothing: its leading side looks away from the palm.
     int leader = -1;
     for (std::size_t i = 0; i <= number; ++i) {
-      if (tree_.joints[at(chain.joints[i])].closing_sign != 0) leader = leader_of(chain.joints[i]);
+      const int candidate = leader_of(chain.joints[i]);
+      if (tree_.joints[at(chain.joints[i])].closing_sign == 0) continue;
+      if (role_[at(candidate)] == Role::Bend) leader = candidate;
     }
     if (leader < 0) return std::nullopt;
     const auto X_HL = poses(q);
@@ -830,8 +833,10 @@ class Deriver {
           }
           const Eigen::Matrix3d R_LH = X_HL[at(link)].linear().transpose();
           PadSearch search{R_LH * faces->direction_H, R_LH * faces->along_H, std::nullopt, 0.0};
-          add_pad(result, fit_pad(MeshQuery(tree_.links[at(link)].mesh_L), others, search),
-                  tree_.links[at(link)].name, fingers[f].name);
+          const auto found = fit_pad(MeshQuery(tree_.links[at(link)].mesh_L), others, search);
+          const bool is_tip = i + 1 == chain.bodies.size();
+          if (found && !is_tip && is_shut_in(*found, link, chain)) continue;
+          add_pad(result, found, tree_.links[at(link)].name, fingers[f].name);
         }
       }
     }
@@ -845,12 +850,59 @@ class Deriver {
       }
     }
     if (!bodies_[0].mesh.faces.empty()) {
-      PadSearch search{palm_direction_, palm_direction_.unitOrthogonal(), palm_center_, 0.0};
-      search.along = palm_axis();
+      const PadSearch search{palm_direction_, palm_axis(), palm_center_, palm_reach()};
       const auto pad = fit_pad(MeshQuery(bodies_[0].mesh), {}, search);
       add_pad(result, pad, tree_.links[0].name, "palm");
     }
     return result;
+  }
+
+  /// How far the palm goes from its center: as far as the fingers' first joints and half-closed
+  /// tips, seen along its direction. Leaves out a wrist.
+  double palm_reach() const {
+    const auto X_HL = poses(closed_by(0.5));
+    double reach = 0.0;
+    for (const Chain& chain : chains_) {
+      for (const Vector3d& point :
+           {Vector3d(pose_of_body(X_HL, chain.bodies.front()).translation()), tip(chain, X_HL)}) {
+        reach = std::max(reach, palm_direction_.cross(point - palm_center_).norm());
+      }
+    }
+    return reach;
+  }
+
+  /// Whether a pad looks at its own finger, the palm or a bar of a linkage close by, the hand being
+  /// open and half closed: then nothing can get between.
+  bool is_shut_in(const FittedPad& pad, int link, const Chain& chain) const {
+    constexpr double kStart = 1e-4;  // [m], off the pad itself
+    constexpr double kClose = 0.05;  // [m]; less than what hands are made to hold
+    double height = 0.0;
+    for (const Vector3d& point : pad.surface) height = std::max(height, point.z());
+    for (const double share : {0.0, 0.5}) {
+      const auto X_HL = poses(closed_by(share));
+      const RigidTransform X_HC = X_HL[at(link)] * pad.X_LC;
+      bool is_hit = false;
+      for (std::size_t b = 0; b < bodies_.size() && !is_hit; ++b) {
+        const int body = static_cast<int>(b);
+        const bool is_other_finger =
+            std::any_of(chains_.begin(), chains_.end(), [&](const Chain& other) {
+              return &other != &chain && std::find(other.bodies.begin(), other.bodies.end(),
+                                                   body) != other.bodies.end();
+            });
+        const std::vector<int>& own = bodies_[b].links;
+        if (is_other_finger || bodies_[b].mesh.faces.empty() ||
+            std::find(own.begin(), own.end(), link) != own.end()) {
+          continue;
+        }
+        const RigidTransform X_BC = pose_of_body(X_HL, body).inverse() * X_HC;
+        const auto hit =
+            MeshQuery(bodies_[b].mesh)
+                .first_hit(X_BC * Vector3d(0.0, 0.0, height + kStart), X_BC.linear().col(2));
+        is_hit = hit && hit->distance < kClose;
+      }
+      if (!is_hit) return false;
+    }
+    return true;
   }
 
   /// A direction in the palm's plane: of the root link's axes the one most across its direction.

@@ -23,6 +23,9 @@ constexpr double kMaxStep = 1.2;         // [rad]: a steeper step between neighb
 constexpr double kFlatTolerance = 3e-4;  // [m]: below the 1 mm voxels of the planner
 constexpr double kFlatLean = 0.2;        // [rad]: chamfers and fillets are no part of a plane
 constexpr double kFlatShare = 0.5;
+constexpr double kFrontShare = 0.2;  // of a plane that touches first; a facet of a round has less
+constexpr double kFrontLean = 0.05;  // [rad]
+constexpr double kMaxBridge = 5e-3;  // [m]: a pad over a deeper hollow is made smaller
 constexpr double kFillShare = 0.93;
 constexpr std::size_t kMaxCorners = 12;
 constexpr std::size_t kMaxPlanes = 40;
@@ -387,14 +390,26 @@ std::optional<FittedPad> flat_pad(const MeshQuery& link, const RayGrid& grid,
                                   const std::vector<bool>& part, const Eigen::Matrix3d& R_LS,
                                   const SearchBox& box, const Vector3d& along) {
   const auto [plane, on] = best_plane(grid, part);
-  if (static_cast<double>(num_set(on)) < kFlatShare * static_cast<double>(num_set(part))) {
-    return std::nullopt;
+  const auto size = static_cast<double>(num_set(part));
+  std::size_t num_parallel = 0;
+  bool is_in_front = true;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (!part[i]) continue;
+    const Sample& sample = grid.samples[i];
+    is_in_front = is_in_front && plane.normal.dot(sample.point) - plane.offset <= kFlatTolerance;
+    if (on[i] && plane.normal.dot(sample.normal) >= std::cos(kFrontLean)) ++num_parallel;
   }
+  const bool is_most = static_cast<double>(num_set(on)) >= kFlatShare * size;
+  const bool touches_first = is_in_front && static_cast<double>(num_parallel) >= kFrontShare * size;
+  if (!is_most && !touches_first) return std::nullopt;
   std::vector<Vector2d> outline_S = hull_of(corners_in(link, R_LS, plane, box.box_S));
   if (outline_S.size() < 3 || fill_share(grid, on, outline_S) < kFillShare) {
     outline_S = largest_rectangle(grid, on);
   }
-  if (outline_S.size() < 3 || !(area_of(outline_S) > 0.0)) return std::nullopt;
+  // A rectangle that holds little of a jagged plane stands for none of it.
+  const double part_area = size * grid.step * grid.step;
+  const double least_area = is_most ? 0.0 : 0.5 * kFrontShare * part_area;
+  if (outline_S.size() < 3 || !(area_of(outline_S) > least_area)) return std::nullopt;
   simplify(outline_S, kMaxCorners);
   // From the search frame's x and y onto the plane, then into the pad's own axes.
   const auto lifted_L = [&](const Vector2d& p) -> Vector3d {
@@ -496,6 +511,38 @@ std::optional<FittedPad> bulging_pad(const MeshQuery& link, const std::vector<Me
   return pad;
 }
 
+/// The bulging pad of a part, or of less and less of it around its center until it stands off the
+/// mesh by at most kMaxBridge; the last one tried if none does.
+std::optional<FittedPad> bulging_pad_without_hollow(const MeshQuery& link,
+                                                    const std::vector<MeshQuery>& others,
+                                                    const RayGrid& grid, std::vector<bool> part,
+                                                    const Eigen::Matrix3d& R_LS,
+                                                    const SearchBox& box,
+                                                    const std::optional<Vector2d>& given_center) {
+  constexpr int kNumTrials = 5;
+  constexpr double kShrink = 0.8;
+  Vector2d center = Vector2d::Zero();
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part[i]) center += grid.samples[i].point.head<2>() / static_cast<double>(num_set(part));
+  }
+  if (given_center) center = *given_center;
+  double radius = 0.0;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part[i]) radius = std::max(radius, (grid.samples[i].point.head<2>() - center).norm());
+  }
+  auto pad = bulging_pad(link, others, grid, part, R_LS, box);
+  for (int trial = 0; trial < kNumTrials && pad && pad->deviation > kMaxBridge; ++trial) {
+    radius *= kShrink;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      part[i] = part[i] && (grid.samples[i].point.head<2>() - center).norm() <= radius;
+    }
+    const auto smaller = bulging_pad(link, others, grid, part, R_LS, box);
+    if (!smaller) break;
+    pad = smaller;
+  }
+  return pad;
+}
+
 /// Coordinates in whole micrometers, as a person would write them; corners and points that this
 /// puts into a line or outside the outline go.
 FittedPad tidied(FittedPad pad) {
@@ -529,7 +576,7 @@ std::optional<FittedPad> fit_pad(const MeshQuery& link, const std::vector<MeshQu
     if (num_set(part) < 4) return std::nullopt;
     if (const auto flat = flat_pad(link, grid, part, R_LS, box, search.along)) return tidied(*flat);
     if (is_last) {
-      const auto bulging = bulging_pad(link, others, grid, part, R_LS, box);
+      const auto bulging = bulging_pad_without_hollow(link, others, grid, part, R_LS, box, center);
       return bulging ? std::optional(tidied(*bulging)) : std::nullopt;
     }
     Vector3d mean = Vector3d::Zero();

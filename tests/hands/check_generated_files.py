@@ -68,6 +68,9 @@ def main():
         if validator.is_valid(broken(change)):
             problems.append(f"the schema accepts {what}")
 
+    if not validator.is_valid({"format": sidecar["format"], "closing": sidecar["closing"]}):
+        problems.append("the schema refuses a sidecar that leaves members to be derived")
+
     for problem in problems:
         print(problem)
     return 1 if problems else 0

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/convex_polytope.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"

@@ -45,9 +45,11 @@ namespace graspfit::hands::internal {
 /// **Thumb.** Of three fingers or more the one whose tip, from open to half closed and across the
 /// palm's direction, goes least with the others, by 0.2 in the mean cosine; else none.
 ///
-/// **Pads.** One per link with a surface that a closing joint moves, where it faces while half
-/// closed, and one on the palm; see `fit_pad`. Less than 20 mm² is no pad. The last one of a finger
-/// is its tip pad.
+/// **Pads.** One per link with a surface that a bending joint moves, where it faces while half
+/// closed, and one on the palm, around its center and no farther out than the fingers' first joints
+/// and half-closed tips; see `fit_pad`. Less than 20 mm² is no pad, nor is one that looks at its
+/// own finger, the palm or a bar within 50 mm both open and half closed, unless it is the tip's.
+/// The last one of a finger is its tip pad.
 ///
 /// **Exclusions.** See `derived_exclusions`.
 ///

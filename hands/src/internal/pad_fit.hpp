@@ -36,13 +36,15 @@ struct FittedPad {
 /// rigid body, in the same frame) hide does not. Of the parts whose normal leans by at most
 /// kMaxLean from `direction` the largest connected one is taken, or the one at the search's center.
 ///
-/// 1. Flat: if a plane holds at least kFlatShare of the part, the pad lies in that plane. Its
-///    outline is the hull of the plane's mesh faces where rays find at least kFillShare of the
-///    hull's inside to be surface, else the largest rectangle of the grid that is surface.
+/// 1. Flat: if a plane holds at least kFlatShare of the part, or kFrontShare of it and nothing
+///    stands before that plane, the pad lies in it. Its outline is the hull of the plane's mesh
+///    faces where rays find at least kFillShare of the hull's inside to be surface, else the
+///    largest rectangle of the grid that is surface.
 /// 2. Bulging: the outline is the hull of the part (at most kMaxCorners corners, the same fall-back
 ///    to a rectangle), and the dome the hull of mesh points, added one after the other where the
 ///    mesh stands out most, until no point does by more than kDomeTolerance or kMaxPlanes is
-///    reached. Dents and hollows are bridged.
+///    reached. Dents and hollows are bridged; where the pad then stands off the mesh by more than
+///    kMaxBridge, less of the part is taken, around its center.
 ///
 /// Empty where nothing faces the direction. Approximate: to the spacing of the grid.
 std::optional<FittedPad> fit_pad(const geometry::MeshQuery& link,
