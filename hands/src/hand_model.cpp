@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -227,7 +228,9 @@ class Checker {
       if (finger.tip_pad != -1) {
         require_index(finger.tip_pad, model_.pads.size(), what + ": tip pad");
         require(model_.pads[static_cast<std::size_t>(finger.tip_pad)].finger == static_cast<int>(f),
-                what + ": its tip pad belongs to another finger");
+                what + ": its tip pad " +
+                    model_.pads[static_cast<std::size_t>(finger.tip_pad)].name +
+                    " belongs to another finger");
       }
       num_thumbs += finger.is_thumb ? 1 : 0;
     }
@@ -245,7 +248,8 @@ class Checker {
         require_index(pad.finger, model_.fingers.size(), what + ": finger");
         const Finger& finger = model_.fingers[static_cast<std::size_t>(pad.finger)];
         require(std::find(finger.links.begin(), finger.links.end(), pad.link) != finger.links.end(),
-                what + ": its link is none of finger " + finger.name);
+                what + ": its link " + model_.links[static_cast<std::size_t>(pad.link)].name +
+                    " is none of finger " + finger.name);
       }
       require_pose(pad.X_LC, what + ": frame");
       outline(pad.outline, what);
@@ -267,11 +271,18 @@ class Checker {
     require(area > 0.0, what + ": outline is clockwise");
     // Convex: no corner lies to the right of any side, up to the rounding of decimal input.
     const double slack = 1e-9 * std::sqrt(area);
-    for (const Side& side : sides(points)) {
+    const std::vector<Side> lines = sides(points);
+    double turn = 0.0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
       for (const Eigen::Vector2d& point : points) {
-        require(side.inward.dot(point) - side.offset >= -slack, what + ": outline is not convex");
+        require(lines[i].inward.dot(point) - lines[i].offset >= -slack,
+                what + ": outline is not convex");
       }
+      const Eigen::Vector2d& next = lines[(i + 1) % lines.size()].inward;
+      turn += std::atan2(cross(lines[i].inward, next), lines[i].inward.dot(next));
     }
+    // Corners that go around twice lie left of every side, too.
+    require(turn < 3.0 * std::numbers::pi, what + ": outline goes around more than once");
   }
 
   void surface(const ContactPad& pad, const std::string& what) const {

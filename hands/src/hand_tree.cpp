@@ -1,6 +1,7 @@
 #include "internal/hand_tree.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <set>
 #include <utility>
@@ -28,7 +29,7 @@ class TreeBuilder {
     const std::string root = checked_root();
     if (!is_tree_) return std::nullopt;
     model_.name = description_.name;
-    add(root, -1, nullptr);
+    add_tree(root);
     for (const DescribedLink& link : description_.links) {
       if (!added_.contains(link.name)) {
         fault("the links form a cycle: link " + link.name + " is not reached from root " + root);
@@ -113,8 +114,26 @@ class TreeBuilder {
       model_.joints.push_back(std::move(joint));
     }
     model_.links.push_back(std::move(link));
-    for (const DescribedJoint& joint : description_.joints) {
-      if (joint.parent == name) add(joint.child, index, &joint);
+  }
+
+  /// The link and all below it, depth first. No recursion: a chain may be longer than the stack.
+  void add_tree(const std::string& root) {
+    struct Next {
+      std::string name;
+      int parent = -1;
+      const DescribedJoint* above = nullptr;
+    };
+    std::vector<Next> waiting{{.name = root}};
+    while (!waiting.empty()) {
+      const Next next = waiting.back();
+      waiting.pop_back();
+      const int index = static_cast<int>(model_.links.size());
+      add(next.name, next.parent, next.above);
+      const auto first = static_cast<std::ptrdiff_t>(waiting.size());
+      for (const DescribedJoint& joint : description_.joints) {
+        if (joint.parent == next.name) waiting.push_back({joint.child, index, &joint});
+      }
+      std::reverse(waiting.begin() + first, waiting.end());
     }
   }
 
@@ -151,7 +170,7 @@ class TreeBuilder {
     model_ = {};
     model_.name = whole.name;
     added_.clear();
-    add(root, -1, nullptr);
+    add_tree(root);
     if (model_.joints.empty()) fail("palm: no movable joint hangs below link " + root);
     std::string links;
     std::string joints;

@@ -58,7 +58,8 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
   }
   std::error_code error;
   for (const Candidate& candidate : candidates) {
-    const fs::path file = fs::weakly_canonical(candidate.path);
+    const fs::path file = fs::weakly_canonical(candidate.path, error);
+    if (error) throw IoError(item + ": mesh " + name + ": " + error.message());
     if (!lies_in(file, candidate.root)) {
       throw InvalidInput(item + ": mesh " + name + " lies outside the description's package " +
                          candidate.root.string());
@@ -66,6 +67,17 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
     if (fs::is_regular_file(file, error)) return file;
   }
   throw IoError(item + ": mesh " + name + " is not there");
+}
+
+/// A link's mesh; what is wrong with it is said with the description and the link.
+TriangleMesh read_link_mesh(const fs::path& file, const std::string& item) {
+  try {
+    return geometry::read_mesh(file).mesh;
+  } catch (const IoError& error) {
+    throw IoError(item + ": " + error.what());
+  } catch (const geometry::Error& error) {
+    throw InvalidInput(item + ": " + error.what());
+  }
 }
 
 TriangleMesh scaled_by(TriangleMesh mesh, const Eigen::Vector3d& scale) {
@@ -100,7 +112,7 @@ TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_
                    const fs::path file = mesh_path(description_file, mesh.filename, item);
                    const fs::path folder = fs::weakly_canonical(description_file).parent_path();
                    mesh_files.push_back(file.lexically_relative(folder).generic_string());
-                   return scaled_by(geometry::read_mesh(file).mesh, mesh.scale);
+                   return scaled_by(read_link_mesh(file, item), mesh.scale);
                  }},
       part.shape);
   return transformed(mesh_G, part.X_LG);

@@ -18,14 +18,19 @@ using nlohmann::json;
 constexpr const char* kFormat = "graspfit hand sidecar";
 constexpr int kVersion = 1;
 
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
+
 /// A value of the file and where it stands, so that every complaint names both.
 class Item {
  public:
   Item(const json& value, std::string file, std::string path)
       : value_(value), file_(std::move(file)), path_(std::move(path)) {}
 
+  /// In one line, whatever the file's keys hold.
   [[noreturn]] void fail(const std::string& what) const {
-    throw InvalidInput(file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what);
+    std::string message = file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what;
+    std::replace_if(message.begin(), message.end(), is_control, ' ');
+    throw InvalidInput(message);
   }
 
   /// Refuses fields that the format does not know: most are misspelled.
@@ -69,6 +74,8 @@ class Item {
     std::vector<std::pair<std::string, Item>> result;
     for (const auto& [key, value] : value_.items()) {
       result.emplace_back(key, Item(value, file_, path_ + "." + key));
+      if (std::any_of(key.begin(), key.end(), is_control))
+        fail("has a control character in a name");
     }
     return result;
   }
@@ -82,7 +89,10 @@ class Item {
     if (!value_.is_string() || value_.get_ref<const std::string&>().empty()) {
       fail("is not a name (a text that is not empty)");
     }
-    return value_.get<std::string>();
+    const auto& name = value_.get_ref<const std::string&>();
+    // Names are shown in messages of one line.
+    if (std::any_of(name.begin(), name.end(), is_control)) fail("has a control character");
+    return name;
   }
 
   std::vector<std::string> names() const {

@@ -1,6 +1,8 @@
 #include "internal/sidecar_resolution.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -133,21 +135,28 @@ class SidecarResolver {
   }
 
   void exclusions() {
+    std::set<std::pair<int, int>> excluded;
     for (const auto& [a, b] : *sidecar_.exclusions) {
       model_.exclusions.push_back({link(a, "exclusions"), link(b, "exclusions")});
+      excluded.insert(
+          std::minmax(model_.exclusions.back().link_a, model_.exclusions.back().link_b));
     }
-    // Links that are fixed to each other never collide, whatever the file says.
+    // Links that are fixed to each other never collide, whatever the file says. Frames without a
+    // surface cannot; there may be many.
     std::vector<int> body(model_.links.size());
+    std::map<int, std::vector<int>> solid_links;  // of each body
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       const Link& own = model_.links[i];
+      const int index = static_cast<int>(i);
       body[i] = own.parent_link >= 0 && own.parent_joint == -1
                     ? body[static_cast<std::size_t>(own.parent_link)]
-                    : static_cast<int>(i);
-      for (std::size_t k = 0; k < i; ++k) {
-        if (body[k] == body[i] && !model_.is_excluded(static_cast<int>(k), static_cast<int>(i))) {
-          model_.exclusions.push_back({static_cast<int>(k), static_cast<int>(i)});
-        }
+                    : index;
+      if (own.mesh_L.faces.empty()) continue;
+      std::vector<int>& before = solid_links[body[i]];
+      for (const int other : before) {
+        if (excluded.insert({other, index}).second) model_.exclusions.push_back({other, index});
       }
+      before.push_back(index);
     }
   }
 

@@ -60,7 +60,8 @@ class Parser : private XmlSource {
   double positive(const XMLElement& e, const char* attribute, const std::string& item) const {
     const double value = number(e, attribute, item);
     if (value <= 0.0)
-      fail(e, item + ": <" + e.Name() + "> has a " + attribute + " that is not positive");
+      fail(e, item + ": <" + e.Name() + "> has a " + attribute +
+                  " that is not positive: " + e.Attribute(attribute));
     return value;
   }
 
@@ -94,7 +95,7 @@ class Parser : private XmlSource {
     if (tag == "box") {
       const std::vector<double> size = numbers(*kind, text_of(*kind, "size", item), 3, item);
       if (!(size[0] > 0.0 && size[1] > 0.0 && size[2] > 0.0)) {
-        fail(*kind, item + ": <box> has a size that is not positive");
+        fail(*kind, item + ": <box> has a size that is not positive: " + kind->Attribute("size"));
       }
       result.shape = BoxShape{{size[0], size[1], size[2]}};
     } else if (tag == "cylinder") {
@@ -105,7 +106,8 @@ class Parser : private XmlSource {
     } else if (tag == "mesh") {
       MeshFileShape mesh{text_of(*kind, "filename", item),
                          vector_or(*kind, "scale", Eigen::Vector3d::Ones(), item)};
-      if ((mesh.scale.array() == 0.0).any()) fail(*kind, item + ": <mesh> has a scale of zero");
+      if ((mesh.scale.array() == 0.0).any())
+        fail(*kind, item + ": <mesh> has a scale of zero: " + kind->Attribute("scale"));
       result.shape = mesh;
     } else {
       fail(*kind,
@@ -120,7 +122,7 @@ class Parser : private XmlSource {
     const XMLElement* mass = e.FirstChildElement("mass");
     if (mass == nullptr) fail(e, item + ": <inertial> without <mass>");
     result.mass = number(*mass, "value", item);
-    if (result.mass < 0.0) fail(*mass, item + ": <mass> is negative");
+    if (result.mass < 0.0) fail(*mass, item + ": <mass> is negative: " + mass->Attribute("value"));
     const geometry::RigidTransform X_LI = origin(e, item);
     result.center_L = X_LI.translation();
     if (const XMLElement* tensor = e.FirstChildElement("inertia")) {

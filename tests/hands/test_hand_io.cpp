@@ -293,7 +293,7 @@ TEST_CASE("Names and values in a sidecar are checked against the description", "
   bad("[\"left\", \"left_tip\"]", "[\"left\", \"tip\"]", "no link named tip");
   bad("[\"left\", \"left_tip\"]", "\"left\"", "fingers[0].links: is not a list");
   bad("\"finger\": \"left\"", "\"finger\": \"middle\"", "pad left_pad: no finger named middle");
-  bad("\"link\": \"left_tip\"", "\"link\": \"right\"", "its link is none of finger left");
+  bad("\"link\": \"left_tip\"", "\"link\": \"right\"", "its link right is none of finger left");
   bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 1, 0]",
       "pads[0].frame.rotation_wxyz: is not a unit quaternion");
   bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 0]", "has 3 of 4 numbers");

@@ -305,7 +305,7 @@ TEST_CASE("A model that makes no sense is refused in one line that names the ite
   refused([](HandModel& h) { h.fingers[0].tip_pad = 3; }, "tip pad has index 3");
   refused([](HandModel& h) { h.fingers[0].links = {2, 1}; }, "not ordered");
   refused([](HandModel& h) { h.fingers[0].links = {1}; }, "joint middle moves none of its links");
-  refused([](HandModel& h) { h.pads[0].link = 0; }, "pad pad: its link is none of finger");
+  refused([](HandModel& h) { h.pads[0].link = 0; }, "is none of finger");
   refused(
       [](HandModel& h) {
         h.pads[0].outline.pop_back();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "closing.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
@@ -17,6 +18,7 @@ using hands::ContactPad;
 using hands::HandModel;
 using hands::Link;
 using hands::RigidTransform;
+using testing::closed_by;
 
 const std::map<std::string, HandModel>& shipped() {
   static const std::map<std::string, HandModel> hands = [] {
@@ -31,27 +33,6 @@ const std::map<std::string, HandModel>& shipped() {
 
 const Link& link_of(const HandModel& hand, const ContactPad& pad) {
   return hand.links[static_cast<std::size_t>(pad.link)];
-}
-
-/// Share `closing` of the way from open to closed, neutral joints at the value nearest zero.
-hands::HandConfiguration closed_by(const HandModel& hand, double closing) {
-  hands::HandConfiguration c = hands::open_configuration(hand);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    const hands::Joint& joint = hand.joints[j];
-    if (joint.closing_sign == 0) continue;
-    const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
-    const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
-    c.q[static_cast<Eigen::Index>(j)] = open + closing * (closed - open);
-  }
-  // Followers where their leaders put them: breakaway joints would stay further closed.
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    const auto& coupling = hand.joints[j].coupling;
-    if (!coupling) continue;
-    c.q[static_cast<Eigen::Index>(j)] =
-        std::clamp(coupling->ratio * c.q[coupling->leader] + coupling->offset, hand.joints[j].lower,
-                   hand.joints[j].upper);
-  }
-  return c;
 }
 
 TEST_CASE("The paper's three hands are shipped with their options and degrees of freedom",
