@@ -13,29 +13,26 @@ input or a missing program.
 import argparse
 import json
 import math
-import os
 import pathlib
-import shutil
 import sys
 
-COLORS = {
-    "object": (0.86, 0.82, 0.75),
-    "hand": (0.44, 0.56, 0.68),
-    "contact": (0.83, 0.19, 0.16),
-    "stable": (0.18, 0.56, 0.34),
-    "edge": (0.55, 0.57, 0.59),
-    "palm": (0.48, 0.29, 0.70),
-    "center": (0.13, 0.14, 0.16),
-    "ink": (0.14, 0.16, 0.18),
-    "soft": (0.40, 0.44, 0.47),
-}
+sys.dont_write_bytecode = True  # the folder may be the sources' or root's
+from vtk_picture import (  # noqa: E402
+    COLORS,
+    SUPERSAMPLING,
+    BadInput,
+    Canvas,
+    cross,
+    dot,
+    go_under_xvfb,
+    minus,
+    perpendicular,
+    pixels,
+    unit,
+    write_atomically,
+)
+
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
-SUPERSAMPLING = 2  # each way; smooths every edge, whatever the graphics driver offers
-UNDER_XVFB = "GRASPFIT_UNDER_XVFB"
-
-
-class BadInput(Exception):
-    """What is wrong, in one line."""
 
 
 # ------------------------------------------------------------------------------------------- input
@@ -172,33 +169,6 @@ def read_parts(path):
 # ------------------------------------------------------------------------------------------ vectors
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def minus(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
-def along(p, direction, distance):
-    return [x + distance * d for x, d in zip(p, direction)]
-
-
-def unit(v):
-    size = math.sqrt(dot(v, v))
-    return [x / size for x in v] if size > 0.0 else None
-
-
-def perpendicular(v):
-    axis = [0.0, 0.0, 0.0]
-    axis[min(range(3), key=lambda k: abs(v[k]))] = 1.0
-    return unit(cross(v, axis))
-
-
 def polygon_normal(grasp):
     """Unit normal of the contacts' polygon, on the side that the palm does not cover."""
     points = [contact["point"] for contact in grasp["contacts"]]
@@ -254,150 +224,46 @@ def hull_edges(points):
 # ------------------------------------------------------------------------------------------ picture
 
 
-class Painter:
-    """Draws grasps into pictures of one size with one VTK window."""
+class Painter(Canvas):
+    """Draws grasps into pictures of one size."""
 
     def __init__(self, width, height, up, scene):
-        import vtk  # here: checks of the input come before a second of loading
-
-        self.vtk = vtk
-        vtk.vtkObject.GlobalWarningDisplayOff()
-        self.width, self.height, self.up, self.scene = width, height, up, scene
-        self.scale = SUPERSAMPLING * min(height / 800, width / 1400)  # of text and lines
+        super().__init__(width, height)
+        self.up, self.scene = up, scene
 
     def paint(self, grasp, parts):
         """PNG file of one grasp as bytes."""
-        vtk = self.vtk
-        window = vtk.vtkRenderWindow()
-        window.SetOffScreenRendering(1)
-        window.SetMultiSamples(0)
-        window.SetSize(SUPERSAMPLING * self.width, SUPERSAMPLING * self.height)
-        window.SetNumberOfLayers(2)
-
-        low = [min(v[k] for _, vertices, _ in parts for v in vertices) for k in range(3)]
-        high = [max(v[k] for _, vertices, _ in parts for v in vertices) for k in range(3)]
-        size = math.dist(low, high)
-        solids = [self.solid(*part) for part in parts if part[2]]
+        window = self.window()
+        points = [v for _, vertices, _ in parts for v in vertices]
+        size = math.dist(*([pick(p[k] for p in points) for k in range(3)] for pick in (min, max)))
+        solids = [
+            self.solid(vertices, faces, "object", specular=0.05)
+            if name == "object"
+            else self.solid(vertices, faces, "hand")
+            for name, vertices, faces in parts
+            if faces
+        ]
         views = [
             ("across the palm direction", side_direction(grasp, self.up)),
             ("facing the contact polygon", polygon_normal(grasp)),
         ]
         for column, (name, back) in enumerate(views):
-            frame = (0.5 * column, BOTTOM, 0.5 * (column + 1), TOP)
-            camera, height_m = self.camera(back, parts, size)
-            shaded = self.renderer(window, frame, 0)
-            shaded.SetActiveCamera(camera)
-            kit = vtk.vtkLightKit()
-            kit.SetKeyLightIntensity(0.86)
-            kit.SetKeyToFillRatio(2.6)
-            kit.AddLightsToRenderer(shaded)
-            for solid in solids:
-                shaded.AddActor(solid)
-            # Marks once more in front of everything, faint: those hidden by the hand shine through.
-            above = self.renderer(window, frame, 1)
-            above.SetActiveCamera(camera)
-            for opacity, renderer in ((1.0, shaded), (0.6, above)):
-                for mark in self.marks(grasp, size):
-                    mark.GetProperty().SetOpacity(opacity)
-                    renderer.AddActor(mark)
-            shaded.ResetCameraClippingRange()
-            self.add_axes(window, column, camera)
+            left, right = 0.5 * column, 0.5 * (column + 1)
+            up = [float(k == self.up) for k in range(3)]
+            if abs(dot(up, back)) > 0.97:
+                up = up[-1:] + up[:-1]
+            aspect = 0.5 * self.width / ((TOP - BOTTOM) * self.height)
+            camera, height_m = self.camera(back, up, points, aspect)
+            self.add_view(
+                window, (left, BOTTOM, right, TOP), camera, solids, lambda: self.marks(grasp, size)
+            )
+            self.add_axes(window, (left + 0.008, 0.056), camera)
             view_pixels = (TOP - BOTTOM) * SUPERSAMPLING * self.height
-            self.add_scale_bar(window, column, name, height_m / view_pixels)
+            self.add_scale_bar(
+                window, (left, 0.055, right, BOTTOM), name, height_m / view_pixels
+            )
         self.add_caption(window, grasp)
-        window.Render()
         return self.png(window)
-
-    def renderer(self, window, frame, layer):
-        renderer = self.vtk.vtkRenderer()
-        renderer.SetViewport(*frame)
-        renderer.SetLayer(layer)
-        renderer.SetBackground(1.0, 1.0, 1.0)
-        renderer.InteractiveOff()
-        window.AddRenderer(renderer)
-        return renderer
-
-    def solid(self, name, vertices, faces):
-        vtk = self.vtk
-        points = vtk.vtkPoints()
-        points.SetDataTypeToDouble()
-        points.SetNumberOfPoints(len(vertices))
-        for i, vertex in enumerate(vertices):
-            points.SetPoint(i, vertex)
-        cells = vtk.vtkCellArray()
-        for face in faces:
-            cells.InsertNextCell(len(face))
-            for k in face:
-                cells.InsertCellPoint(k)
-        mesh = vtk.vtkPolyData()
-        mesh.SetPoints(points)
-        mesh.SetPolys(cells)
-        triangles = vtk.vtkTriangleFilter()
-        triangles.SetInputData(mesh)
-        normals = vtk.vtkPolyDataNormals()
-        normals.SetInputConnection(triangles.GetOutputPort())
-        normals.SetFeatureAngle(40.0)
-        normals.ConsistencyOff()
-        normals.SplittingOn()
-        is_object = name == "object"
-        actor = self.actor(normals, COLORS["object" if is_object else "hand"])
-        look = actor.GetProperty()
-        look.SetAmbient(0.12)
-        look.SetDiffuse(0.88)
-        look.SetSpecular(0.05 if is_object else 0.18)
-        look.SetSpecularPower(30.0)
-        return actor
-
-    def actor(self, source, color):
-        mapper = self.vtk.vtkPolyDataMapper()
-        mapper.SetInputConnection(source.GetOutputPort())
-        mapper.ScalarVisibilityOff()
-        actor = self.vtk.vtkActor()
-        actor.SetMapper(mapper)
-        actor.GetProperty().SetColor(*color)
-        return actor
-
-    def ball(self, center, radius, color):
-        source = self.vtk.vtkSphereSource()
-        source.SetCenter(*center)
-        source.SetRadius(radius)
-        source.SetThetaResolution(32)
-        source.SetPhiResolution(24)
-        return self.flat(self.actor(source, color))
-
-    def tube(self, start, end, radius, color):
-        source = self.vtk.vtkLineSource()
-        source.SetPoint1(*start)
-        source.SetPoint2(*end)
-        tube = self.vtk.vtkTubeFilter()
-        tube.SetInputConnection(source.GetOutputPort())
-        tube.SetRadius(radius)
-        tube.SetNumberOfSides(16)
-        tube.CappingOn()
-        return self.flat(self.actor(tube, color))
-
-    def arrow(self, start, direction, length, radius, color):
-        direction = unit(direction)
-        if direction is None:
-            return []
-        head = 5.0 * radius
-        neck = along(start, direction, length - head)
-        cone = self.vtk.vtkConeSource()
-        cone.SetRadius(2.4 * radius)
-        cone.SetHeight(head)
-        cone.SetResolution(24)
-        cone.SetDirection(*direction)
-        cone.SetCenter(*along(neck, direction, 0.5 * head))
-        return [self.tube(start, neck, radius, color), self.flat(self.actor(cone, color))]
-
-    @staticmethod
-    def flat(actor):
-        look = actor.GetProperty()
-        look.SetAmbient(0.35)
-        look.SetDiffuse(0.65)
-        look.SetSpecular(0.15)
-        look.SetSpecularPower(40.0)
-        return actor
 
     def marks(self, grasp, size):
         """Contacts with their inward normals, the polygon's edges, palm direction, center of mass."""
@@ -420,76 +286,6 @@ class Painter:
         )
         return marks
 
-    def camera(self, back, parts, size):
-        """A parallel camera with all parts in view, and the height of that view in meters."""
-        up = [0.0, 0.0, 0.0]
-        up[self.up] = 1.0
-        if abs(dot(up, back)) > 0.97:
-            up = up[-1:] + up[:-1]
-        right = unit(cross(up, back))
-        up = cross(back, right)
-        spans = []
-        for axis in (right, up, back):
-            values = [dot(v, axis) for _, vertices, _ in parts for v in vertices]
-            spans.append((min(values), max(values)))
-        center = [0.0, 0.0, 0.0]
-        for (low, high), axis in zip(spans, (right, up, back)):
-            center = along(center, axis, 0.5 * (low + high))
-        aspect = 0.5 * self.width / ((TOP - BOTTOM) * self.height)
-        height = max(spans[1][1] - spans[1][0], (spans[0][1] - spans[0][0]) / aspect)
-        height = 1.06 * height
-        camera = self.vtk.vtkCamera()
-        camera.ParallelProjectionOn()
-        camera.SetParallelScale(0.5 * height)
-        camera.SetFocalPoint(*center)
-        camera.SetPosition(*along(center, back, 2.0 * size))
-        camera.SetViewUp(*up)
-        return camera, height
-
-    def text(self, renderer, words, x, y, size, color, bold=False, align="left"):
-        """Text at a pixel of the renderer; its width in pixels."""
-        actor = self.vtk.vtkTextActor()
-        actor.SetInput(words)
-        look = actor.GetTextProperty()
-        look.SetFontFamilyToArial()
-        look.SetFontSize(round(size * self.scale))
-        look.SetColor(*color)
-        look.SetBold(bold)
-        look.SetVerticalJustificationToBottom()
-        {
-            "left": look.SetJustificationToLeft,
-            "center": look.SetJustificationToCentered,
-            "right": look.SetJustificationToRight,
-        }[align]()
-        actor.SetPosition(x, y)
-        renderer.AddActor2D(actor)
-        box = [0.0] * 4
-        actor.GetBoundingBox(renderer, box)
-        return box[1] - box[0]
-
-    def flat_shape(self, renderer, points, color, line_width=None):
-        """A filled polygon, or with a width a line, at pixels of the renderer."""
-        vtk = self.vtk
-        corners = vtk.vtkPoints()
-        cell = vtk.vtkCellArray()
-        cell.InsertNextCell(len(points))
-        for i, (x, y) in enumerate(points):
-            corners.InsertNextPoint(x, y, 0.0)
-            cell.InsertCellPoint(i)
-        shape = vtk.vtkPolyData()
-        shape.SetPoints(corners)
-        mapper = vtk.vtkPolyDataMapper2D()
-        mapper.SetInputData(shape)
-        actor = vtk.vtkActor2D()
-        actor.SetMapper(mapper)
-        actor.GetProperty().SetColor(*color)
-        if line_width is None:
-            shape.SetPolys(cell)
-        else:
-            shape.SetLines(cell)
-            actor.GetProperty().SetLineWidth(line_width)
-        renderer.AddActor2D(actor)
-
     def add_caption(self, window, grasp):
         s = self.scale
         top = self.renderer(window, (0.0, 0.9, 1.0, 1.0), 0)
@@ -504,114 +300,21 @@ class Painter:
         self.text(top, title, 24 * s, 40 * s, 19, COLORS["ink"], bold=True)
         self.text(top, measures, 24 * s, 12 * s, 16, COLORS["ink"])
         bottom = self.renderer(window, (0.0, 0.0, 1.0, 0.055), 0)
-        x = 24 * s
-        for key, words in (
-            ("contact", "contact and inward normal"),
-            ("stable", "stable pair of contacts"),
-            ("edge", "other edge of the contact polygon"),
-            ("palm", "palm direction"),
-            ("center", "center of mass"),
-        ):
-            turns = [2.0 * math.pi * i / 24 for i in range(24)]
-            disc = [(x + (6 + 6 * math.cos(t)) * s, (21 + 6 * math.sin(t)) * s) for t in turns]
-            self.flat_shape(bottom, disc, COLORS[key])
-            x += 18 * s
-            x += self.text(bottom, words, x, 13 * s, 13, COLORS["soft"]) + 24 * s
-
-    def add_scale_bar(self, window, column, name, meters_per_pixel):
-        """The strip below a view: its name, and a length in it."""
-        s = self.scale
-        strip = (0.5 * column, 0.055, 0.5 * (column + 1), BOTTOM)
-        renderer = self.renderer(window, strip, 0)
-        width = 0.5 * SUPERSAMPLING * self.width
-        wanted = 130 * s * meters_per_pixel
-        power = 10.0 ** math.floor(math.log10(wanted))
-        length = next(k * power for k in (5, 2, 1) if k * power <= wanted * (1 + 1e-9))
-        words = f"{1000 * length:g} mm" if length < 0.01 else f"{100 * length:g} cm"
-        if length >= 1.0:
-            words = f"{length:g} m"
-        right = width - 24 * s
-        left = right - length / meters_per_pixel
-        bracket = [(left, 17 * s), (left, 9 * s), (right, 9 * s), (right, 17 * s)]
-        self.flat_shape(renderer, bracket, COLORS["soft"], 2.0 * s)
-        self.text(renderer, words, 0.5 * (left + right), 18 * s, 14, COLORS["soft"], align="center")
-        self.text(renderer, name, 0.5 * width, 14 * s, 15, COLORS["soft"], align="center")
-
-    def add_axes(self, window, column, camera):
-        """The axes of O in the view's lower left corner."""
-        side = 0.12
-        aspect = self.height / self.width
-        x = 0.5 * column + 0.008
-        frame = (x, 0.056, x + side * aspect, 0.056 + side)
-        renderer = self.renderer(window, frame, 1)
-        for k, (name, color) in enumerate(
-            (("x", (0.78, 0.22, 0.18)), ("y", (0.23, 0.56, 0.25)), ("z", (0.18, 0.37, 0.71)))
-        ):
-            direction = [0.0, 0.0, 0.0]
-            direction[k] = 1.0
-            for actor in self.arrow([0.0, 0.0, 0.0], direction, 1.0, 0.045, color):
-                renderer.AddActor(actor)
-            label = self.vtk.vtkBillboardTextActor3D()
-            label.SetInput(name)
-            label.SetPosition(*along([0.0, 0.0, 0.0], direction, 1.25))
-            look = label.GetTextProperty()
-            look.SetFontSize(round(14 * self.scale))
-            look.SetColor(*color)
-            look.SetBold(True)
-            look.SetJustificationToCentered()
-            look.SetVerticalJustificationToCentered()
-            renderer.AddActor(label)
-        small = self.vtk.vtkCamera()
-        small.ParallelProjectionOn()
-        small.SetParallelScale(1.5)
-        small.SetFocalPoint(0.0, 0.0, 0.0)
-        small.SetPosition(*[5.0 * x for x in unit(minus(camera.GetPosition(), camera.GetFocalPoint()))])
-        small.SetViewUp(*camera.GetViewUp())
-        renderer.SetActiveCamera(small)
-        renderer.ResetCameraClippingRange()
-
-    def png(self, window):
-        vtk = self.vtk
-        capture = vtk.vtkWindowToImageFilter()
-        capture.SetInput(window)
-        capture.SetInputBufferTypeToRGB()
-        capture.ReadFrontBufferOff()
-        shrink = vtk.vtkImageShrink3D()
-        shrink.SetInputConnection(capture.GetOutputPort())
-        shrink.SetShrinkFactors(SUPERSAMPLING, SUPERSAMPLING, 1)
-        shrink.AveragingOn()
-        writer = vtk.vtkPNGWriter()
-        writer.SetInputConnection(shrink.GetOutputPort())
-        writer.WriteToMemoryOn()
-        writer.Write()
-        data = writer.GetResult()
-        if data is None or data.GetNumberOfTuples() == 0:
-            raise BadInput("VTK made no picture; is there a working OpenGL driver (libgl1-mesa-dri)?")
-        return bytes(memoryview(data))
+        self.add_legend(
+            bottom,
+            24 * s,
+            13 * s,
+            (
+                ("contact", "contact and inward normal"),
+                ("stable", "stable pair of contacts"),
+                ("edge", "other edge of the contact polygon"),
+                ("palm", "palm direction"),
+                ("center", "center of mass"),
+            ),
+        )
 
 
 # --------------------------------------------------------------------------------------------- main
-
-
-def write_atomically(path, content):
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with open(part, "xb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(part, path)
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from error
-    finally:
-        part.unlink(missing_ok=True)
-
-
-def pixels(text):
-    value = int(text)
-    if not 200 <= value <= 8000:
-        raise argparse.ArgumentTypeError(f"{value} is not in 200 to 8000")
-    return value
 
 
 def main():
@@ -641,20 +344,8 @@ def main():
             path = file.parent / f"grasp_{grasp['number']:03d}.obj"
             if not path.is_file():
                 raise BadInput(f"{path}: No such file")
-        # A virtual display wherever there is one: a user's display may be remote, closed to us, or
-        # without OpenGL, and VTK then ends the program.
-        if UNDER_XVFB not in os.environ:
-            xvfb = shutil.which("xvfb-run")
-            if xvfb:
-                os.environ[UNDER_XVFB] = "1"
-                command = [xvfb, "-a", "-s", "-screen 0 1280x1024x24", sys.executable, *sys.argv]
-                os.execv(xvfb, command)
-            if not os.environ.get("DISPLAY"):
-                raise BadInput("no display: install xvfb and xauth")
-        try:
-            painter = Painter(arguments.width, arguments.height, "xyz".index(arguments.up), scene)
-        except ImportError as error:
-            raise BadInput(f"{error}: install python3-vtk9") from error
+        go_under_xvfb()
+        painter = Painter(arguments.width, arguments.height, "xyz".index(arguments.up), scene)
         for grasp in scene["grasps"]:
             name = f"grasp_{grasp['number']:03d}"
             picture = painter.paint(grasp, read_parts(file.parent / f"{name}.obj"))

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "graspfit/geometry/shapes.hpp"
-#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_closing.hpp"
 
 namespace graspfit::testing {
 namespace {
@@ -145,6 +145,22 @@ SampleScene sample_scene() {
   open.quality.stable_pairs.clear();
 
   scene.grasps = {valid, penetrating, open};
+  return scene;
+}
+
+viewer::HandScene sample_hand_scene() {
+  viewer::HandScene scene;
+  scene.hand = three_finger_hand();
+  scene.hand.joints[1].coupling = hands::Coupling{0, 0.5, 0.1, false};
+  scene.hand.joints[2].coupling = hands::Coupling{0, 0.5, 0.1, true};
+  scene.hand.joints[2].type = hands::JointType::Prismatic;
+  scene.hand.joints[2].axis_J = Eigen::Vector3d(0.6, 0.0, 0.8);
+  scene.description = "A sentence with <signs> & marks.";
+  scene.clip_thickness = 0.003;
+  for (const double share : {0.0, 1.0}) {
+    scene.poses.push_back(
+        {share == 0.0 ? "open" : "closed", hands::closed_configuration(scene.hand, share).q});
+  }
   return scene;
 }
 

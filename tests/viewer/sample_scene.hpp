@@ -4,6 +4,7 @@
 
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/hands/hand_model.hpp"
+#include "graspfit/viewer/hand_page.hpp"
 
 namespace graspfit::testing {
 
@@ -17,5 +18,9 @@ struct SampleScene {
   std::vector<grasp::Grasp> grasps;
 };
 SampleScene sample_scene();
+
+/// The same hand by itself, open and closed: joint_2 follows joint_1 by a half plus 0.1, joint_3
+/// follows it alike, but may break away, and slides.
+viewer::HandScene sample_hand_scene();
 
 }  // namespace graspfit::testing

@@ -6,6 +6,7 @@ be refused by its own security policy and so fail for its console message.
 """
 
 import io
+import json
 import os
 import pathlib
 import shutil
@@ -132,6 +133,10 @@ class PageInBrowser(unittest.TestCase):
 
     def assert_same(self, a, b, what):
         self.assertIsNone(ImageChops.difference(a, b).getbbox(), what)
+
+
+class GraspsInBrowser(PageInBrowser):
+    """The page of grasps."""
 
     def test_scene_is_drawn(self):
         self.open("ball.html")
@@ -267,6 +272,102 @@ class PageInBrowser(unittest.TestCase):
             self.assertLessEqual(width, self.browser.execute_script("return innerWidth"))
         finally:
             self.browser.set_window_size(900, 640)
+
+
+class HandInBrowser(PageInBrowser):
+    """The page of a hand: tests/viewer/sample_scene.cpp, sample_hand_scene."""
+
+    def setUp(self):
+        self.open("hand.html")
+        text = self.browser.execute_script("return document.getElementById('data').textContent")
+        self.scene = json.loads(text)
+
+    def tips(self):
+        """Positions of the tip pads [mm] as the page shows them."""
+        rows = self.browser.find_elements(By.CSS_SELECTOR, "#tips tbody tr")
+        cells = [[cell.text for cell in row.find_elements(By.TAG_NAME, "td")] for row in rows]
+        return {name: [float(x) for x in point] for name, *point, _ in cells}
+
+    def expected_tips(self, pose):
+        """The same from the link poses that forward kinematics in C++ gave."""
+        hand = self.scene["hand"]
+        tips = {}
+        for finger in hand["fingers"]:
+            pad = hand["pads"][finger["tip_pad"]]
+            X = pose["X_HL"][pad["link"]]
+            p = pad["X_LC"][12:15]
+            tips[finger["name"]] = [
+                1000 * (sum(X[4 * k + i] * p[k] for k in range(3)) + X[12 + i]) for i in range(3)
+            ]
+        return tips
+
+    def assert_tips(self, expected):
+        shown = self.tips()
+        self.assertEqual(shown.keys(), expected.keys())
+        for name, point in expected.items():
+            for a, b in zip(shown[name], point):
+                self.assertAlmostEqual(a, b, delta=0.00501)  # two digits are shown
+
+    def move(self, joint, value):
+        self.browser.execute_script(
+            "const slider = document.getElementById(arguments[0]);"
+            "slider.value = arguments[1]; slider.dispatchEvent(new Event('input'));",
+            f"joint-{joint}",
+            value,
+        )
+
+    def test_hand_is_drawn_with_its_title(self):
+        image = self.picture("hand")
+        self.assertEqual(self.browser.title, "sample")
+        self.assertIn("A sentence with <signs> & marks.", self.text("summary"))
+        self.assertIn("3 fingers · 3 joints, 1 independent · 3 pads", self.text("summary"))
+        self.assertLess(self.share_near(image, (0xF4, 0xF5, 0xF4), 2), 0.95)
+        self.assertFalse(self.element("message").is_displayed())
+
+    def test_poses_put_links_where_forward_kinematics_does(self):
+        pictures = []
+        for i, pose in enumerate(self.scene["poses"]):
+            self.element(f"pose-{i}").click()
+            self.assert_tips(self.expected_tips(pose))
+            self.assertEqual(self.element(f"pose-{i}").get_attribute("aria-pressed"), "true")
+            pictures.append(self.picture(f"hand_{pose['name']}"))
+        self.assert_differs(*pictures, "another pose, the same picture")
+
+    def test_slider_moves_followers_and_comes_back_to_the_pose(self):
+        open_pose, closed_pose = self.scene["poses"]
+        self.element("pose-0").click()
+        before = self.picture()
+        self.move(0, closed_pose["q"][0])
+        self.assert_tips(self.expected_tips(closed_pose))
+        self.assertEqual(self.element("pose-1").get_attribute("aria-pressed"), "false")
+        self.move(0, open_pose["q"][0])
+        self.assert_tips(self.expected_tips(open_pose))
+        self.assert_same(before, self.picture(), "moved there and back")
+
+    def test_follower_is_fixed_unless_it_may_break_away(self):
+        self.assertTrue(self.element("joint-0").is_enabled())
+        self.assertFalse(self.element("joint-1").is_enabled())
+        self.assertTrue(self.element("joint-2").is_enabled())
+        self.element("pose-0").click()
+        coupled = self.scene["poses"][0]["q"][2]
+        self.move(2, 0.5)  # further closed: it stays
+        self.assertEqual(self.text("value-2"), "500.0 mm")
+        self.move(2, -0.8)  # less closed than its leader asks for: it does not
+        self.assertEqual(self.text("value-2"), f"{1000 * coupled:.1f} mm")
+
+    def test_layers_and_views_change_the_picture(self):
+        plain = self.picture()
+        for layer in ("hand", "joints", "palm", "pads", "clips"):
+            with self.subTest(layer=layer):
+                box = self.element(f"show-{layer}")
+                box.click()
+                self.assert_differs(plain, self.picture(layer), f"{layer} toggled, the same picture")
+                box.click()
+        self.assert_same(plain, self.picture(), "all toggled twice, another picture")
+        for view in ("side", "front", "behind", "oblique"):
+            before = self.picture()
+            self.browser.find_element(By.CSS_SELECTOR, f'[data-view="{view}"]').click()
+            self.assert_differs(before, self.picture(f"hand_{view}"), view)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/viewer/hand_page.hpp"
 #include "graspfit/viewer/page.hpp"
 #include "sample_scene.hpp"
 
@@ -37,6 +38,8 @@ int main(int argc, char** argv) {
     input.title = "No grasps";
     input.grasps.clear();
     viewer::write_page(folder / "no_grasps.html", input);
+
+    viewer::write_hand_page(folder / "hand.html", testing::sample_hand_scene());
   } catch (const geometry::Error& error) {
     std::cerr << "write_sample_pages: " << error.what() << '\n';
     return 1;

@@ -1,11 +1,18 @@
-# Writes OUTPUT, a C++ source that holds PAGE_DIR's three files as string literals.
+# Writes OUTPUT, a C++ source that holds PAGE_DIR's files as string literals.
 set(content "// Written by viewer/page/embed.cmake from viewer/page/; edit those.\n")
 string(APPEND content "#include \"internal/page_template.hpp\"\n\nnamespace graspfit::viewer {\n")
-foreach(part IN ITEMS Html Css Js)
-  string(TOLOWER ${part} extension)
-  file(READ ${PAGE_DIR}/page.${extension} text)
+foreach(file IN ITEMS page.html page.css stage.js grasps.html grasps.js hand.html hand.js)
+  file(READ ${PAGE_DIR}/${file} text)
+  string(REPLACE "." ";" words ${file})
+  set(name "k")
+  foreach(word IN LISTS words)
+    string(SUBSTRING ${word} 0 1 first)
+    string(SUBSTRING ${word} 1 -1 rest)
+    string(TOUPPER ${first} first)
+    string(APPEND name "${first}${rest}")
+  endforeach()
   string(APPEND content
-    "\nconst std::string_view kPage${part} = R\"graspfit_page(${text})graspfit_page\";\n")
+    "\nconst std::string_view ${name} = R\"graspfit_page(${text})graspfit_page\";\n")
 endforeach()
 string(APPEND content "\n}  // namespace graspfit::viewer\n")
 file(WRITE ${OUTPUT} "${content}")

@@ -1,127 +1,22 @@
 #include "internal/page_data.hpp"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <span>
-#include <type_traits>
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/hand_data.hpp"
 
 namespace graspfit::viewer {
 namespace {
 
 using geometry::InvalidInput;
 using geometry::RigidTransform;
-using geometry::TriangleMesh;
-using Json = nlohmann::ordered_json;
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
-    }
-  }
-  return text;
-}
-
-// The numbers' bytes, lowest first whatever the machine's order is.
-template <typename Number>
-std::string base64_of(std::span<const Number> numbers) {
-  using Bits = std::conditional_t<sizeof(Number) == 2, std::uint16_t, std::uint32_t>;
-  static_assert(sizeof(Bits) == sizeof(Number));
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(numbers.size_bytes());
-  for (const Number number : numbers) {
-    const auto bits = std::bit_cast<Bits>(number);
-    for (std::size_t k = 0; k < sizeof(Bits); ++k) {
-      bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * k)));
-    }
-  }
-  return base64(bytes);
-}
-
-Json to_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-// Column-major 4×4, as WebGL takes it.
-Json to_json(const RigidTransform& X) {
-  const Eigen::Matrix4d matrix = X.matrix();
-  return Json(std::vector<double>(matrix.data(), matrix.data() + 16));
-}
-
-Json to_json(const TriangleMesh& mesh) {
-  std::vector<float> vertices;
-  vertices.reserve(3 * mesh.vertices.size());
-  for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) vertices.push_back(static_cast<float>(vertex[axis]));
-  }
-  std::vector<std::uint32_t> faces;
-  faces.reserve(3 * mesh.faces.size());
-  for (const geometry::Face& face : mesh.faces) {
-    for (const std::int32_t vertex : face) faces.push_back(static_cast<std::uint32_t>(vertex));
-  }
-  return {{"vertices", base64_of<float>(vertices)}, {"faces", base64_of<std::uint32_t>(faces)}};
-}
 
 std::string finger_name(const hands::HandModel& hand, int finger) {
   return finger < 0 ? "palm" : hand.fingers[finger].name;
-}
-
-Json links(const hands::HandModel& hand) {
-  Json list = Json::array();
-  for (const hands::Link& link : hand.links) {
-    list.push_back({{"name", link.name}, {"mesh", to_json(link.mesh_L)}});
-  }
-  return list;
-}
-
-/// Corners, triangles and edges of a clip volume, in the pad's frame; edges where faces meet at an
-/// angle.
-Json clip_volume(const hands::ContactPad& pad, double thickness) {
-  const TriangleMesh mesh_C = hands::clip_volume_mesh_C(pad, thickness);
-  Json points = Json::array();
-  for (const Eigen::Vector3d& vertex : mesh_C.vertices) points.push_back(to_json(vertex));
-  Json faces = Json::array();
-  Json edges = Json::array();
-  std::map<std::pair<std::int32_t, std::int32_t>, Eigen::Vector3d> normal_at;
-  for (std::size_t f = 0; f < mesh_C.faces.size(); ++f) {
-    const geometry::Face& face = mesh_C.faces[f];
-    faces.push_back({face[0], face[1], face[2]});
-    const Eigen::Vector3d normal = geometry::face_normal(mesh_C, f);
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = face[k];
-      const std::int32_t b = face[(k + 1) % 3];
-      const auto [other, is_first] = normal_at.emplace(std::minmax(a, b), normal);
-      constexpr double kFlat = 1e-6;  // 1 - cosine: the hull cuts flat sides into triangles
-      if (!is_first && other->second.dot(normal) < 1.0 - kFlat) edges.push_back({a, b});
-    }
-  }
-  return {{"points", points}, {"faces", faces}, {"edges", edges}};
-}
-
-Json pads(const PageInput& input) {
-  Json list = Json::array();
-  for (const hands::ContactPad& pad : input.hand.pads) {
-    const double thickness = pad.clip_thickness.value_or(input.clip_thickness);
-    list.push_back({{"name", pad.name},
-                    {"link", pad.link},
-                    {"X_LC", to_json(pad.X_LC)},
-                    {"clip", thickness > 0.0 ? clip_volume(pad, thickness) : Json(nullptr)}});
-  }
-  return list;
 }
 
 Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
@@ -220,8 +115,8 @@ Json voxels(const grasp::ObjectModel& model) {
   }
   return {{"origin", to_json(lattice.origin)},
           {"size", lattice.voxel_size},
-          {"indices", base64_of<std::uint16_t>(indices)},
-          {"scores", base64_of<float>(scores)}};
+          {"indices", base64_of(indices)},
+          {"scores", base64_of(scores)}};
 }
 
 void validate(const PageInput& input) {
@@ -288,39 +183,12 @@ std::string page_data(const PageInput& input) {
   std::optional<Eigen::Vector3d> center_of_mass_O = input.center_of_mass_O;
   if (!center_of_mass_O && input.model) center_of_mass_O = input.model->mass.center_of_mass;
 
-  Json joints = Json::array();
-  for (const hands::Joint& joint : input.hand.joints) {
-    joints.push_back({{"name", joint.name},
-                      {"is_angle", joint.type == hands::JointType::Revolute},
-                      {"is_coupled", joint.coupling.has_value()}});
-  }
-  const hands::Palm& palm = input.hand.palm;
   const Json data = {{"object", to_json(input.object_O)},
                      {"center_of_mass", center_of_mass_O ? to_json(*center_of_mass_O) : Json()},
-                     {"hand",
-                      {{"name", input.hand.name},
-                       {"links", links(input.hand)},
-                       {"joints", joints},
-                       {"pads", pads(input)},
-                       {"palm",
-                        {{"link", palm.link},
-                         {"center", to_json(palm.center_H)},
-                         {"direction", to_json(palm.direction_H)}}}}},
+                     {"hand", hand_data(input.hand, input.clip_thickness)},
                      {"voxels", input.model ? voxels(*input.model) : Json()},
                      {"grasps", grasps(input)}};
-  const std::string text = data.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace);
-
-  // "</" would end the script element early, "<!--" would change how its end is found.
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
+  return script_text(data);
 }
 
 }  // namespace graspfit::viewer

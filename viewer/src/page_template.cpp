@@ -1,0 +1,68 @@
+#include "internal/page_template.hpp"
+
+#include <initializer_list>
+#include <utility>
+
+namespace graspfit::viewer {
+namespace {
+
+std::string escaped_for_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+
+// One pass over the template: what is put in is never searched for places.
+std::string filled(std::string_view rest, const Places& places) {
+  std::string html;
+  while (!rest.empty()) {
+    const std::size_t brace = rest.find("{{");
+    html += rest.substr(0, brace);
+    if (brace == std::string_view::npos) break;
+    rest.remove_prefix(brace);
+    bool is_place = false;
+    for (const auto& [place, text] : places) {
+      if (!rest.starts_with(place)) continue;
+      html += text;
+      rest.remove_prefix(place.size());
+      is_place = true;
+      break;
+    }
+    if (!is_place) {
+      html += "{{";
+      rest.remove_prefix(2);
+    }
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string filled_page(const PageParts& parts) {
+  const std::string title = escaped_for_html(parts.title);
+  const std::string main = filled(parts.main, {{"{{title}}", title}});
+  return filled(kPageHtml, {{"{{title}}", title},
+                            {"{{style}}", kPageCss},
+                            {"{{main}}", main},
+                            {"{{stage}}", kStageJs},
+                            {"{{script}}", parts.script},
+                            {"{{data}}", parts.data}});
+}
+
+}  // namespace graspfit::viewer
