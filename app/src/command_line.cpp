@@ -82,9 +82,14 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
   } catch (const po::unknown_option& error) {
     throw UsageError("unknown option " + error.get_option_name());
   } catch (const po::too_many_positional_options_error&) {
-    throw UsageError("more than one " + positional_name_ + " given");
+    throw UsageError(positional_name_.empty() ? "takes no argument without a flag"
+                                              : "more than one " + positional_name_ + " given");
   } catch (const po::error& error) {
     throw UsageError(error.what());
+  }
+  if (positional_name_.empty() && has(kPositional)) {
+    throw UsageError("takes no argument without a flag, but \"" + text(kPositional) +
+                     "\" is given");
   }
 }
 
@@ -151,7 +156,8 @@ std::vector<std::pair<std::string, double>> Flags::settings(const std::string& n
 
 std::string help_text(const Command& command) {
   std::ostringstream text;
-  text << "Usage: graspfit " << command.name << ' ' << command.positional << " [options]\n\n"
+  text << "Usage: graspfit " << command.name
+       << (command.positional.empty() ? "" : " " + command.positional) << " [options]\n\n"
        << command.summary << command.options
        << "\n  -h [ --help ]                       print this text\n";
   if (!command.epilog.empty()) text << '\n' << command.epilog;

@@ -16,7 +16,7 @@ namespace graspfit::app {
 /// A command of the program: what it is called with and what its help says.
 struct Command {
   std::string name;        ///< "plan"
-  std::string positional;  ///< What the one argument without a flag is, for example "OBJECT".
+  std::string positional;  ///< What the one argument without a flag is, "OBJECT"; empty: none.
   std::string summary;     ///< One or more sentences for --help.
   boost::program_options::options_description options;
   std::string epilog;  ///< Printed after the options.

@@ -13,6 +13,10 @@ ExitCode run_plan(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_shape(const std::vector<std::string>& arguments);
+ExitCode run_hand(const std::vector<std::string>& arguments);
+
+/// Whether `graspfit hand` has a command of that name.
+bool is_hand_command(const std::string& name);
 
 /// The program's version and those of the compiler and the libraries it was built with.
 std::string version_text();

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -22,6 +24,7 @@ const char* const kUsage =
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
+    "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
     "\n"
     "graspfit COMMAND --help lists a command's options with their defaults and units.\n";
 
@@ -31,34 +34,50 @@ void print_error(const std::string& command, const std::string& what) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
+using Run = ExitCode (*)(const std::vector<std::string>&);
+constexpr std::array<std::pair<const char*, Run>, 5> kCommands = {{{"plan", run_plan},
+                                                                   {"inspect", run_inspect},
+                                                                   {"evaluate", run_evaluate},
+                                                                   {"shape", run_shape},
+                                                                   {"hand", run_hand}}};
+const char* const kCommandNames = "plan, inspect, evaluate, shape and hand";
+
+const std::pair<const char*, Run>* find_command(const std::string& name) {
+  const auto found = std::find_if(kCommands.begin(), kCommands.end(),
+                                  [&](const auto& command) { return name == command.first; });
+  return found == kCommands.end() ? nullptr : &*found;
+}
+
 ExitCode run(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    throw UsageError("no command given; there are plan, inspect, evaluate and shape (see --help)");
+    throw UsageError(std::string("no command given; there are ") + kCommandNames + " (see --help)");
   }
-  const std::string& command = arguments[0];
-  const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-  if (command == "plan") return run_plan(rest);
-  if (command == "inspect") return run_inspect(rest);
-  if (command == "evaluate") return run_evaluate(rest);
-  if (command == "shape") return run_shape(rest);
-  if (command == "--help" || command == "-h" || command == "help") {
+  const std::string& name = arguments[0];
+  if (const auto* command = find_command(name)) {
+    return command->second({arguments.begin() + 1, arguments.end()});
+  }
+  if (name == "--help" || name == "-h" || name == "help") {
     std::fputs(kUsage, stdout);
     return kSuccess;
   }
-  if (command == "--version") {
+  if (name == "--version") {
     std::fputs(version_text().c_str(), stdout);
     return kSuccess;
   }
-  throw UsageError("unknown command \"" + command +
-                   "\"; there are plan, inspect, evaluate and shape");
+  throw UsageError("unknown command \"" + name + "\"; there are " + kCommandNames);
+}
+
+/// "hand show" for messages; empty where there is no such command.
+std::string name_for_messages(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || find_command(arguments[0]) == nullptr) return "";
+  const bool has_subcommand =
+      arguments[0] == "hand" && arguments.size() > 1 && is_hand_command(arguments[1]);
+  return has_subcommand ? "hand " + arguments[1] : arguments[0];
 }
 
 /// Every exception ends here as one line and an exit code.
 ExitCode run_and_report(const std::vector<std::string>& arguments) {
-  const bool has_command =
-      !arguments.empty() && (arguments[0] == "plan" || arguments[0] == "inspect" ||
-                             arguments[0] == "evaluate" || arguments[0] == "shape");
-  const std::string command = has_command ? arguments[0] : "";
+  const std::string command = name_for_messages(arguments);
   try {
     return run(arguments);
   } catch (const UsageError& error) {

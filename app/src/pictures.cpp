@@ -1,9 +1,13 @@
 #include "pictures.hpp"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "interrupts.hpp"
 
@@ -12,10 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The picture script: beside an installed program wherever it was moved, else in the sources of
-/// the build, else where it was installed.
-fs::path find_script() {
-  const fs::path name = "render_grasps.py";
+constexpr const char* kGraspScript = "render_grasps.py";
+constexpr const char* kHandScript = "render_hand.py";
+
+/// A picture script: beside an installed program wherever it was moved, else in the sources of the
+/// build, else where it was installed.
+fs::path find_script(const std::string& flag, const fs::path& name) {
   std::error_code error;
   std::vector<fs::path> candidates;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -27,7 +33,7 @@ fs::path find_script() {
   for (const fs::path& candidate : candidates) {
     if (fs::is_regular_file(candidate, error)) return candidate;
   }
-  throw geometry::IoError("--pictures: the script " + name.string() +
+  throw geometry::IoError(flag + ": the script " + name.string() +
                           " is not installed (looked for " + candidates.front().string() + ")");
 }
 
@@ -40,25 +46,67 @@ std::string last_line(const std::string& text) {
                      start == std::string::npos ? end + 1 : end - start);
 }
 
+/// A new folder for files between programs, gone at the end and on an interrupt.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_((fs::temp_directory_path() / "graspfit-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw geometry::IoError("temporary folder " + path_ + ": " + std::strerror(errno));
+    }
+    cleanup_ = std::make_unique<CleanupOnInterrupt>([this] { remove(); });
+  }
+  ~TemporaryFolder() {
+    cleanup_.reset();
+    remove();
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  fs::path path() const { return path_; }
+
+ private:
+  void remove() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+
+  std::string path_;
+  std::unique_ptr<CleanupOnInterrupt> cleanup_;
+};
+
+void run_script(const std::string& flag, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {GRASPFIT_PYTHON};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const ProgramEnd end = run_program(command);
+  if (end.code != 0) {
+    throw geometry::IoError(flag + ": " + last_line(end.errors) + " (exit code " +
+                            std::to_string(end.code) + ")");
+  }
+}
+
 }  // namespace
 
-void require_pictures() {
-  find_script();
+void require_pictures(const std::string& flag) {
+  find_script(flag, kGraspScript);
+  find_script(flag, kHandScript);
   if (run_program({GRASPFIT_PYTHON, "-c", "import vtkmodules"}).code != 0) {
-    throw geometry::IoError("--pictures: needs VTK for " GRASPFIT_PYTHON "; install python3-vtk9");
+    throw geometry::IoError(flag + ": needs VTK for " GRASPFIT_PYTHON "; install python3-vtk9");
   }
   const bool has_display = std::getenv("DISPLAY") != nullptr;
   if (!has_display && run_program({"/bin/sh", "-c", "command -v xvfb-run"}).code != 0) {
-    throw geometry::IoError("--pictures: there is no display; install xvfb and xauth");
+    throw geometry::IoError(flag + ": there is no display; install xvfb and xauth");
   }
 }
 
 void draw_pictures(const fs::path& folder) {
-  const ProgramEnd end = run_program({GRASPFIT_PYTHON, find_script().string(), folder.string()});
-  if (end.code != 0) {
-    throw geometry::IoError("--pictures: " + last_line(end.errors) + " (exit code " +
-                            std::to_string(end.code) + ")");
-  }
+  run_script("--pictures", {find_script("--pictures", kGraspScript).string(), folder.string()});
+}
+
+void draw_hand_picture(const std::string& scene_json, const fs::path& picture) {
+  const TemporaryFolder folder;
+  const fs::path scene = folder.path() / "hand.json";
+  geometry::write_file_atomically(scene, scene_json);
+  run_script("--png",
+             {find_script("--png", kHandScript).string(), scene.string(), picture.string()});
 }
 
 }  // namespace graspfit::app

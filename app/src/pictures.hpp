@@ -1,14 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace graspfit::app {
 
-/// Throws IoError if the picture script or what it needs is not there; asked before work starts.
-void require_pictures();
+/// Throws IoError if the picture scripts or what they need is not there; asked before work starts.
+/// `flag` is the one that asked for pictures: messages start with it.
+void require_pictures(const std::string& flag);
 
 /// Draws grasp_NNN.png of every grasp of `folder`/grasps.json into `folder`, with VTK by the script
 /// that comes with the viewer. @throws IoError with the script's own words if it fails.
 void draw_pictures(const std::filesystem::path& folder);
+
+/// Draws a hand's poses into the file `picture` from a scene of viewer::hand_scene_json. Nothing is
+/// left behind if that fails. @throws IoError with the script's own words if it fails.
+void draw_hand_picture(const std::string& scene_json, const std::filesystem::path& picture);
 
 }  // namespace graspfit::app

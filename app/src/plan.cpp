@@ -12,8 +12,8 @@
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
-#include "graspfit/hands/hand_library.hpp"
 #include "graspfit/viewer/page.hpp"
+#include "hand_loading.hpp"
 #include "object_loading.hpp"
 #include "output_folder.hpp"
 #include "pictures.hpp"
@@ -140,7 +140,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   grasp::PlannerOptions options = read_planner_flags(flags);
-  const hands::HandModel hand = hands::find_hand(flags.text("hand"));
+  const hands::HandReading reading = load_hand(flags.text("hand"));
+  const hands::HandModel& hand = reading.model;
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
   }
@@ -151,7 +152,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   } else if (flags.has("pictures") || flags.has("page")) {
     throw UsageError("--pictures and --page need --out DIR");
   }
-  if (flags.has("pictures")) require_pictures();
+  if (flags.has("pictures")) require_pictures("--pictures");
+  warn_of_findings("plan", reading);
 
   ProgressBar progress(!flags.has("quiet"));
   progress.show("reading " + flags.positional());

@@ -65,7 +65,8 @@ po::options_description planner_options() {
 
   po::options_description request = option_group("Hand and request");
   add_option(request, "hand", "NAME|FILE", "barrett",
-             "a shipped hand, or the URDF file of any hand with its sidecar beside it");
+             "a shipped hand (graspfit hand list), or the description of any hand: URDF, MJCF or "
+             "GraspIt! XML; what no sidecar beside it says is derived");
   add_option(request, "fingers", "A,B,...", std::nullopt,
              "the fingers that must touch, by the hand's names (Barrett: finger_1, finger_2, "
              "thumb)");

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "graspfit/hands/hand_model.hpp"
+#include "graspfit/viewer/hand_page.hpp"
+
+namespace graspfit::app {
+
+/// The poses that the words of --pose name: `open`, `half` and `closed` each start a pose,
+/// JOINT=VALUE [rad or m] changes the one before it, or the open hand if there is none; coupled
+/// joints follow. Half and closed are `hands::closed_without_overlap`.
+/// @throws UsageError for other words and numbers that are none; InvalidInput for joints that the
+/// hand does not have, values outside their limits, and joints that follow another.
+std::vector<viewer::HandPose> read_poses(const std::vector<std::string>& words,
+                                         const hands::HandModel& hand);
+
+}  // namespace graspfit::app
