@@ -59,6 +59,9 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A25", "joint limits that open; spread aligned with the targets"},
       {"A26", "least sum of squared angular errors of the fingers that share a joint"},
       {"A27", "coupled, with breakaway"},
+      {"A28",
+       "abduction toward the target's azimuth, clamped; hands whose open tips lie on one side of "
+       "the palm turn about the middle of their fingertips"},
       {"A29", "whole-hand motion after the first contact only if no contact is lost"},
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
@@ -81,6 +84,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A41", "volume integral over the closed mesh"},
       {"A42", "outline of the pad"},
       {"A43", "Euclidean"},
+      {"A44", "the hand gives way for the stopped one of fingers that share a joint"},
       {"A46", "repaired or refused; see object.repair"},
       {"A47",
        targets.theta_max == quality.theta_max ? "one angle for targets and measure" : "two angles"},

@@ -42,7 +42,10 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
   const fs::path sidecar_file = sidecar_file_of(description_file);
   std::error_code error;
   std::string sidecar_text;
-  const bool has_sidecar = fs::is_regular_file(sidecar_file, error);
+  const bool has_sidecar = fs::exists(sidecar_file, error);
+  if (has_sidecar && !fs::is_regular_file(sidecar_file, error)) {
+    throw geometry::IoError(sidecar_file.string() + ": is not a file");
+  }
   if (has_sidecar) {
     findings.attempt([&] {
       sidecar_text = geometry::read_file(sidecar_file);
@@ -67,7 +70,7 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
     findings.attempt([&] {
       const auto& couplings = sources.sidecar.couplings;
       if (couplings) set_couplings(*couplings, sidecar_file.string(), tree);
-      follow_first_leaders(couplings ? sidecar_file.string() : file, tree);
+      follow_first_leaders(couplings && !couplings->empty() ? sidecar_file.string() : file, tree);
     });
   }
   for (const DescribedLink& source : links) {
@@ -86,6 +89,16 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
   return sources;
 }
 
+std::string completed_sidecar_text(const HandSources& sources, Findings& findings) {
+  const HandModel& tree = *sources.tree;
+  const std::string description =
+      sources.sidecar.description.empty()
+          ? "Derived by graspfit from " + fs::path(tree.description_file).filename().string() +
+                "; edit what is wrong, delete a member to derive it again."
+          : sources.sidecar.description;
+  return sidecar_text(completed(tree, sources.sidecar, findings), tree.name, description);
+}
+
 std::optional<HandModel> assemble(const HandSources& sources, Findings& findings) {
   // After a fault names can still be checked, but nothing sensible derived.
   if (!sources.tree || (findings.has_faults() && !sources.sidecar.is_complete())) {
@@ -96,8 +109,10 @@ std::optional<HandModel> assemble(const HandSources& sources, Findings& findings
   const bool is_whole = findings.attempt([&] {
     Sidecar sidecar = sources.sidecar;
     if (!sidecar.is_complete()) {
-      sidecar = completed(*sources.tree, sidecar, findings);
-      model.sidecar_sha256 = geometry::sha256_hex(sidecar_text(sidecar, model.name, ""));
+      // By way of its text, so that the hand is the same once the text is a file.
+      const std::string text = completed_sidecar_text(sources, findings);
+      sidecar = parse_sidecar(text, file + " (derived)");
+      model.sidecar_sha256 = geometry::sha256_hex(text);
     }
     resolve(sidecar, file, model);
     try {

@@ -1,9 +1,7 @@
 #include "graspfit/hands/hand_io.hpp"
 
-#include "internal/derivation.hpp"
 #include "internal/findings.hpp"
 #include "internal/hand_assembly.hpp"
-#include "internal/sidecar.hpp"
 
 namespace graspfit::hands {
 
@@ -31,13 +29,7 @@ HandModel read_hand_model(const fs::path& description_file) {
 std::string derived_sidecar_text(const fs::path& description_file) {
   Findings findings(Findings::AtFault::Throw);
   const internal::HandSources sources = internal::read_sources(description_file, findings);
-  const std::string description =
-      sources.sidecar.description.empty()
-          ? "Derived by graspfit from " + description_file.filename().string() +
-                "; edit what is wrong, delete a member to derive it again."
-          : sources.sidecar.description;
-  return internal::sidecar_text(internal::completed(*sources.tree, sources.sidecar, findings),
-                                sources.tree->name, description);
+  return internal::completed_sidecar_text(sources, findings);
 }
 
 }  // namespace graspfit::hands

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "graspfit/hands/hand_model.hpp"
 #include "internal/findings.hpp"
@@ -21,6 +22,10 @@ struct HandSources {
 /// goes on after those that can be collected.
 /// @throws IoError if the description cannot be read; the first fault where they are thrown.
 HandSources read_sources(const std::filesystem::path& description_file, Findings& findings);
+
+/// The text of a complete sidecar for `sources`, whose tree must be there: what they say is kept,
+/// the rest derived. @throws as `completed`.
+std::string completed_sidecar_text(const HandSources& sources, Findings& findings);
 
 /// The whole hand from its sources: what no sidecar says is derived. Empty after a fault that
 /// leaves no hand, where they are collected. @throws the first fault where they are thrown.
