@@ -43,11 +43,11 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
   std::error_code error;
   std::string sidecar_text;
   const bool has_sidecar = fs::exists(sidecar_file, error);
-  if (has_sidecar && !fs::is_regular_file(sidecar_file, error)) {
-    throw geometry::IoError(sidecar_file.string() + ": is not a file");
-  }
   if (has_sidecar) {
     findings.attempt([&] {
+      if (!fs::is_regular_file(sidecar_file, error)) {
+        throw IoError(sidecar_file.string() + ": is not a file");
+      }
       sidecar_text = geometry::read_file(sidecar_file);
       sources.sidecar = parse_sidecar(sidecar_text, sidecar_file.string());
     });

@@ -536,9 +536,7 @@ TEST_CASE("Every member of a sidecar may be left out, and is derived", "[hands][
       REQUIRE(coupling.has_value());
       CHECK(coupling->ratio == 0.5);
       CHECK_FALSE(coupling->breakaway);
-    } else if (member == "\"exclusions\"") {  // neighbors, without a word
-      CHECK(reading.model.is_excluded(reading.model.link_index("right"),
-                                      reading.model.link_index("tip")));
+    } else if (member == "\"exclusions\"") {  // nothing that never meets
       CHECK_FALSE(reading.model.is_excluded(reading.model.link_index("left"),
                                             reading.model.link_index("tip")));
     } else {
@@ -616,7 +614,7 @@ void damage_the_hand(int times) {
     num_read += read;
   }
   // Both happen: names and numbers may change without harm.
-  CHECK(num_read > times / 50);
+  CHECK(num_read > times / 100);
   CHECK(num_read < times / 2);
 }
 
