@@ -249,7 +249,7 @@ class Export(program.ProgramTest):
         meshes = {mesh.get("filename") for mesh in robot.iter("mesh")}
         self.assertEqual({path.name for path in out.iterdir()},
                          meshes | {"barrett.urdf", "barrett.graspfit.json"})
-        self.assertEqual(len(meshes), 8)
+        self.assertEqual(len(meshes), 9)
         self.assertEqual(len(list(robot.iter("mimic"))), 4)
         strip = lambda text: re.sub(r"(?m)^(file|sidecar|what) .*\n", "", text)
         here = program.run("hand", "show", "barrett")

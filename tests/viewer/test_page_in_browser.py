@@ -321,7 +321,8 @@ class HandInBrowser(PageInBrowser):
         self.assertEqual(self.browser.title, "sample")
         self.assertIn("A sentence with <signs> & marks.", self.text("summary"))
         self.assertIn("3 fingers · 3 joints, 1 independent · 3 pads", self.text("summary"))
-        self.assertLess(self.share_near(image, (0xF4, 0xF5, 0xF4), 2), 0.95)
+        # The sample's third finger slides 0.3 m away, so that the hand fills little of the view.
+        self.assertLess(self.share_near(image, (0xF4, 0xF5, 0xF4), 2), 0.995)
         self.assertFalse(self.element("message").is_displayed())
 
     def test_poses_put_links_where_forward_kinematics_does(self):
