@@ -128,8 +128,10 @@ class Parser : private XmlSource {
     if (const XMLElement* tensor = e.FirstChildElement("inertia")) {
       const auto entry = [&](const char* name) { return number_or(*tensor, name, 0.0, item); };
       Eigen::Matrix3d inertia_I;
-      inertia_I << entry("ixx"), entry("ixy"), entry("ixz"), entry("ixy"), entry("iyy"),
-          entry("iyz"), entry("ixz"), entry("iyz"), entry("izz");
+      // Read before they are put in: Eigen asserts that a list once begun is completed.
+      const double xx = entry("ixx"), xy = entry("ixy"), xz = entry("ixz");
+      const double yy = entry("iyy"), yz = entry("iyz"), zz = entry("izz");
+      inertia_I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
       result.inertia_L = X_LI.linear() * inertia_I * X_LI.linear().transpose();
     }
     return result;
