@@ -136,16 +136,27 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
   const geometry::MeshQuery object(mesh);
   const hands::HandCollision collision(file.hand);
   const grasp::QualityContext context = grasp::quality_context(file, mesh);
-  std::vector<int> fingers;
-  for (const std::string& name : file.fingers) fingers.push_back(file.hand.finger_index(name));
+  grasp::RequestedParts requested;
+  for (const std::string& name : file.fingers) {
+    requested.fingers.push_back(file.hand.finger_index(name));
+  }
+  const grasp::SurroundingsCollision surroundings(file.hand, {});
+  const grasp::MeasuringScene scene{
+      .hand = file.hand,
+      .collision = collision,
+      .object = object,
+      .surroundings = surroundings,
+      .wrench_object = grasp::wrench_object(mesh, context.center_of_mass_O),
+      .quality_context = context,
+      .quality_options = grasp::quality_options(file),
+      .contact_options = grasp::contact_options(file)};
 
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;
   for (const grasp::Grasp& stored : file.grasps) {
     comparisons.push_back(compare(
         stored,
-        grasp::measure_grasp(file.hand, collision, object, context, stored.configuration, fingers,
-                             grasp::contact_options(file), grasp::quality_options(file))));
+        grasp::measure_grasp(scene, stored.configuration, requested)));
     largest_m_difference = std::max(largest_m_difference, comparisons.back().m_difference);
   }
   if (flags.has("json")) {

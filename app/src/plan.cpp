@@ -145,7 +145,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
   }
-  grasp::requested_fingers(hand, options);  // what the hand cannot do is said before any work
+  grasp::requested_parts(hand, options);  // what the hand cannot do is said before any work
   std::optional<OutputFolder> out;
   if (flags.has("out")) {
     out.emplace(flags.text("out"), is_plan_file);
@@ -165,7 +165,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
   const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
   grasp::PlannerResult result =
-      grasp::plan_grasps(object, hand, options, [&](std::int64_t attempts, std::int64_t grasps) {
+      grasp::plan_grasps(object, hand, options, {}, 0, [&](std::int64_t attempts, std::int64_t grasps) {
         const std::string attempt =
             "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
         const std::string found = std::to_string(grasps) + " grasps";

@@ -227,7 +227,8 @@ hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
 }
 
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
-                              const std::vector<int>& fingers, const PalmPlacement& placement) {
+                              const RequestedParts& parts, const PalmPlacement& placement) {
+  const std::vector<int>& fingers = parts.fingers;
   if (fingers.size() != targets.contacts.size()) {
     throw geometry::InvalidInput("assign_fingers: " + std::to_string(fingers.size()) +
                                  " fingers for " + std::to_string(targets.contacts.size()) +

@@ -24,7 +24,7 @@ GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& ha
   file.hand = hand;
   file.link_mesh_sha256 = internal::link_mesh_hashes(hand);
   file.options = options;
-  for (int finger : requested_fingers(hand, options)) {
+  for (int finger : requested_parts(hand, options).fingers) {
     file.fingers.push_back(hand.fingers[finger].name);
   }
   file.voxel_size = object.grid.lattice.voxel_size;

@@ -169,8 +169,12 @@ class GraspReader {
   Grasp read(const JsonNode& node) const {
     Grasp grasp;
     grasp.configuration = read_configuration(node);
-    grasp.pre_grasp = read_optional_configuration(node.at("pre_grasp"));
-    grasp.squeeze = read_optional_configuration(node.at("squeeze"));
+    if (const auto c = read_optional_configuration(node.at("pre_grasp"))) {
+      grasp.pre_grasp = PreGrasp{*c, 0.0, 0.0, 0.0};
+    }
+    if (const auto c = read_optional_configuration(node.at("squeeze"))) {
+      grasp.squeeze = Squeeze{*c, {}, 0.0, false, false};
+    }
     grasp.has_all_contacts = node.at("has_all_contacts").flag();
     for (const JsonNode& contact : node.at("contacts").items()) {
       grasp.contacts.push_back(read_contact(contact));

@@ -92,6 +92,8 @@ const char* failure_name(TargetFailure failure) {
       return "no second";
     case TargetFailure::NoFurther:
       return "no further";
+    case TargetFailure::NoPalm:
+      return "no palm";
   }
   return "";
 }
@@ -120,15 +122,17 @@ class Run {
       : object_(object),
         hand_(hand),
         options_(with_planner_rules(object, hand, options)),
-        fingers_(requested_fingers(hand, options)),
+        parts_(requested_parts(hand, options)),
+        fingers_(parts_.fingers),
         fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
-        distances_(hands::tip_distances(hand)) {
+        distances_(part_distances(hand)),
+        surroundings_(hand, {}) {
     context_.center_of_mass_O = object.mass.center_of_mass;
     context_.normalizing_radius = object.normalizing_radius;
     context_.hand = &hand_;
     contact_options_.clip_thickness = clip_thickness(options, object.grid.lattice.voxel_size);
     contact_options_.averaging = options.averaging;
-    check_size(object.mesh(), hand, fingers_, widest_opening(distances_, fingers_));
+    check_size(object.mesh(), hand, fingers_, widest_opening(distances_.tip_to_tip, fingers_));
   }
 
   PlannerResult operator()(const PlannerProgress& progress) {
@@ -179,9 +183,12 @@ class Run {
       case AttemptOutcome::BlockedFinger:
       case AttemptOutcome::MissedContact:
         return 3;
+      case AttemptOutcome::Weak:
       case AttemptOutcome::Unstable:
       case AttemptOutcome::PoorShape:
         return 4;
+      case AttemptOutcome::GapLeft:
+      case AttemptOutcome::NoWayIn:
       case AttemptOutcome::SelfCollision:
         return 5;
       case AttemptOutcome::UsableOnly:
@@ -201,7 +208,7 @@ class Run {
   static PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                            PlannerOptions options) {
     options.validate();
-    const std::vector<int> fingers = requested_fingers(hand, options);
+    const std::vector<int> fingers = requested_parts(hand, options).fingers;
     if (options.targets.min_separation == 0.0) {
       options.targets.min_separation = fingertip_width(hand, fingers);
     }
@@ -251,7 +258,7 @@ class Run {
     double best_tilt = std::numeric_limits<double>::infinity();
     for (int draw = 0; draw < options_.target_draws; ++draw) {
       const TargetSelection selection =
-          select_target_contacts(object_, distances_, fingers_, options_.targets, random);
+          select_target_contacts(object_, distances_, parts_, options_.targets, random);
       result_.statistics.seeds_tried += selection.seeds_tried;
       if (!selection.targets) {
         failure = selection.failure;
@@ -262,7 +269,7 @@ class Run {
       for (const PalmPlacement& placement :
            palm_placements(object_, *selection.targets, options_.approach_O)) {
         sides.push_back(
-            {assign_fingers(hand_, *selection.targets, fingers_, placement), placement});
+            {assign_fingers(hand_, *selection.targets, parts_, placement), placement});
         tilts.push_back(pad_tilt(hand_, sides.back().targets, placement));
       }
       if (sides.empty()) continue;
@@ -283,8 +290,8 @@ class Run {
     FittingResult fitted;
     {
       const Stopwatch watch(result_.timings.fitting_s);
-      fitted = fit_hand(fitting_hand_, object_, start.targets, start.placement, contact_options_,
-                        options_.fitting);
+      fitted = fit_hand(fitting_hand_, object_, surroundings_, options_.style, start.targets,
+                        start.placement, contact_options_, options_.fitting);
     }
     result_.statistics.fitting_iterations += fitted.iterations;
     result_.timings.contact_tests_s += fitted.contact_tests_s;
@@ -358,9 +365,11 @@ class Run {
   const ObjectModel& object_;
   const hands::HandModel& hand_;
   const PlannerOptions options_;
+  const RequestedParts parts_;
   const std::vector<int> fingers_;
   const FittingHand fitting_hand_;
-  const hands::TipDistances distances_;
+  const PartDistances distances_;
+  const SurroundingsCollision surroundings_;
   QualityContext context_;
   ContactEstimationOptions contact_options_;
   PlannerResult result_;
@@ -414,6 +423,12 @@ const char* outcome_name(AttemptOutcome outcome) {
       return "blocked finger";
     case AttemptOutcome::MissedContact:
       return "missed contact";
+    case AttemptOutcome::GapLeft:
+      return "gap left";
+    case AttemptOutcome::NoWayIn:
+      return "no way in";
+    case AttemptOutcome::Weak:
+      return "weak features only";
     case AttemptOutcome::SelfCollision:
       return "self-collision";
     case AttemptOutcome::IterationLimit:
@@ -440,8 +455,10 @@ double merge_distance(const PlannerOptions& options, double voxel_size) {
   return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
 }
 
-std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOptions& options) {
-  std::vector<int> fingers;
+RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {
+  RequestedParts parts;
+  parts.palm = options.palm.value_or(options.style == GraspStyle::Power);
+  std::vector<int>& fingers = parts.fingers;
   if (options.fingers.empty()) {
     if (options.num_contacts > static_cast<int>(hand.fingers.size())) {
       throw InvalidInput("hand " + hand.name + " has " + std::to_string(hand.fingers.size()) +
@@ -469,7 +486,7 @@ std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOp
   }
   const auto thumb = std::find(fingers.begin(), fingers.end(), hand.thumb());
   if (thumb != fingers.end()) std::rotate(fingers.begin(), thumb, thumb + 1);
-  return fingers;
+  return parts;
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
@@ -477,7 +494,7 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
   options.validate();
   // Before the voxels: a coin-sized object at 30 voxels would fill the hand's reach with billions
   // of them.
-  check_size(mesh, hand, requested_fingers(hand, options), 2.0 * hands::largest_reach(hand));
+  check_size(mesh, hand, requested_parts(hand, options).fingers, 2.0 * hands::largest_reach(hand));
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
   object_options.margin = hands::largest_reach(hand);
@@ -487,28 +504,28 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
 }
 
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
-                          const PlannerOptions& options, const PlannerProgress& progress) {
+                          const PlannerOptions& options, const Surroundings& surroundings,
+                          int num_threads, const PlannerProgress& progress) {
+  (void)surroundings;
+  (void)num_threads;
   return Run(object, hand, options)(progress);
 }
 
-Grasp measure_grasp(const hands::HandModel& hand, const hands::HandCollision& collision,
-                    const geometry::MeshQuery& object, const QualityContext& context,
-                    const hands::HandConfiguration& configuration,
-                    const std::vector<int>& requested_fingers,
-                    const ContactEstimationOptions& contact_options,
-                    const QualityOptions& quality_options) {
+Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
+                    const RequestedParts& requested) {
+  const hands::HandModel& hand = scene.hand;
   hands::validate(hand, configuration);
   const std::vector<geometry::RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
   Grasp grasp;
   grasp.configuration = configuration;
-  grasp.contacts = estimate_contacts(hand, X_OL, object, contact_options);
+  grasp.contacts = estimate_contacts(hand, X_OL, scene.object, scene.contact_options);
   grasp.has_all_contacts = true;
-  for (const int finger : requested_fingers) {
+  for (const int finger : requested.fingers) {
     const bool has_contact = internal::mark_targets(grasp.contacts, hand.fingers[finger].tip_pad);
     grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
   }
-  grasp.quality = contact_quality(grasp.contacts, context, quality_options);
-  grasp.penetration = measure_penetration(collision, object, X_OL);
+  grasp.quality = contact_quality(grasp.contacts, scene.quality_context, scene.quality_options);
+  grasp.penetration = measure_penetration(scene.collision, scene.object, X_OL);
   return grasp;
 }
 

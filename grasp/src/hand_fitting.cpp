@@ -490,9 +490,12 @@ void FittingOptions::validate() const {
 }
 
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
+                       const SurroundingsCollision& surroundings, GraspStyle style,
                        const TargetContacts& targets, const PalmPlacement& placement,
                        const ContactEstimationOptions& contact_options,
                        const FittingOptions& options) {
+  (void)surroundings;
+  (void)style;
   options.validate();
   contact_options.validate();
   if (targets.contacts.size() < 2) {

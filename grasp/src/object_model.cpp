@@ -62,7 +62,9 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
                      .patches = std::move(patches),
                      .patch_of_voxel = std::move(patch_of_voxel),
                      .distance = std::move(distance),
-                     .scores = std::move(scores)};
+                     .scores = std::move(scores),
+                     .weak = std::nullopt,
+                     .is_weak_patch = {}};
 }
 
 }  // namespace graspfit::grasp

@@ -10,7 +10,10 @@ using geometry::SelfIntersections;
 
 template <>
 std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>() {
-  static constexpr std::array names = {NamedValue<GraspStyle>{GraspStyle::Precision, "precision"}};
+  static constexpr std::array names = {
+      NamedValue<GraspStyle>{GraspStyle::Precision, "precision"},
+      NamedValue<GraspStyle>{GraspStyle::Power, "power"},
+  };
   return names;
 }
 

@@ -155,7 +155,7 @@ class Selection {
     targets.seeds_tried = seeds_tried;
     for (const std::int32_t patch : chosen_) {
       targets.contacts.push_back({point(patch), object_.patches[patch].outward_normal, patch,
-                                  object_.scores.scores[patch], -1});
+                                  object_.scores.scores[patch], kUnassigned});
     }
     return targets;
   }
@@ -197,10 +197,16 @@ Vector3d TargetContacts::centroid() const {
   return contacts.empty() ? sum : Vector3d(sum / static_cast<double>(contacts.size()));
 }
 
+PartDistances part_distances(const hands::HandModel& hand) {
+  return {hands::tip_distances(hand), {}};
+}
+
 TargetSelection select_target_contacts(const ObjectModel& object,
-                                       const hands::TipDistances& distances,
-                                       const std::vector<int>& fingers,
-                                       const TargetOptions& options, geometry::Random& random) {
+                                       const PartDistances& part_distances,
+                                       const RequestedParts& parts, const TargetOptions& options,
+                                       geometry::Random& random) {
+  const hands::TipDistances& distances = part_distances.tip_to_tip;
+  const std::vector<int>& fingers = parts.fingers;
   options.validate();
   if (fingers.size() < 2) {
     throw InvalidInput("select_target_contacts: " + std::to_string(fingers.size()) +

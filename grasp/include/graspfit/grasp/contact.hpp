@@ -5,6 +5,9 @@
 
 namespace graspfit::grasp {
 
+/// Stands for a finger where the palm is meant.
+inline constexpr int kPalm = -1;
+
 /// A real contact between a pad of the hand and the object, in the object frame O.
 struct Contact {
   Eigen::Vector3d point_O = Eigen::Vector3d::Zero();          ///< On the object's surface [m].
@@ -14,7 +17,7 @@ struct Contact {
   double gap = 0.0;                    ///< Smallest height of that surface over the pad [m], ≥ 0.
   int link = -1;                       ///< Of the hand model.
   int pad = -1;                        ///< Of the hand model.
-  int finger = -1;                     ///< Of the hand model; −1 is the palm.
+  int finger = kPalm;                     ///< Of the hand model, or kPalm.
   bool is_target = false;              ///< The pad had a target contact.
   std::optional<bool> weak;  ///< On a weak feature of the object (paper: S = 0); empty while
                              ///< unknown, which counts as not weak.

@@ -6,6 +6,9 @@
 
 #include "graspfit/grasp/contact.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
+#include "graspfit/grasp/grasp_wrench_space.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/grasp/squeeze.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -21,19 +24,23 @@ struct GraspPenetration {
   double self_depth = 0.0;          ///< [m]
   int self_link_a = -1;
   int self_link_b = -1;
+  bool surroundings_touched = false;  ///< Some link touches the table or an obstacle.
+  bool is_any() const { return object_intersects || self_intersects || surroundings_touched; }
 };
 
 /// A grasp with everything measured on it. All in the object frame O.
 struct Grasp {
   hands::HandConfiguration configuration;
-  std::optional<hands::HandConfiguration> pre_grasp;  ///< Open, clear of the object.
-  std::optional<hands::HandConfiguration> squeeze;    ///< Commanded beyond the surface.
+  std::optional<PreGrasp> pre_grasp;  ///< Open, clear of the object, with a free way to the grasp.
+  std::optional<Squeeze> squeeze;     ///< Commanded beyond the surface.
   TargetContacts targets;
   std::vector<Contact> contacts;
   ContactQuality quality;
+  WrenchQuality wrench;  ///< In GraspIt!'s convention at the planner's friction.
   double ideal_m = 0.0;  ///< M of the targets themselves (A36).
   GraspPenetration penetration;
-  bool has_all_contacts = false;  ///< Every requested finger/palm has a contact.
+  bool has_all_contacts = false;  ///< Every requested finger/palm has a contact; of a refined grasp
+                                  ///< one with a gap of at most RefinementOptions::largest_gap.
   std::int64_t attempt =
       -1;  ///< Number of the attempt that made it; seeds it together with the run's seed.
   int iterations = 0;  ///< Of the adjustment loop.
@@ -42,8 +49,7 @@ struct Grasp {
   bool is_usable() const { return quality.is_usable(); }
   /// Usable, penetrates nothing on the true meshes, and every requested finger/palm has contact.
   bool is_valid() const {
-    return is_usable() && !penetration.object_intersects && !penetration.self_intersects &&
-           has_all_contacts;
+    return is_usable() && !penetration.is_any() && has_all_contacts;
   }
 };
 

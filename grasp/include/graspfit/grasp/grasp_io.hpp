@@ -7,6 +7,7 @@
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::grasp {

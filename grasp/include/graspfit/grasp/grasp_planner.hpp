@@ -9,17 +9,16 @@
 
 #include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
+#include "graspfit/grasp/contact_refinement.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/grasp/squeeze.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 
 namespace graspfit::grasp {
-
-/// Grasp style (paper section 12).
-enum class GraspStyle {
-  Precision,  ///< Targets go to the fingertips.
-};
 
 /// Which grasps the planner collects.
 enum class Acceptance {
@@ -36,6 +35,14 @@ enum class SearchRule {
           ///< grasps.
 };
 
+/// When two grasps count as different: if any of these is exceeded [R].
+struct DistinctOptions {
+  double translation = 0.01;  ///< Between palm centers in O [m], ≥ 0.
+  double rotation = 0.2617993877991494;  ///< Between palm orientations [rad], ≥ 0; 15°.
+  double joints = 0.2;  ///< Largest difference of an independent joint [rad; m times 10], ≥ 0.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+};
+
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
 struct PlannerOptions {
   GraspStyle style = GraspStyle::Precision;
@@ -43,44 +50,69 @@ struct PlannerOptions {
       fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
   int num_contacts =
       3;          ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+  /// Whether the palm must touch too, one target more; empty: as the style has it, power grasps yes
+  /// [P: "if the palm may touch"].
+  std::optional<bool> palm;
   int count = 1;  ///< Grasps to collect (K), ≥ 1.
   std::uint64_t seed = 1;
   SearchRule search = SearchRule::Best;
   int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
   Acceptance acceptance = Acceptance::Valid;
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero.
+  double approach_angle =
+      1.57079632679489662;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
   std::optional<double>
       wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
   int resolution = 30;     ///< Voxels along the object's longest extent [P].
   std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm) (A33).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score;
+  /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
+  /// for and S = 1 everywhere (A37).
+  std::optional<geometry::WeakRegionOptions> weak = geometry::WeakRegionOptions{};
   TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
   /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, the side with more room first.
   int target_draws = 8;
   FittingOptions fitting;
+  /// Whether claimed contacts are made real by exact queries after fitting [R]; without: the
+  /// paper's voxel-level grasp.
+  bool refine = true;
+  RefinementOptions refinement;
   double self_overlap =
-      0.001;               ///< Overlap of links of different fingers that a formed grasp may have
-                           ///< before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
+      0.001;  ///< Without refinement: overlap of links of different fingers that a formed grasp may
+              ///< have before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
+  bool pre_grasps = true;  ///< Whether a grasp needs a pre-grasp with a free way in [R].
+  PreGraspOptions pre_grasp;
+  SqueezeOptions squeeze;
+  DistinctOptions distinct;
+  double friction = 0.4;  ///< Coulomb's μ of ε and of the squeeze, ≥ 0 [R]; GraspIt!'s usual.
   QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
   void validate() const;   ///< Throws InvalidInput naming the field and its value.
 };
 
 /// How the planner's work ended.
-enum class PlannerStop { Count, Attempts, WallClock };
+enum class PlannerStop {
+  Count,      ///< As many grasps as were asked for.
+  Attempts,   ///< All attempts made.
+  Exhausted,  ///< Ranked search: every feasible target set was tried.
+  WallClock,  ///< Opt-in limit.
+};
 
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
 enum class AttemptOutcome {
   Valid,
-  UsableOnly,  ///< Usable but penetrating or without a requested contact.
+  UsableOnly,  ///< Usable but penetrating, without a requested contact, or without a way in.
   NoTargets,   ///< No seed, no pair or no further contact.
   InitialCollision,
   BlockedFinger,
   MissedContact,
+  GapLeft,  ///< Refinement could not bring every claimed pad to touch.
   SelfCollision,
+  NoWayIn,  ///< No pre-grasp with a free way to the grasp.
   IterationLimit,
+  Weak,       ///< All contacts on weak features (M1 = 0).
   Unstable,   ///< A formed grasp with no stable pair (M2 = 0).
   PoorShape,  ///< M3 ≤ 0, or M1 = 0.
 };
@@ -104,7 +136,9 @@ struct PlannerTimings {
   double fitting_s = 0.0;        ///< The loop, its contact tests included.
   double contact_tests_s = 0.0;  ///< Contact estimation inside the loop; a part of `fitting_s`.
   double measure_s = 0.0;        ///< Quality of formed grasps.
+  double refinement_s = 0.0;     ///< Contacts made real.
   double penetration_s = 0.0;    ///< Exact tests of usable grasps.
+  double pre_grasp_s = 0.0;      ///< Ways in and squeezes.
   double total_s = 0.0;
 };
 
@@ -131,8 +165,12 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
 /// @throws InvalidInput for options that the hand cannot meet (unknown finger, more contacts than
 /// it allows) or an object of impossible size (says the extents): thicker in every direction than
 /// the fingers open, or smaller than a fingertip.
+///
+/// Attempts run on `num_threads` threads (0: as many as the machine has); the result does not depend
+/// on their number, but for `wall_clock_limit_s`.
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
-                          const PlannerOptions& options, const PlannerProgress& progress = {});
+                          const PlannerOptions& options, const Surroundings& surroundings = {},
+                          int num_threads = 0, const PlannerProgress& progress = {});
 
 /// The planner's rule for clip volumes (A33).
 double clip_thickness(const PlannerOptions& options, double voxel_size);
@@ -140,16 +178,27 @@ double clip_thickness(const PlannerOptions& options, double voxel_size);
 /// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
 double merge_distance(const PlannerOptions& options, double voxel_size);
 
-/// The fingers that `options` ask of `hand`, the thumb first where it is among them (A22).
-std::vector<int> requested_fingers(const hands::HandModel& hand, const PlannerOptions& options);
+/// What `options` ask of `hand`, the thumb first where it is among the fingers (A22).
+RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
 
-/// Contacts, M and penetration of a configuration, from the true meshes alone: what the planner
+/// Everything that the measures of a grasp depend on besides the grasp.
+struct MeasuringScene {
+  const hands::HandModel& hand;
+  const hands::HandCollision& collision;
+  const geometry::MeshQuery& object;
+  const SurroundingsCollision& surroundings;
+  const geometry::WeakRegions* weak = nullptr;  ///< Null: nothing is known to be weak.
+  WrenchObject wrench_object;                   ///< Scales of ε.
+  double friction = 0.4;                        ///< Of ε.
+  QualityContext quality_context;
+  QualityOptions quality_options;
+  ContactEstimationOptions contact_options;
+  std::optional<double> largest_gap;  ///< A requested contact with a larger gap does not count [m].
+};
+
+/// Contacts, M, ε and penetration of a configuration, from the true meshes alone: what the planner
 /// reports and what `evaluate` recomputes.
-Grasp measure_grasp(const hands::HandModel& hand, const hands::HandCollision& collision,
-                    const geometry::MeshQuery& object, const QualityContext& context,
-                    const hands::HandConfiguration& configuration,
-                    const std::vector<int>& requested_fingers,
-                    const ContactEstimationOptions& contact_options,
-                    const QualityOptions& quality_options);
+Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
+                    const RequestedParts& requested);
 
 }  // namespace graspfit::grasp

@@ -10,10 +10,18 @@
 #include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/fitting_hand.hpp"
 #include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
 namespace graspfit::grasp {
+
+/// Grasp style (paper section 12).
+enum class GraspStyle {
+  Precision,  ///< Targets go to the fingertips.
+  Power,      ///< Targets go to the fingertips and the palm; the palm is brought to the surface
+              ///< first and links behind the tips are closed onto it (A39).
+};
 
 /// What a motion of the hand must not do (paper section 9).
 enum class PenetrationGuard {
@@ -76,10 +84,10 @@ struct PalmPlacement {
 std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
                                            const std::optional<Eigen::Vector3d>& approach_O);
 
-/// Assigns targets to fingers (A21, A22): the seed to the first of `fingers`, the others by the
-/// permutation with the least angular error around the palm axis.
+/// Assigns targets to fingers (A21, A22): the seed to the first of them, the others by the
+/// permutation with the least angular error around the palm axis. A target of the palm stays it.
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
-                              const std::vector<int>& fingers, const PalmPlacement& placement);
+                              const RequestedParts& parts, const PalmPlacement& placement);
 
 /// How far the fingertip pads would be from lying flat on assigned targets: for every finger,
 /// closed until its pad is as far from the palm's axis as its target, the angle between the pad's
@@ -95,6 +103,7 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
 /// guard on meshes, no link intersects the object. With the guard on voxels the true meshes may
 /// intersect. Links of the hand may intersect each other in either case.
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
+                       const SurroundingsCollision& surroundings, GraspStyle style,
                        const TargetContacts& targets, const PalmPlacement& placement,
                        const ContactEstimationOptions& contact_options,
                        const FittingOptions& options);

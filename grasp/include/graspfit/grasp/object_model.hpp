@@ -8,6 +8,7 @@
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
+#include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/contact_score_map.hpp"
 
 namespace graspfit::grasp {
@@ -18,6 +19,8 @@ struct ObjectModelOptions {
   double margin = 0.0;  ///< Room around the object for the hand [m] (A8), ≥ 0.
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score = {};
+  /// Looked for where given; results of earlier runs come from the user's cache.
+  std::optional<geometry::WeakRegionOptions> weak = {};
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -31,6 +34,8 @@ struct ObjectModel {
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.
   geometry::SignedDistanceMap distance;
   ContactScoreMap scores;  ///< Parallel to patches.
+  std::optional<geometry::WeakRegions> weak;  ///< Empty: not looked for, nothing is known.
+  std::vector<bool> is_weak_patch;  ///< Parallel to patches; at least half of its area is weak.
 
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
@@ -42,6 +47,7 @@ struct ObjectModelTimings {
   double voxels_s = 0.0;
   double distance_s = 0.0;
   double scores_s = 0.0;
+  double weak_s = 0.0;
 };
 
 /// Builds the model of a closed outward mesh (`geometry::repair_mesh` makes or refuses one; a mesh

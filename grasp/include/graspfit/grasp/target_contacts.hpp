@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,20 @@
 #include "graspfit/hands/hand_workspace.hpp"
 
 namespace graspfit::grasp {
+
+/// Fingers and palm that must touch.
+struct RequestedParts {
+  std::vector<int> fingers;  ///< Of the hand, the seed's first (the thumb where it is among them,
+                             ///< A22).
+  bool palm = false;
+  int size() const { return static_cast<int>(fingers.size()) + (palm ? 1 : 0); }
+};
+
+/// How target sets are found.
+enum class TargetSearch {
+  Random,  ///< The paper's randomized greedy search.
+  Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
+};
 
 /// Which earlier targets a new one must form a stable pair with (notes A17).
 enum class PairRule {
@@ -35,8 +50,17 @@ struct TargetOptions {
       50;  ///< Failed seeds after which edge and centroid limits grow by half (A19) [R].
   double min_separation =
       0.0;  ///< Between targets of different fingers [m], ≥ 0; the planner sets one pad width.
+  TargetSearch search = TargetSearch::Random;
+  bool exclude_weak = true;  ///< No targets on weak features, where the object model knows them
+                             ///< (notes 19.3) [R].
+  /// How strongly a random set with a large ideal M is preferred (A48): a complete set is accepted
+  /// with the probability (M / largest ideal M so far)^bias. 0: M is not used [R].
+  double ideal_m_bias = 0.0;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
+
+/// What a target is assigned to before it is assigned.
+inline constexpr int kUnassigned = -2;
 
 /// One contact to reach.
 struct TargetContact {
@@ -44,7 +68,7 @@ struct TargetContact {
   Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Patch normal, unit.
   std::int32_t patch = -1;                                     ///< Index into ObjectModel::patches.
   double score = 0.0;                                          ///< Of that patch.
-  int finger = -1;  ///< Assigned finger of the hand; −1 until assigned.
+  int finger = kUnassigned;  ///< Assigned finger of the hand, kPalm, or kUnassigned.
 };
 
 /// A set of targets, the seed first.
@@ -61,6 +85,7 @@ enum class TargetFailure {
   NoSeed,     ///< No voxel exceeds the score threshold.
   NoSecond,   ///< No seed tried had a stable partner in reach.
   NoFurther,  ///< Pairs were found, but never all the further contacts.
+  NoPalm,     ///< Fingers' targets were found, but never one for the palm.
 };
 
 /// Outcome of one selection.
@@ -70,17 +95,45 @@ struct TargetSelection {
   int seeds_tried = 0;
 };
 
+/// How far apart parts of a hand can be, computed once per hand (A18).
+struct PartDistances {
+  hands::TipDistances tip_to_tip;                  ///< `[a][b]`, as `hands::HandWorkspace`.
+  std::vector<hands::DistanceRange> palm_to_tip;  ///< Per finger, as `hands::HandWorkspace`.
+};
+PartDistances part_distances(const hands::HandModel& hand);
+
 /// Picks targets by the paper's randomized greedy search (section 6): a random seed above the
 /// threshold; a second contact in tip distance and in both cones; further contacts with edges close
 /// to the first and a centroid close to the center of mass; each drawn at random from the
 /// best-ranked feasible candidates; a new seed where one has none.
 ///
-/// `fingers` are the fingers to serve, the seed's first (the thumb where it is among them, A22).
-/// The selection uses, for each further contact, the union of the ranges of the fingers not yet
+/// Fingers' targets come first, the seed's first of all; one for the palm, if `parts` has it, comes
+/// last and is the only one assigned here (finger kPalm). The selection uses, for each further contact, the union of the ranges of the fingers not yet
 /// served; assignment follows in `assign_fingers`. @throws InvalidInput for fewer than two fingers.
 TargetSelection select_target_contacts(const ObjectModel& object,
-                                       const hands::TipDistances& distances,
-                                       const std::vector<int>& fingers,
-                                       const TargetOptions& options, geometry::Random& random);
+                                       const PartDistances& distances,
+                                       const RequestedParts& parts, const TargetOptions& options,
+                                       geometry::Random& random);
+
+/// All feasible target sets, best first (`TargetSearch::Ranked`) [R]: complete, so that an end
+/// without any set proves that the pool has none, and `failure` says at which stage.
+class RankedTargets {
+ public:
+  /// @throws as `select_target_contacts`.
+  RankedTargets(const ObjectModel& object, const PartDistances& distances,
+                const RequestedParts& parts, const TargetOptions& options);
+  ~RankedTargets();
+  RankedTargets(RankedTargets&&) noexcept;
+
+  /// The next best set; empty when there are no more.
+  std::optional<TargetContacts> next();
+
+  /// Why there was none, after `next` gave none the first time.
+  TargetFailure failure() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace graspfit::grasp

@@ -20,6 +20,9 @@ class HandCollision {
  public:
   explicit HandCollision(const HandModel& model);
 
+  /// The solid of one link in its own frame; empty for a link without faces.
+  const std::optional<geometry::MeshQuery>& link_solid(int link) const { return links_[link]; }
+
   /// A deepest overlap and where it is. Of pairs equally deep, the first by link_a, then link_b.
   struct Result {
     bool intersects = false;   ///< Exact on the true meshes (see geometry::do_intersect).

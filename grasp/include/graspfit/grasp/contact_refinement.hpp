@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "graspfit/grasp/contact.hpp"
+#include "graspfit/grasp/contact_estimation.hpp"
+#include "graspfit/grasp/fitting_hand.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/surroundings.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+
+namespace graspfit::grasp {
+
+/// Limits of contact refinement. It is ours: the paper ends at voxels [R].
+struct RefinementOptions {
+  double wanted_gap = 2e-5;  ///< To which claimed pads are brought [m], in (0, largest_gap).
+  double largest_gap = 1e-4;  ///< A claimed pad within this has contact [m], > 0.
+  double least_distance = 1e-6;  ///< Kept between all that must not touch [m], > 0.
+  int max_iterations = 60;    ///< ≥ 1.
+  double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
+  double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.
+  double largest_turn = 0.5;    ///< Of the palm from where it started [rad], ≥ 0.
+  void validate() const;        ///< Throws InvalidInput naming the field and its value.
+};
+
+/// How a refinement ended.
+enum class RefinementStop {
+  Contact,         ///< Every claimed pad has contact, nothing penetrates.
+  Intersecting,    ///< No configuration near the start was clear of object and surroundings.
+  OutOfReach,      ///< A claimed pad was too far from the object.
+  GapLeft,         ///< No small motion lowered the gaps further: something else touches first.
+  SelfCollision,   ///< The hand is in its own way.
+  IterationLimit,
+};
+
+/// A refined hand.
+struct RefinementResult {
+  RefinementStop stop = RefinementStop::IterationLimit;
+  hands::HandConfiguration configuration;  ///< Clear of the object, the surroundings and itself,
+                                           ///< decided exactly, unless `stop` is Intersecting.
+  std::vector<Contact> contacts;  ///< Of all pads, in pad order; is_target set for claimed ones.
+  double largest_gap = 0.0;       ///< Of the claimed pads [m].
+  int worst_pad = -1;             ///< The pad with that gap.
+  int iterations = 0;
+};
+
+/// Brings every claimed pad to touch: from a configuration near contact, such as `fit_hand` ends
+/// at, to one where each of `claimed_pads` is within `largest_gap` of the object's surface and no
+/// link touches the object anywhere, the surroundings, or another link (exclusions besides).
+///
+/// Method: constrained least squares on exact nearest points. In each step the motion of palm and
+/// independent joints, small in a weighted norm, that takes the gaps of claimed pads to
+/// `wanted_gap` while no near pair of bodies comes closer than `least_distance`, to first order;
+/// the step is shortened until the true meshes stay clear. A start that cuts the object is first
+/// opened and withdrawn until clear. Where `targets` are given, pads are also drawn, weakly, toward
+/// their targets and to lie flat on the surface there.
+///
+/// Gap: smallest distance between the surface of the pad's link inside the pad's clip volume and
+/// the object. Deterministic.
+RefinementResult refine_contacts(const FittingHand& hand, const ObjectModel& object,
+                                 const SurroundingsCollision& surroundings,
+                                 const std::vector<int>& claimed_pads,
+                                 const TargetContacts* targets,
+                                 const hands::HandConfiguration& start,
+                                 const ContactEstimationOptions& contact_options,
+                                 const RefinementOptions& options);
+
+}  // namespace graspfit::grasp
