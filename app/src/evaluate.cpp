@@ -154,9 +154,8 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;
   for (const grasp::Grasp& stored : file.grasps) {
-    comparisons.push_back(compare(
-        stored,
-        grasp::measure_grasp(scene, stored.configuration, requested)));
+    comparisons.push_back(
+        compare(stored, grasp::measure_grasp(scene, stored.configuration, requested)));
     largest_m_difference = std::max(largest_m_difference, comparisons.back().m_difference);
   }
   if (flags.has("json")) {

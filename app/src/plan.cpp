@@ -164,8 +164,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
   const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
-  grasp::PlannerResult result =
-      grasp::plan_grasps(object, hand, options, {}, 0, [&](std::int64_t attempts, std::int64_t grasps) {
+  grasp::PlannerResult result = grasp::plan_grasps(
+      object, hand, options, {}, 0, [&](std::int64_t attempts, std::int64_t grasps) {
         const std::string attempt =
             "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
         const std::string found = std::to_string(grasps) + " grasps";

@@ -402,8 +402,10 @@ Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t ra
   json["targets"] = targets_json(hand, grasp.targets);
   json["attempt"] = grasp.attempt;
   json["iterations"] = grasp.iterations;
-  json["pre_grasp"] = configuration_json(hand, grasp.pre_grasp ? std::optional(grasp.pre_grasp->configuration) : std::nullopt);
-  json["squeeze"] = configuration_json(hand, grasp.squeeze ? std::optional(grasp.squeeze->configuration) : std::nullopt);
+  json["pre_grasp"] = configuration_json(
+      hand, grasp.pre_grasp ? std::optional(grasp.pre_grasp->configuration) : std::nullopt);
+  json["squeeze"] = configuration_json(
+      hand, grasp.squeeze ? std::optional(grasp.squeeze->configuration) : std::nullopt);
   return json;
 }
 

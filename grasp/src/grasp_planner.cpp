@@ -268,8 +268,7 @@ class Run {
       std::vector<double> tilts;
       for (const PalmPlacement& placement :
            palm_placements(object_, *selection.targets, options_.approach_O)) {
-        sides.push_back(
-            {assign_fingers(hand_, *selection.targets, parts_, placement), placement});
+        sides.push_back({assign_fingers(hand_, *selection.targets, parts_, placement), placement});
         tilts.push_back(pad_tilt(hand_, sides.back().targets, placement));
       }
       if (sides.empty()) continue;

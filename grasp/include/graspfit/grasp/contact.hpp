@@ -17,7 +17,7 @@ struct Contact {
   double gap = 0.0;                    ///< Smallest height of that surface over the pad [m], ≥ 0.
   int link = -1;                       ///< Of the hand model.
   int pad = -1;                        ///< Of the hand model.
-  int finger = kPalm;                     ///< Of the hand model, or kPalm.
+  int finger = kPalm;                  ///< Of the hand model, or kPalm.
   bool is_target = false;              ///< The pad had a target contact.
   std::optional<bool> weak;  ///< On a weak feature of the object (paper: S = 0); empty while
                              ///< unknown, which counts as not weak.

@@ -14,10 +14,10 @@ namespace graspfit::grasp {
 
 /// Limits of contact refinement. It is ours: the paper ends at voxels [R].
 struct RefinementOptions {
-  double wanted_gap = 2e-5;  ///< To which claimed pads are brought [m], in (0, largest_gap).
-  double largest_gap = 1e-4;  ///< A claimed pad within this has contact [m], > 0.
+  double wanted_gap = 2e-5;      ///< To which claimed pads are brought [m], in (0, largest_gap).
+  double largest_gap = 1e-4;     ///< A claimed pad within this has contact [m], > 0.
   double least_distance = 1e-6;  ///< Kept between all that must not touch [m], > 0.
-  int max_iterations = 60;    ///< ≥ 1.
+  int max_iterations = 60;       ///< ≥ 1.
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.
   double largest_turn = 0.5;    ///< Of the palm from where it started [rad], ≥ 0.
@@ -26,11 +26,11 @@ struct RefinementOptions {
 
 /// How a refinement ended.
 enum class RefinementStop {
-  Contact,         ///< Every claimed pad has contact, nothing penetrates.
-  Intersecting,    ///< No configuration near the start was clear of object and surroundings.
-  OutOfReach,      ///< A claimed pad was too far from the object.
-  GapLeft,         ///< No small motion lowered the gaps further: something else touches first.
-  SelfCollision,   ///< The hand is in its own way.
+  Contact,        ///< Every claimed pad has contact, nothing penetrates.
+  Intersecting,   ///< No configuration near the start was clear of object and surroundings.
+  OutOfReach,     ///< A claimed pad was too far from the object.
+  GapLeft,        ///< No small motion lowered the gaps further: something else touches first.
+  SelfCollision,  ///< The hand is in its own way.
   IterationLimit,
 };
 

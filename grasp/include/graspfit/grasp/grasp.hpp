@@ -48,9 +48,7 @@ struct Grasp {
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
   /// Usable, penetrates nothing on the true meshes, and every requested finger/palm has contact.
-  bool is_valid() const {
-    return is_usable() && !penetration.is_any() && has_all_contacts;
-  }
+  bool is_valid() const { return is_usable() && !penetration.is_any() && has_all_contacts; }
 };
 
 }  // namespace graspfit::grasp

@@ -37,9 +37,9 @@ enum class SearchRule {
 
 /// When two grasps count as different: if any of these is exceeded [R].
 struct DistinctOptions {
-  double translation = 0.01;  ///< Between palm centers in O [m], ≥ 0.
+  double translation = 0.01;             ///< Between palm centers in O [m], ≥ 0.
   double rotation = 0.2617993877991494;  ///< Between palm orientations [rad], ≥ 0; 15°.
-  double joints = 0.2;  ///< Largest difference of an independent joint [rad; m times 10], ≥ 0.
+  double joints = 0.2;    ///< Largest difference of an independent joint [rad; m times 10], ≥ 0.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -49,7 +49,7 @@ struct PlannerOptions {
   std::vector<std::string>
       fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
   int num_contacts =
-      3;          ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+      3;  ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
   /// Whether the palm must touch too, one target more; empty: as the style has it, power grasps yes
   /// [P: "if the palm may touch"].
   std::optional<bool> palm;
@@ -87,7 +87,7 @@ struct PlannerOptions {
   PreGraspOptions pre_grasp;
   SqueezeOptions squeeze;
   DistinctOptions distinct;
-  double friction = 0.4;  ///< Coulomb's μ of ε and of the squeeze, ≥ 0 [R]; GraspIt!'s usual.
+  double friction = 0.4;   ///< Coulomb's μ of ε and of the squeeze, ≥ 0 [R]; GraspIt!'s usual.
   QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
   void validate() const;   ///< Throws InvalidInput naming the field and its value.
 };
@@ -166,8 +166,8 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
 /// it allows) or an object of impossible size (says the extents): thicker in every direction than
 /// the fingers open, or smaller than a fingertip.
 ///
-/// Attempts run on `num_threads` threads (0: as many as the machine has); the result does not depend
-/// on their number, but for `wall_clock_limit_s`.
+/// Attempts run on `num_threads` threads (0: as many as the machine has); the result does not
+/// depend on their number, but for `wall_clock_limit_s`.
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
                           const PlannerOptions& options, const Surroundings& surroundings = {},
                           int num_threads = 0, const PlannerProgress& progress = {});
@@ -193,7 +193,8 @@ struct MeasuringScene {
   QualityContext quality_context;
   QualityOptions quality_options;
   ContactEstimationOptions contact_options;
-  std::optional<double> largest_gap;  ///< A requested contact with a larger gap does not count [m].
+  std::optional<double> largest_gap =
+      std::nullopt;  ///< A requested contact with a larger gap does not count [m].
 };
 
 /// Contacts, M, ε and penetration of a configuration, from the true meshes alone: what the planner

@@ -33,7 +33,7 @@ struct ObjectModel {
   std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.
   geometry::SignedDistanceMap distance;
-  ContactScoreMap scores;  ///< Parallel to patches.
+  ContactScoreMap scores;                     ///< Parallel to patches.
   std::optional<geometry::WeakRegions> weak;  ///< Empty: not looked for, nothing is known.
   std::vector<bool> is_weak_patch;  ///< Parallel to patches; at least half of its area is weak.
 

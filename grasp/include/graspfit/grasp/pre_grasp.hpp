@@ -11,13 +11,13 @@ namespace graspfit::grasp {
 
 /// What a pre-grasp must keep.
 struct PreGraspOptions {
-  double clearance = 0.005;    ///< Every link from the object and the surroundings [m], > 0.
+  double clearance = 0.005;      ///< Every link from the object and the surroundings [m], > 0.
   double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], ≥ 0.
   double retreat_step = 0.01;    ///< [m], > 0.
   int opening_steps = 10;        ///< From the grasp's joints to open ones, ≥ 1.
-  double way_tolerance = 1e-5;  ///< On the way, links may come this near before the grasp is
-                                ///< reached [m], > 0: what is closer is not told from touching.
-  void validate() const;       ///< Throws InvalidInput naming the field and its value.
+  double way_tolerance = 1e-5;   ///< On the way, links may come this near before the grasp is
+                                 ///< reached [m], > 0: what is closer is not told from touching.
+  void validate() const;         ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Where to start from (evaluation of grasps in the field: pre-grasp, grasp, squeeze).

@@ -19,7 +19,7 @@ struct Surroundings {
 
 /// Distance of a link from the surroundings.
 struct SurroundingsDistance {
-  double distance = 0.0;           ///< [m]; zero where they touch; infinite if there are none.
+  double distance = 0.0;            ///< [m]; zero where they touch; infinite if there are none.
   Eigen::Vector3d point_on_link_O;  ///< Nearest to them; meaningless at distance zero.
   Eigen::Vector3d normal_O;         ///< Unit, from the surroundings to the link; as the point.
 };

@@ -97,7 +97,7 @@ struct TargetSelection {
 
 /// How far apart parts of a hand can be, computed once per hand (A18).
 struct PartDistances {
-  hands::TipDistances tip_to_tip;                  ///< `[a][b]`, as `hands::HandWorkspace`.
+  hands::TipDistances tip_to_tip;                 ///< `[a][b]`, as `hands::HandWorkspace`.
   std::vector<hands::DistanceRange> palm_to_tip;  ///< Per finger, as `hands::HandWorkspace`.
 };
 PartDistances part_distances(const hands::HandModel& hand);
@@ -108,10 +108,10 @@ PartDistances part_distances(const hands::HandModel& hand);
 /// best-ranked feasible candidates; a new seed where one has none.
 ///
 /// Fingers' targets come first, the seed's first of all; one for the palm, if `parts` has it, comes
-/// last and is the only one assigned here (finger kPalm). The selection uses, for each further contact, the union of the ranges of the fingers not yet
-/// served; assignment follows in `assign_fingers`. @throws InvalidInput for fewer than two fingers.
-TargetSelection select_target_contacts(const ObjectModel& object,
-                                       const PartDistances& distances,
+/// last and is the only one assigned here (finger kPalm). The selection uses, for each further
+/// contact, the union of the ranges of the fingers not yet served; assignment follows in
+/// `assign_fingers`. @throws InvalidInput for fewer than two fingers.
+TargetSelection select_target_contacts(const ObjectModel& object, const PartDistances& distances,
                                        const RequestedParts& parts, const TargetOptions& options,
                                        geometry::Random& random);
 
