@@ -324,7 +324,8 @@ PlannerTimings read_timings(const JsonNode& node) {
   timings.fitting_s = node.at("fitting_s").number();
   timings.contact_tests_s = node.at("contact_tests_s").number();
   timings.measure_s = node.at("measure_s").number();
-  timings.penetration_s = node.at("penetration_s").number();
+  timings.refinement_s = node.at("refinement_s").number();
+  timings.pre_grasp_s = node.at("pre_grasp_s").number();
   timings.total_s = node.at("total_s").number();
   return timings;
 }

@@ -443,7 +443,8 @@ Json timings_json(const PlannerTimings& timings) {
           {"fitting_s", timings.fitting_s},
           {"contact_tests_s", timings.contact_tests_s},
           {"measure_s", timings.measure_s},
-          {"penetration_s", timings.penetration_s},
+          {"refinement_s", timings.refinement_s},
+          {"pre_grasp_s", timings.pre_grasp_s},
           {"total_s", timings.total_s}};
 }
 

@@ -323,7 +323,7 @@ class Run {
       return {is_unstable ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape, std::nullopt};
     }
     {
-      const Stopwatch watch(result_.timings.penetration_s);
+      const Stopwatch watch(result_.timings.measure_s);
       grasp.penetration =
           measure_penetration(fitting_hand_.collision(), object_.query,
                               hands::forward_kinematics(hand_, grasp.configuration));

@@ -43,7 +43,8 @@ struct Grasp {
                                   ///< one with a gap of at most RefinementOptions::largest_gap.
   std::int64_t attempt =
       -1;  ///< Number of the attempt that made it; seeds it together with the run's seed.
-  int iterations = 0;  ///< Of the adjustment loop.
+  int iterations = 0;             ///< Of the adjustment loop.
+  int refinement_iterations = 0;  ///< Of refinement; 0 without.
 
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }

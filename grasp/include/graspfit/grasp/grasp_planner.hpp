@@ -125,6 +125,9 @@ struct PlannerStatistics {
   std::map<std::string, std::int64_t> target_failures;  ///< "no seed", "no second", "no further".
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
+  std::int64_t refinement_iterations = 0;
+  std::int64_t duplicates = 0;  ///< Accepted grasps left out, too like one that is returned or was
+                                ///< found before; in the outcomes they count as what they are.
   std::int64_t usable() const;
   std::int64_t valid() const;
 };
@@ -135,11 +138,13 @@ struct PlannerTimings {
   double targets_s = 0.0;
   double fitting_s = 0.0;        ///< The loop, its contact tests included.
   double contact_tests_s = 0.0;  ///< Contact estimation inside the loop; a part of `fitting_s`.
-  double measure_s = 0.0;        ///< Quality of formed grasps.
   double refinement_s = 0.0;     ///< Contacts made real.
-  double penetration_s = 0.0;    ///< Exact tests of usable grasps.
+  double measure_s = 0.0;        ///< Contacts, measures and exact tests of formed grasps.
   double pre_grasp_s = 0.0;      ///< Ways in and squeezes.
-  double total_s = 0.0;
+  double total_s = 0.0;          ///< By the clock; the others add up over all threads.
+
+  /// Adds the stages of attempts; `object` and `total_s` stay.
+  PlannerTimings& operator+=(const PlannerTimings& other);
 };
 
 /// What a planner returns: grasps, best M first (ties by attempt), at most `count`.
@@ -180,6 +185,9 @@ double merge_distance(const PlannerOptions& options, double voxel_size);
 
 /// What `options` ask of `hand`, the thumb first where it is among the fingers (A22).
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
+
+/// The pads that must touch: the fingers' tip pads, then the palm's.
+std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested);
 
 /// Everything that the measures of a grasp depend on besides the grasp.
 struct MeasuringScene {
