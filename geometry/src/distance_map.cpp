@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "graspfit/geometry/errors.hpp"
@@ -68,10 +69,21 @@ constexpr int kBlock = 16;
 }  // namespace
 
 float SignedDistanceMap::at_beyond(const Eigen::Vector3d& place) const {
-  const Eigen::Array3d top = lattice.counts.cast<double>().array() - 1.0;
-  const Eigen::Vector3i voxel = place.array().floor().max(0.0).min(top).cast<int>();
-  const double beyond = (place - voxel.cast<double>() - Eigen::Vector3d::Constant(0.5)).norm();
-  return at(voxel) + static_cast<float>(beyond);
+  using Eigen::Array3d;
+  const Array3d voxel = place.array().floor();
+  const Array3d inner = voxel.max(0.0).min(lattice.counts.cast<double>().array() - 1.0);
+  const float value = at(Eigen::Vector3i(inner.cast<int>()));
+  if (value < 0.0F || std::isinf(value)) return value;
+  // A partial voxel p differs from the voxel v by |v − c| + |c − p| on the axes on which c was
+  // clamped: |v − p|² = |v − c|² + |c − p|² + 2 Σ |v − c| |c − p|.
+  const Array3d excess = (voxel - inner).abs();
+  const Array3d gap = (inner - last_partial.cast<double>().array())
+                          .max(first_partial.cast<double>().array() - inner)
+                          .max(0.0);
+  // The value is a rounded root, the square a whole number: this is the least it can have been.
+  const double squared = std::ceil(double{value} * value * (1.0 - 0x1p-22));
+  return static_cast<float>(
+      std::sqrt(squared + excess.square().sum() + 2.0 * (excess * gap).sum()));
 }
 
 SignedDistanceMap signed_distance_map(const VoxelGrid& grid) {
@@ -128,7 +140,23 @@ SignedDistanceMap signed_distance_map(const VoxelGrid& grid) {
     }
   }
 
-  SignedDistanceMap map{lattice, std::vector<float>(squared.size())};
+  SignedDistanceMap map;
+  map.lattice = lattice;
+  map.values.resize(squared.size());
+  map.first_partial = lattice.counts;
+  for (int k = 0; k < nz; ++k) {
+    for (int j = 0; j < ny; ++j) {
+      const auto row = grid.classes.begin() + lattice.index({0, j, k});
+      const auto first = std::find(row, row + nx, VoxelClass::Partial);
+      if (first == row + nx) continue;
+      const auto last = std::find(std::make_reverse_iterator(row + nx),
+                                  std::make_reverse_iterator(first), VoxelClass::Partial);
+      const Eigen::Vector3i low(static_cast<int>(first - row), j, k);
+      const Eigen::Vector3i high(static_cast<int>(last.base() - row) - 1, j, k);
+      map.first_partial = map.first_partial.cwiseMin(low);
+      map.last_partial = map.last_partial.cwiseMax(high);
+    }
+  }
   for (std::size_t i = 0; i < squared.size(); ++i) {
     // The root of a whole number in double, then float: rounding twice is innocuous (53 ≥ 2·24 +
     // 2).

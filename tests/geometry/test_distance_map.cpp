@@ -154,8 +154,46 @@ TEST_CASE("A point takes its voxel's distance, beyond the lattice more",
   CHECK(map.at(Eigen::Vector3d(2.999, 1.001, 1.999)) == 2.0F);
   CHECK(map.at(Eigen::Vector3d(6.5, 1.5, 1.5)) == 6.0F);
   CHECK(map.at(Eigen::Vector3d(-3.5, 1.5, 1.5)) == 4.0F);
-  // Clamped to (2, 2, 2), whose center is (4, 3, 0) away; its own distance is sqrt 6.
-  CHECK(map.at(Eigen::Vector3d(6.5, 5.5, 2.5)) == Approx(std::sqrt(6.0) + 5.0));
+  CHECK(map.at(Eigen::Vector3d(6.5, 5.5, 2.5)) == std::sqrt(53.0F));  // (6, 5, 2) to (0, 1, 1)
+  CHECK(map.at(Eigen::Vector3d(1e9, 1.5, 1.5)) == 1e9F);
+}
+
+TEST_CASE("Beyond the lattice distances are bounds from below that a larger lattice confirms",
+          "[geometry][distance_map]") {
+  for (const TriangleMesh& mesh : {box({0.05, 0.04, 0.03}), torus(0.04, 0.012, 40, 20)}) {
+    const double h = longest_extent(mesh) / 16;
+    const auto map_with_margin = [&](int voxels) {
+      const VoxelLattice lattice =
+          lattice_around(bounding_box(mesh), {.resolution = 16, .margin = voxels * h});
+      return signed_distance_map(
+          voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice)));
+    };
+    const SignedDistanceMap small = map_with_margin(2);
+    const SignedDistanceMap large = map_with_margin(14);
+    const VoxelLattice& lattice = large.lattice;
+    std::vector<float> bounds;
+    for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
+      bounds.push_back(small.at(lattice.center(lattice.voxel(index))));
+    }
+    int num_equal_beyond = 0;
+    for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
+      const Eigen::Vector3i voxel = lattice.voxel(index);
+      const float bound = bounds[index];
+      REQUIRE(bound <= large.values[index]);
+      if (small.lattice.contains(small.lattice.voxel_at(lattice.center(voxel)))) {
+        REQUIRE(bound == large.values[index]);
+      } else {
+        REQUIRE(bound >= 2.0F);  // Of two voxels of room the tie rule may take one.
+        num_equal_beyond += bound == large.values[index];
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        if (voxel[axis] + 1 == lattice.counts[axis]) continue;
+        const float next = bounds[lattice.index(voxel + Eigen::Vector3i::Unit(axis))];
+        REQUIRE(std::abs(next - bound) <= 1.0F + 1e-5F);  // Half an ulp of values up to 64.
+      }
+    }
+    CHECK(num_equal_beyond > 1000);
+  }
 }
 
 TEST_CASE("A lattice too long for exact squares is refused", "[geometry][distance_map]") {
