@@ -85,22 +85,42 @@ void ShapeDiameterOptions::validate() const {
 }
 
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options) {
+  // In the order of the tree's leaves: rays of neighbors run through the same memory.
+  std::vector<std::int32_t> faces;
+  for (const auto& triangle : mesh.impl().tree.triangles) faces.push_back(triangle.face);
+  const ShapeDiameter in_order = shape_diameter(mesh, faces, options);
+  ShapeDiameter result{std::vector<double>(faces.size()), std::vector<std::int32_t>(faces.size())};
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    result.thickness[faces[i]] = in_order.thickness[i];
+    result.num_hits[faces[i]] = in_order.num_hits[i];
+  }
+  return result;
+}
+
+ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t> faces,
+                             const ShapeDiameterOptions& options) {
   options.validate();
-  const internal::BoxTree& tree = mesh.impl().tree;
   const std::size_t num_faces = mesh.mesh().faces.size();
+  for (const std::int32_t face : faces) {
+    if (face < 0 || static_cast<std::size_t>(face) >= num_faces) {
+      throw InvalidInput("shape_diameter: face " + std::to_string(face) + " of " +
+                         std::to_string(num_faces));
+    }
+  }
+  const internal::BoxTree& tree = mesh.impl().tree;
   const std::vector<Vector3d> rays = cone_of_rays(options);
   std::vector<Vector3d> normals(num_faces);
   for (std::size_t face = 0; face < num_faces; ++face) {
     normals[face] = face_normal(mesh.mesh(), face);
   }
-  ShapeDiameter result{std::vector<double>(num_faces, std::numeric_limits<double>::infinity()),
-                       std::vector<std::int32_t>(num_faces, 0)};
-  // In the order of the tree's leaves: rays of neighbors run through the same memory.
-  internal::parallel_for(num_faces, options.num_threads, [&](std::size_t i) {
-    const auto& [corners, face] = tree.triangles[i];
+  ShapeDiameter result{std::vector<double>(faces.size(), std::numeric_limits<double>::infinity()),
+                       std::vector<std::int32_t>(faces.size(), 0)};
+  internal::parallel_for(faces.size(), options.num_threads, [&](std::size_t i) {
+    const std::int32_t face = faces[i];
     const Vector3d& normal = normals[face];
     if (normal.isZero()) return;
-    const Vector3d centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    const auto [a, b, c] = corners(mesh.mesh(), face);
+    const Vector3d centroid = (a + b + c) / 3.0;
     const Eigen::Matrix3d frame = frame_around(-normal);
     std::vector<double> lengths;
     lengths.reserve(rays.size());
@@ -111,8 +131,8 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& 
       lengths.push_back(hit.t);
     }
     if (lengths.empty()) return;
-    result.num_hits[face] = static_cast<std::int32_t>(lengths.size());
-    result.thickness[face] = trimmed_mean(lengths, options.trim_deviations);
+    result.num_hits[i] = static_cast<std::int32_t>(lengths.size());
+    result.thickness[i] = trimmed_mean(lengths, options.trim_deviations);
   });
   return result;
 }

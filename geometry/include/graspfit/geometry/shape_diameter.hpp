@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "graspfit/geometry/mesh_query.hpp"
@@ -40,5 +41,10 @@ struct ShapeDiameter {
 /// bury in each other count as walls. The directions are the same for every face, turned into its
 /// frame, so that there is nothing random. Cost: `num_rays` rays per face, about log n each.
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options = {});
+
+/// The same of some faces only, bit for bit: entry i is that of `faces[i]`.
+/// @throws InvalidInput for a face that does not exist.
+ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t> faces,
+                             const ShapeDiameterOptions& options = {});
 
 }  // namespace graspfit::geometry

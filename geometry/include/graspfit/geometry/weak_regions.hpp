@@ -35,8 +35,8 @@ enum class WeakVerdict : std::uint8_t {
 };
 
 /// A piece of the object that is left over where balls of the diameter weak_thickness roll inside
-/// it, and that is not the body they roll in; at least one of its faces is thinner than
-/// weak_thickness.
+/// it, and that is not the body they roll in, or a branch of such a piece; at least one of its
+/// faces is thinner than weak_thickness.
 struct WeakRegion {
   std::vector<std::int32_t> faces;  ///< All its faces, ascending, thin or not.
   double thickness = 0.0;           ///< Median by area of the local thickness of its faces [m].
@@ -56,7 +56,9 @@ enum class WeakOutcome : std::uint8_t {
 
 /// Fragile features of an object.
 struct WeakRegions {
-  std::vector<double> thickness;    ///< Local thickness of each face, as by `shape_diameter` [m].
+  /// Local thickness of each face on a residue of the opening, as by `shape_diameter` [m]; infinity
+  /// for all others: balls of weak_thickness roll beneath them, and they are not measured.
+  std::vector<double> thickness;
   std::vector<bool> is_weak;        ///< One per face: thin, in a region with the verdict Weak.
   std::vector<WeakRegion> regions;  ///< Those with a thin face, by their first face.
   WeakOutcome outcome = WeakOutcome::Searched;
@@ -77,6 +79,11 @@ struct WeakRegions {
 /// - a neck is where a region touches the body; necks less than three voxels apart are one. A
 ///   neck that closes to a ring around an opening wider than weak_thickness does not count as
 ///   single: it holds a wall or a floor. Around a narrower one it is that of a hollow leg.
+/// - a piece on several necks or on a ring may be a root that several features share, as arms that
+///   meet around a body do. What of it is farther than weak_thickness from the body, along the
+///   piece, is its *branches*: one that hangs on the rest by a single neck, and is long enough,
+///   reckoned from the body, is a region of its own. The rest stays what the piece was. A handle or
+///   a wall has one branch, which hangs on it at both ends or all around.
 /// - what lies within a quarter of weak_thickness of the opened solid belongs to it: otherwise the
 ///   creases at the roots of neighboring features would join them. Lengths count it.
 /// - regions are told apart at the resolution of the lattice: surfaces less than two voxels apart
@@ -88,8 +95,8 @@ struct WeakRegions {
 /// a quarter of weak_thickness of a ball is decided in favor of yes, by at most half its diagonal
 /// or, where the surface passes, by the whole. Lengths start where the balls end, are at most 5 %
 /// too long from the directions of the voxels' paths, and within two voxels of the true end.
-/// Deterministic for any number of threads. Cost: the rays of `shape_diameter`, then voxels, which
-/// grow with the third power of the resolution.
+/// Deterministic for any number of threads. Cost: voxels, which grow with the third power of the
+/// resolution, and rays of `shape_diameter` from the residues' faces.
 ///
 /// Precondition, not checked: a closed outward mesh (`repair_mesh`). For others the answer is
 /// meaningless, but there is one.

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "graspfit/geometry/voxel_grid.hpp"
+
+namespace graspfit::geometry::internal {
+
+using Index = std::int64_t;  ///< Of a voxel in its lattice.
+
+/// Calls visit(neighbor) for the voxels of the 3 × 3 × 3 block around `voxel` that exist.
+template <typename Visit>
+void for_each_neighbor(const VoxelLattice& lattice, Index index, const Visit& visit) {
+  const Eigen::Vector3i voxel = lattice.voxel(index);
+  const Eigen::Vector3i low = (voxel.array() - 1).max(0);
+  const Eigen::Vector3i high = (voxel.array() + 1).min(lattice.counts.array() - 1);
+  for (int k = low[2]; k <= high[2]; ++k) {
+    for (int j = low[1]; j <= high[1]; ++j) {
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const Index neighbor = lattice.index({i, j, k});
+        if (neighbor != index) visit(neighbor);
+      }
+    }
+  }
+}
+
+/// Labels the 26-connected sets of voxels for which `is_member`, in order of their first voxel;
+/// −1 for the others. Returns the sets' voxels.
+template <typename IsMember>
+std::vector<std::vector<Index>> label_sets(const VoxelLattice& lattice,
+                                           const std::vector<Index>& solid,
+                                           const IsMember& is_member,
+                                           std::vector<std::int32_t>& label) {
+  std::vector<std::vector<Index>> sets;
+  for (const Index first : solid) {
+    if (label[first] >= 0 || !is_member(first)) continue;
+    const auto name = static_cast<std::int32_t>(sets.size());
+    std::vector<Index> set = {first};
+    label[first] = name;
+    for (std::size_t next = 0; next < set.size(); ++next) {
+      for_each_neighbor(lattice, set[next], [&](Index neighbor) {
+        if (label[neighbor] >= 0 || !is_member(neighbor)) return;
+        label[neighbor] = name;
+        set.push_back(neighbor);
+      });
+    }
+    sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+/// Clears all members but those of the largest 26-connected set; of equal ones that with the first
+/// voxel. Cost: linear in the voxels.
+void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member);
+
+/// Topology of a set of voxels taken as closed cubes.
+struct SetTopology {
+  int num_pieces = 0;
+  int num_rings = 0;  ///< Independent loops: 1 for a ring, 0 for a disk.
+};
+
+/// Of the voxels, each grown by `growth` voxels to all sides, which closes narrower gaps and holes.
+/// Numbers of cubes, walls, edges and corners decide: pieces − rings + cavities = χ (Euler).
+SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxels, int growth);
+
+/// Longest way [voxels] from the body to any voxel of a set, inside the set. `ahead[v]` is how far
+/// voxel v is from the body, for those next to it.
+class LongestWay {
+ public:
+  LongestWay(const VoxelLattice& lattice, const std::vector<std::int32_t>& label)
+      : lattice_(lattice),
+        label_(label),
+        length_(label.size(), std::numeric_limits<float>::infinity()) {}
+
+  double operator()(std::int32_t name, const std::vector<std::pair<float, Index>>& starts);
+
+  /// Way [voxels] from the body to a voxel of a set that has been asked for.
+  float length_at(Index voxel) const { return length_[voxel]; }
+
+ private:
+  Index member(const Eigen::Vector3i& voxel, std::int32_t name) const {
+    if (!lattice_.contains(voxel)) return -1;
+    const Index index = lattice_.index(voxel);
+    return label_[index] == name ? index : -1;
+  }
+
+  const VoxelLattice& lattice_;
+  const std::vector<std::int32_t>& label_;
+  std::vector<float> length_;
+};
+
+}  // namespace graspfit::geometry::internal
