@@ -155,9 +155,10 @@ class SurfaceMean {
       : averaging_(averaging), pad_(pad), X_CO_(X_CO) {}
 
   void add(std::span<const Vector3d> polygon_O, double area, const Vector3d& centroid_O,
-           const Vector3d& outward_normal_O) {
+           const Vector3d& outward_normal_O, bool is_weak) {
     const double weight = averaging_ == geometry::PatchAveraging::AreaWeighted ? area : 1.0;
     area_ += area;
+    if (is_weak) weak_area_ += area;
     weight_ += weight;
     centroid_O_ += weight * centroid_O;
     outward_normal_O_ += weight * outward_normal_O;
@@ -167,6 +168,7 @@ class SurfaceMean {
   }
 
   double area() const { return area_; }
+  double weak_area() const { return weak_area_; }
   double lowest() const { return lowest_; }  ///< Smallest height of a piece over the pad.
   Vector3d centroid_O() const { return centroid_O_ / weight_; }
   Vector3d outward_normal_O() const { return outward_normal_O_ / weight_; }
@@ -177,6 +179,7 @@ class SurfaceMean {
   RigidTransform X_CO_;
   std::vector<Vector3d> polygon_C_;
   double area_ = 0.0;
+  double weak_area_ = 0.0;
   double weight_ = 0.0;
   double lowest_ = std::numeric_limits<double>::infinity();
   Vector3d centroid_O_ = Vector3d::Zero();
@@ -194,11 +197,19 @@ void ContactEstimationOptions::validate() const {
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_index,
                                         const RigidTransform& X_OC,
                                         const geometry::MeshQuery& object,
-                                        const ContactEstimationOptions& options) {
+                                        const ContactEstimationOptions& options,
+                                        const geometry::WeakRegions* weak_regions) {
   options.validate();
   internal::require(pad_index >= 0 && pad_index < static_cast<int>(hand.pads.size()),
                     "estimate_contact", "pad", pad_index,
                     "an index into the pads of hand " + hand.name);
+  if (weak_regions && weak_regions->is_weak.size() != object.mesh().faces.size()) {
+    throw geometry::InvalidInput(
+        "estimate_contact: weak regions of " + std::to_string(weak_regions->is_weak.size()) +
+        " faces for a mesh of " + std::to_string(object.mesh().faces.size()));
+  }
+  const bool knows_weak = weak_regions && weak_regions->outcome != geometry::WeakOutcome::TooCoarse;
+  const auto is_weak = [&](std::int32_t face) { return knows_weak && weak_regions->is_weak[face]; };
   const hands::ContactPad& pad = hand.pads[pad_index];
   const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
 
@@ -221,14 +232,15 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
     if (!cutting->empty() || is_thin) {
       cut_faces.push_back({face, std::move(*cutting)});
     } else {
-      mean.add(triangle, 0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized());
+      mean.add(triangle, 0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized(),
+               is_weak(face));
     }
   }
   for (const CutFace& cut : cut_faces) {
     if (const auto piece =
             geometry::clip(geometry::corners(object.mesh(), cut.face), cut.cutting)) {
       mean.add(piece->polygon, piece->area, piece->centroid,
-               geometry::face_normal(object.mesh(), cut.face));
+               geometry::face_normal(object.mesh(), cut.face), is_weak(cut.face));
     }
   }
   if (!(mean.area() > 0.0)) return std::nullopt;
@@ -245,13 +257,15 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   contact.link = pad.link;
   contact.pad = pad_index;
   contact.finger = pad.finger;
+  if (knows_weak) contact.weak = 2.0 * mean.weak_area() >= mean.area();
   return contact;
 }
 
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
                                        const std::vector<RigidTransform>& X_OL,
                                        const geometry::MeshQuery& object,
-                                       const ContactEstimationOptions& options) {
+                                       const ContactEstimationOptions& options,
+                                       const geometry::WeakRegions* weak_regions) {
   options.validate();
   if (X_OL.size() != hand.links.size()) {
     throw geometry::InvalidInput("estimate_contacts: " + std::to_string(X_OL.size()) +
@@ -260,8 +274,8 @@ std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
   }
   std::vector<Contact> contacts;
   for (int pad = 0; pad < static_cast<int>(hand.pads.size()); ++pad) {
-    if (const auto contact =
-            estimate_contact(hand, pad, hands::pad_pose(hand, pad, X_OL), object, options)) {
+    if (const auto contact = estimate_contact(hand, pad, hands::pad_pose(hand, pad, X_OL), object,
+                                              options, weak_regions)) {
       contacts.push_back(*contact);
     }
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "graspfit/geometry/convex_clip.hpp"
 #include "internal/option_check.hpp"
 #include "internal/stopwatch.hpp"
 
@@ -16,13 +17,41 @@ auto timed(double& seconds, Step step) {
   return step();
 }
 
+geometry::ConvexVolume box_of_voxel(const geometry::VoxelLattice& lattice, std::int64_t index) {
+  const Eigen::Vector3i voxel = lattice.voxel(index);
+  geometry::ConvexVolume box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
+    box.push_back({-along, -lattice.plane(axis, voxel[axis])});
+    box.push_back({along, lattice.plane(axis, voxel[axis] + 1)});
+  }
+  return box;
+}
+
+/// Whether at least half of a patch lies on weak faces.
+bool is_weak(const geometry::SurfacePatch& patch, const std::vector<bool>& is_weak_face,
+             const geometry::TriangleMesh& mesh, const geometry::VoxelLattice& lattice) {
+  std::vector<std::int32_t> weak_faces;
+  for (const std::int32_t face : patch.faces) {
+    if (is_weak_face[face]) weak_faces.push_back(face);
+  }
+  if (weak_faces.empty()) return false;
+  if (weak_faces.size() == patch.faces.size()) return true;
+  double weak_area = 0.0;
+  for (const auto& piece : geometry::clip(mesh, weak_faces, box_of_voxel(lattice, patch.voxel))) {
+    weak_area += piece.area;
+  }
+  return 2.0 * weak_area >= patch.area;
+}
+
 }  // namespace
 
 void ObjectModelOptions::validate() const {
   internal::require(resolution >= 4 && resolution <= 512, "ObjectModelOptions", "resolution",
                     resolution, "in [4, 512]");
-  internal::require(margin >= 0.0 && std::isfinite(margin), "ObjectModelOptions", "margin", margin,
-                    "finite and at least 0");
+  internal::require(!margin || (*margin >= 0.0 && std::isfinite(*margin)), "ObjectModelOptions",
+                    "margin", margin.value_or(0.0), "finite and at least 0");
+  if (weak) weak->validate();
   score.validate();
 }
 
@@ -34,8 +63,9 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
   }
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
   const Eigen::AlignedBox3d box = geometry::bounding_box(mesh);
-  const geometry::VoxelLattice lattice =
-      geometry::lattice_around(box, {.resolution = options.resolution, .margin = options.margin});
+  const double room = kRoomVoxels * box.sizes().maxCoeff() / options.resolution;
+  const geometry::VoxelLattice lattice = geometry::lattice_around(
+      box, {.resolution = options.resolution, .margin = options.margin.value_or(room)});
 
   ObjectModelTimings spent;
   geometry::MeshQuery query = timed(spent.query_s, [&] { return geometry::MeshQuery(mesh); });
@@ -53,6 +83,15 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
   for (std::size_t i = 0; i < patches.size(); ++i) {
     patch_of_voxel[patches[i].voxel] = static_cast<std::int32_t>(i);
   }
+  std::optional<geometry::WeakRegions> weak;
+  std::vector<bool> is_weak_patch(patches.size(), false);
+  if (options.weak) {
+    const Stopwatch watch(spent.weak_s);
+    weak = geometry::cached_weak_regions(query, *options.weak, options.weak_cache);
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      is_weak_patch[i] = is_weak(patches[i], weak->is_weak, mesh, lattice);
+    }
+  }
   if (timings != nullptr) *timings = spent;
 
   return ObjectModel{.query = std::move(query),
@@ -63,8 +102,8 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
                      .patch_of_voxel = std::move(patch_of_voxel),
                      .distance = std::move(distance),
                      .scores = std::move(scores),
-                     .weak = std::nullopt,
-                     .is_weak_patch = {}};
+                     .weak = std::move(weak),
+                     .is_weak_patch = std::move(is_weak_patch)};
 }
 
 }  // namespace graspfit::grasp

@@ -295,3 +295,38 @@ TEST_CASE("Contact estimation refuses what makes no sense", "[grasp][contact_est
   CHECK_THROWS_WITH(estimate_contacts(hand, {X_OC}, box, kOptions),
                     Contains("1 link poses for the 2 links"));
 }
+
+TEST_CASE(
+    "A contact is weak if at least half of its surface is, and unknown where nothing is known",
+    "[grasp][contact_estimation]") {
+  // The two triangles of the top meet along x = y; that with y < x is weak.
+  const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
+  const hands::HandModel hand = pad_hand(1, 0.02, 0.02);
+  geometry::WeakRegions regions;
+  regions.is_weak.assign(box.mesh().faces.size(), false);
+  regions.is_weak[box.closest_point({0.05, -0.05, 0.1}).face] = true;
+  geometry::WeakRegions coarse = regions;
+  coarse.outcome = geometry::WeakOutcome::TooCoarse;
+  for (const auto& [x, is_weak] :
+       {std::pair{0.03, true}, {0.002, true}, {-0.002, false}, {-0.03, false}}) {
+    const RigidTransform X_OC = above(x, -x, 0.1, 0.0005);
+    const auto contact = estimate_contact(hand, 1, X_OC, box, kOptions, &regions);
+    REQUIRE(contact);
+    REQUIRE(contact->weak.has_value());
+    CHECK(*contact->weak == is_weak);
+    auto same = estimate_contact(hand, 1, X_OC, box, kOptions);
+    REQUIRE(same);
+    CHECK_FALSE(same->weak.has_value());
+    CHECK(same->area == contact->area);
+    CHECK_FALSE(estimate_contact(hand, 1, X_OC, box, kOptions, &coarse)->weak.has_value());
+  }
+  // Also of all pads at once: here the palm, which lies over the other triangle, and a finger.
+  const auto all = estimate_contacts(hand, {above(-0.03, 0.03, 0.1, 0), above(0.03, -0.03, 0.1, 0)},
+                                     box, kOptions, &regions);
+  REQUIRE(all.size() == 2);
+  CHECK(all[0].weak == false);
+  CHECK(all[1].weak == true);
+  regions.is_weak.pop_back();
+  CHECK_THROWS_WITH(estimate_contact(hand, 1, above(0, 0, 0.1, 0), box, kOptions, &regions),
+                    Contains("weak regions of 11 faces for a mesh of 12"));
+}

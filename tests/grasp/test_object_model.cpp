@@ -1,7 +1,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <utility>
+#include <vector>
 
+#include "graspfit/geometry/convex_clip.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/object_model.hpp"
@@ -51,6 +55,57 @@ TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
   CHECK(timings.voxels_s > 0.0);
   CHECK(timings.distance_s > 0.0);
   CHECK(timings.scores_s > 0.0);
+}
+
+TEST_CASE("A model has room of its own around the object, for any hand", "[grasp][object_model]") {
+  const ObjectModel object = build_object_model(geometry::box({0.1, 0.05, 0.05}), {});
+  const geometry::VoxelLattice& lattice = object.grid.lattice;
+  CHECK(lattice.counts == Eigen::Vector3i(30 + 16, 15 + 16, 15 + 16));
+  // A link 1 m away is as far as it is: straight before a face to the voxel.
+  const double h = lattice.voxel_size;
+  CHECK(object.distance.at(Vector3d(0.05 + 300.5 * h, 0, 0)) == 300.0F);
+}
+
+TEST_CASE("A patch is weak if at least half of its area is on weak faces",
+          "[grasp][object_model][weak]") {
+  // A block with a fin 3 mm thick; long faces, so that patches at the fin's foot have both kinds.
+  geometry::TriangleMesh fin = geometry::box({0.03, 0.003, 0.04});
+  for (Vector3d& vertex : fin.vertices) vertex.z() += 0.03;
+  const geometry::TriangleMesh mesh =
+      geometry::concatenated({geometry::box({0.06, 0.04, 0.04}), fin});
+  const ObjectModelOptions options{
+      .resolution = 25, .weak = geometry::WeakRegionOptions{}, .weak_cache = {.is_on = false}};
+  ObjectModelTimings timings;
+  const ObjectModel object = build_object_model(mesh, options, &timings);
+  CHECK(timings.weak_s > 0.0);
+  REQUIRE(object.weak.has_value());
+  REQUIRE(object.weak->regions.size() == 1);
+  CHECK(object.weak->regions[0].verdict == geometry::WeakVerdict::Weak);
+  std::map<std::int64_t, std::pair<double, double>> weak_and_all;
+  for (const geometry::VoxelPiece& piece : geometry::clip_by_voxels(mesh, object.grid.lattice)) {
+    auto& [weak, all] = weak_and_all[piece.voxel];
+    all += piece.piece.area;
+    if (object.weak->is_weak[piece.piece.face]) weak += piece.piece.area;
+  }
+  REQUIRE(object.is_weak_patch.size() == object.patches.size());
+  int num_mixed = 0;
+  int num_weak = 0;
+  for (std::size_t i = 0; i < object.patches.size(); ++i) {
+    const auto& [weak, all] = weak_and_all.at(object.patches[i].voxel);
+    if (std::abs(2 * weak - all) < 1e-9 * all) continue;  // half, but for rounding
+    CHECK(object.is_weak_patch[i] == (2 * weak > all));
+    num_mixed += weak > 0.0 && weak < all;
+    num_weak += object.is_weak_patch[i];
+  }
+  CHECK(num_mixed > 0);
+  CHECK(num_weak > 30);
+
+  const ObjectModel unknown = build_object_model(mesh, {.resolution = 25});
+  CHECK_FALSE(unknown.weak.has_value());
+  CHECK(unknown.is_weak_patch == std::vector<bool>(unknown.patches.size(), false));
+  CHECK_THROWS_WITH(
+      build_object_model(mesh, {.weak = geometry::WeakRegionOptions{.weak_thickness = 0.0}}),
+      Contains("weak_thickness = 0"));
 }
 
 TEST_CASE("Options reach the parts they are for", "[grasp][object_model]") {

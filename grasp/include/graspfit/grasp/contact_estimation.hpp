@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
+#include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/contact.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_model.hpp"
@@ -26,21 +27,26 @@ struct ContactEstimationOptions {
 /// area, or the mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip
 /// volume.
 ///
-/// `is_target` and `weak` are left at their defaults. Surface behind the pad's plane is not seen;
+/// `weak` says whether at least half of the pieces' area is on weak faces; it stays empty without
+/// `weak_regions`, and where those say that nothing is known (`WeakOutcome::TooCoarse`).
+/// `is_target` is left at its default. Surface behind the pad's plane is not seen;
 /// surface inside the bulge of a curved pad is, and there the link has entered the object. Walls
 /// inside the volume count with their area whichever way they face. Rounded; which triangles are
 /// cut is decided exactly on the clip volume's half-spaces as rounded to frame O. Cost: a box query
 /// where nothing is near, else linear in the triangles near the pad.
-/// @throws InvalidInput for bad options or a pad that the hand does not have.
+/// @throws InvalidInput for bad options, a pad that the hand does not have, or weak regions of
+/// another mesh (another number of faces).
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
                                         const geometry::RigidTransform& X_OC,
                                         const geometry::MeshQuery& object,
-                                        const ContactEstimationOptions& options);
+                                        const ContactEstimationOptions& options,
+                                        const geometry::WeakRegions* weak_regions = nullptr);
 
 /// Contacts of all pads of the hand, in pad order (contacts without a target count: A35).
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
                                        const std::vector<geometry::RigidTransform>& X_OL,
                                        const geometry::MeshQuery& object,
-                                       const ContactEstimationOptions& options);
+                                       const ContactEstimationOptions& options,
+                                       const geometry::WeakRegions* weak_regions = nullptr);
 
 }  // namespace graspfit::grasp

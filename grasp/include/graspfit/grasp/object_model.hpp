@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "graspfit/geometry/distance_map.hpp"
@@ -13,29 +14,38 @@
 
 namespace graspfit::grasp {
 
+/// Voxels of room around the object where nothing else is asked for.
+///
+/// Enough for any hand: the fitting loop tells distances apart up to one voxel more than its
+/// longest step (3 voxels), and beyond the lattice the distance map goes on as a lower bound.
+inline constexpr int kRoomVoxels = 8;
+
 /// How an object is prepared for planning.
 struct ObjectModelOptions {
   int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
-  double margin = 0.0;  ///< Room around the object for the hand [m] (A8), ≥ 0.
+  /// Room around the object [m] (A8), ≥ 0; empty: `kRoomVoxels`, whatever the hand.
+  std::optional<double> margin = {};
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score = {};
-  /// Looked for where given; results of earlier runs come from the user's cache.
-  std::optional<geometry::WeakRegionOptions> weak = {};
-  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+  std::optional<geometry::WeakRegionOptions> weak = {};  ///< Looked for where given (A37).
+  geometry::ContentCache weak_cache = {};  ///< Where weak regions of earlier runs are kept.
+  void validate() const;                   ///< Throws InvalidInput naming the field and its value.
 };
 
-/// All that is computed once per object, in the object frame O (the mesh's own frame, in meters).
+/// All that is computed once per object, in the object frame O (the mesh's own frame, in meters);
+/// for every hand, seed and option that is not among `ObjectModelOptions`.
 struct ObjectModel {
   geometry::MeshQuery query;                    ///< The mesh with its box tree.
   geometry::MassProperties mass;                ///< Center of mass at uniform density.
   double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m] (A11).
-  geometry::VoxelGrid grid;                     ///< The interaction volume.
+  geometry::VoxelGrid grid;                     ///< The object and some room around it.
   std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.
   geometry::SignedDistanceMap distance;
   ContactScoreMap scores;                     ///< Parallel to patches.
   std::optional<geometry::WeakRegions> weak;  ///< Empty: not looked for, nothing is known.
-  std::vector<bool> is_weak_patch;  ///< Parallel to patches; at least half of its area is weak.
+  std::vector<bool> is_weak_patch;  ///< Parallel to patches: at least half of its area is on weak
+                                    ///< faces. All false where nothing is known.
 
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
