@@ -491,12 +491,9 @@ RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOption
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
                            const PlannerOptions& options, ObjectModelTimings* timings) {
   options.validate();
-  // Before the voxels: a coin-sized object at 30 voxels would fill the hand's reach with billions
-  // of them.
   check_size(mesh, hand, requested_parts(hand, options).fingers, 2.0 * hands::largest_reach(hand));
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
-  object_options.margin = hands::largest_reach(hand);
   object_options.averaging = options.averaging;
   object_options.score = options.score;
   return build_object_model(mesh, object_options, timings);

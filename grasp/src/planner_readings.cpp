@@ -30,7 +30,8 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A6", averaging},
       {"A7", "projected to the nearest point of the patch"},
       {"A8",
-       "resolution along the object's own longest extent; margin of the hand's largest reach"},
+       "resolution along the object's own longest extent; 8 voxels of room, beyond them distances "
+       "are bounds from below"},
       {"A9", units},
       {"A10", units},
       {"A11", units},

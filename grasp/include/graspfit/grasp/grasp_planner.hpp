@@ -158,7 +158,8 @@ struct PlannerResult {
 /// Called after each attempt with (attempts done, grasps found); may be empty.
 using PlannerProgress = std::function<void(std::int64_t, std::int64_t)>;
 
-/// The object prepared as `options` ask for and `hand` needs (margin: its largest reach).
+/// The object prepared as `options` ask for; the model is good for every hand, `hand` only decides
+/// whether the object is of a size that it can hold.
 /// @throws InvalidInput for an object that is smaller than a fingertip or thicker than the hand's
 /// span.
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
