@@ -1,9 +1,11 @@
 #include "graspfit/grasp/object_model.hpp"
 
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "graspfit/geometry/convex_clip.hpp"
+#include "internal/object_parts.hpp"
 #include "internal/option_check.hpp"
 #include "internal/stopwatch.hpp"
 
@@ -44,6 +46,29 @@ bool is_weak(const geometry::SurfacePatch& patch, const std::vector<bool>& is_we
   return 2.0 * weak_area >= patch.area;
 }
 
+geometry::VoxelLattice lattice_of(const Eigen::AlignedBox3d& box,
+                                  const ObjectModelOptions& options) {
+  const double room = kRoomVoxels * box.sizes().maxCoeff() / options.resolution;
+  return geometry::lattice_around(
+      box, {.resolution = options.resolution, .margin = options.margin.value_or(room)});
+}
+
+internal::ObjectParts find_parts(const geometry::MeshQuery& query,
+                                 const geometry::VoxelLattice& lattice,
+                                 const ObjectModelOptions& options, ObjectModelTimings& spent) {
+  internal::ObjectParts parts;
+  parts.patches = timed(spent.patches_s, [&] {
+    return geometry::surface_patches(query.mesh(), lattice, {.averaging = options.averaging});
+  });
+  parts.grid =
+      timed(spent.voxels_s, [&] { return geometry::voxelize(query, lattice, parts.patches); });
+  parts.distance =
+      timed(spent.distance_s, [&] { return geometry::signed_distance_map(parts.grid); });
+  parts.scores = timed(spent.scores_s,
+                       [&] { return contact_score_map(parts.patches, lattice, options.score); });
+  return parts;
+}
+
 }  // namespace
 
 void ObjectModelOptions::validate() const {
@@ -57,39 +82,43 @@ void ObjectModelOptions::validate() const {
 
 ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
                                const ObjectModelOptions& options, ObjectModelTimings* timings) {
+  return cached_object_model(mesh, options, {.is_on = false}, timings);
+}
+
+ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
+                                const ObjectModelOptions& options,
+                                const geometry::ContentCache& cache, ObjectModelTimings* timings) {
   options.validate();
   if (mesh.faces.empty()) {
     throw geometry::InvalidInput("build_object_model: the mesh has no faces");
   }
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
   const Eigen::AlignedBox3d box = geometry::bounding_box(mesh);
-  const double room = kRoomVoxels * box.sizes().maxCoeff() / options.resolution;
-  const geometry::VoxelLattice lattice = geometry::lattice_around(
-      box, {.resolution = options.resolution, .margin = options.margin.value_or(room)});
+  const geometry::VoxelLattice lattice = lattice_of(box, options);
 
   ObjectModelTimings spent;
   geometry::MeshQuery query = timed(spent.query_s, [&] { return geometry::MeshQuery(mesh); });
-  std::vector<geometry::SurfacePatch> patches = timed(spent.patches_s, [&] {
-    return geometry::surface_patches(mesh, lattice, {.averaging = options.averaging});
-  });
-  geometry::VoxelGrid grid =
-      timed(spent.voxels_s, [&] { return geometry::voxelize(query, lattice, patches); });
-  geometry::SignedDistanceMap distance =
-      timed(spent.distance_s, [&] { return geometry::signed_distance_map(grid); });
-  ContactScoreMap scores =
-      timed(spent.scores_s, [&] { return contact_score_map(patches, lattice, options.score); });
+  const auto find = [&] { return find_parts(query, lattice, options, spent); };
+  internal::ObjectParts parts =
+      cache.is_on ? cache.value(
+                        kObjectModelKind, internal::object_parts_key(mesh, options), find,
+                        [&](std::string_view bytes) {
+                          return internal::from_bytes(bytes, lattice, mesh.faces.size());
+                        },
+                        internal::to_bytes)
+                  : find();
 
   std::vector<std::int32_t> patch_of_voxel(static_cast<std::size_t>(lattice.num_voxels()), -1);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    patch_of_voxel[patches[i].voxel] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < parts.patches.size(); ++i) {
+    patch_of_voxel[parts.patches[i].voxel] = static_cast<std::int32_t>(i);
   }
   std::optional<geometry::WeakRegions> weak;
-  std::vector<bool> is_weak_patch(patches.size(), false);
+  std::vector<bool> is_weak_patch(parts.patches.size(), false);
   if (options.weak) {
     const Stopwatch watch(spent.weak_s);
     weak = geometry::cached_weak_regions(query, *options.weak, options.weak_cache);
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      is_weak_patch[i] = is_weak(patches[i], weak->is_weak, mesh, lattice);
+    for (std::size_t i = 0; i < parts.patches.size(); ++i) {
+      is_weak_patch[i] = is_weak(parts.patches[i], weak->is_weak, mesh, lattice);
     }
   }
   if (timings != nullptr) *timings = spent;
@@ -97,11 +126,11 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
   return ObjectModel{.query = std::move(query),
                      .mass = mass,
                      .normalizing_radius = 0.5 * box.diagonal().norm(),
-                     .grid = std::move(grid),
-                     .patches = std::move(patches),
+                     .grid = std::move(parts.grid),
+                     .patches = std::move(parts.patches),
                      .patch_of_voxel = std::move(patch_of_voxel),
-                     .distance = std::move(distance),
-                     .scores = std::move(scores),
+                     .distance = std::move(parts.distance),
+                     .scores = std::move(parts.scores),
                      .weak = std::move(weak),
                      .is_weak_patch = std::move(is_weak_patch)};
 }

@@ -161,15 +161,20 @@ TEST_CASE("A point takes its voxel's distance, beyond the lattice more",
 TEST_CASE("Beyond the lattice distances are bounds from below that a larger lattice confirms",
           "[geometry][distance_map]") {
   for (const TriangleMesh& mesh : {box({0.05, 0.04, 0.03}), torus(0.04, 0.012, 40, 20)}) {
-    const double h = longest_extent(mesh) / 16;
-    const auto map_with_margin = [&](int voxels) {
-      const VoxelLattice lattice =
-          lattice_around(bounding_box(mesh), {.resolution = 16, .margin = voxels * h});
-      return signed_distance_map(
-          voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice)));
-    };
-    const SignedDistanceMap small = map_with_margin(2);
-    const SignedDistanceMap large = map_with_margin(14);
+    const VoxelLattice inner = lattice_around(
+        bounding_box(mesh), {.resolution = 16, .margin = 2 * longest_extent(mesh) / 16});
+    const VoxelGrid grid = voxelize(MeshQuery(mesh), inner, surface_patches(mesh, inner));
+    const SignedDistanceMap small = signed_distance_map(grid);
+    constexpr int kMore = 12;  // Voxels to every side.
+    VoxelGrid padded{{inner.origin - Eigen::Vector3d::Constant(kMore * inner.voxel_size),
+                      inner.voxel_size, inner.counts.array() + 2 * kMore},
+                     {}};
+    padded.classes.assign(static_cast<std::size_t>(padded.lattice.num_voxels()), VoxelClass::Empty);
+    for (std::int64_t index = 0; index < inner.num_voxels(); ++index) {
+      const Eigen::Vector3i voxel = inner.voxel(index).array() + kMore;
+      padded.classes[padded.lattice.index(voxel)] = grid.classes[index];
+    }
+    const SignedDistanceMap large = signed_distance_map(padded);
     const VoxelLattice& lattice = large.lattice;
     std::vector<float> bounds;
     for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
@@ -180,7 +185,7 @@ TEST_CASE("Beyond the lattice distances are bounds from below that a larger latt
       const Eigen::Vector3i voxel = lattice.voxel(index);
       const float bound = bounds[index];
       REQUIRE(bound <= large.values[index]);
-      if (small.lattice.contains(small.lattice.voxel_at(lattice.center(voxel)))) {
+      if (inner.contains(voxel.array() - kMore)) {
         REQUIRE(bound == large.values[index]);
       } else {
         REQUIRE(bound >= 2.0F);  // Of two voxels of room the tie rule may take one.

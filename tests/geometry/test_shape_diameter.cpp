@@ -2,6 +2,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
@@ -180,6 +181,21 @@ TEST_CASE("Thickness is the same for any number of threads and scales with the b
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     REQUIRE(doubled.thickness[face] == Approx(2.0 * one.thickness[face]).epsilon(1e-9));
   }
+}
+
+TEST_CASE("Of some faces the thickness is that of all", "[geometry][shape_diameter]") {
+  const MeshQuery mesh(torus(0.1, 0.03, 20, 10));
+  const ShapeDiameter all = shape_diameter(mesh);
+  const std::vector<std::int32_t> faces = {7, 399, 0, 7};
+  const ShapeDiameter some = shape_diameter(mesh, faces);
+  REQUIRE(some.thickness.size() == faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    CHECK(some.thickness[i] == all.thickness[faces[i]]);
+    CHECK(some.num_hits[i] == all.num_hits[faces[i]]);
+  }
+  CHECK(shape_diameter(mesh, std::vector<std::int32_t>{}).thickness.empty());
+  CHECK_THROWS_WITH(shape_diameter(mesh, std::vector<std::int32_t>{400}),
+                    "shape_diameter: face 400 of 400");
 }
 
 TEST_CASE("Options of the shape diameter out of range are refused", "[geometry][shape_diameter]") {

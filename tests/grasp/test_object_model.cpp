@@ -1,15 +1,18 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "graspfit/geometry/convex_clip.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/object_model.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace graspfit;
 using namespace graspfit::grasp;
@@ -106,6 +109,106 @@ TEST_CASE("A patch is weak if at least half of its area is on weak faces",
   CHECK_THROWS_WITH(
       build_object_model(mesh, {.weak = geometry::WeakRegionOptions{.weak_thickness = 0.0}}),
       Contains("weak_thickness = 0"));
+}
+
+namespace {
+
+void check_equal(const ObjectModel& a, const ObjectModel& b) {
+  CHECK(a.grid.lattice == b.grid.lattice);
+  CHECK(a.grid.classes == b.grid.classes);
+  CHECK(a.distance.lattice == b.distance.lattice);
+  CHECK(a.distance.values == b.distance.values);
+  CHECK(a.distance.first_partial == b.distance.first_partial);
+  CHECK(a.distance.last_partial == b.distance.last_partial);
+  CHECK(a.scores.scores == b.scores.scores);
+  CHECK(a.scores.mean_plane_distance == b.scores.mean_plane_distance);
+  CHECK(a.scores.mean_normal_angle_deg == b.scores.mean_normal_angle_deg);
+  CHECK(a.patch_of_voxel == b.patch_of_voxel);
+  CHECK(a.mass.center_of_mass == b.mass.center_of_mass);
+  CHECK(a.is_weak_patch == b.is_weak_patch);
+  REQUIRE(a.patches.size() == b.patches.size());
+  bool are_equal = true;
+  for (std::size_t i = 0; i < a.patches.size(); ++i) {
+    const geometry::SurfacePatch& p = a.patches[i];
+    const geometry::SurfacePatch& q = b.patches[i];
+    are_equal = are_equal && p.voxel == q.voxel && p.area == q.area && p.centroid == q.centroid &&
+                p.outward_normal == q.outward_normal && p.has_normal == q.has_normal &&
+                p.faces == q.faces && p.area_centroid == q.area_centroid &&
+                p.area_weighted_normal == q.area_weighted_normal &&
+                p.plain_normal == q.plain_normal;
+  }
+  CHECK(are_equal);
+}
+
+}  // namespace
+
+TEST_CASE("A model from the cache is the built one bit for bit, and damaged entries are replaced",
+          "[grasp][object_model]") {
+  const graspfit::testing::TemporaryFolder folder;
+  const geometry::ContentCache cache{.folder = folder.path()};
+  const geometry::TriangleMesh mesh = geometry::torus(0.05, 0.02, 40, 20);
+  const ObjectModelOptions options{.resolution = 14};
+  const ObjectModel built = build_object_model(mesh, options);
+  CHECK(std::filesystem::is_empty(folder.path()));  // building alone keeps nothing
+  check_equal(cached_object_model(mesh, options, cache), built);
+  const auto entries = [&] {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    return files;
+  };
+  REQUIRE(entries().size() == 1);
+  const std::filesystem::path file = entries()[0];
+  const std::string text = geometry::read_file(file);
+  ObjectModelTimings timings;
+  check_equal(cached_object_model(mesh, options, cache, &timings), built);
+  CHECK(timings.patches_s == 0.0);  // nothing was built
+
+  // Damaged; and sealed as if it were whole, but cut short or with a wild number inside.
+  const std::string content = text.substr(0, text.rfind("sha256 "));
+  const auto sealed = [](const std::string& bytes) {
+    return bytes + "sha256 " + geometry::sha256_hex(bytes) + '\n';
+  };
+  REQUIRE(sealed(content) == text);
+  const std::size_t head = content.find('\n', content.find('\n') + 1) + 1;
+  std::string wild_size = content;
+  wild_size.replace(head, 8, std::string(8, '\x7f'));
+  std::string wild_voxel = content;
+  wild_voxel.replace(head + 8, 8, std::string(8, '\xff'));
+  std::string wild_count = content;
+  wild_count.replace(head + 16, 8, std::string(8, '\x7f'));
+  for (const std::string& damaged :
+       {std::string(), text.substr(0, text.size() / 2), text + "x", sealed(wild_size),
+        sealed(wild_voxel), sealed(wild_count), sealed(content + "12345678"),
+        sealed(content.substr(0, content.size() - 8)), sealed(content.substr(0, head))}) {
+    geometry::write_file_atomically(file, damaged);
+    check_equal(cached_object_model(mesh, options, cache), built);
+    CHECK(geometry::read_file(file) == text);
+  }
+
+  // Every option and every bit of the mesh has an entry of its own.
+  for (const ObjectModelOptions& other : std::vector<ObjectModelOptions>{
+           {.resolution = 15},
+           {.resolution = 14, .margin = 0.0},
+           {.resolution = 14, .averaging = geometry::PatchAveraging::Plain},
+           {.resolution = 14, .score = {.neighborhood = 3}},
+           {.resolution = 14, .score = {.gamma_deg = 90.0}},
+           {.resolution = 14, .score = {.length_voxels = 4.0}},
+           {.resolution = 14, .score = {.normalization = ScoreNormalization::Max}},
+           {.resolution = 14, .score = {.plane_distance = PlaneDistance::SignedMean}},
+           {.resolution = 14, .score = {.mean_filter_radius = 2}},
+           {.resolution = 14, .score = {.mean_filter_passes = 2}},
+           {.resolution = 14, .score = {.floor = 0.06}},
+           {.resolution = 14, .score = {.median_factor = 1.5}}}) {
+    const std::size_t before = entries().size();
+    check_equal(cached_object_model(mesh, other, cache), build_object_model(mesh, other));
+    CHECK(entries().size() == before + 1);
+  }
+  geometry::TriangleMesh nudged = mesh;
+  nudged.vertices[3][1] = std::nextafter(nudged.vertices[3][1], 2.0);
+  (void)cached_object_model(nudged, options, cache);
+  CHECK(entries().size() == 14);
 }
 
 TEST_CASE("Options reach the parts they are for", "[grasp][object_model]") {

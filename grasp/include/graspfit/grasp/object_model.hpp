@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "graspfit/geometry/distance_map.hpp"
@@ -66,5 +67,17 @@ struct ObjectModelTimings {
 ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
                                const ObjectModelOptions& options,
                                ObjectModelTimings* timings = nullptr);
+
+/// The kind of entry that `cached_object_model` keeps.
+inline constexpr std::string_view kObjectModelKind = "object_model";
+
+/// The same model, bit for bit, but patches, classes, distances and scores that were found before
+/// are read from the cache, and new ones kept there; the box tree and the mass are found anew, and
+/// weak regions have entries of their own (`ObjectModelOptions::weak_cache`). Entries that are
+/// damaged are as good as none and replaced. What is read counts in none of the timings.
+ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
+                                const ObjectModelOptions& options,
+                                const geometry::ContentCache& cache = {},
+                                ObjectModelTimings* timings = nullptr);
 
 }  // namespace graspfit::grasp
