@@ -19,15 +19,16 @@ using Eigen::VectorXd;
 /// v_i. Its weights are, up to their own sum, those that minimize ‖Σ a_i v_i‖² + s² (Σ a_i − 1)²
 /// over a ≥ 0: for weights in a fixed ratio whose point has the squared length q, the best sum
 /// leaves s² q / (s² + q), which grows with q.
-VectorXd weights_of_sum(const Wrenches& wrenches, const Wrench& load, double sum) {
-  MatrixXd system(7, wrenches.cols());
-  system.topRows(6) = wrenches.colwise() - load / sum;
+VectorXd weights_of_sum(const MatrixXd& wrenches, const VectorXd& load, double sum) {
+  const Index rows = wrenches.rows();
+  MatrixXd system(rows + 1, wrenches.cols());
+  system.topRows(rows) = wrenches.colwise() - load / sum;
   // Not zero either where all wrenches are the load itself.
-  const double scale =
-      std::max(system.topRows(6).colwise().norm().maxCoeff(), wrenches.colwise().norm().maxCoeff());
-  system.row(6).setConstant(scale);
-  VectorXd target = VectorXd::Zero(7);
-  target[6] = scale;
+  const double scale = std::max(system.topRows(rows).colwise().norm().maxCoeff(),
+                                wrenches.colwise().norm().maxCoeff());
+  system.row(rows).setConstant(scale);
+  VectorXd target = VectorXd::Zero(rows + 1);
+  target[rows] = scale;
   const VectorXd weights = internal::nonnegative_least_squares(system, target);
   return weights * (sum / weights.sum());
 }
@@ -43,6 +44,8 @@ void BalanceOptions::validate() const {
                     "least_normal_sum", least_normal_sum, "finite and at least 0");
   internal::require(torque_scale > 0.0 && std::isfinite(torque_scale), "BalanceOptions",
                     "torque_scale", torque_scale, "set, finite and positive");
+  internal::require(evenness >= 0.0 && std::isfinite(evenness), "BalanceOptions", "evenness",
+                    evenness, "finite and at least 0");
 }
 
 BalanceForces balance_forces(std::span<const Contact> contacts,
@@ -66,12 +69,19 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
           wrench(edges.col(k), contact.point_O, reference_point_O, options.torque_scale);
     }
   }
+  // An edge's own force counts as a component of its wrench in a direction of its own.
+  const Index num_own = options.evenness > 0.0 ? edges.cols() : 0;
+  MatrixXd terms = MatrixXd::Zero(6 + num_own, edges.cols());
+  terms.topRows(6) = wrenches;
+  terms.bottomRows(num_own).diagonal().setConstant(options.evenness);
+  VectorXd target = VectorXd::Zero(6 + num_own);
+  target.head(6) = load;
   BalanceForces result;
-  result.edge_forces = internal::nonnegative_least_squares(wrenches, load);
+  result.edge_forces = internal::nonnegative_least_squares(terms, target);
   // Where the bound does not hold by itself it is met exactly: the residual grows with the
   // distance from what is best without it.
   if (result.edge_forces.sum() < options.least_normal_sum) {
-    result.edge_forces = weights_of_sum(wrenches, load, options.least_normal_sum);
+    result.edge_forces = weights_of_sum(terms, target, options.least_normal_sum);
   }
   result.forces_O.resize(3, num_contacts);
   for (Index i = 0; i < num_contacts; ++i) {

@@ -18,6 +18,10 @@ struct BalanceOptions {
   double torque_scale =
       std::numeric_limits<double>::quiet_NaN();  ///< Length that divides torques [m], > 0.
                                                  ///< Required: it weighs them in the residual.
+  /// Weight of the edges' own forces beside the residual, ≥ 0: ‖residual‖² + evenness² Σ α² is
+  /// minimized. Above zero the forces are unique, spread evenly, as symmetric as the contacts, and
+  /// the residual is the least one up to evenness times the sum of the normal forces.
+  double evenness = 0.0;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -34,8 +38,9 @@ struct BalanceForces {
 /// `least_normal_sum`, where Σ w is the wrench of the contacts about the reference point. To hold
 /// an object, `load` is minus the wrench that pulls at it. Without contacts there are no forces.
 ///
-/// The residual is unique, the forces often are not: these use few edges. Approximate, to about
-/// 1e-12 of the load and the bound [Lawson & Hanson 1974, chapter 23].
+/// The residual is unique, the forces often are not: these use few edges, unless `evenness` asks
+/// for more. Approximate, to about 1e-12 of the load and the bound [Lawson & Hanson 1974, chapter
+/// 23].
 /// @throws InvalidInput for options out of range, a normal that is not unit within 1e-6, numbers
 /// that are not finite, and a positive bound without contacts.
 BalanceForces balance_forces(std::span<const Contact> contacts,

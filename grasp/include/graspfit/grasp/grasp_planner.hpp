@@ -10,6 +10,7 @@
 #include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
 #include "graspfit/grasp/contact_refinement.hpp"
+#include "graspfit/grasp/distinct_grasps.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/grasp/object_model.hpp"
@@ -33,14 +34,6 @@ enum class SearchRule {
           ///< select.
   First,  ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
           ///< grasps.
-};
-
-/// When two grasps count as different: if any of these is exceeded [R].
-struct DistinctOptions {
-  double translation = 0.01;             ///< Between palm centers in O [m], ≥ 0.
-  double rotation = 0.2617993877991494;  ///< Between palm orientations [rad], ≥ 0; 15°.
-  double joints = 0.2;    ///< Largest difference of an independent joint [rad; m times 10], ≥ 0.
-  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -15,36 +16,53 @@ struct Surroundings {
   std::vector<geometry::MeshQuery> obstacles;  ///< Closed solids in O.
 
   bool is_empty() const { return !table_z_O && obstacles.empty(); }
+
+  /// Throws InvalidInput (which, what, what to do) for a table that is not finite and an obstacle
+  /// that is not finite or not closed.
+  void validate() const;
 };
 
 /// Distance of a link from the surroundings.
 struct SurroundingsDistance {
   double distance = 0.0;            ///< [m]; zero where they touch; infinite if there are none.
-  Eigen::Vector3d point_on_link_O;  ///< Nearest to them; meaningless at distance zero.
+  Eigen::Vector3d point_on_link_O;  ///< Nearest to them; meaningless at zero and at infinity.
   Eigen::Vector3d normal_O;         ///< Unit, from the surroundings to the link; as the point.
 };
 
-/// A hand with what is needed to hold it against surroundings many times.
+/// A hand with what is needed to hold it against surroundings many times. Links without faces are
+/// nowhere: they touch nothing.
 class SurroundingsCollision {
  public:
+  /// @throws InvalidInput as `Surroundings::validate`. Cost: without a table and obstacles nothing;
+  /// with a table one convex hull per link.
   SurroundingsCollision(const hands::HandModel& hand, Surroundings surroundings);
 
   const Surroundings& surroundings() const { return surroundings_; }
 
   /// Whether a link shares a point with the surroundings. Touching counts. Exact for obstacles as
-  /// `HandCollision::link_intersects`; for the table on the link's vertices mapped to O and rounded
-  /// once.
+  /// `HandCollision::link_intersects`; for the table on the corners of the link's convex hull
+  /// (exact) mapped to O and rounded once. `collision` and `link` belong to the same hand.
   bool touches(const hands::HandCollision& collision, int link,
                const hands::RigidTransform& X_OL) const;
 
-  /// Nearest approach of one link. Values above `enough` [m] are not searched further: the result
-  /// is then some distance above it. Rounded; zero exactly where `touches`.
+  /// Nearest approach of one link, where it is at most `enough` [m] ≥ 0; infinite where it is more.
+  /// Approximate, to rounding; zero exactly where `touches`. Of equal distances the table counts
+  /// first, then obstacles in order.
   SurroundingsDistance distance(const hands::HandCollision& collision, int link,
                                 const hands::RigidTransform& X_OL, double enough) const;
 
  private:
+  /// The lowest corner of a link over the table; its height is infinite if the box of the link is
+  /// surely higher than `enough`, and if there is no table.
+  struct Lowest {
+    double height;
+    Eigen::Vector3d corner_O;
+  };
+  Lowest lowest_over_table(int link, const hands::RigidTransform& X_OL, double enough) const;
+
   Surroundings surroundings_;
   std::vector<std::vector<Eigen::Vector3d>> corners_L_;  ///< Per link: those of its convex hull.
+  std::vector<Eigen::AlignedBox3d> boxes_L_;             ///< Per link: of those corners.
 };
 
 }  // namespace graspfit::grasp

@@ -1,0 +1,38 @@
+#include "internal/distance_up_to.hpp"
+
+#include <Eigen/Geometry>
+#include <limits>
+
+namespace graspfit::grasp::internal {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+namespace {
+
+/// Room for the rounding of a box seen from another frame [m]: of coordinates of a hand and its
+/// object, below 1e-14.
+constexpr double kBoxSlack = 1e-9;
+
+/// Lower bound of the distance of two boxes, from the axes of the first.
+double box_gap(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B,
+               const RigidTransform& X_AB) {
+  const Vector3d center_A = X_AB * box_B.center();
+  const Vector3d half_A = X_AB.linear().cwiseAbs() * (0.5 * box_B.sizes());
+  const Eigen::AlignedBox3d seen_A(center_A - half_A, center_A + half_A);
+  return box_A.exteriorDistance(seen_A) - kBoxSlack;
+}
+
+}  // namespace
+
+geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
+                                      const RigidTransform& X_AB, double enough) {
+  const geometry::MeshDistance none{std::numeric_limits<double>::infinity(), Vector3d::Zero(),
+                                    Vector3d::Zero()};
+  if (box_gap(a.box(), b.box(), X_AB) > enough) return none;
+  if (box_gap(b.box(), a.box(), X_AB.inverse()) > enough) return none;
+  const geometry::MeshDistance found = geometry::distance(a, b, X_AB);
+  return found.distance <= enough ? found : none;
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "graspfit/geometry/mesh_intersection.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// `geometry::distance` where it is at most `enough` [m]; infinite, without points, where it is
+/// more. Bodies whose boxes are farther apart cost next to nothing.
+geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
+                                      const geometry::RigidTransform& X_AB, double enough);
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,229 @@
+#include "graspfit/grasp/pre_grasp.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/mesh_intersection.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/distance_up_to.hpp"
+#include "internal/option_check.hpp"
+#include "internal/straight_way.hpp"
+
+namespace graspfit::grasp {
+
+using hands::HandConfiguration;
+using hands::RigidTransform;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostSteps = 1000;
+
+struct LinkPair {
+  int a;
+  int b;
+};
+
+/// The search for one grasp's pre-grasp.
+class PreGraspSearch {
+ public:
+  PreGraspSearch(const hands::HandModel& hand, const hands::HandCollision& collision,
+                 const geometry::MeshQuery& object, const SurroundingsCollision& surroundings,
+                 const HandConfiguration& grasp, const PreGraspOptions& options)
+      : hand_(hand),
+        collision_(collision),
+        object_(object),
+        surroundings_(surroundings),
+        grasp_(grasp),
+        options_(options),
+        open_q_(hands::open_configuration(hand).q) {
+    for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+      if (collision.link_solid(link)) links_.push_back(link);
+    }
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
+    for (const int a : links_) {
+      for (const int b : links_) {
+        if (b <= a || hand.is_excluded(a, b)) continue;
+        const bool touch = geometry::do_intersect(solid(a), solid(b), between(X_OL, a, b));
+        if (!touch) pairs_.push_back({a, b});
+      }
+    }
+  }
+
+  std::optional<PreGrasp> operator()() {
+    const int num_retreats = static_cast<int>(options_.largest_retreat / options_.retreat_step *
+                                              (1.0 + 1e-12));  // 0.1 / 0.01 is 10, not 9.99…
+    Eigen::VectorXd tried_q;
+    for (int step = 1; step <= options_.opening_steps; ++step) {
+      const double opening = static_cast<double>(step) / options_.opening_steps;
+      const Eigen::VectorXd q = opened(opening);
+      if (tried_q.size() == q.size() && tried_q == q) continue;  // joints that cannot open further
+      tried_q = q;
+      for (int i = 0; i <= num_retreats; ++i) {
+        const double retreat = i * options_.retreat_step;
+        const HandConfiguration start{retreated(retreat), q};
+        const double clearance = clearance_at(start);
+        if (clearance < options_.clearance || !is_free(start)) continue;
+        return PreGrasp{start, clearance, opening, retreat};
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const geometry::MeshQuery& solid(int link) const { return *collision_.link_solid(link); }
+
+  static RigidTransform between(const std::vector<RigidTransform>& X_OL, int a, int b) {
+    return X_OL[static_cast<std::size_t>(a)].inverse() * X_OL[static_cast<std::size_t>(b)];
+  }
+
+  Eigen::VectorXd opened(double opening) const {
+    Eigen::VectorXd q = grasp_.q;
+    for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
+      if (hand_.joints[j].closing_sign == 0) continue;
+      double& position = q[static_cast<Eigen::Index>(j)];
+      position = (1.0 - opening) * position + opening * open_q_[static_cast<Eigen::Index>(j)];
+    }
+    hands::clamp_to_limits(hand_, q);
+    hands::apply_couplings(hand_, q);
+    return q;
+  }
+
+  RigidTransform retreated(double retreat) const {
+    RigidTransform X_OH = grasp_.X_OH;
+    X_OH.translation() -= retreat * (X_OH.linear() * hand_.palm.direction_H);
+    return X_OH;
+  }
+
+  double object_distance(int link, const RigidTransform& X_OL, double enough) const {
+    return internal::distance_up_to(object_, solid(link), X_OL, enough).distance;
+  }
+
+  double surroundings_distance(int link, const RigidTransform& X_OL, double enough) const {
+    return surroundings_.distance(collision_, link, X_OL, enough).distance;
+  }
+
+  /// Distance of the nearest link from object and surroundings; some distance below the wanted one
+  /// as soon as one link is known to be nearer. Asks the link first that was too near last time.
+  double clearance_at(const HandConfiguration& start) {
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(links_[i])];
+      const double nearest = std::min(object_distance(links_[i], X, options_.clearance),
+                                      surroundings_distance(links_[i], X, options_.clearance));
+      if (nearest >= options_.clearance) continue;
+      std::rotate(links_.begin(), links_.begin() + static_cast<std::ptrdiff_t>(i),
+                  links_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      return nearest;
+    }
+    double nearest = kInfinity;
+    for (const int link : links_) {
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+      nearest = std::min(nearest, object_distance(link, X, nearest));
+      nearest = std::min(nearest, surroundings_distance(link, X, nearest));
+    }
+    return nearest;
+  }
+
+  bool is_free(const HandConfiguration& start) const {
+    const internal::StraightWay way(hand_, start, grasp_);
+    const auto poses = [&](double share) {
+      return hands::forward_kinematics(hand_, interpolated(start, grasp_, share));
+    };
+    const auto stays_apart = [&](double speed, const auto& distance) {
+      return internal::are_apart_on_way(speed, options_.way_tolerance,
+                                        [&](double share, double enough) {
+                                          return std::min(distance(poses(share), enough), enough);
+                                        });
+    };
+    const auto is_link_free = [&](int link) {
+      const auto index = static_cast<std::size_t>(link);
+      return stays_apart(way.speed(link),
+                         [&](const std::vector<RigidTransform>& X_OL, double enough) {
+                           return object_distance(link, X_OL[index], enough);
+                         }) &&
+             (surroundings_.surroundings().is_empty() ||
+              stays_apart(way.speed(link),
+                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
+                            return surroundings_distance(link, X_OL[index], enough);
+                          }));
+    };
+    const auto is_pair_free = [&](const LinkPair& pair) {
+      return stays_apart(way.relative_speed(pair.a, pair.b),
+                         [&](const std::vector<RigidTransform>& X_OL, double enough) {
+                           return internal::distance_up_to(solid(pair.a), solid(pair.b),
+                                                           between(X_OL, pair.a, pair.b), enough)
+                               .distance;
+                         });
+    };
+    return std::all_of(links_.begin(), links_.end(), is_link_free) &&
+           std::all_of(pairs_.begin(), pairs_.end(), is_pair_free);
+  }
+
+  const hands::HandModel& hand_;
+  const hands::HandCollision& collision_;
+  const geometry::MeshQuery& object_;
+  const SurroundingsCollision& surroundings_;
+  const HandConfiguration& grasp_;
+  const PreGraspOptions& options_;
+  const Eigen::VectorXd open_q_;
+  std::vector<int> links_;       ///< Those with a solid.
+  std::vector<LinkPair> pairs_;  ///< To be kept apart from each other.
+};
+
+}  // namespace
+
+void PreGraspOptions::validate() const {
+  const auto require = [](bool is_met, std::string_view field, const auto& value,
+                          std::string_view rule) {
+    internal::require(is_met, "PreGraspOptions", field, value, rule);
+  };
+  require(clearance > 0.0 && std::isfinite(clearance), "clearance", clearance, "finite and > 0 m");
+  require(largest_retreat >= 0.0 && std::isfinite(largest_retreat), "largest_retreat",
+          largest_retreat, "finite and >= 0 m");
+  require(retreat_step > 0.0 && std::isfinite(retreat_step) &&
+              largest_retreat / retreat_step <= kMostSteps,
+          "retreat_step", retreat_step, "> 0 m and at least a thousandth of largest_retreat");
+  require(opening_steps >= 1 && opening_steps <= kMostSteps, "opening_steps", opening_steps,
+          "in [1, 1000]");
+  require(way_tolerance > 0.0 && std::isfinite(way_tolerance), "way_tolerance", way_tolerance,
+          "finite and > 0 m");
+}
+
+HandConfiguration interpolated(const HandConfiguration& from, const HandConfiguration& to,
+                               double share) {
+  internal::require(from.q.size() == to.q.size(), "interpolated", "number of joint positions",
+                    static_cast<long>(to.q.size()),
+                    "that of the other configuration, " + std::to_string(from.q.size()));
+  internal::require(share >= 0.0 && share <= 1.0, "interpolated", "share", share, "in [0, 1]");
+  if (share == 0.0) return from;
+  if (share == 1.0) return to;
+  HandConfiguration result;
+  result.q = (1.0 - share) * from.q + share * to.q;
+  result.X_OH = from.X_OH;
+  if (from.X_OH.linear() != to.X_OH.linear()) {
+    const Eigen::Quaterniond start(from.X_OH.linear());
+    const Eigen::Quaterniond end(to.X_OH.linear());
+    result.X_OH.linear() = start.slerp(share, end).normalized().toRotationMatrix();
+  }
+  result.X_OH.translation() =
+      (1.0 - share) * from.X_OH.translation() + share * to.X_OH.translation();
+  return result;
+}
+
+std::optional<PreGrasp> find_pre_grasp(const hands::HandModel& hand,
+                                       const hands::HandCollision& collision,
+                                       const geometry::MeshQuery& object,
+                                       const SurroundingsCollision& surroundings,
+                                       const HandConfiguration& grasp,
+                                       const PreGraspOptions& options) {
+  options.validate();
+  hands::validate(hand, grasp);
+  return PreGraspSearch(hand, collision, object, surroundings, grasp, options)();
+}
+
+}  // namespace graspfit::grasp
