@@ -157,6 +157,50 @@ TEST_CASE("Walls, floors and handles are thin but not weak", "[geometry][weak_re
   CHECK(fin.regions[0].length == Approx(0.03).margin(0.0025));
 }
 
+TEST_CASE("Arms are weak also where a thin rim joins their roots, but not where it is wide",
+          "[geometry][weak_regions]") {
+  // Four bars of 4 mm around a drum of radius 20 mm, 50 mm long; a rim 3 mm thick around it.
+  const auto star = [](double rim_radius) {
+    std::vector<TriangleMesh> parts = {cylinder(0.02, 0.04)};
+    for (const double sign : {-1.0, 1.0}) {
+      parts.push_back(moved(box({0.06, 0.004, 0.004}), {sign * 0.04, 0, 0}));
+      parts.push_back(moved(box({0.004, 0.06, 0.004}), {0, sign * 0.04, 0}));
+    }
+    if (rim_radius > 0.0) parts.push_back(cylinder(rim_radius, 0.003));
+    return concatenated(parts);
+  };
+  struct Row {
+    double rim_radius;
+    std::size_t num_weak;  // Arms.
+    std::size_t num_held;  // The rim.
+  };
+  // The rim of 40 mm goes on beyond the 6 mm up to which it may be a shared root.
+  for (const Row& row : {Row{0.0, 4, 0}, {0.025, 4, 1}, {0.04, 0, 1}}) {
+    CAPTURE(row.rim_radius);
+    const TriangleMesh mesh = star(row.rim_radius);
+    const WeakRegions found = find_weak_regions(MeshQuery(mesh));
+    CHECK(found.regions.size() == row.num_weak + row.num_held);
+    std::vector<std::int32_t> faces;
+    for (const WeakRegion& region : found.regions) {
+      faces.insert(faces.end(), region.faces.begin(), region.faces.end());
+      if (region.verdict != WeakVerdict::Weak) {
+        CHECK(region.verdict == WeakVerdict::HeldAllAround);
+        continue;
+      }
+      CHECK(region.num_necks == 1);
+      CHECK(region.length == Approx(0.05).margin(0.003));  // 2 voxels and 5 % of paths
+    }
+    std::sort(faces.begin(), faces.end());
+    CHECK(std::adjacent_find(faces.begin(), faces.end()) == faces.end());
+    for (const auto& [low, high] : {std::pair{0.03, 0.08}, {-0.08, -0.03}}) {
+      const double share = weak_share(
+          mesh, found, {Eigen::Vector3d(low, -0.01, -0.01), Eigen::Vector3d(high, 0.01, 0.01)});
+      if (row.num_weak == 0) CHECK(share == 0.0);
+      if (row.num_weak > 0) CHECK(share > 0.95);  // All but the face at the end.
+    }
+  }
+}
+
 TEST_CASE("Where the opening leaves nothing, nothing is weak and the result says so",
           "[geometry][weak_regions]") {
   for (const TriangleMesh& tool :
@@ -383,6 +427,26 @@ TEST_CASE("Legs, tail, fins and small ears of the paper's objects are weak",
         {{"ear 1", {-0.037, 0.030, -0.036}, {-0.024, 0.045, -0.018}, 0.6},
          {"ear 2", {-0.013, 0.034, -0.017}, {0.006, 0.046, 0.002}, 0.75},
          {"trunk, head", {-0.05, -0.05, -0.05}, {0.05, 0.02, 0.05}, 0.0, 0.0}}}});
+}
+
+TEST_CASE("Arms of an octopus are weak although they join in a ring",
+          "[geometry][weak_regions][data]") {
+  const auto path = graspfit::testing::find_data("meshes/paper/octopus.off");
+  if (!path) {
+    GRASPFIT_SKIP_TEST("meshes/paper/octopus.off is not there; set GRASPFIT_DATA");
+  }
+  TriangleMesh mesh = repair_mesh(read_mesh(*path).mesh).mesh;
+  mesh = scaled(mesh, 0.15 / longest_extent(mesh));
+  const WeakRegions found = find_weak_regions(MeshQuery(mesh));
+  const auto count = [&](WeakVerdict verdict) {
+    return std::count_if(found.regions.begin(), found.regions.end(),
+                         [&](const WeakRegion& region) { return region.verdict == verdict; });
+  };
+  // Eight arms, two of which part only beyond 6 mm from the body and count as one feature; and the
+  // ring of their roots.
+  CHECK(count(WeakVerdict::Weak) == 7);
+  CHECK(count(WeakVerdict::HeldAllAround) == 1);
+  CHECK(found.regions.size() == 8);
 }
 
 TEST_CASE("Large ears, torus, mug and bottle of the paper's objects are not weak",
