@@ -29,9 +29,7 @@ using geometry::shortest_decimal;
 
 Command inspect_command() {
   po::options_description more = option_group("Hand and output");
-  add_option(more, "hand", "NAME|FILE", std::nullopt,
-             "make the voxels of the whole interaction volume for this hand and check the object's "
-             "size for it; without it only those of the object");
+  add_option(more, "hand", "NAME|FILE", std::nullopt, "check the object's size for this hand");
   add_option(more, "weak-thickness-mm", "MM", "6",
              "what counts as fragile: slender features thinner than this; found once per object, "
              "then read from the user's cache folder");

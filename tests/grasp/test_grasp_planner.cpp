@@ -665,7 +665,7 @@ TEST_CASE("A clip volume is half a voxel thick, a millimeter at least, or as ask
   CHECK(grasp::clip_thickness(options, 0.001) == 0.003);
 }
 
-TEST_CASE("The object is prepared with the resolution asked for and room for the hand",
+TEST_CASE("The object is prepared with the resolution asked for, alike for every hand",
           "[grasp][grasp_planner]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));
@@ -675,12 +675,11 @@ TEST_CASE("The object is prepared with the resolution asked for and room for the
     const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options);
     const geometry::VoxelLattice& lattice = object.grid.lattice;
     CHECK(lattice.voxel_size == Approx(0.10 / resolution).epsilon(1e-12));
-    const double reach = hands::largest_reach(hand);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double half = std::array{0.05, 0.03, 0.04}[axis];
-      CHECK(lattice.origin[axis] <= -half - reach + 1e-9);
-      CHECK(lattice.plane(axis, lattice.counts[axis]) >= half + reach - 1e-9);
-    }
+    CHECK(lattice.counts.x() == resolution + 2 * grasp::kRoomVoxels);
+    const grasp::ObjectModel other =
+        grasp::prepare_object(mesh, hands::find_hand("human_hand"), options);
+    CHECK(other.grid.lattice == lattice);
+    CHECK(other.distance.values == object.distance.values);
     CHECK(object.normalizing_radius ==
           Approx(0.5 * std::sqrt(0.01 + 0.0036 + 0.0064)).epsilon(1e-12));
     CHECK(object.mass.center_of_mass.norm() < 1e-12);
