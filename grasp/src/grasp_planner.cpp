@@ -24,11 +24,6 @@ using geometry::InvalidInput;
 using geometry::shortest_decimal;
 using Clock = std::chrono::steady_clock;
 
-// Nominal terms of an ideal contact: in the middle of its pad, a third of which meets the surface
-// (A10, A48).
-constexpr double kIdealBoundaryDistance = 1.0;
-constexpr double kIdealArea = 0.3;
-
 /// Shorter side of the box around a pad's outline [m].
 double pad_width(const hands::ContactPad& pad) {
   Eigen::AlignedBox2d box;

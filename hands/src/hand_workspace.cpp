@@ -594,10 +594,23 @@ TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& optio
   return ranges;
 }
 
+std::vector<DistanceRange> palm_distances(const HandModel& model, const WorkspaceOptions& options) {
+  options.validate();
+  validate(model);
+  const Hand hand(model);
+  std::vector<DistanceRange> ranges;
+  for (const Finger& finger : model.fingers) {
+    ranges.push_back(finger.tip_pad < 0
+                         ? DistanceRange{}
+                         : TipPair(hand, kPalm, finger.tip_pad, options).distances());
+  }
+  return ranges;
+}
+
 HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& options) {
   HandWorkspace workspace;
   workspace.tip_to_tip = tip_distances(model, options);
-  workspace.palm_to_tip.resize(model.fingers.size());
+  workspace.palm_to_tip = palm_distances(model, options);
   workspace.graspable_diameter.resize(model.fingers.size());
   const Hand hand(model);
   const HandCollision collision(model);
@@ -608,7 +621,6 @@ HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& opt
   for (std::size_t f = 0; f < model.fingers.size(); ++f) {
     const int pad = model.fingers[f].tip_pad;
     if (pad < 0) continue;
-    workspace.palm_to_tip[f] = TipPair(hand, kPalm, pad, options).distances();
     if (static_cast<int>(f) == thumb || model.fingers[thumb].tip_pad < 0) continue;
     const DistanceRange range =
         TipPair(hand, model.fingers[thumb].tip_pad, pad, options).facing_distances(is_clear);

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -31,44 +31,85 @@ inline std::string unsaid(const std::string& message, const std::string& field,
 /// the same doubles: a few hundred rounding errors.
 inline constexpr double kRounding = 1e-12;
 
-/// Whether `distance` lies in one of `ranges`.
-inline bool in_some_range(double distance, const std::vector<hands::DistanceRange>& ranges) {
-  for (const hands::DistanceRange& range : ranges) {
-    if (distance >= range.smallest - kRounding && distance <= range.largest + kRounding) {
-      return true;
+/// Whether `distance` lies in `range`.
+inline bool is_in_range(double distance, const hands::DistanceRange& range) {
+  return distance >= range.smallest - kRounding && distance <= range.largest + kRounding;
+}
+
+/// Whether the targets can be given to the fingers, the first to the first, so that every two are
+/// within their fingers' own range, and the palm, if it has a target, within all fingers': by all
+/// permutations.
+inline bool is_in_reach_of_hand(const grasp::PartDistances& distances,
+                                const grasp::RequestedParts& parts,
+                                const grasp::TargetContacts& targets) {
+  std::vector<int> order = parts.fingers;
+  std::sort(order.begin() + 1, order.end());
+  do {
+    bool is_in_reach = true;
+    for (std::size_t i = 0; i < targets.contacts.size(); ++i) {
+      for (std::size_t j = 0; j < std::min(i, order.size()); ++j) {
+        const double distance = (targets.contacts[i].point_O - targets.contacts[j].point_O).norm();
+        const hands::DistanceRange& range = i < order.size()
+                                                ? distances.tip_to_tip[order[i]][order[j]]
+                                                : distances.palm_to_tip[order[j]];
+        is_in_reach = is_in_reach && is_in_range(distance, range);
+      }
     }
-  }
+    if (is_in_reach) return true;
+  } while (std::next_permutation(order.begin() + 1, order.end()));
   return false;
 }
 
 /// Every requirement of section 6 on a set of target contacts, evaluated from scratch: one line for
-/// each that is broken. `fingers` as given to `select_target_contacts`, the seed's first.
+/// each that is broken.
 inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& object,
-                                                    const hands::TipDistances& distances,
-                                                    const std::vector<int>& fingers,
+                                                    const grasp::PartDistances& distances,
+                                                    const grasp::RequestedParts& parts,
                                                     const grasp::TargetOptions& options,
                                                     const grasp::TargetContacts& targets) {
   std::vector<std::string> broken;
-  const auto report = [&](const auto&... parts) {
+  const auto report = [&](const auto&... words) {
     std::ostringstream line;
     line.precision(17);
-    (line << ... << parts);
+    (line << ... << words);
     broken.push_back(line.str());
   };
-  const auto& contacts = targets.contacts;
-  if (contacts.size() != fingers.size()) {
-    report(contacts.size(), " targets for ", fingers.size(), " fingers");
+  if (targets.contacts.size() != static_cast<std::size_t>(parts.size())) {
+    report(targets.contacts.size(), " targets for ", parts.size(), " parts");
     return broken;
   }
-  if (targets.seeds_tried < 1 || targets.seeds_tried > options.max_seeds) {
+  if (!is_in_reach_of_hand(distances, parts, targets)) report("no fingers reach all targets");
+  // Of the fingers alone; the palm's comes last.
+  std::vector<grasp::TargetContact> contacts = targets.contacts;
+  if (parts.palm) {
+    const grasp::TargetContact palm = contacts.back();
+    contacts.pop_back();
+    if (palm.finger != grasp::kPalm) report("the last target is not the palm's");
+    for (const grasp::TargetContact& target : contacts) {
+      const Eigen::Vector3d from_palm = target.point_O - palm.point_O;
+      if (!(from_palm.dot(palm.outward_normal_O) < 0.0)) report("a target behind the palm");
+      if (from_palm.norm() < options.min_separation - kRounding) report("a target at the palm");
+    }
+    for (const geometry::SurfacePatch& patch : object.patches) {
+      const Eigen::Vector3d offset = patch.centroid - palm.point_O;
+      const double height = offset.dot(palm.outward_normal_O);
+      const double beside = (offset - height * palm.outward_normal_O).norm();
+      if (height > object.grid.lattice.voxel_size + kRounding &&
+          beside < distances.palm->pad_radius - kRounding) {
+        report("patch ", &patch - object.patches.data(), " stands in the palm's way");
+      }
+    }
+  }
+  const bool is_random = options.search == grasp::TargetSearch::Random;
+  if (targets.seeds_tried < (is_random ? 1 : 0) || targets.seeds_tried > options.max_seeds) {
     report("seeds tried: ", targets.seeds_tried);
   }
   // A19: both limits grow by half once `relax_after_seeds` seeds have failed.
   const double relaxed = targets.seeds_tried > options.relax_after_seeds ? 1.5 : 1.0;
 
   std::set<int> patches;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const grasp::TargetContact& target = contacts[i];
+  for (std::size_t i = 0; i < targets.contacts.size(); ++i) {
+    const grasp::TargetContact& target = targets.contacts[i];
     if (target.patch < 0 || target.patch >= static_cast<int>(object.patches.size())) {
       report("target ", i, ": patch ", target.patch);
       return broken;
@@ -81,26 +122,19 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
     if (std::abs(target.outward_normal_O.norm() - 1.0) > kRounding) {
       report("target ", i, ": normal of length ", target.outward_normal_O.norm());
     }
+    if (options.exclude_weak && !object.is_weak_patch.empty() &&
+        object.is_weak_patch[target.patch]) {
+      report("target ", i, ": on a weak feature");
+    }
     if (target.score != object.scores.scores[target.patch]) report("target ", i, ": other score");
     if (!(target.score > options.score_threshold)) report("target ", i, ": score ", target.score);
   }
 
-  // |V1V2| has to be in reach of the seed's finger and another; so has every further target (A18).
-  std::vector<hands::DistanceRange> seed_ranges, other_ranges;
-  for (std::size_t a = 1; a < fingers.size(); ++a) {
-    seed_ranges.push_back(distances[fingers[0]][fingers[a]]);
-    for (std::size_t b = a + 1; b < fingers.size(); ++b) {
-      other_ranges.push_back(distances[fingers[a]][fingers[b]]);
-    }
-  }
   const double first_edge = (contacts[1].point_O - contacts[0].point_O).norm();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = i + 1; j < contacts.size(); ++j) {
       const Eigen::Vector3d i_to_j = contacts[j].point_O - contacts[i].point_O;
       const double length = i_to_j.norm();
-      if (!in_some_range(length, i == 0 ? seed_ranges : other_ranges)) {
-        report("targets ", i, " and ", j, ": distance ", length, " out of reach");
-      }
       if (length < options.min_separation - kRounding) {
         report("targets ", i, " and ", j, ": closer than the separation: ", length);
       }
@@ -111,7 +145,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
           report("targets ", i, " and ", j, ": angles ", at_i, " ", at_j);
         }
       }
-      if (j >= 2) {
+      if (j == 2) {  // with more targets not all edges can agree (A19)
         const double error = std::abs(length - first_edge) / first_edge;
         if (error > options.edge_tolerance_rel * relaxed + kRounding) {
           report("targets ", i, " and ", j, ": edge error ", error, " relaxed by ", relaxed);
@@ -119,15 +153,13 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
       }
     }
   }
-  if (contacts.size() >= 3) {
-    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-    for (const grasp::TargetContact& target : contacts) centroid += target.point_O;
-    centroid /= static_cast<double>(contacts.size());
-    const double distance =
-        (centroid - object.mass.center_of_mass).norm() / object.normalizing_radius;
-    if (distance > options.centroid_limit_rel * relaxed + kRounding) {
-      report("centroid distance ", distance, " relaxed by ", relaxed);
-    }
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  for (const grasp::TargetContact& target : contacts) centroid += target.point_O;
+  centroid /= static_cast<double>(contacts.size());
+  const double distance =
+      (centroid - object.mass.center_of_mass).norm() / object.normalizing_radius;
+  if (distance > options.centroid_limit_rel * relaxed + kRounding) {
+    report("centroid distance ", distance, " relaxed by ", relaxed);
   }
   return broken;
 }

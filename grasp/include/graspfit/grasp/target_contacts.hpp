@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "graspfit/geometry/random.hpp"
+#include "graspfit/grasp/contact.hpp"
 #include "graspfit/grasp/object_model.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
+#include "graspfit/hands/tip_reach.hpp"
 
 namespace graspfit::grasp {
 
@@ -27,13 +29,23 @@ enum class TargetSearch {
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
 };
 
-/// Which earlier targets a new one must form a stable pair with (notes A17).
+/// Which earlier targets a new one of a finger must form a stable pair with (notes A17).
 enum class PairRule {
   Seed,      ///< With the seed (the thumb's target) [R].
-  AllPairs,  ///< With every earlier target; feasible for at most four (the literal reading).
+  AllPairs,  ///< With every earlier target (the literal reading). Below a cone of 45° no five
+             ///< contacts of any object can be so: their normals would be pairwise more than 90°
+             ///< apart.
 };
 
-/// Parameters of target selection (paper section 6; notes A17–A20).
+/// Most parts that can be asked for.
+inline constexpr int kMostParts = 6;
+
+/// What a contact in the middle of its pad has of the pad's largest boundary distance, and the
+/// share of a pad that meets the surface then: the terms of the ideal M (A10, A36, A48) [R].
+inline constexpr double kIdealBoundaryDistance = 1.0;
+inline constexpr double kIdealArea = 0.3;
+
+/// Parameters of target selection (paper section 6; notes A17–A20, A47, A48).
 struct TargetOptions {
   double score_threshold = 0.6;  ///< Every target's score must exceed it, in [0, 1) [P].
   double theta_max =
@@ -41,21 +53,34 @@ struct TargetOptions {
   PairRule pair_rule = PairRule::Seed;  ///< A17.
   double edge_tolerance_rel = 0.25;  ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 (A19) [R].
   double centroid_limit_rel =
-      0.6;  ///< Largest centroid-to-CoM distance over the normalizing radius (A19) [R].
+      0.6;  ///< Largest distance of the centroid of the fingers' targets from the
+            ///< center of mass over the normalizing radius (A19) [R].
+  /// Weight in the rank of the angles between the lines of stable pairs and the normals, as a share
+  /// of theta_max, ≥ 0. 0: not ranked by angles (A19) [R]; 1 puts them beside edges and centroid.
+  double angle_weight = 0.0;
   double pool_fraction =
       0.2;               ///< Share of the ranked candidates drawn from, in (0, 1] (A19, A20) [R].
   int pool_minimum = 5;  ///< Candidates drawn from at least, if there are so many (A20) [R].
   int max_seeds = 200;   ///< Seeds tried per set, ≥ 1 (A20) [R].
-  int relax_after_seeds =
-      50;  ///< Failed seeds after which edge and centroid limits grow by half (A19) [R].
+  int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
+                               ///< (A19) [R]. The ranked search never relaxes them.
   double min_separation =
-      0.0;  ///< Between targets of different fingers [m], ≥ 0; the planner sets one pad width.
+      0.0;  ///< Between targets of different parts [m], ≥ 0; the planner sets one pad width.
+  /// Of all places of the pool in one cube of this size [m] whose normals have the same largest
+  /// component, the one with the best score stays, ≥ 0; 0: all stay [P: "sampling by voxels"].
+  /// The ranked search needs it for four and more targets: a pad's width.
+  double pool_spacing = 0.0;
   TargetSearch search = TargetSearch::Random;
   bool exclude_weak = true;  ///< No targets on weak features, where the object model knows them
                              ///< (notes 19.3) [R].
-  /// How strongly a random set with a large ideal M is preferred (A48): a complete set is accepted
-  /// with the probability (M / largest ideal M so far)^bias. 0: M is not used [R].
+  /// How strongly a random set with a large ideal M is preferred, ≥ 0 (A48): of up to
+  /// `ideal_m_draws` complete sets one is drawn with probability ∝ M^bias. 0: the first set, M is
+  /// not used [R].
   double ideal_m_bias = 0.0;
+  int ideal_m_draws = 8;  ///< ≥ 1; within `max_seeds` altogether.
+  /// How far a finger's target may lie from where its tip gets while the palm is on the palm's
+  /// target [m], ≥ 0: fingers close until they touch, wherever that is [R].
+  double palm_reach_tolerance = 0.015;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -71,19 +96,21 @@ struct TargetContact {
   int finger = kUnassigned;  ///< Assigned finger of the hand, kPalm, or kUnassigned.
 };
 
-/// A set of targets, the seed first.
+/// A set of targets, the seed first, the palm's (if any) last.
 struct TargetContacts {
   std::vector<TargetContact> contacts;
-  int seeds_tried = 0;  ///< Work spent on this set.
+  int seeds_tried = 0;  ///< Work spent on this set; 0 for one of the ranked search.
+  double rank = 0.0;    ///< As `RankedTargets` defines it, in this order; smaller is better.
 
-  /// Centroid of the target polygon: midpoint, triangle centroid, or vertex mean for more [m].
+  /// Centroid of the target polygon, the palm's target left out: midpoint, triangle centroid, or
+  /// vertex mean for more [m].
   Eigen::Vector3d centroid() const;
 };
 
-/// Why no set was found.
+/// Why no set was found: the furthest stage that was reached.
 enum class TargetFailure {
-  NoSeed,     ///< No voxel exceeds the score threshold.
-  NoSecond,   ///< No seed tried had a stable partner in reach.
+  NoSeed,     ///< The pool is empty: no voxel exceeds the score threshold.
+  NoSecond,   ///< No seed had a stable partner in reach.
   NoFurther,  ///< Pairs were found, but never all the further contacts.
   NoPalm,     ///< Fingers' targets were found, but never one for the palm.
 };
@@ -95,10 +122,21 @@ struct TargetSelection {
   int seeds_tried = 0;
 };
 
+/// What of a hand decides which targets suit its palm.
+struct PalmReach {
+  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();      ///< Comes over the palm's target [m].
+  Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();  ///< Unit n_palm.
+  double pad_radius =
+      0.0;  ///< Of the palm's pad, from its frame's origin to the farthest corner [m].
+  /// Where every finger's tip gets; no fingers: anywhere in front of the palm.
+  std::vector<std::optional<hands::TipReach>> tips;
+};
+
 /// How far apart parts of a hand can be, computed once per hand (A18).
 struct PartDistances {
-  hands::TipDistances tip_to_tip;                 ///< `[a][b]`, as `hands::HandWorkspace`.
-  std::vector<hands::DistanceRange> palm_to_tip;  ///< Per finger, as `hands::HandWorkspace`.
+  hands::TipDistances tip_to_tip;                      ///< `[a][b]`, as `hands::HandWorkspace`.
+  std::vector<hands::DistanceRange> palm_to_tip = {};  ///< Per finger, as `hands::HandWorkspace`.
+  std::optional<PalmReach> palm = {};                  ///< Empty for a hand without a palm pad.
 };
 PartDistances part_distances(const hands::HandModel& hand);
 
@@ -107,19 +145,54 @@ PartDistances part_distances(const hands::HandModel& hand);
 /// to the first and a centroid close to the center of mass; each drawn at random from the
 /// best-ranked feasible candidates; a new seed where one has none.
 ///
-/// Fingers' targets come first, the seed's first of all; one for the palm, if `parts` has it, comes
-/// last and is the only one assigned here (finger kPalm). The selection uses, for each further
-/// contact, the union of the ranges of the fingers not yet served; assignment follows in
-/// `assign_fingers`. @throws InvalidInput for fewer than two fingers.
+/// Fingers' targets come first, the seed's first of all. Distances are checked finger by finger:
+/// for every set returned, at least one way to give the seed to the first finger and the other
+/// targets to the others has every two of them within those fingers' own range (`assign_fingers`
+/// chooses one way).
+///
+/// A target for the palm, if `parts` has it, comes last and is the only one assigned here (finger
+/// kPalm). With n its outward normal, the palm there looks along −n. It is chosen so that
+///  - no other surface stands in the palm's way: within the pad's radius around n, none is higher
+///    than a voxel over the target's plane;
+///  - every finger's target is in front of the palm: (V − palm) · n < 0;
+///  - some turn of the hand about n and some assignment that suits the fingers' own ranges has
+///  every
+///    finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of the
+///    finger's tip reach (turns are sampled, 5° apart).
+/// It need not form a stable pair. Its rank is the distance of the whole set's centroid from the
+/// center of mass, plus the mean distance from the tips' reach, both over the normalizing radius.
+///
+/// @throws InvalidInput for fewer than two fingers, more than six parts, a finger that the hand
+/// does not have, without a tip pad or named twice; for the palm of a hand without a palm pad; and
+/// for five or more fingers with `PairRule::AllPairs` and theta_max ≤ 45°, which no object has.
 TargetSelection select_target_contacts(const ObjectModel& object, const PartDistances& distances,
                                        const RequestedParts& parts, const TargetOptions& options,
                                        geometry::Random& random);
 
 /// All feasible target sets, best first (`TargetSearch::Ranked`) [R]: complete, so that an end
-/// without any set proves that the pool has none, and `failure` says at which stage.
+/// without any set proves that the pool has none within the unrelaxed limits, and `failure` says at
+/// which stage.
+///
+/// A set is a seed and a set of further targets; it is feasible if the greedy search could choose
+/// it in some order, the limits not relaxed. Its rank is the least over those orders of
+///
+///     mean of | |ViVj| − |V1V2| | / |V1V2| over all edges but the first
+///   + distance of the centroid of all targets from the center of mass / normalizing radius
+///   + angle_weight · mean over the pairs that must be stable of their angle / theta_max
+///   + mean distance from the tips' reach / normalizing radius (palm),
+///
+/// the terms that the greedy search ranks its candidates by. Sets come by ascending rank, each
+/// once in its best order; equal ranks by ascending patches in that order. Two targets come twice,
+/// with either as the seed.
+///
+/// Search: depth first through the stable pairs, cut off by a growing limit on the rank, keeping
+/// the best few thousand sets of each round. Memory: 4 bytes per stable pair of the pool, and the
+/// kept sets. Cost: at 30 voxels (3000 places) well under a second to the first set for two and
+/// three targets, seconds to prove that there is none; for more, see `pool_spacing`.
 class RankedTargets {
  public:
-  /// @throws as `select_target_contacts`.
+  /// Object and distances are referred to, not copied: they have to outlive the search.
+  /// @throws InvalidInput as `select_target_contacts`, and for a pool of more than 16384 places.
   RankedTargets(const ObjectModel& object, const PartDistances& distances,
                 const RequestedParts& parts, const TargetOptions& options);
   ~RankedTargets();

@@ -78,6 +78,11 @@ struct WorkspaceOptions {
 /// @throws InvalidInput as the options' and the model's `validate`.
 TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& options = {});
 
+/// Ranges of the distances from the palm's center to the fingertips, `HandWorkspace::palm_to_tip`
+/// alone: a few thousand poses per finger. @throws InvalidInput as `tip_distances`.
+std::vector<DistanceRange> palm_distances(const HandModel& model,
+                                          const WorkspaceOptions& options = {});
+
 /// The whole workspace of a hand. Ends of `graspable_diameter` are always moved on, as long as the
 /// pads face each other and the hand is clear of itself; whether it is, is tested for one
 /// configuration per millimeter of distance, the one whose pads face each other best, from either

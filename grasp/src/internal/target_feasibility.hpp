@@ -1,0 +1,100 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "graspfit/grasp/target_contacts.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// A place that may become a target.
+struct Place {
+  Eigen::Vector3d point_O;
+  Eigen::Vector3d inward_normal_O;
+  std::int32_t patch;
+};
+
+/// One way to give targets to fingers: position in `RequestedParts::fingers` by target, the seed's
+/// 0 first.
+using FingerOrder = std::array<std::int8_t, kMostParts>;
+
+/// Places of a set: indices into `TargetRules::pool`, the seed first.
+using Places = std::span<const std::int32_t>;
+
+/// What may be a target, and which targets go together (paper section 6): the same for every way of
+/// searching.
+class TargetRules {
+ public:
+  /// Refers to the object and the distances. @throws InvalidInput as `select_target_contacts`.
+  TargetRules(const ObjectModel& object, const PartDistances& distances,
+              const RequestedParts& parts, const TargetOptions& options);
+
+  const TargetOptions& options() const { return options_; }
+  /// Ascending by patch.
+  const std::vector<Place>& pool() const { return pool_; }
+  std::size_t num_fingers() const { return parts_.fingers.size(); }
+  bool has_palm() const { return parts_.palm; }
+  double normalizing_radius() const { return object_.normalizing_radius; }
+  const Eigen::Vector3d& center_of_mass_O() const { return object_.mass.center_of_mass; }
+
+  double distance(std::int32_t a, std::int32_t b) const {
+    return (pool_[a].point_O - pool_[b].point_O).norm();
+  }
+
+  /// As `stable_pair_angle` with the options' cone, decided by cosines where they leave no doubt.
+  bool is_stable_pair(std::int32_t a, std::int32_t b) const;
+  /// Mean angle of a stable pair over theta_max.
+  double angle_share(std::int32_t a, std::int32_t b) const;
+  /// Number of pairs that have to be stable among that many targets.
+  static double num_stable_pairs(PairRule rule, std::size_t num_targets);
+
+  /// Whether the seed's finger and another reach `distance`.
+  bool is_in_seed_reach(double distance) const;
+  /// The only way to give the seed to a finger.
+  static std::vector<FingerOrder> seed_orders() { return {FingerOrder{}}; }
+  /// The ways of giving one more target to a finger left: `distances` are those from the targets
+  /// that `orders` are about to it, in order.
+  std::vector<FingerOrder> extended(const std::vector<FingerOrder>& orders,
+                                    std::span<const double> distances) const;
+  bool is_extendable(const std::vector<FingerOrder>& orders,
+                     std::span<const double> distances) const;
+
+  /// Distance of the places' centroid from the center of mass over the normalizing radius.
+  double centroid_error(Places places) const;
+  /// Mean error of all edges but the first; 0 for two. Independent of the order of all but the
+  /// first two, to the bit.
+  double edge_error(Places fingers) const;
+  /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last place.
+  double rank(Places places, std::optional<double> palm_misfit) const;
+
+  /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
+  /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
+  std::optional<double> palm_misfit(Places fingers, const std::vector<FingerOrder>& orders,
+                                    std::int32_t palm);
+
+  TargetContacts as_targets(Places places, std::optional<double> palm_misfit,
+                            int seeds_tried) const;
+
+ private:
+  bool reaches(int order_a, int order_b, double distance) const;
+  bool can_take(const FingerOrder& order, std::size_t size, int finger,
+                std::span<const double> distances) const;
+  bool has_room(std::int32_t palm);
+  std::optional<double> tip_misfit(Places fingers, const std::vector<FingerOrder>& orders,
+                                   const Place& palm) const;
+
+  const ObjectModel& object_;
+  const PartDistances& distances_;
+  const RequestedParts parts_;
+  const TargetOptions options_;
+  const double cos_theta_max_;
+  std::vector<Place> pool_;
+  std::vector<signed char> room_;         ///< Per place: for the palm, or −1 while unknown.
+  std::vector<Eigen::Matrix3d> turns_H_;  ///< About the palm's direction.
+};
+
+}  // namespace graspfit::grasp::internal
