@@ -1,0 +1,254 @@
+"""What a grasp is, from the object's mesh, the hand's files and joint values alone."""
+
+import dataclasses
+import hashlib
+import pathlib
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+import hand_files
+import measures
+import mesh_files
+import triangles
+
+TOUCHING = 1e-12       # surfaces nearer than this share a point as far as doubles can tell [m]
+FAR = 0.02             # links farther than this from the object do not matter [m]
+LEAST_NORMAL = 0.1     # mean normals shorter than this are none: both sides of a plate
+LEAST_AREA = 1e-14     # less of the object in a clip volume than this is touching at an edge [m^2]
+SAMPLE_SPACING = 1e-3  # of points on a surface whose depth is looked up [m]
+LONGEST_EDGE = 4e-3    # of triangles in search trees: boxes around long ones are wide [m]
+CHUNK = 2000           # points whose nearest ones are looked for at a time, for memory
+
+
+@dataclasses.dataclass
+class PadContact:
+    """A contact with the gap of its pad."""
+
+    contact: measures.Contact
+    gap: float
+
+
+class Solid:
+    """A closed surface, one vertex of every part, and a search tree over small triangles."""
+
+    def __init__(self, vertices, faces):
+        self.vertices, self.faces = vertices, faces
+        self.triangles = vertices[faces]
+        self.tree = triangles.BoxTree(triangles.split(self.triangles, LONGEST_EDGE))
+        self.part_points = vertices[mesh_files.parts(len(vertices), faces)]
+
+    def moved(self, X):
+        result = object.__new__(Solid)
+        result.vertices, result.faces = hand_files.moved(X, self.vertices), self.faces
+        result.triangles = result.vertices[self.faces]
+        result.tree = self.tree.moved(X[:3, :3], X[:3, 3])
+        result.part_points = hand_files.moved(X, self.part_points)
+        return result
+
+    def contains(self, points):
+        points = np.atleast_2d(points)
+        lower, upper = self.tree.corners_of_box()
+        inside = ((points >= lower) & (points <= upper)).all(axis=1)
+        inside[inside] = triangles.winding_numbers(points[inside], self.tree) > 0
+        return inside
+
+    def samples(self, lower, upper):
+        """Points of the surface in a box, not farther apart than SAMPLE_SPACING along edges of
+        the grid on each triangle."""
+        near = triangles.near_box(self.tree.triangles, lower, upper)
+        longest = np.linalg.norm(near - np.roll(near, 1, axis=1), axis=2).max(axis=1, initial=0)
+        steps = np.maximum(1, np.ceil(longest / SAMPLE_SPACING).astype(int))
+        points = [np.zeros((0, 3))]
+        for n in np.unique(steps):
+            grid = np.array([(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]) / n
+            points.append((grid @ near[steps == n]).reshape(-1, 3))
+        points = np.vstack(points)
+        return points[((points >= lower) & (points <= upper)).all(axis=1)]
+
+
+def clearance(first, second, limit=np.inf):
+    """Smallest distance of two solids: 0 where they share a point, infinity above `limit`."""
+    boxes = (*first.tree.corners_of_box(), *second.tree.corners_of_box())
+    if np.linalg.norm(np.maximum(0, np.maximum(boxes[2] - boxes[1], boxes[0] - boxes[3]))) > limit:
+        return np.inf
+    distance = triangles.surface_distance(first.tree, second.tree, limit)
+    if distance <= TOUCHING:
+        return 0.0
+    if second.contains(first.part_points).any() or first.contains(second.part_points).any():
+        return 0.0
+    return distance
+
+
+def depth(first, second):
+    """Deepest sampled point of either surface inside the other: at most the true depth, and less
+    by SAMPLE_SPACING at most."""
+    deepest = 0.0
+    low = np.maximum(first.tree.corners_of_box()[0], second.tree.corners_of_box()[0])
+    high = np.minimum(first.tree.corners_of_box()[1], second.tree.corners_of_box()[1])
+    for one, other in ((first, second), (second, first)):
+        points = one.samples(low, high)
+        points = points[other.contains(points)]
+        for start in range(0, len(points), CHUNK):
+            near = triangles.nearest_on_surface(points[start:start + CHUNK], other.tree)
+            apart = np.linalg.norm(near - points[start:start + CHUNK], axis=1)
+            deepest = max(deepest, apart.max())
+    return deepest
+
+
+def found_file(name, places):
+    """A recorded path as it is, or below one of the folders."""
+    for place in (pathlib.Path("."), *places):
+        if (place / name).exists():
+            return place / name
+    raise ValueError(f"{name}: not found, nor below {', '.join(map(str, places))}")
+
+
+def require_sha256(path, expected):
+    if hashlib.sha256(path.read_bytes()).hexdigest() != expected:
+        raise ValueError(f"{path}: other bytes than those the grasps were made with (SHA-256)")
+
+
+class Scene:
+    """Object, surroundings and hand of a grasp file."""
+
+    def __init__(self, record, folder):
+        if record["version"] != 2:
+            raise ValueError(f"is of version {record['version']}, not 2")
+        self.record, self.folder = record, folder
+        self.options = record["planner"]["options"]
+        self.used = record["planner"]["used"]
+        self.object = self._solid(record["object"])
+        used = self.object.vertices[np.unique(self.object.faces)]
+        self.volume, self.center_of_mass = mesh_files.volume_and_center(self.object.vertices,
+                                                                        self.object.faces)
+        self.radius = np.linalg.norm(np.ptp(used, axis=0)) / 2
+        self.largest_radius = np.linalg.norm(used - self.center_of_mass, axis=1).max()
+        self.table_z = record["surroundings"]["table_z_O_m"]
+        self.obstacles = [self._solid(item) for item in record["surroundings"]["obstacles"]]
+        self._read_hand(record["hand"])
+
+    def _solid(self, item):
+        """From the file and its scale; where that was repaired, the mesh that was used."""
+        if item["repair"]["steps"]:
+            if not item["used_mesh_file"]:
+                raise ValueError(f"{item['file']} was repaired, and the result is not beside this")
+            return Solid(*mesh_files.read_mesh(self.folder / item["used_mesh_file"]))
+        path = found_file(item["file"], [self.folder, self.folder.parent])
+        require_sha256(path, item["sha256"])
+        vertices, faces = mesh_files.read_mesh(path)
+        return Solid(vertices * item["meters_per_file_unit"], faces)
+
+    def _read_hand(self, item):
+        places = [self.folder, self.folder.parent]
+        description = found_file(item["description_file"], places)
+        require_sha256(description, item["description_sha256"])
+        sidecar = found_file(item["sidecar_file"], places) if item["sidecar_file"] else None
+        if sidecar:
+            require_sha256(sidecar, item["sidecar_sha256"])
+        used = {link["name"]: self.folder / link["used_mesh_file"] for link in item["links"]
+                if link["used_mesh_file"]}
+        self.hand = hand_files.Hand(description, sidecar, item, used)
+        self.links = {name: Solid(*mesh) for name, mesh in self.hand.meshes.items() if mesh}
+        self.pad_surfaces = {
+            name: triangles.BoxTree(triangles.split(pad.part_of_link(
+                self.links[pad.link].triangles if pad.link in self.links
+                else np.zeros((0, 3, 3))), LONGEST_EDGE))
+            for name, pad in self.hand.pads.items()}
+
+    def poses(self, configuration):
+        return self.hand.link_poses(hand_files.pose_of_json(configuration["X_OH"]),
+                                    configuration["joints"])
+
+    def posed_links(self, X_OL):
+        return {name: solid.moved(X_OL[name]) for name, solid in self.links.items()}
+
+    def object_clearances(self, links, limit):
+        """Of every link by its name; those above `limit` left out."""
+        found = {name: clearance(link, self.object, limit) for name, link in links.items()}
+        return {name: distance for name, distance in found.items() if distance <= limit}
+
+    def surroundings_clearance(self, links, limit):
+        """Of the hand from table and obstacles; infinity above `limit`."""
+        distances = [np.inf]
+        for link in links.values():
+            if self.table_z is not None:
+                distances.append(max(0.0, link.vertices[:, 2].min() - self.table_z))
+            distances += [clearance(link, obstacle, limit) for obstacle in self.obstacles]
+        return min(distances)
+
+    def self_clearances(self, links, limit):
+        names = sorted(links)
+        found = {}
+        for i, a in enumerate(names):
+            for b in names[i + 1:]:
+                if frozenset((a, b)) not in self.hand.exclusions:
+                    distance = clearance(links[a], links[b], limit)
+                    if distance <= limit:
+                        found[a, b] = distance
+        return found
+
+    def contact(self, pad, X_OL):
+        """Contact of one pad (paper section 10) with its gap, or None."""
+        X_OC = X_OL[pad.link] @ pad.X_LC
+        normals, offsets = pad.clip_volume(self.used["clip_thickness_m"])
+        normals_O = normals @ X_OC[:3, :3].T
+        offsets_O = offsets + normals_O @ X_OC[:3, 3]
+        corners = pad.base_points()
+        top = pad.clip_thickness or self.used["clip_thickness_m"]
+        corners = hand_files.moved(X_OC, np.vstack([corners, corners + [0, 0, top]]))
+        near = triangles.near_box(self.object.triangles, corners.min(axis=0), corners.max(axis=0))
+        polygons, counts, _ = triangles.clip_polygons(near, np.full(len(near), 3), normals_O,
+                                                      offsets_O)
+        if not len(polygons):
+            return None
+        pieces, owner = triangles.fan_triangles(polygons, counts)
+        vectors = triangles.area_vectors(pieces)
+        areas = np.linalg.norm(vectors, axis=1)
+        total = areas.sum()
+        if total < LEAST_AREA:
+            return None
+        middles = pieces.mean(axis=1)
+        if self.options["averaging"] == "plain":
+            mean, normal = self._plain_means(owner, areas, middles, vectors)
+        else:
+            mean, normal = areas @ middles / total, vectors.sum(axis=0) / total
+        if np.linalg.norm(normal) < LEAST_NORMAL:
+            return None
+        (point,) = triangles.nearest_on_surface(mean[None], self.object.tree)
+        contact = measures.Contact(
+            pad.name, pad.finger, point, -normal / np.linalg.norm(normal), total,
+            pad.boundary_distance(hand_files.moved(hand_files.inverse(X_OC), point)))
+        return PadContact(contact, self.gap(pad, X_OL[pad.link]))
+
+    @staticmethod
+    def _plain_means(owner, areas, middles, vectors):
+        """Every clipped triangle counts alike."""
+        middle, direction = [], []
+        for k in np.unique(owner):
+            own = owner == k
+            if areas[own].sum() > 0:
+                middle.append(areas[own] @ middles[own] / areas[own].sum())
+                vector = vectors[own].sum(axis=0)
+                direction.append(vector / np.linalg.norm(vector))
+        return np.mean(middle, axis=0), np.mean(direction, axis=0)
+
+    def gap(self, pad, X_OL):
+        """Distance of the pad's part of the link's mesh from the object's surface."""
+        surface = self.pad_surfaces[pad.name].moved(X_OL[:3, :3], X_OL[:3, 3])
+        return triangles.surface_distance(surface, self.object.tree)
+
+    def contacts(self, X_OL):
+        """Of all pads that have one, by the pad's name, in the hand's order."""
+        found = {name: self.contact(pad, X_OL) for name, pad in self.hand.pads.items()}
+        return {name: contact for name, contact in found.items() if contact}
+
+    def quality(self, contacts):
+        return measures.measure(contacts, self.hand.pads, self.center_of_mass, self.radius,
+                                self.options["quality"], self.used["merge_distance_m"])
+
+
+def pose_difference(a, b):
+    """Distance of two poses' origins [m] and angle between them [rad]."""
+    turn = Rotation.from_matrix(a[:3, :3].T @ b[:3, :3]).magnitude()
+    return np.linalg.norm(a[:3, 3] - b[:3, 3]), turn
