@@ -249,7 +249,7 @@ def check_squeeze(scene, grasp, contacts, found):
     stiffness = options["stiffness_N_m_per_rad"]
     wanted = configurations.squeezed_joints(
         scene.hand, grasp, torques, stiffness,
-        options.get("slide_stiffness_N_per_m", stiffness), closing)
+        options["slide_stiffness_N_per_m"], closing)
     for name, value in stored["joints"].items():
         found.equal("squeeze", f"squeeze {name}", wanted[name], value)
 

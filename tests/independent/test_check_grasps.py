@@ -2,7 +2,9 @@
 """The independent check itself, against closed forms and published values."""
 
 import pathlib
+import struct
 import sys
+import tempfile
 import unittest
 
 try:
@@ -14,6 +16,7 @@ except ImportError as missing:
     sys.exit(0)
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import configurations  # noqa: E402
 import hand_files  # noqa: E402
 import measures  # noqa: E402
 import mesh_files  # noqa: E402
@@ -82,7 +85,8 @@ class Clipping(unittest.TestCase):
     def test_many_half_spaces_leave_the_polygon_that_they_bound(self):
         angles = 2 * np.pi * np.arange(12) / 12
         sides = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(12)])
-        sheet = np.array([[[-9, -9, 0], [9, -9, 0], [9, 9, 0]], [[-9, -9, 0], [9, 9, 0], [-9, 9, 0]]])
+        sheet = np.array([[[-9, -9, 0], [9, -9, 0], [9, 9, 0]],
+                          [[-9, -9, 0], [9, 9, 0], [-9, 9, 0]]])
         self.assertAlmostEqual(self.clipped_area(sheet.astype(float), sides, np.ones(12)),
                                12 * np.tan(np.pi / 12), 12)
 
@@ -139,7 +143,7 @@ class Distances(unittest.TestCase):
 
     def test_winding_number_counts_an_edge_or_corner_above_once(self):
         tree = triangles.BoxTree(box_triangles([2, 2, 2]))  # diagonals, edges, corners above
-        points = np.array([(0, 0, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0), (0, 0, -3), (0, 0, 3)], float)
+        points = np.array([(0.0, 0, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0), (0, 0, -3), (0, 0, 3)])
         np.testing.assert_array_equal(triangles.winding_numbers(points, tree), [1, 1, 1, 0, 0])
 
 
@@ -164,8 +168,9 @@ class Epsilon(unittest.TestCase):
         contacts = [contact(-n, n, str(k)) for k, n in enumerate(normals)]
         for friction, volume in ((0.2, 0.0249923943), (0.5, 0.598633733), (1, 10.6159516)):
             wrenches = measures.contact_wrenches(contacts, np.zeros(3), 1.0, friction, 8)
-            self.assertAlmostEqual(measures.wrench_space(wrenches).epsilon, friction * (2 / 3)**0.5, 9)
-            self.assertAlmostEqual(measures.wrench_space(wrenches).volume / volume, 1, 7)
+            space = measures.wrench_space(wrenches)
+            self.assertAlmostEqual(space.epsilon, friction * (2 / 3)**0.5, 9)
+            self.assertAlmostEqual(space.volume / volume, 1, 7)
             four = measures.contact_wrenches(contacts, np.zeros(3), 1.0, friction, 4)
             self.assertAlmostEqual(measures.wrench_space(four).epsilon, friction / 3**0.5, 9)
 
@@ -225,6 +230,94 @@ class Measure(unittest.TestCase):
         # Square of area 4 at height 1 and triangle of area 1 at height 7/3.
         np.testing.assert_allclose(measures.hull_centroid(house, "measure"),
                                    [1, (4 + 7 / 3) / 5, 0], atol=1e-12)
+
+
+ARM = """<robot name="arm">
+  <link name="base"/><link name="upper"/><link name="lower"/><link name="tip"/><link name="slide"/>
+  <joint name="a" type="revolute"><parent link="base"/><child link="upper"/>
+    <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>
+    <limit lower="-2" upper="2"/></joint>
+  <joint name="b" type="revolute"><parent link="upper"/><child link="lower"/>
+    <origin xyz="2 0 0"/><axis xyz="0 0 2"/><limit lower="-2" upper="2"/>
+    <mimic joint="a" multiplier="0.5" offset="0.1"/></joint>
+  <joint name="c" type="fixed"><parent link="lower"/><child link="tip"/>
+    <origin xyz="1 0 0"/></joint>
+  <joint name="d" type="prismatic"><parent link="base"/><child link="slide"/>
+    <axis xyz="0 1 0"/><limit lower="0" upper="0.5"/></joint>
+</robot>"""
+
+
+class Hands(unittest.TestCase):
+    def setUp(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "arm.urdf"
+            path.write_text(ARM)
+            recorded = {"palm": {"link": "base"}, "pads": [], "collision_exclusions": []}
+            self.hand = hand_files.Hand(path, None, recorded, {})
+        self.values = {"a": 0.4, "b": 0.3, "d": 0.2}
+        self.configuration = {"joints": self.values, "X_OH": {"translation_m": [0, 0, 0],
+                                                              "rotation_wxyz": [1, 0, 0, 0]}}
+
+    def test_links_stand_where_plane_trigonometry_has_them(self):
+        X_OL = self.hand.link_poses(np.eye(4), self.values)
+        first, second = np.pi / 2 + 0.4, np.pi / 2 + 0.7
+        tip = [2 * np.cos(first) + np.cos(second), 2 * np.sin(first) + np.sin(second), 1]
+        np.testing.assert_allclose(X_OL["tip"][:3, 3], tip, atol=1e-14)
+        np.testing.assert_allclose(X_OL["slide"][:3, 3], [0, 0.2, 0], atol=1e-14)
+        self.assertIn(frozenset(("lower", "tip")), self.hand.exclusions)
+
+    def test_joints_press_with_force_times_lever_and_followers_with_their_ratio(self):
+        points = np.array([[0.3, 0.4, 1.0], [0, 0.2, 0]])
+        forces = np.array([[1.0, 2.0, 3.0], [5.0, 6.0, 7.0]])
+        found = configurations.generalized_forces(self.hand, self.configuration,
+                                                  ["tip", "slide"], points, forces)
+        elbow = 2 * np.array([np.cos(np.pi / 2 + 0.4), np.sin(np.pi / 2 + 0.4)])
+
+        def lever(center):
+            x, y = points[0, :2] - center
+            return x * forces[0, 1] - y * forces[0, 0]
+        self.assertAlmostEqual(found["a"], lever([0, 0]) + 0.5 * lever(elbow), 8)
+        self.assertAlmostEqual(found["d"], 6.0, 8)
+        joints = configurations.squeezed_joints(self.hand, self.configuration, found, 5, 2000, {})
+        self.assertAlmostEqual(joints["a"], 0.4 + found["a"] / 5, 12)
+        self.assertAlmostEqual(joints["b"], 0.5 * joints["a"] + 0.1, 12)
+        self.assertAlmostEqual(joints["d"], 0.2 + 6 / 2000, 10)
+
+    def test_way_is_linear_and_turns_along_the_shortest_arc(self):
+        last = {"joints": {"a": 0.8, "b": 0.5, "d": 0.0},
+                "X_OH": {"translation_m": [1, 2, 3],
+                         "rotation_wxyz": [np.cos(0.5), 0, 0, -np.sin(0.5)]}}
+        ((X, values),) = configurations.way(self.configuration, last, [0.25])
+        np.testing.assert_allclose(X[:3, 3], [0.25, 0.5, 0.75], atol=1e-14)
+        self.assertAlmostEqual(np.arctan2(X[1, 0], X[0, 0]), -0.25, 12)
+        self.assertAlmostEqual(values["a"], 0.5, 12)
+
+
+class MeshFiles(unittest.TestCase):
+    def test_every_format_brings_back_the_box(self):
+        vertices, faces = mesh_files.box([1, 2, 4])
+        corners = vertices[faces]
+        lines = ["ply", "format binary_little_endian 1.0", "element vertex 8",
+                 *(f"property double {axis}" for axis in "xyz"), "element face 12",
+                 "property list uchar int vertex_indices", "end_header", ""]
+        texts = {
+            "off": "OFF # box\n8 12 0\n" + "".join(f"{a} {b} {c}\n" for a, b, c in vertices)
+                   + "".join(f"3 {a} {b} {c}\n" for a, b, c in faces),
+            "obj": "".join(f"v {a} {b} {c}\n" for a, b, c in vertices)
+                   + "".join(f"f {a + 1}//1 {b - 8} {c + 1}/2/3\n" for a, b, c in faces),
+            "ply": "\n".join(lines).encode() + vertices.tobytes() + b"".join(
+                struct.pack("<B3i", 3, *face) for face in faces),
+            "stl": b" " * 80 + struct.pack("<I", 12) + b"".join(
+                struct.pack("<12fH", 0, 0, 0, *triangle.ravel(), 0) for triangle in corners)}
+        for kind, text in texts.items():
+            with self.subTest(kind), tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / f"box.{kind}"
+                path.write_bytes(text if isinstance(text, bytes) else text.encode())
+                read, indices = mesh_files.read_mesh(path)
+                np.testing.assert_array_equal(read[indices], corners)
+                self.assertTrue(mesh_files.is_closed(indices))
+                self.assertFalse(mesh_files.is_closed(indices[1:]))
+                self.assertEqual(len(mesh_files.parts(len(read), indices)), 1)
 
 
 class Pads(unittest.TestCase):
