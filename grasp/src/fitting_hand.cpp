@@ -114,7 +114,8 @@ float smallest_distance(const FittingHand& hand, int link, const RigidTransform&
   open[size++] = {0, bound(samples.balls[0])};
   while (size > 0) {
     const Open next = open[--size];
-    if (next.bound >= smallest) continue;
+    // Below zero the next value is −1: a link at the surface asks for full voxels alone.
+    if (next.bound >= smallest || (smallest == 0.0F && next.bound > -1.0)) continue;
     const FittingHand::Ball& ball = samples.balls[next.ball];
     if (ball.count > 0) {
       for (std::int32_t i = 0; i < ball.count; ++i) {

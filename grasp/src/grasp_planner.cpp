@@ -262,7 +262,8 @@ class Run {
       std::vector<Start> sides;
       std::vector<double> tilts;
       for (const PalmPlacement& placement :
-           palm_placements(object_, *selection.targets, options_.approach_O)) {
+           palm_placements(object_, *selection.targets, options_.approach_O,
+                           options_.approach_angle)) {
         sides.push_back({assign_fingers(hand_, *selection.targets, parts_, placement), placement});
         tilts.push_back(pad_tilt(hand_, sides.back().targets, placement));
       }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "grasp/fitting_scene.hpp"
 #include "grasp/target_oracle.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
@@ -34,6 +35,11 @@ using grasp::FittingStop;
 using grasp::PalmPlacement;
 using grasp::TargetContacts;
 using testing::angle_between;
+using testing::dense_points;
+using testing::equilateral_targets;
+using testing::on_surface;
+using testing::Scene;
+using testing::targets_at;
 using testing::unsaid;
 
 constexpr double kPi = std::numbers::pi;
@@ -43,93 +49,6 @@ FittingOptions with_guard(grasp::PenetrationGuard guard) {
   FittingOptions options;
   options.guard = guard;
   return options;
-}
-
-/// An object prepared for the Barrett hand, and the hand prepared for it.
-struct Scene {
-  explicit Scene(const geometry::TriangleMesh& mesh)
-      : hand(hands::find_hand("barrett")),
-        object(grasp::prepare_object(mesh, hand, {})),
-        fitting_hand(hand, FittingOptions{}.sample_spacing * object.grid.lattice.voxel_size),
-        collision(hand) {
-    contact_options.clip_thickness = grasp::clip_thickness({}, object.grid.lattice.voxel_size);
-    fingers = grasp::requested_fingers(hand, {});
-  }
-
-  double voxel_size() const { return object.grid.lattice.voxel_size; }
-
-  FittingResult fit(const TargetContacts& targets, const PalmPlacement& placement,
-                    const FittingOptions& options = {}) const {
-    return grasp::fit_hand(fitting_hand, object,
-                           grasp::assign_fingers(hand, targets, fingers, placement), placement,
-                           contact_options, options);
-  }
-
-  hands::HandModel hand;
-  grasp::ObjectModel object;
-  grasp::FittingHand fitting_hand;
-  hands::HandCollision collision;
-  grasp::ContactEstimationOptions contact_options;
-  std::vector<int> fingers;  ///< Thumb first.
-};
-
-TargetContacts targets_at(const std::vector<Vector3d>& points,
-                          const std::vector<Vector3d>& outward_normals) {
-  TargetContacts targets;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    grasp::TargetContact target;
-    target.point_O = points[i];
-    target.outward_normal_O = outward_normals[i].normalized();
-    target.score = 1.0;
-    targets.contacts.push_back(target);
-  }
-  return targets;
-}
-
-/// Three targets 120° apart on the circle of radius `radius` around `X_OT`'s z axis, normals
-/// radial, the seed at angle `turn`.
-TargetContacts equilateral_targets(double radius, double turn,
-                                   const RigidTransform& X_OT = RigidTransform::Identity()) {
-  std::vector<Vector3d> points, normals;
-  for (int i = 0; i < 3; ++i) {
-    const double angle = turn + i * 2.0 * kPi / 3.0;
-    const Vector3d radial(std::cos(angle), std::sin(angle), 0.0);
-    points.push_back(X_OT * Vector3d(radius * radial));
-    normals.push_back(X_OT.linear() * radial);
-  }
-  return targets_at(points, normals);
-}
-
-/// Moves targets onto the surface and gives each the patch nearest to it.
-TargetContacts on_surface(const grasp::ObjectModel& object, TargetContacts targets) {
-  for (grasp::TargetContact& target : targets.contacts) {
-    target.point_O = object.query.closest_point(target.point_O).point;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < object.patches.size(); ++i) {
-      const double distance = (object.patches[i].centroid - target.point_O).norm();
-      if (distance < nearest) {
-        nearest = distance;
-        target.patch = static_cast<int>(i);
-      }
-    }
-  }
-  return targets;
-}
-
-/// Points on every triangle of a mesh, on a grid not wider than `spacing`; corners included.
-std::vector<Vector3d> dense_points(const geometry::TriangleMesh& mesh, double spacing) {
-  std::vector<Vector3d> points;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const auto [a, b, c] = geometry::corners(mesh, face);
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; i + j <= n; ++j) {
-        points.push_back(a + (b - a) * (double(i) / n) + (c - a) * (double(j) / n));
-      }
-    }
-  }
-  return points;
 }
 
 /// How far inside the full voxels a point lies: its distance from the nearest voxel that is not
@@ -309,9 +228,6 @@ std::vector<std::string> broken_guarantees(const Scene& scene, const TargetConta
   return broken;
 }
 
-// ---------------------------------------------------------------------------------------------
-// The whole fit
-
 TEST_CASE("The Barrett hand forms a grasp on ideal targets around a ball",
           "[grasp][hand_fitting]") {
   const Scene scene(geometry::ball(0.05));
@@ -325,10 +241,9 @@ TEST_CASE("The Barrett hand forms a grasp on ideal targets around a ball",
                       << static_cast<int>(guard) << ", settle " << settle);
       const PalmPlacement placement{Vector3d(0, 0, side)};
       const TargetContacts targets = grasp::assign_fingers(
-          scene.hand, on_surface(scene.object, equilateral_targets(0.05, turn)), scene.fingers,
+          scene.hand, on_surface(scene.object, equilateral_targets(0.05, turn)), scene.parts,
           placement);
-      const FittingResult result = grasp::fit_hand(scene.fitting_hand, scene.object, targets,
-                                                   placement, scene.contact_options, options);
+      const FittingResult result = scene.fit(targets, placement, options);
       CHECK(result.stop == FittingStop::Contact);
       CHECK(broken_guarantees(scene, targets, placement, options, result) == kNothing);
       CHECK(result.smallest_distance == 0.0);  // touching parts share voxels with the surface
@@ -362,7 +277,9 @@ TEST_CASE("Settled fingers rest on the true surface", "[grasp][hand_fitting]") {
   const FittingOptions options;
   for (const double turn : {0.0, 1.3}) {
     const FittingResult result =
-        scene.fit(on_surface(scene.object, equilateral_targets(0.05, turn)), {Vector3d(0, 0, -1)});
+        scene.fit(scene.assigned(on_surface(scene.object, equilateral_targets(0.05, turn)),
+                                 {Vector3d(0, 0, -1)}),
+                  {Vector3d(0, 0, -1)});
     REQUIRE(result.stop == FittingStop::Contact);
     const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
     for (const hands::Finger& finger : scene.hand.fingers) {
@@ -389,7 +306,8 @@ TEST_CASE("The hand starts open, over the middle of the targets, clear of the ob
     options.clearance = clearance;
     for (const double side : {1.0, -1.0}) {
       const PalmPlacement placement{Vector3d(0, 0, side)};
-      const FittingResult result = scene.fit(targets, placement, options);
+      const FittingResult result =
+          scene.fit(scene.assigned(targets, placement), placement, options);
       for (std::size_t i = 0; i < scene.hand.joints.size(); ++i) {
         const hands::Joint& joint = scene.hand.joints[i];
         if (joint.closing_sign > 0) CHECK(result.initial.q[i] == Approx(joint.lower).margin(1e-12));
@@ -397,7 +315,9 @@ TEST_CASE("The hand starts open, over the middle of the targets, clear of the ob
       }
       const Vector3d center = result.initial.X_OH * scene.hand.palm.center_H;
       const Vector3d from_targets = center - targets.centroid();
-      CHECK(from_targets.head<2>().norm() < 1e-9);
+      // Where the fingertips reach their targets best; the thumb's base is nearer to the palm
+      // center than the others' by 25 mm, so not quite over the middle.
+      CHECK(from_targets.head<2>().norm() < 0.025);
       // Beyond the ball's pole by the clearance at least (A24); the icosphere's pole may be lower
       // than the sphere's by 1 − cos of half an edge.
       CHECK(-side * from_targets.z() > 0.05 * 0.99 + clearance - 1e-9);
@@ -423,7 +343,7 @@ TEST_CASE("The guarantees of fitting hold on every shape, however the fit ends",
   int num_formed = 0;
   for (const Case& shape : cases) {
     const Scene scene(shape.mesh);
-    const hands::TipDistances distances = hands::tip_distances(scene.hand);
+    const grasp::PartDistances distances = grasp::part_distances(scene.hand);
     grasp::TargetOptions target_options;
     target_options.min_separation = 0.023;
     for (int seed = 1; seed <= 6; ++seed) {
@@ -431,17 +351,16 @@ TEST_CASE("The guarantees of fitting hold on every shape, however the fit ends",
       const FittingOptions options = with_guard(seed % 3 == 0 ? grasp::PenetrationGuard::Voxels
                                                               : grasp::PenetrationGuard::Meshes);
       geometry::Random random(seed);
-      const auto selection = grasp::select_target_contacts(scene.object, distances, scene.fingers,
+      const auto selection = grasp::select_target_contacts(scene.object, distances, scene.parts,
                                                            target_options, random);
       if (!selection.targets) continue;
       for (const PalmPlacement& placement :
-           grasp::palm_placements(scene.object, *selection.targets, std::nullopt)) {
+           grasp::palm_placements(scene.object, *selection.targets, std::nullopt, kPi)) {
         INFO(shape.name << ", seed " << seed << ", palm along "
                         << placement.direction_O.transpose());
         const TargetContacts targets =
-            grasp::assign_fingers(scene.hand, *selection.targets, scene.fingers, placement);
-        const FittingResult result = grasp::fit_hand(scene.fitting_hand, scene.object, targets,
-                                                     placement, scene.contact_options, options);
+            grasp::assign_fingers(scene.hand, *selection.targets, scene.parts, placement);
+        const FittingResult result = scene.fit(targets, placement, options);
         CHECK(broken_guarantees(scene, targets, placement, options, result) == kNothing);
         if (result.stop == FittingStop::Contact) ++num_formed;
       }
@@ -454,7 +373,8 @@ TEST_CASE("A fit is a function of its input", "[grasp][hand_fitting]") {
   const Scene scene(geometry::capsule(0.03, 0.08));
   const TargetContacts targets = on_surface(scene.object, equilateral_targets(0.03, 0.4));
   const PalmPlacement placement{Vector3d(0, 0, -1)};
-  const FittingResult a = scene.fit(targets, placement), b = scene.fit(targets, placement);
+  const TargetContacts assigned = scene.assigned(targets, placement);
+  const FittingResult a = scene.fit(assigned, placement), b = scene.fit(assigned, placement);
   CHECK(a.stop == b.stop);
   CHECK(a.iterations == b.iterations);
   CHECK(a.configuration.X_OH.matrix() == b.configuration.X_OH.matrix());
@@ -467,7 +387,8 @@ TEST_CASE("Fingers that close on nothing miss their contacts", "[grasp][hand_fit
   RigidTransform X_OT = RigidTransform::Identity();
   X_OT.translation() = Vector3d(0.5, 0, 0);
   const TargetContacts targets = equilateral_targets(0.05, 0.0, X_OT);
-  const FittingResult result = scene.fit(targets, {Vector3d(0, 0, -1)});
+  const FittingResult result =
+      scene.fit(scene.assigned(targets, {Vector3d(0, 0, -1)}), {Vector3d(0, 0, -1)});
   CHECK(result.stop == FittingStop::MissedContact);
   CHECK(result.contacts.empty());
   CHECK(result.smallest_distance > 0.0);
@@ -477,350 +398,12 @@ TEST_CASE("A fit stops when its iterations are used up", "[grasp][hand_fitting]"
   const Scene scene(geometry::ball(0.05));
   const TargetContacts targets = on_surface(scene.object, equilateral_targets(0.05, 0.0));
   FittingOptions options;
-  // Opened tips are 16 cm from the axis and have to come within 5 cm; a step moves them at most
-  // three voxels of 3.3 mm, so ten steps are not enough.
-  options.max_iterations = 10;
-  const FittingResult result = scene.fit(targets, {Vector3d(0, 0, -1)}, options);
+  // Opened tips are more than ten voxels from the ball; a step moves them at most eight.
+  options.max_iterations = 1;
+  const FittingResult result =
+      scene.fit(scene.assigned(targets, {Vector3d(0, 0, -1)}), {Vector3d(0, 0, -1)}, options);
   CHECK(result.stop == FittingStop::IterationLimit);
-  CHECK(result.iterations == 10);
-}
-
-// ---------------------------------------------------------------------------------------------
-// Palm placements
-
-TEST_CASE("A target triangle has two palm directions, opposite and along its normal",
-          "[grasp][hand_fitting]") {
-  const Scene scene(geometry::ball(0.05));
-  geometry::Random random(5);
-  for (int trial = 0; trial < 20; ++trial) {
-    std::vector<Vector3d> points, normals;
-    for (int i = 0; i < 3; ++i) {
-      points.push_back(Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
-                           .normalized() *
-                       0.05);
-      normals.push_back(points.back());
-    }
-    const TargetContacts targets = targets_at(points, normals);
-    const auto placements = grasp::palm_placements(scene.object, targets, std::nullopt);
-    REQUIRE(placements.size() == 2);
-    CHECK((placements[0].direction_O + placements[1].direction_O).norm() < 1e-12);
-    for (const PalmPlacement& placement : placements) {
-      CHECK(placement.direction_O.norm() == Approx(1.0).epsilon(1e-12));
-      for (int i = 0; i < 3; ++i) {
-        const Vector3d edge = points[(i + 1) % 3] - points[i];
-        // A cross product of edges loses accuracy as the triangle gets thin.
-        const double thinness =
-            (points[1] - points[0]).cross(points[2] - points[0]).norm() / (0.05 * 0.05);
-        CHECK(std::abs(placement.direction_O.dot(edge)) < 1e-14 / thinness);
-      }
-    }
-
-    // An approach leaves the nearer one alone.
-    const Vector3d approach =
-        3.0 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const auto approached = grasp::palm_placements(scene.object, targets, approach);
-    REQUIRE(approached.size() == 1);
-    CHECK(approached[0].direction_O.dot(approach) > 0.0);
-    CHECK(std::min((approached[0].direction_O - placements[0].direction_O).norm(),
-                   (approached[0].direction_O - placements[1].direction_O).norm()) < 1e-12);
-  }
-}
-
-TEST_CASE("The palm direction with more room comes first", "[grasp][hand_fitting]") {
-  // A tall box with targets around its upper end: the palm has 5 cm of object to clear above them,
-  // 25 cm below.
-  const Scene scene(geometry::box(Vector3d(0.06, 0.06, 0.30)));
-  for (const double end : {1.0, -1.0}) {
-    const double z = end * 0.10;
-    for (const bool is_reversed : {false, true}) {
-      std::vector<Vector3d> points = {{0.03, 0.0, z}, {-0.03, 0.02, z}, {-0.03, -0.02, z}};
-      std::vector<Vector3d> normals = {{1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}};
-      if (is_reversed) std::swap(points[1], points[2]);
-      const auto placements =
-          grasp::palm_placements(scene.object, targets_at(points, normals), std::nullopt);
-      REQUIRE(placements.size() == 2);
-      CHECK((placements[0].direction_O - Vector3d(0, 0, -end)).norm() < 1e-9);
-    }
-  }
-}
-
-TEST_CASE("Two targets have sixteen palm directions around their axis", "[grasp][hand_fitting]") {
-  const Scene scene(geometry::ball(0.05));
-  geometry::Random random(9);
-  for (int trial = 0; trial < 10; ++trial) {
-    // Trial 0: along z, 1 and 2: along the others, where a helper axis could be parallel.
-    Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    if (trial < 3) axis = Vector3d::Unit((trial + 2) % 3);
-    axis.normalize();
-    const TargetContacts targets = targets_at({0.05 * axis, -0.05 * axis}, {axis, -axis});
-    const auto placements = grasp::palm_placements(scene.object, targets, std::nullopt);
-    REQUIRE(placements.size() == 16);
-    const Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
-    std::vector<double> angles;
-    for (const PalmPlacement& placement : placements) {
-      CHECK(placement.direction_O.norm() == Approx(1.0).epsilon(1e-12));
-      CHECK(std::abs(placement.direction_O.dot(axis)) < 1e-12);
-      angles.push_back(std::atan2(placement.direction_O.dot(y), placement.direction_O.dot(x)));
-    }
-    std::sort(angles.begin(), angles.end());
-    for (int i = 0; i < 15; ++i) {
-      CHECK(angles[i + 1] - angles[i] == Approx(2.0 * kPi / 16.0).epsilon(1e-9));
-    }
-
-    // With an approach, those nearest to it first (A23).
-    const Vector3d approach(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const auto approached = grasp::palm_placements(scene.object, targets, approach);
-    REQUIRE_FALSE(approached.empty());
-    for (const PalmPlacement& placement : approached) {
-      CHECK(std::abs(placement.direction_O.dot(axis)) < 1e-12);
-      CHECK(placement.direction_O.dot(approach) <= approached[0].direction_O.dot(approach) + 1e-12);
-    }
-  }
-}
-
-TEST_CASE("More than three targets have the normals of their least-squares plane",
-          "[grasp][hand_fitting]") {
-  const Scene scene(geometry::ball(0.05));
-  geometry::Random random(3);
-  for (int trial = 0; trial < 10; ++trial) {
-    std::vector<Vector3d> points, normals;
-    Eigen::MatrixXd rows(5, 3);
-    for (int i = 0; i < 5; ++i) {
-      const double angle = i * 2.0 * kPi / 5.0;
-      points.push_back(
-          Vector3d(0.04 * std::cos(angle), 0.05 * std::sin(angle), random.uniform(-0.01, 0.01)));
-      normals.push_back(points.back());
-      rows.row(i) = points.back();
-    }
-    rows.rowwise() -= rows.colwise().mean().eval();
-    const Vector3d expected =
-        Eigen::JacobiSVD<Eigen::MatrixXd>(rows, Eigen::ComputeThinV).matrixV().col(2);
-    const auto placements =
-        grasp::palm_placements(scene.object, targets_at(points, normals), std::nullopt);
-    REQUIRE(placements.size() == 2);
-    CHECK((placements[0].direction_O + placements[1].direction_O).norm() < 1e-12);
-    CHECK(std::abs(std::abs(placements[0].direction_O.dot(expected)) - 1.0) < 1e-12);
-  }
-}
-
-// ---------------------------------------------------------------------------------------------
-// Assignment
-
-/// The permutation of the further targets to the further fingers with the least squared angular
-/// error around the palm axis, the thumb's pad turned to the seed and the shared spread free. Brute
-/// force over the spread. Returns the fingers in the order of the targets.
-std::vector<int> best_assignment(const hands::HandModel& hand, const TargetContacts& targets,
-                                 const std::vector<int>& fingers, const Vector3d& direction) {
-  const Vector3d center = targets.centroid();
-  const auto azimuth = [](const Vector3d& vector, const Vector3d& zero, const Vector3d& axis) {
-    return std::atan2(axis.dot(zero.cross(vector)),
-                      zero.dot(vector) - zero.dot(axis) * vector.dot(axis));
-  };
-  std::vector<int> order(fingers.begin() + 1, fingers.end());
-  std::sort(order.begin(), order.end());
-  std::vector<int> best;
-  double least = std::numeric_limits<double>::infinity();
-  do {
-    const int spread = hand.joint_index("finger_1_spread");
-    for (int step = 0; step <= 180; ++step) {
-      hands::HandConfiguration configuration = hands::open_configuration(hand);
-      configuration.q[spread] = step * kPi / 180.0;
-      hands::apply_couplings(hand, configuration.q);
-      const auto X_HL = hands::forward_kinematics(hand, configuration);
-      const auto pad_at = [&](int finger) -> Vector3d {
-        return hands::pad_pose(hand, hand.fingers[finger].tip_pad, X_HL).translation() -
-               hand.palm.center_H;
-      };
-      double error = 0.0;
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        const double of_target = azimuth(targets.contacts[i + 1].point_O - center,
-                                         targets.contacts[0].point_O - center, direction);
-        const double of_finger =
-            azimuth(pad_at(order[i]), pad_at(fingers[0]), hand.palm.direction_H);
-        error += std::pow(std::remainder(of_target - of_finger, 2.0 * kPi), 2);
-      }
-      if (error < least) {
-        least = error;
-        best = order;
-      }
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  best.insert(best.begin(), fingers[0]);
-  return best;
-}
-
-std::vector<int> fingers_of(const TargetContacts& targets) {
-  std::vector<int> fingers;
-  for (const auto& target : targets.contacts) fingers.push_back(target.finger);
-  return fingers;
-}
-
-TEST_CASE("The seed gets the first finger and the others the fingers on their sides",
-          "[grasp][hand_fitting]") {
-  const hands::HandModel hand = hands::find_hand("barrett");
-  const std::vector<int> fingers = grasp::requested_fingers(hand, {});
-  REQUIRE(fingers.size() == 3);
-  REQUIRE(fingers[0] == hand.thumb());
-  geometry::Random random(11);
-  for (int trial = 0; trial < 60; ++trial) {
-    RigidTransform X_OT = RigidTransform::Identity();
-    X_OT.linear() = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
-                                       random.uniform(-1, 1), random.uniform(-1, 1))
-                        .normalized()
-                        .toRotationMatrix();
-    X_OT.translation() = Vector3d(random.uniform(), random.uniform(), random.uniform());
-    const TargetContacts targets = equilateral_targets(0.05, random.uniform(-3, 3), X_OT);
-    TargetContacts swapped = targets;
-    std::swap(swapped.contacts[1], swapped.contacts[2]);
-    for (const double side : {1.0, -1.0}) {
-      const PalmPlacement placement{side * X_OT.linear().col(2)};
-      const TargetContacts assigned = grasp::assign_fingers(hand, targets, fingers, placement);
-      REQUIRE(assigned.contacts.size() == 3);
-      for (int i = 0; i < 3; ++i) {
-        CHECK(assigned.contacts[i].point_O == targets.contacts[i].point_O);
-        CHECK(assigned.contacts[i].outward_normal_O == targets.contacts[i].outward_normal_O);
-        CHECK(assigned.contacts[i].patch == targets.contacts[i].patch);
-      }
-      const std::vector<int> result = fingers_of(assigned);
-      CHECK(result[0] == fingers[0]);
-      CHECK(std::is_permutation(result.begin(), result.end(), fingers.begin(), fingers.end()));
-      CHECK(result == best_assignment(hand, targets, fingers, placement.direction_O));
-
-      // The order of the targets does not matter, only where they are.
-      const std::vector<int> after_swap =
-          fingers_of(grasp::assign_fingers(hand, swapped, fingers, placement));
-      CHECK(after_swap == std::vector<int>{result[0], result[2], result[1]});
-
-      // From the other side of the triangle, left and right are exchanged.
-      const PalmPlacement opposite{-placement.direction_O};
-      const std::vector<int> from_behind =
-          fingers_of(grasp::assign_fingers(hand, targets, fingers, opposite));
-      CHECK(from_behind == std::vector<int>{result[0], result[2], result[1]});
-    }
-  }
-}
-
-TEST_CASE("Without the thumb the seed gets the first finger that is asked for",
-          "[grasp][hand_fitting]") {
-  const hands::HandModel hand = hands::find_hand("barrett");
-  const int finger_1 = hand.finger_index("finger_1"), finger_2 = hand.finger_index("finger_2");
-  const TargetContacts targets = targets_at({{0.03, 0, 0}, {-0.03, 0, 0}}, {{1, 0, 0}, {-1, 0, 0}});
-  const PalmPlacement placement{Vector3d(0, 0, -1)};
-  CHECK(fingers_of(grasp::assign_fingers(hand, targets, {finger_1, finger_2}, placement)) ==
-        std::vector<int>{finger_1, finger_2});
-  CHECK(fingers_of(grasp::assign_fingers(hand, targets, {finger_2, finger_1}, placement)) ==
-        std::vector<int>{finger_2, finger_1});
-}
-
-// ---------------------------------------------------------------------------------------------
-// The sampled hand and its distances
-
-/// Walks the tree of balls from `ball` down: how far any point is outside a ball that should hold
-/// it [m], counting for each point the leaves that hold it.
-double farthest_outside(const grasp::FittingHand::LinkSamples& samples, std::int32_t ball,
-                        std::vector<std::int32_t> ancestors, std::vector<int>& times_held) {
-  ancestors.push_back(ball);
-  const grasp::FittingHand::Ball& node = samples.balls[ball];
-  if (node.count == 0) {
-    return std::max(farthest_outside(samples, ball + 1, ancestors, times_held),
-                    farthest_outside(samples, node.first, ancestors, times_held));
-  }
-  double outside = 0.0;
-  for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-    ++times_held[i];
-    for (const std::int32_t ancestor : ancestors) {
-      const grasp::FittingHand::Ball& holder = samples.balls[ancestor];
-      outside = std::max(outside, (samples.points_L[i] - holder.center_L).norm() - holder.radius);
-    }
-  }
-  return outside;
-}
-
-TEST_CASE("The points of a fitting hand lie on its links and leave no gap wider than the spacing",
-          "[grasp][hand_fitting]") {
-  const hands::HandModel hand = hands::find_hand("barrett");
-  constexpr double kSpacing = 0.003;
-  const grasp::FittingHand fitting_hand(hand, kSpacing);
-  for (std::size_t i = 0; i < hand.links.size(); ++i) {
-    const int link = static_cast<int>(i);
-    INFO(hand.links[i].name);
-    const grasp::FittingHand::LinkSamples& samples = fitting_hand.samples(link);
-    const std::vector<Vector3d>& points = samples.points_L;
-    if (hand.links[i].mesh_L.faces.empty()) {
-      CHECK(points.empty());
-      CHECK(samples.balls.empty());
-      continue;
-    }
-    const geometry::MeshQuery surface(hand.links[i].mesh_L);
-    double farthest = 0.0, off_surface = 0.0;
-    for (const Vector3d& point : points) {
-      farthest = std::max(farthest, point.norm());
-      off_surface = std::max(off_surface, std::sqrt(surface.closest_point(point).squared_distance));
-    }
-    CHECK(off_surface < 1e-12);
-    CHECK(samples.reach == Approx(farthest).epsilon(1e-12));
-    std::vector<int> times_held(points.size(), 0);
-    CHECK(farthest_outside(samples, 0, {}, times_held) < 1e-12);
-    CHECK(std::all_of(times_held.begin(), times_held.end(), [](int times) { return times == 1; }));
-
-    double widest_gap = 0.0;
-    geometry::Random random(1);
-    const auto probes = dense_points(hand.links[i].mesh_L, 0.5 * kSpacing);
-    for (int k = 0; k < 300; ++k) {
-      const Vector3d& probe = probes[random.index(probes.size())];
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const Vector3d& point : points) nearest = std::min(nearest, (point - probe).norm());
-      widest_gap = std::max(widest_gap, nearest);
-    }
-    CHECK(widest_gap <= kSpacing);
-  }
-}
-
-TEST_CASE("A fitting hand needs a positive spacing", "[grasp][hand_fitting]") {
-  const hands::HandModel hand = hands::find_hand("barrett");
-  for (const double spacing : {0.0, -0.001, std::numeric_limits<double>::quiet_NaN(),
-                               std::numeric_limits<double>::infinity()}) {
-    CHECK_THROWS_AS(grasp::FittingHand(hand, spacing), geometry::InvalidInput);
-  }
-}
-
-TEST_CASE("The smallest distance is that of a search over all points, up to what is enough",
-          "[grasp][hand_fitting]") {
-  const Scene scene(geometry::torus(0.05, 0.018));
-  geometry::Random random(2);
-  int num_below = 0, num_above = 0;
-  for (int trial = 0; trial < 200; ++trial) {
-    RigidTransform X_OL = RigidTransform::Identity();
-    X_OL.linear() = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
-                                       random.uniform(-1, 1), random.uniform(-1, 1))
-                        .normalized()
-                        .toRotationMatrix();
-    // Some far outside the lattice.
-    const double away = trial % 10 == 0 ? 2.0 : 0.12;
-    X_OL.translation() =
-        away * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const int link = static_cast<int>(random.index(scene.hand.links.size()));
-    const std::vector<Vector3d>& points = scene.fitting_hand.samples(link).points_L;
-    if (points.empty()) continue;
-    float expected = std::numeric_limits<float>::infinity();
-    for (const Vector3d& point : points) {
-      const Vector3d point_O = X_OL * point;
-      expected = std::min(expected, scene.object.distance.at(point_O));
-    }
-    for (const float enough : {-1.0F, 0.0F, 2.0F, 5.0F, 1e6F}) {
-      const float found =
-          grasp::smallest_distance(scene.fitting_hand, link, X_OL, scene.object.distance, enough);
-      if (expected <= enough) {
-        ++num_below;
-        CHECK(found == expected);
-      } else {
-        ++num_above;
-        CHECK(found > enough);
-      }
-    }
-  }
-  CHECK(num_below > 100);
-  CHECK(num_above > 100);
+  CHECK(result.iterations == 1);
 }
 
 TEST_CASE("Fitting options out of range are refused by name and value", "[grasp][hand_fitting]") {
@@ -846,6 +429,8 @@ TEST_CASE("Fitting options out of range are refused by name and value", "[grasp]
   CHECK(unsaid(message_of([](auto& o) { o.max_iterations = 0; }), "max_iterations", "0") == "");
   CHECK(unsaid(message_of([](auto& o) { o.settle_tolerance = 0.0; }), "settle_tolerance", "0") ==
         "");
+  CHECK(unsaid(message_of([](auto& o) { o.give_up_distance = -0.5; }), "give_up_distance",
+               "-0.5") == "");
   CHECK(unsaid(message_of([](auto& o) { o.sample_spacing = 0.0; }), "sample_spacing", "0") == "");
   CHECK(unsaid(message_of([](auto& o) { o.sample_spacing = -0.25; }), "sample_spacing", "-0.25") ==
         "");

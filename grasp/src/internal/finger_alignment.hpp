@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -29,10 +30,6 @@ Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const hands::HandConfiguration& configuration,
                               const TargetContacts& targets);
 
-/// Sum of squared azimuth errors of all assigned fingers but the seed's [rad²].
-double swing_error(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
-                   const TargetContacts& targets);
-
 /// Whether all fingertips of the open hand lie to one side of its palm center, seen along the palm
 /// direction: such a hand, as the human one, holds things before its fingers, not before its palm.
 bool is_one_sided(const hands::HandModel& hand);
@@ -57,12 +54,12 @@ double distal_change(const hands::HandModel& hand,
                      const std::vector<geometry::RigidTransform>& X_OL, int joint,
                      const TargetContact& target);
 
-/// The hand open, its palm direction along `direction_O` (unit), its turning point `distance`
-/// before the targets' centroid, the seed's finger turned to the seed, the others swung to their
-/// targets. A thumb that swings by itself stands where the others' swings come closest to their
-/// targets (A28).
+/// The hand open, its palm looking along `placement`, its turning point `distance` before the
+/// targets' centroid (its palm center before the palm's target, where there is one), the seed's
+/// finger turned to the seed and on by the placement's turn, the others swung to their targets. A
+/// thumb that swings by itself stands where the others' swings come closest to their targets (A28).
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
-                                           const Eigen::Vector3d& direction_O, double distance);
+                                           const PalmPlacement& placement, double distance);
 
 }  // namespace graspfit::grasp

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,7 @@ struct FittingOptions {
   double clearance = 0.02;  ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
   double large_step_at = 2.0;  ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
   double large_step_limit =
-      3.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
+      8.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
   double small_step =
       0.2;               ///< Motion of the fastest point in a small step [voxels], > 0 (A30) [R].
   int max_halvings = 5;  ///< Of a step that would penetrate (A30) [R].
@@ -49,6 +50,8 @@ struct FittingOptions {
   /// paper's contact.
   bool settle = true;
   double settle_tolerance = 1e-5;  ///< Motion at which settling ends [m], > 0.
+  double give_up_distance = 0.03;  ///< A part that has stopped farther than this from the object
+                                   ///< ends the attempt [m], ≥ 0: refinement reaches as far [R].
   void validate() const;           ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -56,8 +59,9 @@ struct FittingOptions {
 enum class FittingStop {
   Contact,           ///< Every part with a target touches: a formed grasp.
   InitialCollision,  ///< No starting pose clear of the object was found.
-  BlockedFinger,   ///< A part with a target was stopped by the object where its pad does not touch.
-  MissedContact,   ///< A part with a target reached its limits without touching (A31).
+  BlockedFinger,  ///< A part with a target was stopped by the object, or by the surroundings, where
+                  ///< its pad does not touch.
+  MissedContact,  ///< A part with a target reached its limits without touching (A31).
   IterationLimit,  ///< Work budget used up.
 };
 
@@ -68,6 +72,10 @@ struct FittingResult {
   hands::HandConfiguration configuration;  ///< Where it ended.
   std::vector<Contact> contacts;           ///< Of all pads, at the end; is_target set.
   int iterations = 0;
+  std::int64_t distance_queries = 0;  ///< Lookups of one link in the distance map.
+  /// Largest distance of a requested pad's contact point from the object's surface [m], zero for
+  /// pads with contact: what refinement would have to close.
+  double largest_gap = 0.0;
   double contact_tests_s = 0.0;  ///< Time spent on contact estimation; not part of the result.
   double smallest_distance =
       0.0;  ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
@@ -76,32 +84,53 @@ struct FittingResult {
 /// A palm pose to start from: which way the palm looks and how it is turned.
 struct PalmPlacement {
   Eigen::Vector3d direction_O = Eigen::Vector3d::UnitZ();  ///< n_palm in O, unit.
+  double turn = 0.0;  ///< About n_palm, on from where the seed's finger looks at the seed [rad].
+  /// How far the palm center should stay before the targets' centroid along n_palm, because the
+  /// object is there [m]; empty where the palm has a target of its own.
+  std::optional<double> palm_room = {};
 };
 
-/// Candidate palm directions for a set of targets (A23): ± the normal of the target triangle, the
-/// one with more room first, or the one within 90° of `approach_O` alone where given; 16 around the
-/// axis for two targets; the least-squares plane's normals for more than three.
+/// Candidate palm placements for a set of targets (A23): ± the normal of the target triangle; 16
+/// around the axis for two targets; the least-squares plane's normals for more than three; where
+/// the last target is the palm's, against the normal of that alone, in eight turns about it if the
+/// seed lies on the palm's axis (within 10 mm) and so leaves them open. Those with more room first
+/// or, with an approach direction, those within `approach_angle` [rad] of it, nearest first.
+///
+/// @param approach_O not zero; its length does not matter.
 std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const TargetContacts& targets,
-                                           const std::optional<Eigen::Vector3d>& approach_O);
+                                           const std::optional<Eigen::Vector3d>& approach_O,
+                                           double approach_angle);
 
 /// Assigns targets to fingers (A21, A22): the seed to the first of them, the others by the
 /// permutation with the least angular error around the palm axis. A target of the palm stays it.
+/// @throws InvalidInput unless there is one target for every part, the palm's (if any) last.
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const RequestedParts& parts, const PalmPlacement& placement);
 
-/// How far the fingertip pads would be from lying flat on assigned targets: for every finger,
-/// closed until its pad is as far from the palm's axis as its target, the angle between the pad's
-/// normal and the inward normal of the target; the largest of them [rad]. The kinematic part of
-/// choosing targets that "the hand can plausibly reach" (paper section 1; no formula there) [R].
+/// How far the hand would be from reaching assigned targets, were there no object: in the posture
+/// nearest to them (least squares over the palm's place and turn and the fingers' joints), the
+/// largest angle between a fingertip pad's normal and its target's inward normal, plus the largest
+/// miss, 15 mm of it counting as one radian [rad]. The kinematic part of choosing targets that "the
+/// hand can plausibly reach" (paper section 1; no formula there) [R].
 double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
                 const PalmPlacement& placement);
 
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
 /// of five steps (section 8) under the penetration guard (section 9).
 ///
+/// Readings [R]. The five steps rest where fingertips are over their targets; that posture is found
+/// first, without the object, and steps 2 to 5 move toward it: the palm along n_palm to where the
+/// tips' centroid will be over that of the targets, then fingers by all their joints together, then
+/// on by proximal joints and, where a link behind the tip is stopped, by the distal ones. For power
+/// grasps (A39): the palm first, until its clip volume holds surface or the guard stops it; then
+/// each finger, one without a target too, by its proximal joint until stopped, then by the next. An
+/// attempt ends early when a part has stopped farther than `give_up_distance` from the object.
+///
 /// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0), and, with the
 /// guard on meshes, no link intersects the object. With the guard on voxels the true meshes may
-/// intersect. Links of the hand may intersect each other in either case.
+/// intersect. No configuration on the way touches the surroundings. Links of the hand may intersect
+/// each other in either case.
+/// @throws InvalidInput for options out of range, fewer than two targets or unassigned ones.
 FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        const SurroundingsCollision& surroundings, GraspStyle style,
                        const TargetContacts& targets, const PalmPlacement& placement,

@@ -1,0 +1,159 @@
+#include "internal/guarded_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/target_posture.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using geometry::RigidTransform;
+
+// A link whose samples keep this far [voxels] cannot meet the surface: a sample and a point of the
+// surface are each up to √3/2 from the centers of their voxels, and a point of the link is up
+// to 1.44 spacings (at most 0.85 voxel) from a sample.
+constexpr float kNearVoxels = 3.0F;
+
+// A link that surely keeps this far [voxels] is not looked up again: steps of three voxels follow.
+constexpr double kFarEnough = 4.0;
+
+constexpr double kStepBeforeSurface = 0.5;  // [voxels]
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+GuardedHand::GuardedHand(const FittingHand& hand, const ObjectModel& object,
+                         const SurroundingsCollision& surroundings, const FittingOptions& options)
+    : hand_(hand),
+      model_(hand.model()),
+      object_(object),
+      surroundings_(surroundings),
+      options_(options),
+      voxel_size_(object.grid.lattice.voxel_size),
+      all_links_(model_.links.size()),
+      distance_(model_.links.size()),
+      room_(model_.links.size(), kInfinity) {
+  std::iota(all_links_.begin(), all_links_.end(), 0);
+}
+
+float GuardedHand::measured(int link, const RigidTransform& X_OL) {
+  if (hand_.samples(link).balls.empty()) return std::numeric_limits<float>::infinity();
+  ++num_queries_;
+  return grasp::smallest_distance(hand_, link, X_OL, object_.distance,
+                                  static_cast<float>(options_.large_step_limit + 1.0));
+}
+
+void GuardedHand::put(const hands::HandConfiguration& configuration) {
+  configuration_ = configuration;
+  X_OL_ = hands::forward_kinematics(model_, configuration_);
+  measure_all();
+}
+
+void GuardedHand::measure_all() {
+  const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
+  for (const int link : all_links_) {
+    distance_[link] = measured(link, X_OL_[link]);
+    if (surroundings_.surroundings().is_empty()) continue;
+    room_[link] = surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance;
+  }
+}
+
+bool GuardedHand::is_clear() const {
+  return std::all_of(all_links_.begin(), all_links_.end(), [&](int link) {
+    return distance_[link] > 0.0F && room_[link] > 0.0 &&
+           !cuts_object(link, distance_[link], X_OL_[link]);
+  });
+}
+
+bool GuardedHand::cuts_object(int link, float d_min, const RigidTransform& X_OL) const {
+  return options_.guard == PenetrationGuard::Meshes && d_min < kNearVoxels &&
+         hand_.collision().link_intersects(object_.query, link, X_OL);
+}
+
+bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
+                             const std::vector<int>& moved, double length) {
+  trial_ = candidate;
+  trial_X_OL_ = X_OL_;
+  trial_distance_ = distance_;
+  trial_room_ = room_;
+  // A value changes by no more than √2 per voxel between centers, and a point is within √3/2 of its
+  // own center, before and after.
+  const double change = std::numbers::sqrt2 * (length / voxel_size_ + std::numbers::sqrt3);
+  for (const int link : moved) {
+    const int parent = model_.links[link].parent_link;
+    trial_X_OL_[link] =
+        parent < 0 ? trial_.X_OH : link_pose(model_, link, trial_X_OL_[parent], trial_.q);
+    trial_room_[link] -= length;
+    const double bound = distance_[link] - change;
+    if (bound > kFarEnough) {
+      trial_distance_[link] = static_cast<float>(bound);
+      continue;
+    }
+    trial_distance_[link] = measured(link, trial_X_OL_[link]);
+    if (trial_distance_[link] < 0.0F) {
+      blocking_link_ = link;
+      return false;
+    }
+  }
+  blocking_link_ = -1;
+  return true;
+}
+
+bool GuardedHand::passes_exact(const std::vector<int>& moved) {
+  for (const int link : moved) {
+    if (trial_room_[link] <= 0.0 &&
+        surroundings_.touches(hand_.collision(), link, trial_X_OL_[link])) {
+      blocking_link_ = link;
+      return false;
+    }
+    if (cuts_object(link, trial_distance_[link], trial_X_OL_[link])) {
+      blocking_link_ = link;
+      return false;
+    }
+  }
+  return true;
+}
+
+void GuardedHand::accept() {
+  configuration_ = trial_;
+  X_OL_.swap(trial_X_OL_);
+  distance_.swap(trial_distance_);
+  room_.swap(trial_room_);
+  const double near = options_.large_step_at * voxel_size_;
+  const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
+  for (const int link : all_links_) {
+    if (room_[link] > near) continue;
+    room_[link] = surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance;
+  }
+}
+
+double GuardedHand::allowed_motion(const std::vector<int>& links) const {
+  float d_min = std::numeric_limits<float>::infinity();
+  double room = kInfinity;
+  for (const int link : links) {
+    d_min = std::min(d_min, distance_[link]);
+    room = std::min(room, room_[link]);
+  }
+  double voxels = options_.small_step;
+  if (d_min >= options_.large_step_at) {
+    voxels = std::clamp(d_min - 1.0, options_.small_step,
+                        std::max(options_.small_step, options_.large_step_limit));
+  } else if (d_min >= 1.0F) {
+    // Not yet at the surface: half a voxel cannot pass the layer of partial ones.
+    voxels = std::max(options_.small_step, kStepBeforeSurface);
+  }
+  // Less than the room cannot meet the surroundings; close to them, small steps are looked at.
+  return std::min(voxels * voxel_size_, std::max(room, options_.small_step * voxel_size_));
+}
+
+float GuardedHand::smallest_distance() const {
+  return *std::min_element(distance_.begin(), distance_.end());
+}
+
+}  // namespace graspfit::grasp

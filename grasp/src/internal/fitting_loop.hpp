@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "graspfit/grasp/hand_fitting.hpp"
+#include "internal/guarded_hand.hpp"
+#include "internal/target_posture.hpp"
+
+namespace graspfit::grasp {
+
+/// One run of the adjustment loop (sections 7 to 9).
+class FittingLoop {
+ public:
+  FittingLoop(const FittingHand& hand, const ObjectModel& object,
+              const SurroundingsCollision& surroundings, GraspStyle style,
+              const TargetContacts& targets, const ContactEstimationOptions& contact_options,
+              const FittingOptions& options);
+
+  FittingResult run(const PalmPlacement& placement);
+
+ private:
+  /// A finger that closes, while the loop runs.
+  struct Part {
+    enum class State { Free, Touching, Blocked, AtLimit };
+    int finger = -1;
+    int pad = -1;  ///< −1: a finger of a power grasp that has no tip pad.
+    int tip_link = -1;
+    bool has_target = false;
+    /// Joints that close it alone, proximal to distal; the last may be one that a clutch frees
+    /// (breakaway). `stage` is the one that closes now.
+    std::vector<int> closing;
+    std::size_t stage = 0;
+    bool is_shared = false;       ///< Others close by the same joint: a gripper's jaws.
+    bool is_toward_goal = false;  ///< Still on the way to the posture at the targets.
+    State state = State::Free;
+  };
+
+  void add_part(int finger, bool has_target);
+  bool place();
+  void approach();
+  void seat_palm();
+  void advance(double distance, double tolerance);
+  void close(Part& part);
+  bool close_toward_goal(Part& part);
+  bool try_closing(const Part& part, double step);
+  bool next_stage(Part& part);
+  void move_palm_to_goal();
+  void settle(Part& part);
+  void finish(FittingResult& result);
+
+  bool try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
+                double length);
+  hands::HandConfiguration with_joint(int joint, double position) const;
+  bool is_at_closing_limit(int joint) const;
+  double lever(int joint, int link) const;
+  double lever(int joint) const;
+  double allowed_step(int joint) const;
+  const Part* stopped_part_sharing(int joint) const;
+  bool any_touching() const;
+  int num_free() const;
+  bool is_hopeless(const Part& part) const;
+  bool touches(const Part& part);
+  bool palm_touches();
+  std::optional<Contact> contact_of(int pad, const std::vector<geometry::RigidTransform>& X_OL);
+  Eigen::Vector3d palm_direction() const;
+
+  const FittingHand& hand_;
+  const hands::HandModel& model_;
+  const ObjectModel& object_;
+  const GraspStyle style_;
+  const TargetContacts& targets_;
+  const ContactEstimationOptions& contact_options_;
+  const FittingOptions& options_;
+  const double voxel_size_;
+  GuardedHand state_;
+  std::vector<std::vector<int>> moved_links_;  ///< Per joint.
+  std::vector<Part> parts_;                    ///< Those with targets first, the seed's before all.
+  bool has_palm_target_ = false;
+  hands::HandConfiguration goal_;  ///< The posture at the targets.
+  bool is_palm_done_ = false;      ///< The palm is where it is wanted, or cannot get there.
+  double contact_tests_s_ = 0.0;
+};
+
+}  // namespace graspfit::grasp
