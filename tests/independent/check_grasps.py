@@ -43,6 +43,7 @@ TOLERANCE = {
     "squeeze": 1e-7,      # [rad] or [m]: central differences
 }
 
+BEYOND = 1e-3     # what is so much farther than a stated clearance is not looked at [m]
 WAY_SAMPLES = 12  # of the straight way from the pre-grasp to the grasp
 
 
@@ -195,8 +196,9 @@ def check_pre_grasp(scene, grasp, found):
     X_OL = check_configuration(scene, stored, found, "pre-grasp ")
     check_poses(X_OL, stored, found, "pre-grasp ")
     links = scene.posed_links(X_OL)
-    apart = min([*scene.object_clearances(links, np.inf).values(),
-                 scene.surroundings_clearance(links, np.inf)])
+    enough = stored["clearance_m"] + BEYOND
+    apart = min([*scene.object_clearances(links, enough).values(),
+                 scene.surroundings_clearance(links, enough)])
     found.equal("clearance", "pre-grasp clearance_m", apart, stored["clearance_m"])
     found.require(f"pre-grasp is clear by {apart} only",
                   apart >= options["clearance_m"] - TOLERANCE["clearance"])
@@ -211,12 +213,14 @@ def check_pre_grasp(scene, grasp, found):
     if grasp["penetration"]["object_intersects"] or grasp["penetration"]["self_intersects"]:
         return apart
     shares = np.linspace(0, 1, WAY_SAMPLES + 1)[1:-1]
+    touching = []
     for share, (X, values) in zip(shares, configurations.way(stored, grasp, shares)):
         links = scene.posed_links(scene.hand.link_poses(X, values))
-        found.require(f"the way from the pre-grasp touches at a share of {share:.2f}",
-                      not scene.object_clearances(links, recompute.TOUCHING)
-                      and scene.surroundings_clearance(links, recompute.TOUCHING) > 0
-                      and not scene.self_clearances(links, recompute.TOUCHING))
+        if (scene.object_clearances(links, recompute.TOUCHING)
+                or scene.surroundings_clearance(links, recompute.TOUCHING) <= 0
+                or scene.self_clearances(links, recompute.TOUCHING)):
+            touching.append(round(float(share), 2))
+    found.require(f"the way from the pre-grasp touches at shares {touching}", not touching)
     return apart
 
 
