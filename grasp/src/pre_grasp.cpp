@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "graspfit/geometry/mesh_intersection.hpp"
+#include "graspfit/geometry/surface_clearance.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/distance_up_to.hpp"
 #include "internal/option_check.hpp"
 #include "internal/straight_way.hpp"
 
@@ -22,6 +22,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostSteps = 1000;
+
+/// Share of a distance that a proof is content with: the last fifth costs more than a step more.
+constexpr double kNearEnough = 0.8;
 
 struct LinkPair {
   int a;
@@ -99,36 +102,55 @@ class PreGraspSearch {
     return X_OH;
   }
 
-  double object_distance(int link, const RigidTransform& X_OL, double enough) const {
-    return internal::distance_up_to(object_, solid(link), X_OL, enough).distance;
+  /// Lower bound of the distance of the surfaces of a link and the object, up to `enough`: at least
+  /// this share of it.
+  double object_clearance(int link, const RigidTransform& X_OL, double enough,
+                          double share = kNearEnough) const {
+    return geometry::surface_clearance(object_, solid(link), X_OL, enough, share);
   }
 
   double surroundings_distance(int link, const RigidTransform& X_OL, double enough) const {
     return surroundings_.distance(collision_, link, X_OL, enough).distance;
   }
 
-  /// Distance of the nearest link from object and surroundings; some distance below the wanted one
-  /// as soon as one link is known to be nearer. Asks the link first that was too near last time.
+  /// Whether a link is surely nearer to the object than the wanted clearance, or in it.
+  bool is_too_near(int link, const RigidTransform& X_OL) const {
+    const double wanted = options_.clearance;
+    if (object_clearance(link, X_OL, wanted) < kNearEnough * wanted) return true;
+    return object_clearance(link, X_OL, wanted, 1.0) < wanted ||
+           collision_.link_intersects(object_, link, X_OL);
+  }
+
+  /// Distance of the nearest link from object and surroundings; 0 as soon as one link is known to
+  /// be nearer. Asks the link first that was too near last time.
   double clearance_at(const HandConfiguration& start) {
     const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const RigidTransform& X = X_OL[static_cast<std::size_t>(links_[i])];
-      const double nearest = std::min(object_distance(links_[i], X, options_.clearance),
-                                      surroundings_distance(links_[i], X, options_.clearance));
-      if (nearest >= options_.clearance) continue;
+      if (surroundings_distance(links_[i], X, options_.clearance) >= options_.clearance &&
+          !is_too_near(links_[i], X)) {
+        continue;
+      }
       std::rotate(links_.begin(), links_.begin() + static_cast<std::ptrdiff_t>(i),
                   links_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      return nearest;
+      return 0.0;
     }
+    return nearest_distance(X_OL);
+  }
+
+  /// Distance of the nearest link, where none is in the object.
+  double nearest_distance(const std::vector<RigidTransform>& X_OL) const {
     double nearest = kInfinity;
     for (const int link : links_) {
       const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
-      nearest = std::min(nearest, object_distance(link, X, nearest));
       nearest = std::min(nearest, surroundings_distance(link, X, nearest));
+      nearest = std::min(nearest, object_clearance(link, X, nearest, 1.0));
     }
     return nearest;
   }
 
+  /// Surfaces that stay apart do not bring a body into another that was not there: at the start no
+  /// link is in the object, in the grasp none of the pairs is one in the other.
   bool is_free(const HandConfiguration& start) const {
     const internal::StraightWay way(hand_, start, grasp_);
     const auto poses = [&](double share) {
@@ -144,7 +166,7 @@ class PreGraspSearch {
       const auto index = static_cast<std::size_t>(link);
       return stays_apart(way.speed(link),
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
-                           return object_distance(link, X_OL[index], enough);
+                           return object_clearance(link, X_OL[index], enough);
                          }) &&
              (surroundings_.surroundings().is_empty() ||
               stays_apart(way.speed(link),
@@ -155,9 +177,9 @@ class PreGraspSearch {
     const auto is_pair_free = [&](const LinkPair& pair) {
       return stays_apart(way.relative_speed(pair.a, pair.b),
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
-                           return internal::distance_up_to(solid(pair.a), solid(pair.b),
-                                                           between(X_OL, pair.a, pair.b), enough)
-                               .distance;
+                           return geometry::surface_clearance(solid(pair.a), solid(pair.b),
+                                                              between(X_OL, pair.a, pair.b), enough,
+                                                              kNearEnough);
                          });
     };
     return std::all_of(links_.begin(), links_.end(), is_link_free) &&
