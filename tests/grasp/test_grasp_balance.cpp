@@ -125,6 +125,36 @@ TEST_CASE("Balance forces meet the conditions of an optimum", "[grasp][grasp_bal
   CHECK(num_balanced > 5);
 }
 
+TEST_CASE("Even forces are those of no other balance by much, and alike where contacts are",
+          "[grasp][grasp_balance]") {
+  Random random(77);
+  BalanceOptions options{.friction = 0.6, .least_normal_sum = 6.0, .torque_scale = 0.9};
+  for (int i = 0; i < 30; ++i) {
+    const Contacts contacts = random_contacts(random, 2 + i % 4);
+    const Wrench load = i % 2 == 0 ? Wrench(Wrench::Zero()) : load_of({0.3, -0.2, 0.5});
+    options.evenness = 0.0;
+    const BalanceForces least = balance_forces(contacts, Vector3d::Zero(), load, options);
+    options.evenness = 1e-3;
+    const BalanceForces even = balance_forces(contacts, Vector3d::Zero(), load, options);
+    CHECK(even.residual_norm >= least.residual_norm - 1e-9);
+    CHECK(even.residual_norm <= least.residual_norm + 1e-3 * least.normal_sum);
+    CHECK(even.edge_forces.norm() <= least.edge_forces.norm() * (1.0 + 1e-9));
+    CHECK(even.normal_sum >= 6.0 * (1.0 - 1e-12));
+  }
+  // Six sides of a cube: a sixth of the force each, straight in, though two would do.
+  Contacts cube;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      cube.push_back(contact_at(side * Vector3d::Unit(axis), -side * Vector3d::Unit(axis)));
+    }
+  }
+  const BalanceForces even = balance_forces(cube, Vector3d::Zero(), Wrench::Zero(), options);
+  for (std::size_t i = 0; i < cube.size(); ++i) {
+    CHECK((even.forces_O.col(static_cast<Eigen::Index>(i)) - cube[i].inward_normal_O).norm() <
+          1e-6);
+  }
+}
+
 TEST_CASE("Balances without contacts or sense have documented outcomes", "[grasp][grasp_balance]") {
   const Wrench load = load_of({1, 2, 2});
   const BalanceOptions options{.torque_scale = 1.0};
