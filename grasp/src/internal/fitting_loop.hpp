@@ -68,7 +68,6 @@ class FittingLoop {
   const FittingHand& hand_;
   const hands::HandModel& model_;
   const ObjectModel& object_;
-  const GraspStyle style_;
   const TargetContacts& targets_;
   const ContactEstimationOptions& contact_options_;
   const FittingOptions& options_;
