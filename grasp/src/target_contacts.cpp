@@ -50,8 +50,14 @@ Vector3d TargetContacts::centroid() const {
 }
 
 PartDistances part_distances(const hands::HandModel& hand) {
-  PartDistances distances{hands::tip_distances(hand), hands::palm_distances(hand), {}};
-  if (hand.palm.pad < 0) return distances;
+  return part_distances(hand, {.fingers = {}, .palm = true});
+}
+
+PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts) {
+  PartDistances distances;
+  distances.tip_to_tip = hands::tip_distances(hand);
+  if (!parts.palm || hand.palm.pad < 0) return distances;
+  distances.palm_to_tip = hands::palm_distances(hand);
   PalmReach& palm = distances.palm.emplace();
   palm.center_H = hand.palm.center_H;
   palm.direction_H = hand.palm.direction_H;

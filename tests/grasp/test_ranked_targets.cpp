@@ -278,7 +278,7 @@ TEST_CASE("No random set within the unrelaxed limits ranks before the first rank
   const PartDistances distances = equal_reach(3, 0.02, 0.30);
   for (const NamedMesh& shape : shapes()) {
     grasp::ObjectModelOptions model_options;
-    model_options.resolution = 20;
+    model_options.resolution = 12;
     const grasp::ObjectModel object = grasp::build_object_model(shape.mesh, model_options);
     INFO(shape.name);
     TargetOptions options;

@@ -139,6 +139,8 @@ struct PartDistances {
   std::optional<PalmReach> palm = {};                  ///< Empty for a hand without a palm pad.
 };
 PartDistances part_distances(const hands::HandModel& hand);
+/// Only what `parts` need: nothing of the palm where it is not among them.
+PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts);
 
 /// Picks targets by the paper's randomized greedy search (section 6): a random seed above the
 /// threshold; a second contact in tip distance and in both cones; further contacts with edges close
@@ -157,8 +159,9 @@ PartDistances part_distances(const hands::HandModel& hand);
 ///  - every finger's target is in front of the palm: (V − palm) · n < 0;
 ///  - some turn of the hand about n and some assignment that suits the fingers' own ranges has
 ///  every
-///    finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of the
-///    finger's tip reach (turns are sampled, 5° apart).
+///    finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of a place
+///    that the finger's tip gets to with its pad looking into the surface, roughly
+///    (`hands::TipReach`; turns are sampled, 5° apart).
 /// It need not form a stable pair. Its rank is the distance of the whole set's centroid from the
 /// center of mass, plus the mean distance from the tips' reach, both over the normalizing radius.
 ///
