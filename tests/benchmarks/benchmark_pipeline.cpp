@@ -80,17 +80,18 @@ TEST_CASE("Pipeline from mesh file to grasps", "[!benchmark][pipeline]") {
   const grasp::PlannerResult result = grasp::plan_grasps(object, hand, options);
   const double usable = std::max<double>(1.0, static_cast<double>(result.statistics.usable()));
   const grasp::PlannerTimings& t = result.timings;
-  print_shares(
-      "Per usable grasp (" + std::to_string(result.statistics.attempts) + " attempts, " +
-          std::to_string(result.statistics.usable()) + " usable, " +
-          std::to_string(result.statistics.valid()) + " valid)",
-      {{"target selection", t.targets_s / usable},
-       {"fitting, without contact tests", (t.fitting_s - t.contact_tests_s) / usable},
-       {"contact estimation", t.contact_tests_s / usable},
-       {"measure", t.measure_s / usable},
-       {"refinement", t.refinement_s / usable},
-       {"ways in and squeezes", t.pre_grasp_s / usable},
-       {"rest", (t.total_s - t.targets_s - t.fitting_s - t.measure_s - t.refinement_s - t.pre_grasp_s) / usable}});
+  print_shares("Per usable grasp (" + std::to_string(result.statistics.attempts) + " attempts, " +
+                   std::to_string(result.statistics.usable()) + " usable, " +
+                   std::to_string(result.statistics.valid()) + " valid)",
+               {{"target selection", t.targets_s / usable},
+                {"fitting, without contact tests", (t.fitting_s - t.contact_tests_s) / usable},
+                {"contact estimation", t.contact_tests_s / usable},
+                {"measure", t.measure_s / usable},
+                {"refinement", t.refinement_s / usable},
+                {"ways in and squeezes", t.pre_grasp_s / usable},
+                {"rest", (t.total_s - t.targets_s - t.fitting_s - t.measure_s - t.refinement_s -
+                          t.pre_grasp_s) /
+                             usable}});
   CHECK(result.statistics.attempts == kAttempts);
 }
 
