@@ -190,11 +190,11 @@ struct MeasuringScene {
   const geometry::MeshQuery& object;
   const SurroundingsCollision& surroundings;
   const geometry::WeakRegions* weak = nullptr;  ///< Null: nothing is known to be weak.
-  WrenchObject wrench_object;                   ///< Scales of ε.
+  WrenchObject wrench_object = {};              ///< Scales of ε.
   double friction = 0.4;                        ///< Of ε.
-  QualityContext quality_context;
-  QualityOptions quality_options;
-  ContactEstimationOptions contact_options;
+  QualityContext quality_context = {};
+  QualityOptions quality_options = {};
+  ContactEstimationOptions contact_options = {};
   std::optional<double> largest_gap =
       std::nullopt;  ///< A requested contact with a larger gap does not count [m].
 };

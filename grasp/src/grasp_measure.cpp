@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/target_marks.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using geometry::RigidTransform;
+
+GraspPenetration measure_penetration(const MeasuringScene& scene,
+                                     const std::vector<RigidTransform>& X_OL) {
+  const hands::HandCollision::Result with_object =
+      scene.collision.against_object(scene.object, X_OL);
+  const hands::HandCollision::Result with_self = scene.collision.against_self(X_OL);
+  GraspPenetration result;
+  result.object_intersects = with_object.intersects;
+  result.object_depth = with_object.depth;
+  result.object_depth_bound = with_object.depth_bound;
+  result.object_link = with_object.link_a;
+  result.self_intersects = with_self.intersects;
+  result.self_depth = with_self.depth;
+  result.self_link_a = with_self.link_a;
+  result.self_link_b = with_self.link_b;
+  for (std::size_t link = 0; link < X_OL.size(); ++link) {
+    result.surroundings_touched =
+        result.surroundings_touched ||
+        scene.surroundings.touches(scene.collision, static_cast<int>(link), X_OL[link]);
+  }
+  return result;
+}
+
+/// Marks the contacts of `pad` as targets; whether one of them is near enough.
+bool claim(std::vector<Contact>& contacts, int pad, const std::optional<double>& largest_gap) {
+  if (!internal::mark_targets(contacts, pad)) return false;
+  return !largest_gap || std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact.pad == pad && contact.gap <= *largest_gap;
+  });
+}
+
+}  // namespace
+
+Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
+                    const RequestedParts& requested) {
+  const hands::HandModel& hand = scene.hand;
+  hands::validate(hand, configuration);
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
+  Grasp grasp;
+  grasp.configuration = configuration;
+  grasp.contacts = estimate_contacts(hand, X_OL, scene.object, scene.contact_options, scene.weak);
+  grasp.has_all_contacts = true;
+  for (const int pad : requested_pads(hand, requested)) {
+    const bool has_contact = claim(grasp.contacts, pad, scene.largest_gap);
+    grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
+  }
+  grasp.quality = contact_quality(grasp.contacts, scene.quality_context, scene.quality_options);
+  if (!grasp.contacts.empty()) {
+    grasp.wrench = wrench_quality(grasp_wrench_space(
+        grasp.contacts, wrench_convention(WrenchTool::GraspIt, scene.wrench_object, grasp.contacts,
+                                          scene.friction)));
+  }
+  grasp.penetration = measure_penetration(scene, X_OL);
+  return grasp;
+}
+
+}  // namespace graspfit::grasp

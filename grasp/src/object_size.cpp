@@ -1,0 +1,73 @@
+#include "internal/object_size.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using geometry::InvalidInput;
+using geometry::shortest_decimal;
+
+/// Shorter side of the box around a pad's outline [m].
+double pad_width(const hands::ContactPad& pad) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : pad.outline) box.extend(corner);
+  return box.sizes().minCoeff();
+}
+
+std::string extents_of(const geometry::TriangleMesh& mesh) {
+  const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    text += (axis > 0 ? " x " : "") + shortest_decimal(std::round(size[axis] * 1e6) / 1e6);
+  }
+  return text + " m";
+}
+
+std::string in_tenths_of_millimeters(double length) {
+  return shortest_decimal(std::round(length * 1e4) / 1e4) + " m";
+}
+
+}  // namespace
+
+double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fingers) {
+  double width = 0.0;
+  for (const int finger : fingers) {
+    width = std::max(width, pad_width(hand.pads[hand.fingers[finger].tip_pad]));
+  }
+  return width;
+}
+
+double widest_opening(const PartDistances& distances, const RequestedParts& parts) {
+  double widest = 0.0;
+  for (const int a : parts.fingers) {
+    for (const int b : parts.fingers) {
+      widest = std::max(widest, distances.tip_to_tip[a][b].largest);
+    }
+    if (parts.palm) widest = std::max(widest, distances.palm_to_tip[a].largest);
+  }
+  return widest;
+}
+
+void check_object_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
+                       const std::vector<int>& fingers, double widest) {
+  const std::string advice =
+      "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
+  if (geometry::bounding_box(mesh).sizes().minCoeff() > widest) {
+    throw InvalidInput("the object measures " + extents_of(mesh) + ", hand " + hand.name +
+                       " spans at most " + in_tenths_of_millimeters(widest) + advice);
+  }
+  const double smallest = fingertip_width(hand, fingers);
+  if (geometry::longest_extent(mesh) < smallest) {
+    throw InvalidInput("the object measures " + extents_of(mesh) +
+                       ", less than one fingertip of hand " + hand.name + " (" +
+                       in_tenths_of_millimeters(smallest) + ")" + advice);
+  }
+}
+
+}  // namespace graspfit::grasp::internal

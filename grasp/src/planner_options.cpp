@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "internal/option_check.hpp"
+
+namespace graspfit::grasp {
+
+using geometry::InvalidInput;
+using geometry::shortest_decimal;
+
+void PlannerOptions::validate() const {
+  const auto require = [](bool is_met, std::string_view field, const auto& value,
+                          std::string_view rule) {
+    internal::require(is_met, "PlannerOptions", field, value, rule);
+  };
+  require(count >= 1, "count", count, ">= 1");
+  require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
+  const bool has_palm = palm.value_or(style == GraspStyle::Power);
+  const int least_fingers = has_palm ? 1 : 2;
+  require(!fingers.empty() || num_contacts >= least_fingers, "num_contacts", num_contacts,
+          has_palm ? ">= 1 beside the palm" : ">= 2");
+  require(fingers.empty() || static_cast<int>(fingers.size()) >= least_fingers, "fingers",
+          fingers.size(), has_palm ? "at least one name beside the palm" : "at least two names");
+  require(resolution >= 4 && resolution <= 512, "resolution", resolution, "in [4, 512]");
+  if (approach_O) {
+    require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
+            shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
+                shortest_decimal((*approach_O)[2]),
+            "finite and not zero");
+  }
+  if (wall_clock_limit_s) {
+    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", *wall_clock_limit_s, "> 0 s");
+  }
+  if (clip_thickness) {
+    require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
+            *clip_thickness, "finite and > 0 m");
+  }
+  require(target_draws >= 1, "target_draws", target_draws, ">= 1");
+  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap", self_overlap,
+          "finite and >= 0 m");
+  require(approach_angle > 0.0 && approach_angle <= std::numbers::pi, "approach_angle",
+          approach_angle, "in (0, pi] rad");
+  require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
+  score.validate();
+  if (weak) weak->validate();
+  targets.validate();
+  fitting.validate();
+  refinement.validate();
+  pre_grasp.validate();
+  squeeze.validate();
+  distinct.validate();
+  quality.validate();
+}
+
+const char* outcome_name(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::Valid:
+      return "valid";
+    case AttemptOutcome::UsableOnly:
+      return "usable but not valid";
+    case AttemptOutcome::NoTargets:
+      return "no target set";
+    case AttemptOutcome::InitialCollision:
+      return "initial collision";
+    case AttemptOutcome::BlockedFinger:
+      return "blocked finger";
+    case AttemptOutcome::MissedContact:
+      return "missed contact";
+    case AttemptOutcome::GapLeft:
+      return "gap left";
+    case AttemptOutcome::NoWayIn:
+      return "no way in";
+    case AttemptOutcome::Weak:
+      return "weak features only";
+    case AttemptOutcome::SelfCollision:
+      return "self-collision";
+    case AttemptOutcome::IterationLimit:
+      return "iteration limit";
+    case AttemptOutcome::Unstable:
+      return "no stable pair";
+    case AttemptOutcome::PoorShape:
+      return "poor shape";
+  }
+  return "";
+}
+
+std::int64_t PlannerStatistics::usable() const {
+  return valid() + outcomes.at(AttemptOutcome::UsableOnly);
+}
+
+std::int64_t PlannerStatistics::valid() const { return outcomes.at(AttemptOutcome::Valid); }
+
+double clip_thickness(const PlannerOptions& options, double voxel_size) {
+  return options.clip_thickness.value_or(std::max(0.5 * voxel_size, 0.001));
+}
+
+double merge_distance(const PlannerOptions& options, double voxel_size) {
+  return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
+}
+
+RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {
+  RequestedParts parts;
+  parts.palm = options.palm.value_or(options.style == GraspStyle::Power);
+  if (parts.palm && hand.palm.pad < 0) {
+    throw InvalidInput("the palm of hand " + hand.name +
+                       " has no contact pad, so it cannot be asked to touch");
+  }
+  std::vector<int>& fingers = parts.fingers;
+  if (options.fingers.empty()) {
+    if (options.num_contacts > static_cast<int>(hand.fingers.size())) {
+      throw InvalidInput("hand " + hand.name + " has " + std::to_string(hand.fingers.size()) +
+                         " fingers, " + std::to_string(options.num_contacts) +
+                         " contacts were asked for");
+    }
+    fingers.push_back(hand.thumb());
+    for (int finger = 0; static_cast<int>(fingers.size()) < options.num_contacts; ++finger) {
+      if (finger != hand.thumb()) fingers.push_back(finger);
+    }
+  } else {
+    for (const std::string& name : options.fingers) {
+      const int finger = hand.finger_index(name);
+      if (std::find(fingers.begin(), fingers.end(), finger) != fingers.end()) {
+        throw InvalidInput("finger " + name + " is named twice");
+      }
+      fingers.push_back(finger);
+    }
+  }
+  for (const int finger : fingers) {
+    if (hand.fingers[finger].tip_pad < 0) {
+      throw InvalidInput("finger " + hand.fingers[finger].name + " of hand " + hand.name +
+                         " has no fingertip pad");
+    }
+  }
+  const auto thumb = std::find(fingers.begin(), fingers.end(), hand.thumb());
+  if (thumb != fingers.end()) std::rotate(fingers.begin(), thumb, thumb + 1);
+  return parts;
+}
+
+std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested) {
+  std::vector<int> pads;
+  for (const int finger : requested.fingers) pads.push_back(hand.fingers[finger].tip_pad);
+  if (requested.palm) pads.push_back(hand.palm.pad);
+  return pads;
+}
+
+}  // namespace graspfit::grasp
