@@ -12,11 +12,6 @@
 namespace graspfit::grasp::internal {
 namespace {
 
-// Nominal terms of an ideal contact: in the middle of its pad, a third of which meets the surface
-// (A10, A48).
-constexpr double kIdealBoundaryDistance = 1.0;
-constexpr double kIdealArea = 0.3;
-
 /// `options` with what the planner's rules set where they leave it open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                   PlannerOptions options) {

@@ -285,8 +285,8 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     if (!(g.ideal_m > 0.0)) wrong("ideal M ", g.ideal_m);
 
     // Targets.
-    for (const std::string& line : testing::broken_requirements(
-             run.object, distances.tip_to_tip, fingers, target_options, g.targets)) {
+    for (const std::string& line :
+         testing::broken_requirements(run.object, distances, parts, target_options, g.targets)) {
       wrong(line);
     }
     std::vector<int> assigned;
