@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <string>
 #include <utility>
 
 #include "graspfit/geometry/convex_clip.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
+#include "graspfit/hands/pad_surface.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -17,6 +18,7 @@ namespace {
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kThinRel = 1e-9;            // height over length of a triangle
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
 
@@ -90,103 +92,42 @@ struct CutFace {
   geometry::ConvexVolume cutting;
 };
 
-/// The part of a convex polygon where a plane of the pad's surface is at most `height` below.
-std::vector<Vector3d> part_within(const std::vector<Vector3d>& polygon_C,
-                                  const geometry::HalfSpace& plane, double height) {
-  const auto excess = [&](const Vector3d& point_C) {
-    return (plane.normal.dot(point_C) - plane.offset) / plane.normal.z() - height;
-  };
-  std::vector<Vector3d> part;
-  for (std::size_t i = 0; i < polygon_C.size(); ++i) {
-    const Vector3d& a = polygon_C[i];
-    const Vector3d& b = polygon_C[(i + 1) % polygon_C.size()];
-    const double at_a = excess(a), at_b = excess(b);
-    if (at_a <= 0.0) part.push_back(a);
-    if ((at_a < 0.0 && at_b > 0.0) || (at_a > 0.0 && at_b < 0.0)) {
-      part.push_back(a + at_a / (at_a - at_b) * (b - a));
-    }
-  }
-  return part;
-}
-
-/// Smallest height of a convex polygon over the pad, or `known` where that is less. Over a flat pad
-/// a corner is lowest; over a bulge, whose height under the polygon is concave, it may be any
-/// point.
-double lowest_over_pad(const hands::ContactPad& pad, const std::vector<Vector3d>& polygon_C,
-                       double known) {
-  constexpr double kTolerance = 1e-12;  // [m]; rounding of coordinates of 0.1 m, some of them
-  double high = known;
-  for (const Vector3d& corner_C : polygon_C) {
-    high = std::min(high, hands::height_over_pad(pad, corner_C));
-  }
-  // Over each plane by itself a corner is lowest: the largest of these heights is a lower bound,
-  // and planes that never reach above it do not matter.
-  double low = -std::numeric_limits<double>::infinity();
-  std::vector<double> tops;
-  for (const geometry::HalfSpace& plane : pad.planes) {
-    double bottom = std::numeric_limits<double>::infinity();
-    double top = -bottom;
-    for (const Vector3d& corner_C : polygon_C) {
-      const double height = (plane.normal.dot(corner_C) - plane.offset) / plane.normal.z();
-      bottom = std::min(bottom, height);
-      top = std::max(top, height);
-    }
-    low = std::max(low, bottom);
-    tops.push_back(top);
-  }
-  if (pad.planes.empty()) return high;
-  while (high - low > kTolerance) {
-    const double middle = low + 0.5 * (high - low);
-    if (!(low < middle && middle < high)) break;
-    std::vector<Vector3d> part = polygon_C;
-    for (std::size_t k = 0; k < pad.planes.size() && !part.empty(); ++k) {
-      if (tops[k] > middle) part = part_within(part, pad.planes[k], middle);
-    }
-    (part.empty() ? low : high) = middle;
-  }
-  return high;
-}
-
 /// Sums over the pieces of surface inside a clip volume.
 class SurfaceMean {
  public:
-  SurfaceMean(geometry::PatchAveraging averaging, const hands::ContactPad& pad,
-              const RigidTransform& X_CO)
-      : averaging_(averaging), pad_(pad), X_CO_(X_CO) {}
+  explicit SurfaceMean(geometry::PatchAveraging averaging) : averaging_(averaging) {}
 
-  void add(std::span<const Vector3d> polygon_O, double area, const Vector3d& centroid_O,
-           const Vector3d& outward_normal_O, bool is_weak) {
+  void add(double area, const Vector3d& centroid_O, const Vector3d& outward_normal_O,
+           bool is_weak) {
     const double weight = averaging_ == geometry::PatchAveraging::AreaWeighted ? area : 1.0;
     area_ += area;
     if (is_weak) weak_area_ += area;
     weight_ += weight;
     centroid_O_ += weight * centroid_O;
     outward_normal_O_ += weight * outward_normal_O;
-    polygon_C_.clear();
-    for (const Vector3d& corner_O : polygon_O) polygon_C_.push_back(X_CO_ * corner_O);
-    lowest_ = lowest_over_pad(pad_, polygon_C_, lowest_);
   }
 
   double area() const { return area_; }
   double weak_area() const { return weak_area_; }
-  double lowest() const { return lowest_; }  ///< Smallest height of a piece over the pad.
   Vector3d centroid_O() const { return centroid_O_ / weight_; }
   Vector3d outward_normal_O() const { return outward_normal_O_ / weight_; }
 
  private:
   geometry::PatchAveraging averaging_;
-  const hands::ContactPad& pad_;
-  RigidTransform X_CO_;
-  std::vector<Vector3d> polygon_C_;
   double area_ = 0.0;
   double weak_area_ = 0.0;
   double weight_ = 0.0;
-  double lowest_ = std::numeric_limits<double>::infinity();
   Vector3d centroid_O_ = Vector3d::Zero();
   Vector3d outward_normal_O_ = Vector3d::Zero();
 };
 
 }  // namespace
+
+std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L, const RigidTransform& X_OL,
+                              const geometry::MeshQuery& object, double enough) {
+  const auto nearest = geometry::nearest_points(object, pad_surface_L, X_OL, enough);
+  return nearest ? std::optional<double>(nearest->distance) : std::nullopt;
+}
 
 void ContactEstimationOptions::validate() const {
   internal::require(clip_thickness > 0.0 && std::isfinite(clip_thickness),
@@ -218,7 +159,7 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   const geometry::ConvexVolume volume_O =
       hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
   const RigidTransform X_CO = X_OC.inverse();
-  SurfaceMean mean(options.averaging, pad, X_CO);
+  SurfaceMean mean(options.averaging);
   std::vector<CutFace> cut_faces;
   for (const std::int32_t face : faces) {
     const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);
@@ -232,15 +173,14 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
     if (!cutting->empty() || is_thin) {
       cut_faces.push_back({face, std::move(*cutting)});
     } else {
-      mean.add(triangle, 0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized(),
-               is_weak(face));
+      mean.add(0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized(), is_weak(face));
     }
   }
   for (const CutFace& cut : cut_faces) {
     if (const auto piece =
             geometry::clip(geometry::corners(object.mesh(), cut.face), cut.cutting)) {
-      mean.add(piece->polygon, piece->area, piece->centroid,
-               geometry::face_normal(object.mesh(), cut.face), is_weak(cut.face));
+      mean.add(piece->area, piece->centroid, geometry::face_normal(object.mesh(), cut.face),
+               is_weak(cut.face));
     }
   }
   if (!(mean.area() > 0.0)) return std::nullopt;
@@ -252,8 +192,9 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   contact.inward_normal_O = -outward_normal_O.normalized();
   contact.area = mean.area();
   contact.pad_boundary_distance = hands::boundary_distance(pad, (X_CO * contact.point_O).head<2>());
-  contact.gap =
-      std::max(0.0, mean.lowest());  // corners are rounded and may lie a little behind the pad
+  contact.gap = pad_gap(geometry::MeshQuery(hands::pad_surface_L(hand, pad_index)),
+                        X_OC * pad.X_LC.inverse(), object, kNoLimit)
+                    .value_or(kNoLimit);
   contact.link = pad.link;
   contact.pad = pad_index;
   contact.finger = pad.finger;

@@ -9,6 +9,8 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/pad_surface.hpp"
+#include "internal/link_pieces.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -19,6 +21,7 @@ using geometry::RigidTransform;
 using geometry::shortest_decimal;
 
 constexpr std::size_t kLeafSize = 8;
+constexpr double kPieceSize = 0.012;  // [m]; about a fingertip: its sides and end are pieces apart
 
 /// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
 /// `spacing`; then one point of each cell of half that size, the first.
@@ -89,6 +92,10 @@ FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
       samples.reach = std::max(samples.reach, point.norm());
     }
     if (!samples.points_L.empty()) add_ball(samples, 0, samples.points_L.size());
+    pieces_.push_back(internal::pieces_of(link.mesh_L, kPieceSize));
+  }
+  for (int pad = 0; pad < static_cast<int>(hand.pads.size()); ++pad) {
+    pad_surfaces_.emplace_back(hands::pad_surface_L(hand, pad));
   }
 }
 

@@ -23,9 +23,8 @@ struct ContactEstimationOptions {
 /// Contact of one pad: the object's triangles clipped by the pad's clip volume. Point and normal
 /// are the mean over the pieces, the point projected to the nearest point of the surface; size is
 /// the pieces' total area; boundary distance is that of the point dropped onto the pad's plane; gap
-/// is the smallest height of a piece over the pad's surface along its z. Empty if no piece has
-/// area, or the mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip
-/// volume.
+/// is `pad_gap`. Empty if no piece has area, or the mean normal vanishes (shorter than 0.1), as on
+/// a plate thinner than the clip volume.
 ///
 /// `weak` says whether at least half of the pieces' area is on weak faces; it stays empty without
 /// `weak_regions`, and where those say that nothing is known (`WeakOutcome::TooCoarse`).
@@ -41,6 +40,13 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
                                         const geometry::MeshQuery& object,
                                         const ContactEstimationOptions& options,
                                         const geometry::WeakRegions* weak_regions = nullptr);
+
+/// The gap of a pad: smallest distance between its surface on the link's mesh
+/// (`hands::pad_surface_L`) and the object's surface [m]; zero where they cross. Of meshes, and in
+/// any direction: not the height over the modeled pad. Empty above `enough`. Rounded.
+std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L,
+                              const geometry::RigidTransform& X_OL,
+                              const geometry::MeshQuery& object, double enough);
 
 /// Contacts of all pads of the hand, in pad order (contacts without a target count: A35).
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "graspfit/geometry/distance_map.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
@@ -31,7 +32,17 @@ class FittingHand {
     std::vector<Eigen::Vector3d> points_L;
     double reach = 0.0;  ///< Largest distance of a point from the origin of the link's frame [m].
   };
+  /// A small piece of a link's surface, for nearest points in several places of one link.
+  struct Piece {
+    geometry::MeshQuery surface_L;
+    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();  ///< Of a ball that holds it [m].
+    double radius = 0.0;
+  };
   const hands::HandModel& model() const { return model_; }
+  /// The surface of a link, cut into pieces of at most a centimeter and a half, more or less.
+  const std::vector<Piece>& pieces(int link) const { return pieces_[link]; }
+  /// `hands::pad_surface_L` of a pad.
+  const geometry::MeshQuery& pad_surface(int pad) const { return pad_surfaces_[pad]; }
   const LinkSamples& samples(int link) const { return samples_[link]; }
   const hands::HandCollision& collision() const { return collision_; }
 
@@ -39,6 +50,8 @@ class FittingHand {
   hands::HandModel model_;
   hands::HandCollision collision_;
   std::vector<LinkSamples> samples_;
+  std::vector<std::vector<Piece>> pieces_;
+  std::vector<geometry::MeshQuery> pad_surfaces_;
 };
 
 /// The paper's d_min: smallest value of the distance map over the voxels that a link's surface

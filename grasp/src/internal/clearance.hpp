@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "graspfit/geometry/surface_proximity.hpp"
+#include "graspfit/grasp/fitting_hand.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/surroundings.hpp"
+
+namespace graspfit::grasp::internal {
+
+using LinkPoses = std::vector<hands::RigidTransform>;
+
+/// Two bodies near each other: a link, and the object, the surroundings or another link.
+struct NearPoints {
+  double distance = 0.0;  ///< [m]
+  int link = -1;
+  int other_link = -1;               ///< −1: the object or the surroundings.
+  Eigen::Vector3d point_O;           ///< On the link.
+  Eigen::Vector3d point_on_other_O;  ///< On the other link; else meaningless.
+  Eigen::Vector3d normal_O;          ///< Unit, from the other body to the link.
+};
+
+/// Distances of a hand from all that it must not touch, asked many times along a motion: bounds
+/// from earlier answers spare most questions. Deterministic in the sequence of questions.
+class Clearance {
+ public:
+  Clearance(const FittingHand& hand, const ObjectModel& object,
+            const SurroundingsCollision& surroundings);
+
+  /// All near points closer than `enough` [m], in a fixed order: pieces of links against the
+  /// object, links against the surroundings, links against each other. False, and `near` is
+  /// incomplete, as soon as something is closer than `least` [m].
+  bool find(const LinkPoses& X_OL, double enough, double least, std::vector<NearPoints>& near);
+
+  /// Links that are closer than `least` to something.
+  struct Blocked {
+    std::vector<int> links;        ///< By the object or the surroundings.
+    std::vector<int> by_own_hand;  ///< By another link.
+    bool is_empty() const { return links.empty() && by_own_hand.empty(); }
+  };
+  Blocked blocked(const LinkPoses& X_OL, double least);
+
+  /// Exact: no link shares a point with the object, the surroundings or another link.
+  bool is_clear_of_world(const LinkPoses& X_OL) const;
+  bool is_clear_of_itself(const LinkPoses& X_OL) const;
+
+ private:
+  /// What is known of a piece or a pair: at least this far apart in that relative pose.
+  struct Known {
+    double at_least = 0.0;
+    hands::RigidTransform X = hands::RigidTransform::Identity();
+    geometry::ProximitySeed seed;
+    bool is_known = false;
+  };
+  static bool surely_beyond(const Known& known, const hands::RigidTransform& X,
+                            const Eigen::Vector3d& center, double radius, double enough);
+
+  const FittingHand& hand_;
+  const ObjectModel& object_;
+  const SurroundingsCollision& surroundings_;
+  std::vector<std::pair<int, int>> pairs_;  ///< Links that may touch each other.
+  std::vector<Eigen::Vector3d> centers_L_;  ///< Of a ball around each link.
+  std::vector<double> radii_;
+  std::vector<std::vector<Known>> pieces_;
+  std::vector<Known> pair_known_;
+};
+
+}  // namespace graspfit::grasp::internal

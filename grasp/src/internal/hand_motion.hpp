@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "graspfit/hands/hand_configuration.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// Small motions of a hand as a vector of lengths: palm translation in O, palm rotation about a
+/// pivot (angle times a length), then one entry per joint that is free to move (times its lever).
+/// In these units a motion of 1 mm is one of at most about 1 mm of any point of the hand.
+///
+/// Free are the independent joints, and breakaway joints, which may go further closed than their
+/// coupling (`breakaway_rows`) and are then moved on their own.
+class HandMotion {
+ public:
+  HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns);
+
+  Eigen::Index size() const { return 6 + static_cast<Eigen::Index>(free_joints_.size()); }
+
+  /// Where the motions start from; `X_OL` its link poses; `pivot_O` is where the palm turns about.
+  void set(const hands::HandConfiguration& configuration,
+           const std::vector<hands::RigidTransform>& X_OL, const Eigen::Vector3d& pivot_O);
+
+  /// The derivative of direction · point, for a point of a link in O, over the motion.
+  Eigen::RowVectorXd row(int link, const Eigen::Vector3d& point_O,
+                         const Eigen::Vector3d& direction_O) const;
+  /// The derivative of axis · angular displacement of a link.
+  Eigen::RowVectorXd turn_row(int link, const Eigen::Vector3d& axis_O) const;
+
+  /// Least and greatest value of every entry: joint limits, and `trust` [m] each way.
+  void bounds(double trust, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
+
+  /// Rows g and right sides h with g · motion ≥ h ≤ 0: breakaway joints stay at least as closed as
+  /// their couplings ask.
+  void breakaway_rows(std::vector<Eigen::RowVectorXd>& g, std::vector<double>& h) const;
+
+  /// The motion that opens the joints between a link and the palm, each by `step` [m] at its end.
+  Eigen::VectorXd opening(int link, double step) const;
+
+  /// The configuration after a motion; couplings and limits hold.
+  hands::HandConfiguration moved(const Eigen::VectorXd& motion) const;
+
+ private:
+  double share_of_follower(int follower) const;
+
+  const hands::HandModel& hand_;
+  bool palm_translates_;
+  bool palm_turns_;
+  std::vector<int> free_joints_;
+  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, its leader's; −1: none.
+  std::vector<double> ratio_;        ///< Of that entry.
+  std::vector<double> lever_;        ///< Per joint [m/rad; 1 of a prismatic joint].
+  hands::HandConfiguration configuration_;
+  std::vector<hands::RigidTransform> X_OL_;
+  Eigen::Vector3d pivot_O_ = Eigen::Vector3d::Zero();
+};
+
+/// Length of the palm's turns, about half a hand [m/rad].
+inline constexpr double kTurnLever = 0.1;
+
+}  // namespace graspfit::grasp::internal
