@@ -61,7 +61,12 @@ std::optional<Vector3d> piercing(const Corners& a, const Corners& b) {
 class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough)
-      : a_(a.impl()), b_(b.impl()), X_AB_(X_AB), turn_(X_AB.linear().cwiseAbs()), bound_(enough) {}
+      : a_(a.impl()),
+        b_(b.impl()),
+        X_AB_(X_AB),
+        X_BA_(X_AB.inverse()),
+        turn_(X_AB.linear().cwiseAbs()),
+        bound_(enough) {}
 
   std::optional<SurfaceProximity> operator()(const ProximitySeed& seed) {
     if (seed.face_a >= 0 && seed.face_b >= 0) {
@@ -89,17 +94,24 @@ class Search {
 
   Corners mapped(const Corners& c) const { return {X_AB_ * c[0], X_AB_ * c[1], X_AB_ * c[2]}; }
 
-  /// Boxes of B are held against those of A in A's frame: too small a gap is safe, too large a one,
-  /// by rounding, no larger than that of the distances themselves.
+  /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B:
+  /// seen from one frame alone turned boxes grow, and with them the number of pairs looked at.
   double squared_gap(std::int32_t i, std::int32_t j) const {
     const BoxTree::Node& node_a = a_.tree.nodes[static_cast<std::size_t>(i)];
     const BoxTree::Node& node_b = b_.tree.nodes[static_cast<std::size_t>(j)];
     const Vector3d center = X_AB_ * Vector3d(0.5 * (node_b.lower + node_b.upper));
     const Vector3d half = turn_ * Vector3d(0.5 * (node_b.upper - node_b.lower));
-    return (node_a.lower - center - half)
-        .cwiseMax(center - half - node_a.upper)
-        .cwiseMax(0.0)
-        .squaredNorm();
+    const double in_a = (node_a.lower - center - half)
+                            .cwiseMax(center - half - node_a.upper)
+                            .cwiseMax(0.0)
+                            .squaredNorm();
+    if (in_a >= bound_ * bound_) return in_a;
+    const Vector3d center_a = X_BA_ * Vector3d(0.5 * (node_a.lower + node_a.upper));
+    const Vector3d half_a = turn_.transpose() * Vector3d(0.5 * (node_a.upper - node_a.lower));
+    return std::max(in_a, (node_b.lower - center_a - half_a)
+                              .cwiseMax(center_a - half_a - node_b.upper)
+                              .cwiseMax(0.0)
+                              .squaredNorm());
   }
 
   void push(std::vector<Pair>& open, std::int32_t i, std::int32_t j) const {
@@ -150,14 +162,26 @@ class Search {
   }
 
   void offer(const Vector3d& on_a, const Vector3d& on_b, std::int32_t face_a, std::int32_t face_b) {
-    const double distance = (on_a - on_b).norm();
-    if (!(distance < bound_)) return;
-    bound_ = distance;
-    best_ = {distance, on_a, on_b, face_a, face_b};
+    const double squared = (on_a - on_b).squaredNorm();
+    if (!(squared < bound_ * bound_)) return;
+    bound_ = std::sqrt(squared);
+    best_ = {bound_, on_a, on_b, face_a, face_b};
+  }
+
+  /// Whether the plane of `a` has all of `b` on one side and farther than the bound.
+  bool is_beyond_plane(const Corners& a, const Corners& b) const {
+    const Vector3d normal = (a[1] - a[0]).cross(a[2] - a[0]);
+    const double heights[3] = {normal.dot(b[0] - a[0]), normal.dot(b[1] - a[0]),
+                               normal.dot(b[2] - a[0])};
+    const double lowest = std::min({heights[0], heights[1], heights[2]});
+    const double highest = std::max({heights[0], heights[1], heights[2]});
+    const double beyond = std::max(lowest, -highest);
+    return beyond > 0.0 && beyond * beyond > bound_ * bound_ * normal.squaredNorm();
   }
 
   /// Of two triangles that do not cross: a corner and a triangle, or two edges, are nearest.
   void improve(const Corners& a, std::int32_t face_a, const Corners& b, std::int32_t face_b) {
+    if (is_beyond_plane(a, b) || is_beyond_plane(b, a)) return;
     for (const auto& [first, second] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
       if (const std::optional<Vector3d> point = piercing(*first, *second)) {
         offer(*point, *point, face_a, face_b);
@@ -177,6 +201,7 @@ class Search {
   const MeshQuery::Impl& a_;
   const MeshQuery::Impl& b_;
   const RigidTransform& X_AB_;
+  const RigidTransform X_BA_;
   const Eigen::Matrix3d turn_;
   double bound_;
   std::optional<SurfaceProximity> best_;

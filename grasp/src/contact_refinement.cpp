@@ -33,7 +33,8 @@ constexpr double kTargetWeight = 0.1;
 constexpr double kTiltWeight = 0.5;
 constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
 
-constexpr double kLongestStep = 6e-3;   // of every entry of a motion [m]
+constexpr double kLongestStep = 4e-3;   // of every entry of a motion [m]
+constexpr double kNearPerStep = 2.0;    // near is what is within so many times the step
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
 constexpr double kRoomPerGap = 0.1;     // kept to everything, per largest gap that is left
 constexpr double kMostRoom = 3e-4;      // [m]
@@ -114,7 +115,8 @@ class Refinement {
     result.stop = make_clear();
     if (result.stop == RefinementStop::Contact) result.stop = approach(result.iterations);
     result.configuration = configuration_;
-    result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_);
+    result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_,
+                                        object_.weak ? &*object_.weak : nullptr);
     for (Contact& contact : result.contacts) {
       contact.is_target = std::any_of(claims_.begin(), claims_.end(),
                                       [&](const Claim& claim) { return claim.pad == contact.pad; });
@@ -254,7 +256,7 @@ class Refinement {
     while (!all_touch()) {
       if (iterations == options_.max_iterations) return RefinementStop::IterationLimit;
       ++iterations;
-      if (!is_near_known) clearance_.find(X_OL_, 3.0 * trust, 0.0, near_);
+      if (!is_near_known) clearance_.find(X_OL_, kNearPerStep * trust, 0.0, near_);
       const double share = step(trust);
       is_near_known = share > 0.0;
       trust = share == 1.0 ? std::min(2.0 * trust, kLongestStep) : trust * std::max(share, 0.1);
@@ -275,7 +277,7 @@ class Refinement {
       const HandConfiguration candidate = motion_.moved(share * motion);
       if (!is_within_limits(candidate)) continue;
       const LinkPoses X_OL = hands::forward_kinematics(model_, candidate);
-      if (!clearance_.find(X_OL, 3.0 * std::max(trust * share, 2e-4), least_, trial_near_)) {
+      if (!clearance_.find(X_OL, kNearPerStep * trust, least_, trial_near_)) {
         continue;
       }
       // Nearest points tell to rounding; what counts is exact.
@@ -307,6 +309,8 @@ class Refinement {
       if (near.other_link >= 0) {
         row -= motion_.row(near.other_link, near.point_on_other_O, near.normal_O);
       }
+      // What even the longest step leaves clear needs no row.
+      if (near.distance - trust * row.cwiseAbs().sum() > room) continue;
       rows.require(row, room - near.distance);
       if (near.distance < room) rows.want(row, room - near.distance, kRoomWeight);
     }
