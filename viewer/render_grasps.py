@@ -3,8 +3,9 @@
 
 Reads DIR/grasps.json and, for each of its grasps, DIR/grasp_NNN.obj: the object (`o object`) and the
 posed links (`o link NAME`), in meters, in the object frame O. Each picture shows the grasp across the
-palm direction and facing the contact polygon, both in parallel projection, so that the scale bar holds
-everywhere. Pictures are written under a temporary name and renamed.
+palm direction and facing the contact polygon, and its pre-grasp, if it has one, across the palm direction;
+all in parallel projection, so that the scale bar holds everywhere. Table and obstacles
+(DIR/obstacle_1.ply, ...) are shown. Pictures are written under a temporary name and renamed.
 
 Uses Debian's python3-vtk9, under xvfb-run where that is installed. Exit code 1 with one line on bad
 input or a missing program.
@@ -95,9 +96,12 @@ def read_grasps(path):
         for name, value in measures.items():
             if not isinstance(value, (int, float)):
                 raise BadInput(f"{path}: {where}/{name} is {json.dumps(value)}, not a number")
+        wrench = item.get("wrench")
         grasps.append(
             {
                 "number": i + 1,
+                "epsilon": entry(wrench, "epsilon") if wrench else None,
+                "motions": pre_grasp_motions(item, entry, vector, where),
                 "contacts": contacts,
                 "stable_pairs": pairs,
                 "palm_center": [a + b for a, b in zip(translation, center)],
@@ -107,7 +111,11 @@ def read_grasps(path):
                 **measures,
             }
         )
+    surroundings = data.get("surroundings") or {"table_z_O_m": None, "obstacles": []}
+    names = [obstacle.get("used_mesh_file") for obstacle in entry(surroundings, "obstacles")]
     return {
+        "table_z": entry(surroundings, "table_z_O_m"),
+        "obstacles": [path.parent / name for name in names if name],
         "object_name": pathlib.PurePath(str(entry(data, "object", "file"))).stem,
         "center_of_mass": vector(
             entry(data, "object", "center_of_mass_O_m"), "/object/center_of_mass_O_m"
@@ -115,6 +123,33 @@ def read_grasps(path):
         "hand_name": str(entry(data, "hand", "name")),
         "grasps": grasps,
     }
+
+
+def pre_grasp_motions(item, entry, vector, where):
+    """Per link what takes its points from the grasp to the pre-grasp; None if there is none."""
+    pre_grasp = item.get("pre_grasp")
+    if not pre_grasp:
+        return None
+
+    def pose(owner, place, link):
+        found = entry(owner, "X_OL", link)
+        return entry(found, "rotation_wxyz"), vector(
+            entry(found, "translation_m"), f"{where}{place}/X_OL/{link}/translation_m"
+        )
+
+    motions = {}
+    for link in entry(pre_grasp, "X_OL"):
+        turn, shift = pose(item, "", link)
+        new_turn, new_shift = pose(pre_grasp, "/pre_grasp", link)
+        motions[link] = ([turn[0], *(-x for x in turn[1:])], shift, new_turn, new_shift)
+    return motions
+
+
+def moved(motion, point):
+    """A point of a link, in O, where the motion takes it."""
+    back, shift, turn, new_shift = motion
+    local = rotate(back, minus(point, shift))
+    return [a + b for a, b in zip(rotate(turn, local), new_shift)]
 
 
 def rotate(quaternion_wxyz, v):
@@ -221,6 +256,17 @@ def hull_edges(points):
     return edges
 
 
+def pre_grasp_parts(grasp, parts):
+    """The parts of the scene with the hand in its pre-grasp."""
+    result = []
+    for name, vertices, faces in parts:
+        motion = grasp["motions"].get(name.removeprefix("link "))
+        if motion and name != "object":
+            vertices = [moved(motion, vertex) for vertex in vertices]
+        result.append((name, vertices, faces))
+    return result
+
+
 # ------------------------------------------------------------------------------------------ picture
 
 
@@ -234,28 +280,31 @@ class Painter(Canvas):
     def paint(self, grasp, parts):
         """PNG file of one grasp as bytes."""
         window = self.window()
+        side = side_direction(grasp, self.up)
+        marks = self.marks
+        views = [
+            ("across the palm direction", side, parts, marks),
+            ("facing the contact polygon", polygon_normal(grasp), parts, marks),
+        ]
+        if grasp["motions"]:
+            # The marks are the grasp's: what the open hand is going to.
+            views.append(("pre-grasp", side, pre_grasp_parts(grasp, parts), self.contact_marks))
         points = [v for _, vertices, _ in parts for v in vertices]
         size = math.dist(*([pick(p[k] for p in points) for k in range(3)] for pick in (min, max)))
-        solids = [
-            self.solid(vertices, faces, "object", specular=0.05)
-            if name == "object"
-            else self.solid(vertices, faces, "hand")
-            for name, vertices, faces in parts
-            if faces
-        ]
-        views = [
-            ("across the palm direction", side_direction(grasp, self.up)),
-            ("facing the contact polygon", polygon_normal(grasp)),
-        ]
-        for column, (name, back) in enumerate(views):
-            left, right = 0.5 * column, 0.5 * (column + 1)
+        for column, (name, back, shown, make_marks) in enumerate(views):
+            left, right = column / len(views), (column + 1) / len(views)
             up = [float(k == self.up) for k in range(3)]
             if abs(dot(up, back)) > 0.97:
                 up = up[-1:] + up[:-1]
-            aspect = 0.5 * self.width / ((TOP - BOTTOM) * self.height)
+            aspect = self.width / (len(views) * (TOP - BOTTOM) * self.height)
+            points = [v for _, vertices, _ in shown for v in vertices]
             camera, height_m = self.camera(back, up, points, aspect)
             self.add_view(
-                window, (left, BOTTOM, right, TOP), camera, solids, lambda: self.marks(grasp, size)
+                window,
+                (left, BOTTOM, right, TOP),
+                camera,
+                self.solids(shown),
+                lambda make_marks=make_marks: make_marks(grasp, size),
             )
             self.add_axes(window, (left + 0.008, 0.056), camera)
             view_pixels = (TOP - BOTTOM) * SUPERSAMPLING * self.height
@@ -264,6 +313,47 @@ class Painter(Canvas):
             )
         self.add_caption(window, grasp)
         return self.png(window)
+
+    def solids(self, parts):
+        """Object, links and what stands around them."""
+        made = [
+            self.solid(vertices, faces, "object", specular=0.05)
+            if name == "object"
+            else self.solid(vertices, faces, "hand")
+            for name, vertices, faces in parts
+            if faces
+        ]
+        for file in self.scene["obstacles"]:
+            reader = self.vtk.vtkPLYReader()
+            reader.SetFileName(str(file))
+            made.append(self.actor(reader, COLORS["surroundings"]))
+        if self.scene["table_z"] is not None:
+            made.append(self.table(next(v for name, v, _ in parts if name == "object")))
+        return made
+
+    def table(self, object_vertices):
+        """The part of the table around the object, seen through."""
+        spans = [(min(v[k] for v in object_vertices), max(v[k] for v in object_vertices)) for k in (0, 1)]
+        margin = 0.75 * max(high - low for low, high in spans)
+        (x_low, x_high), (y_low, y_high) = [(low - margin, high + margin) for low, high in spans]
+        z = self.scene["table_z"]
+        # A slab, since views across a palm that looks down see a plane edge on.
+        corners = [
+            (x, y, top)
+            for top in (z - 0.03 * margin, z)
+            for x, y in ((x_low, y_low), (x_high, y_low), (x_high, y_high), (x_low, y_high))
+        ]
+        sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
+        table = self.solid(corners, [[3, 2, 1, 0], [4, 5, 6, 7], *sides], "surroundings", specular=0.0)
+        table.GetProperty().SetOpacity(0.45)
+        return table
+
+    def contact_marks(self, grasp, size):
+        """Where the contacts will be."""
+        return [
+            self.ball(contact["point"], 0.0115 * size, COLORS["contact"])
+            for contact in grasp["contacts"]
+        ]
 
     def marks(self, grasp, size):
         """Contacts with their inward normals, the polygon's edges, palm direction, center of mass."""
@@ -276,8 +366,8 @@ class Painter(Canvas):
             stable = (i, j) in grasp["stable_pairs"]
             color = COLORS["stable" if stable else "edge"]
             marks.append(self.tube(points[i], points[j], (0.0032 if stable else 0.0022) * size, color))
+        marks += self.contact_marks(grasp, size)
         for contact in grasp["contacts"]:
-            marks.append(self.ball(contact["point"], 0.0115 * size, COLORS["contact"]))
             marks += self.arrow(
                 contact["point"], contact["normal"], 0.085 * size, 0.003 * size, COLORS["contact"]
             )
@@ -293,8 +383,10 @@ class Painter(Canvas):
         title = f"{scene['object_name']}, {scene['hand_name']} hand, grasp {grasp['number']}"
         measures = (
             f"M {grasp['m']:.3f}   (M1 {grasp['m1']:.3f}, M2 {grasp['m2']:.3f}, M3 {grasp['m3']:.3f})"
-            f"   {grasp['state']}"
         )
+        if grasp["epsilon"] is not None:
+            measures += f"   epsilon {grasp['epsilon']:.3f}"
+        measures += f"   {grasp['state']}"
         if grasp["penetration"] > 0.0:
             measures += f"   penetration {1000 * grasp['penetration']:.2f} mm"
         self.text(top, title, 24 * s, 40 * s, 19, COLORS["ink"], bold=True)
@@ -342,6 +434,9 @@ def main():
         scene = read_grasps(file)
         for grasp in scene["grasps"]:
             path = file.parent / f"grasp_{grasp['number']:03d}.obj"
+            if not path.is_file():
+                raise BadInput(f"{path}: No such file")
+        for path in scene["obstacles"]:
             if not path.is_file():
                 raise BadInput(f"{path}: No such file")
         go_under_xvfb()

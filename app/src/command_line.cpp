@@ -61,6 +61,12 @@ void add_option(po::options_description& options, const std::string& name,
   options.add_options()(name.c_str(), value, description.c_str());
 }
 
+void add_repeatable_option(po::options_description& options, const std::string& name,
+                           const std::string& value_name, const std::string& description) {
+  options.add_options()(name.c_str(), po::value<std::vector<std::string>>()->value_name(value_name),
+                        description.c_str());
+}
+
 void add_switch(po::options_description& options, const std::string& name,
                 const std::string& description) {
   options.add_options()(name.c_str(), description.c_str());
@@ -114,10 +120,14 @@ int Flags::integer(const std::string& name) const {
   return parse_number<int>(name, text(name), "an integer");
 }
 
-bool Flags::yes_or_no(const std::string& name) const {
-  if (text(name) == "yes") return true;
-  if (text(name) == "no") return false;
-  throw UsageError("--" + name + " \"" + text(name) + "\" is neither yes nor no");
+bool Flags::either(const std::string& name, const char* yes, const char* no) const {
+  if (text(name) == yes) return true;
+  if (text(name) == no) return false;
+  throw UsageError("--" + name + " \"" + text(name) + "\" is neither " + yes + " nor " + no);
+}
+
+std::vector<std::string> Flags::texts(const std::string& name) const {
+  return has(name) ? values_[name].as<std::vector<std::string>>() : std::vector<std::string>();
 }
 
 std::uint64_t Flags::unsigned_integer(const std::string& name) const {
@@ -163,7 +173,7 @@ std::string help_text(const Command& command) {
   if (!command.epilog.empty()) text << '\n' << command.epilog;
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
           "line says why,\nnothing is written, except that grasps are kept if drawing their "
-          "pictures fails); 3 no grasp\nfound; 4 evaluate: M differs.\n";
+          "pictures fails); 3 no grasp\nfound; 4 evaluate: measures differ.\n";
   return text.str();
 }
 

@@ -30,6 +30,11 @@ void add_option(boost::program_options::options_description& options, const std:
                 const std::string& value_name, const std::optional<std::string>& fallback,
                 const std::string& description);
 
+/// An option that may be given any number of times.
+void add_repeatable_option(boost::program_options::options_description& options,
+                           const std::string& name, const std::string& value_name,
+                           const std::string& description);
+
 /// An option that is there or not.
 void add_switch(boost::program_options::options_description& options, const std::string& name,
                 const std::string& description);
@@ -53,7 +58,10 @@ class Flags {
   double number(const std::string& name) const;
   std::optional<double> optional_number(const std::string& name) const;
   int integer(const std::string& name) const;
-  bool yes_or_no(const std::string& name) const;
+  /// Whether the text is `yes`, not `no`.
+  bool either(const std::string& name, const char* yes, const char* no) const;
+  bool yes_or_no(const std::string& name) const { return either(name, "yes", "no"); }
+  std::vector<std::string> texts(const std::string& name) const;  ///< Of a repeatable option.
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
   std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.

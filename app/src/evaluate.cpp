@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -7,9 +8,7 @@
 #include "commands.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
-#include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
-#include "graspfit/hands/hand_collision.hpp"
 #include "text_table.hpp"
 
 namespace graspfit::app {
@@ -18,16 +17,23 @@ namespace {
 namespace po = boost::program_options;
 using geometry::shortest_decimal;
 
-/// Largest difference of M that counts as the same. Poses are stored as quaternions, which moves
-/// them by about 1e-16 m; M follows within about 1e-12.
+/// Largest difference of M, epsilon and gaps [m] that counts as the same. Poses are stored as
+/// quaternions, which moves them by about 1e-16 m; the measures follow within about 1e-12.
 constexpr double kTolerance = 1e-9;
+
+constexpr const char* kObjectFile = "the object's file";
 
 Command evaluate_command() {
   Command command{
       "evaluate", "GRASPS.json",
-      "Computes contacts and measures of every grasp in a file again, from the meshes of "
-      "object and\nhand alone, and compares. The hashes of all files are checked first.\n",
-      option_group("Options"), ""};
+      "Computes contacts, M, epsilon, gaps and penetration of every grasp in a file again, from "
+      "the "
+      "meshes\nof object, obstacles and hand alone, and compares. The hashes of all files are "
+      "checked first.\n",
+      option_group("Options"),
+      "The same: M, epsilon and the largest gap of a requested contact within 1e-9, and equal "
+      "answers to\nwhether every requested contact is there and whether the hand meets object, "
+      "itself or surroundings.\n"};
   add_option(command.options, "object", "FILE", std::nullopt,
              "the object's file, if it is no longer where the grasp file says");
   add_switch(command.options, "json", "print JSON instead of a table");
@@ -39,17 +45,49 @@ struct Comparison {
   grasp::Grasp stored;
   grasp::Grasp computed;
   double m_difference = 0.0;
-  double largest_difference = 0.0;  ///< Over M, M1, M2, M3 and, if as many, contact points [m].
+  double epsilon_difference = 0.0;
+  double gap_difference = 0.0;      ///< Of the largest claimed one [m].
+  double largest_difference = 0.0;  ///< Over those, M1, M2, M3 and, if as many, contact points [m].
   bool has_same_contacts = false;   ///< As many, on the same pads.
+  bool has_same_answers = false;    ///< What makes a grasp valid, but for M.
+
+  bool is_same() const {
+    return m_difference <= kTolerance && epsilon_difference <= kTolerance &&
+           gap_difference <= kTolerance && has_same_answers;
+  }
 };
+
+/// In words, for the first grasp that differs.
+std::string difference_text(const Comparison& comparison) {
+  if (comparison.m_difference > kTolerance) {
+    return "M differs by " + shortest_decimal(comparison.m_difference);
+  }
+  if (comparison.epsilon_difference > kTolerance) {
+    return "epsilon differs by " + shortest_decimal(comparison.epsilon_difference);
+  }
+  if (comparison.gap_difference > kTolerance) {
+    return "the largest gap differs by " + shortest_decimal(comparison.gap_difference) + " m";
+  }
+  return "what it touches differs";
+}
 
 Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   Comparison comparison{stored, computed};
   const grasp::ContactQuality& a = stored.quality;
   const grasp::ContactQuality& b = computed.quality;
   comparison.m_difference = std::abs(a.m - b.m);
-  comparison.largest_difference = std::max({comparison.m_difference, std::abs(a.m1 - b.m1),
-                                            std::abs(a.m2 - b.m2), std::abs(a.m3 - b.m3)});
+  comparison.epsilon_difference = std::abs(stored.wrench.epsilon - computed.wrench.epsilon);
+  comparison.gap_difference =
+      std::abs(grasp::largest_claimed_gap(stored) - grasp::largest_claimed_gap(computed));
+  comparison.largest_difference =
+      std::max({comparison.m_difference, std::abs(a.m1 - b.m1), std::abs(a.m2 - b.m2),
+                std::abs(a.m3 - b.m3), comparison.epsilon_difference, comparison.gap_difference});
+  const auto answers = [](const grasp::Grasp& grasp) {
+    const grasp::GraspPenetration& penetration = grasp.penetration;
+    return std::array{grasp.has_all_contacts, penetration.object_intersects,
+                      penetration.self_intersects, penetration.surroundings_touched};
+  };
+  comparison.has_same_answers = answers(stored) == answers(computed);
   comparison.has_same_contacts =
       std::equal(stored.contacts.begin(), stored.contacts.end(), computed.contacts.begin(),
                  computed.contacts.end(),
@@ -64,9 +102,9 @@ Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   return comparison;
 }
 
-/// The object's file: where the user says, where the record says, or beside the grasp file.
-std::filesystem::path find_object(const Flags& flags, const grasp::ObjectRecord& record) {
-  if (flags.has("object")) return flags.text("object");
+/// A recorded mesh file: where the record says, or beside the grasp file.
+std::filesystem::path find_mesh(const Flags& flags, const grasp::ObjectRecord& record,
+                                const std::string& what) {
   const std::filesystem::path file = record.file;
   const std::filesystem::path beside =
       std::filesystem::path(flags.positional()).parent_path() / file.filename();
@@ -74,21 +112,30 @@ std::filesystem::path find_object(const Flags& flags, const grasp::ObjectRecord&
   for (const std::filesystem::path& candidate : {file, beside}) {
     if (std::filesystem::exists(candidate, error)) return candidate;
   }
-  throw geometry::IoError("the object's file " + record.file +
-                          " is not there; --object FILE says where it is");
+  throw geometry::IoError(what + " " + record.file + " is not there, nor beside the grasp file" +
+                          (what == kObjectFile ? "; --object FILE says where it is" : ""));
+}
+
+grasp::Surroundings find_surroundings(const Flags& flags, const grasp::GraspFile& file) {
+  std::vector<std::filesystem::path> files;
+  for (const grasp::ObjectRecord& obstacle : file.surroundings.obstacles) {
+    files.push_back(find_mesh(flags, obstacle, "the obstacle"));
+  }
+  return grasp::read_surroundings(file.surroundings, files);
 }
 
 std::string table_of(const std::vector<Comparison>& comparisons) {
   std::vector<std::vector<std::string>> rows = {{"rank", "M stored", "M", "M1", "M2", "M3",
-                                                 "contacts", "gap_mm", "penetration_mm", "valid",
-                                                 "difference"}};
+                                                 "epsilon stored", "epsilon", "contacts", "gap_mm",
+                                                 "penetration_mm", "valid", "difference"}};
   for (const Comparison& comparison : comparisons) {
     const grasp::Grasp& grasp = comparison.computed;
     rows.push_back({std::to_string(rows.size()), fixed_decimal(comparison.stored.quality.m, 6),
                     fixed_decimal(grasp.quality.m, 6), fixed_decimal(grasp.quality.m1, 4),
                     fixed_decimal(grasp.quality.m2, 4), fixed_decimal(grasp.quality.m3, 4),
-                    std::to_string(grasp.contacts.size()),
-                    fixed_decimal(1000.0 * grasp::largest_contact_gap(grasp), 3),
+                    fixed_decimal(comparison.stored.wrench.epsilon, 6),
+                    fixed_decimal(grasp.wrench.epsilon, 6), std::to_string(grasp.contacts.size()),
+                    fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no",
                     shortest_decimal(comparison.largest_difference)});
@@ -103,8 +150,12 @@ std::string json_of(const std::vector<Comparison>& comparisons, double largest_m
            ", \"m2\": " + shortest_decimal(grasp.quality.m2) +
            ", \"m3\": " + shortest_decimal(grasp.quality.m3) +
            ", \"num_contacts\": " + std::to_string(grasp.contacts.size()) +
+           ", \"epsilon\": " + shortest_decimal(grasp.wrench.epsilon) +
+           ", \"largest_claimed_gap_m\": " + shortest_decimal(grasp::largest_claimed_gap(grasp)) +
            ", \"largest_contact_gap_m\": " + shortest_decimal(grasp::largest_contact_gap(grasp)) +
            ", \"largest_penetration_m\": " + shortest_decimal(grasp::largest_penetration(grasp)) +
+           ", \"surroundings_touched\": " +
+           (grasp.penetration.surroundings_touched ? "true" : "false") +
            ", \"usable\": " + (grasp.is_usable() ? "true" : "false") +
            ", \"valid\": " + (grasp.is_valid() ? "true" : "false") + "}";
   };
@@ -115,6 +166,7 @@ std::string json_of(const std::vector<Comparison>& comparisons, double largest_m
     text += separator + std::string("    {\"stored\": ") + quality(comparison.stored) +
             ",\n     \"computed\": " + quality(comparison.computed) +
             ",\n     \"same_contacts\": " + (comparison.has_same_contacts ? "true" : "false") +
+            ", \"same\": " + (comparison.is_same() ? "true" : "false") +
             ", \"largest_difference\": " + shortest_decimal(comparison.largest_difference) + "}";
     separator = ",\n";
   }
@@ -131,31 +183,15 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const grasp::GraspFile file = grasp::read_grasps(flags.positional());
-  const geometry::TriangleMesh mesh =
-      grasp::read_object(file.object, find_object(flags, file.object));
-  const geometry::MeshQuery object(mesh);
-  const hands::HandCollision collision(file.hand);
-  const grasp::QualityContext context = grasp::quality_context(file, mesh);
-  grasp::RequestedParts requested;
-  for (const std::string& name : file.fingers) {
-    requested.fingers.push_back(file.hand.finger_index(name));
-  }
-  const grasp::SurroundingsCollision surroundings(file.hand, {});
-  const grasp::MeasuringScene scene{
-      .hand = file.hand,
-      .collision = collision,
-      .object = object,
-      .surroundings = surroundings,
-      .wrench_object = grasp::wrench_object(mesh, context.center_of_mass_O),
-      .quality_context = context,
-      .quality_options = grasp::quality_options(file),
-      .contact_options = grasp::contact_options(file)};
+  const geometry::TriangleMesh mesh = grasp::read_object(
+      file.object, flags.has("object") ? std::filesystem::path(flags.text("object"))
+                                       : find_mesh(flags, file.object, kObjectFile));
+  const grasp::RecordedScene scene(file, mesh, find_surroundings(flags, file));
 
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;
   for (const grasp::Grasp& stored : file.grasps) {
-    comparisons.push_back(
-        compare(stored, grasp::measure_grasp(scene, stored.configuration, requested)));
+    comparisons.push_back(compare(stored, scene.measure(stored.configuration)));
     largest_m_difference = std::max(largest_m_difference, comparisons.back().m_difference);
   }
   if (flags.has("json")) {
@@ -164,10 +200,12 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
     std::printf("%slargest difference of M: %s\n", table_of(comparisons).c_str(),
                 shortest_decimal(largest_m_difference).c_str());
   }
-  if (largest_m_difference <= kTolerance) return kSuccess;
-  std::fprintf(stderr, "graspfit evaluate: %s: M differs by %s, more than %s\n",
-               flags.positional().c_str(), shortest_decimal(largest_m_difference).c_str(),
-               shortest_decimal(kTolerance).c_str());
+  const auto different =
+      std::find_if_not(comparisons.begin(), comparisons.end(),
+                       [](const Comparison& comparison) { return comparison.is_same(); });
+  if (different == comparisons.end()) return kSuccess;
+  std::fprintf(stderr, "graspfit evaluate: %s: grasp %td: %s\n", flags.positional().c_str(),
+               different - comparisons.begin() + 1, difference_text(*different).c_str());
   return kDiffers;
 }
 

@@ -15,11 +15,12 @@ using geometry::shortest_decimal;
 constexpr std::array<std::pair<const char*, double>, 4> kMeshUnits = {
     {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
 
-double meters_per(const std::string& unit) {
+double meters_per(const Flags& flags, const std::string& flag) {
+  const std::string& unit = flags.text(flag);
   for (const auto& [name, meters] : kMeshUnits) {
     if (unit == name) return meters;
   }
-  throw UsageError("--mesh-unit \"" + unit + "\" is not one of m|cm|mm|in");
+  throw UsageError("--" + flag + " \"" + unit + "\" is not one of m|cm|mm|in");
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags) {
     throw UsageError("--mesh-unit and --longest exclude each other");
   }
   grasp::ObjectReadOptions options;
-  if (flags.has("mesh-unit")) options.meters_per_file_unit = meters_per(flags.text("mesh-unit"));
+  if (flags.has("mesh-unit")) options.meters_per_file_unit = meters_per(flags, "mesh-unit");
   options.longest_extent = flags.optional_number("longest");
   if (options.longest_extent && !(*options.longest_extent > 0.0)) {
     throw UsageError("--longest " + flags.text("longest") + " is not a length above 0 m");
@@ -82,6 +83,41 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags) {
   }
   options.validate();
   return options;
+}
+
+boost::program_options::options_description surroundings_options() {
+  boost::program_options::options_description options =
+      option_group("What the hand must not touch");
+  add_option(options, "table", "Z", std::nullopt,
+             "a table: everything at or below this z of the object's frame is solid [m] [R, A45]");
+  add_repeatable_option(options, "obstacle", "FILE",
+                        "a solid in the object's frame; may be given again for further ones "
+                        "[R, A45]");
+  add_option(options, "obstacle-unit", "m|cm|mm|in", "m", "of the numbers in those files");
+  return options;
+}
+
+LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O) {
+  LoadedSurroundings loaded;
+  loaded.record.table_z_O = loaded.surroundings.table_z_O = flags.optional_number("table");
+  const double top = geometry::bounding_box(object_O).max().z();
+  if (loaded.record.table_z_O && top <= *loaded.record.table_z_O) {
+    throw UsageError("--table " + flags.text("table") +
+                     " is above the whole object, whose highest z is " + shortest_decimal(top) +
+                     " m");
+  }
+  if (!flags.has("obstacle") && !flags.is_default("obstacle-unit")) {
+    throw UsageError("--obstacle-unit means nothing without --obstacle");
+  }
+  grasp::ObjectReadOptions options;
+  options.meters_per_file_unit = meters_per(flags, "obstacle-unit");
+  for (const std::string& file : flags.texts("obstacle")) {
+    grasp::ObjectFile obstacle = grasp::read_object_file(file, options);
+    require_solid(obstacle);
+    loaded.record.obstacles.push_back(obstacle.record);
+    loaded.surroundings.obstacles.emplace_back(std::move(obstacle.mesh));
+  }
+  return loaded;
 }
 
 grasp::ObjectFile load_object(const Flags& flags) {

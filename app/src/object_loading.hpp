@@ -4,7 +4,9 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 
 namespace graspfit::app {
 
@@ -13,6 +15,19 @@ boost::program_options::options_description object_options();
 
 /// What those flags say. @throws UsageError, InvalidInput.
 grasp::ObjectReadOptions object_read_options(const Flags& flags);
+
+/// The flags of what stands around the object.
+boost::program_options::options_description surroundings_options();
+
+/// What stands around the object: as read, and as recorded.
+struct LoadedSurroundings {
+  grasp::Surroundings surroundings;
+  grasp::SurroundingsRecord record;
+};
+
+/// Reads what those flags name. `object_O` is what is to be grasped: one that lies wholly under the
+/// table is refused. @throws UsageError, InvalidInput, IoError, DegenerateGeometry.
+LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O);
 
 /// Reads the object that the command names.
 grasp::ObjectFile load_object(const Flags& flags);

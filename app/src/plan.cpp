@@ -29,9 +29,11 @@ namespace po = boost::program_options;
 
 Command plan_command() {
   po::options_description output = option_group("Output");
-  add_option(output, "out", "DIR", std::nullopt,
-             "write grasps.json, grasps.csv and every grasp as grasp_NNN.obj and .ply there; "
-             "without it only the table is printed");
+  add_option(
+      output, "out", "DIR", std::nullopt,
+      "write grasps.json, grasps.csv, every grasp as grasp_NNN.obj and .ply, and the meshes as "
+      "they were used (object.ply, link_NN_NAME.ply, obstacle_N.ply) there; without it only "
+      "the table is printed");
   add_switch(output, "pictures", "also grasp_NNN.png (needs python3-vtk9)");
   add_switch(output, "page", "also grasps.html, a page that any browser opens from disk");
   add_switch(output, "quiet", "no progress bar and no table");
@@ -44,12 +46,17 @@ Command plan_command() {
       option_group(),
       "Lengths are meters and directions are in the object's own frame unless a flag's "
       "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
-      "true meshes, every requested finger touches.\n"};
-  command.options.add(object_options()).add(planner_options()).add(score_map_options()).add(output);
+      "true meshes, every requested finger and\nthe palm, if requested, touches. epsilon: in "
+      "GraspIt!'s convention. gap_mm: the largest of a\nrequested contact.\n"};
+  command.options.add(object_options())
+      .add(surroundings_options())
+      .add(planner_options())
+      .add(score_map_options())
+      .add(output);
   return command;
 }
 
-/// "missed contact 300, no stable pair 88": outcomes that are not grasps, most frequent first.
+/// "missed contact 300, no stable pair 88": outcomes of attempts, most frequent first.
 std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
   std::vector<std::pair<std::int64_t, std::string>> counts;
   for (const auto& [outcome, count] : statistics.outcomes) {
@@ -57,6 +64,9 @@ std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
   }
   for (const auto& [reason, count] : statistics.target_failures) {
     if (count > 0) counts.emplace_back(-count, "of these " + reason);
+  }
+  if (statistics.duplicates > 0) {
+    counts.emplace_back(-statistics.duplicates, "of these left out as too alike");
   }
   std::sort(counts.begin(), counts.end());
   std::string text;
@@ -68,12 +78,13 @@ std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
 
 std::string table_of(const std::vector<grasp::Grasp>& grasps) {
   std::vector<std::vector<std::string>> rows = {
-      {"rank", "M", "M1", "M2", "M3", "contacts", "gap_mm", "penetration_mm", "valid"}};
+      {"rank", "M", "M1", "M2", "M3", "epsilon", "contacts", "gap_mm", "penetration_mm", "valid"}};
   for (const grasp::Grasp& grasp : grasps) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
-                    fixed_decimal(grasp.quality.m3, 4), std::to_string(grasp.contacts.size()),
-                    fixed_decimal(1000.0 * grasp::largest_contact_gap(grasp), 3),
+                    fixed_decimal(grasp.quality.m3, 4), fixed_decimal(grasp.wrench.epsilon, 4),
+                    std::to_string(grasp.contacts.size()),
+                    fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});
   }
@@ -87,14 +98,33 @@ std::string grasp_name(std::size_t rank) {
 }
 
 bool is_plan_file(const std::string& name) {
-  static const std::regex pattern(R"(grasps\.(json|csv|html)|grasp_\d{3,}\.(obj|ply|png))");
+  static const std::regex pattern(
+      R"(grasps\.(json|csv|html)|grasp_\d{3,}\.(obj|ply|png))"
+      R"(|object\.ply|obstacle_\d+\.ply|link_\d{2,}_[A-Za-z0-9_-]*\.ply)");
   return std::regex_match(name, pattern);
 }
 
-void write_files(const grasp::GraspFile& file, const grasp::ObjectModel& object, const Flags& flags,
-                 OutputFolder& out, ProgressBar& progress) {
+/// Why the search ended, for the last line.
+const char* stop_text(grasp::PlannerStop stop) {
+  switch (stop) {
+    case grasp::PlannerStop::Count:
+      return "stopped at the wanted number";
+    case grasp::PlannerStop::Attempts:
+      return "all attempts made";
+    case grasp::PlannerStop::Exhausted:
+      return "every set of targets tried";
+    case grasp::PlannerStop::WallClock:
+      return "stopped at the wall-clock limit";
+  }
+  return "";
+}
+
+void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
+                 const grasp::Surroundings& surroundings, const Flags& flags, OutputFolder& out,
+                 ProgressBar& progress) {
   const fs::path& folder = out.staging();
   progress.show("writing files");
+  file.used_meshes = grasp::write_used_meshes(folder, file.hand, object.mesh(), surroundings);
   grasp::write_grasps(folder / "grasps.json", file);
   geometry::write_file_atomically(folder / "grasps.csv", grasp::to_csv(file));
   for (std::size_t i = 0; i < file.grasps.size(); ++i) {
@@ -114,6 +144,7 @@ void write_files(const grasp::GraspFile& file, const grasp::ObjectModel& object,
     page.grasps = file.grasps;
     page.model = &object;
     page.clip_thickness = file.clip_thickness;
+    page.surroundings = &surroundings;
     viewer::write_page(folder / "grasps.html", page);
   }
   if (flags.has("pictures")) {
@@ -145,7 +176,15 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
   }
-  grasp::requested_parts(hand, options);  // what the hand cannot do is said before any work
+  // What the hand cannot do is said before any work.
+  if (grasp::requested_parts(hand, options).palm && hand.palm.pad < 0) {
+    throw geometry::InvalidInput("hand " + hand.name + " has no pad on its palm to touch with" +
+                                 (flags.has("palm") ? "" : "; --no-palm asks for none"));
+  }
+  const int num_threads = flags.integer("threads");
+  if (num_threads < 0) {
+    throw UsageError("--threads " + flags.text("threads") + " is not a number from 0");
+  }
   std::optional<OutputFolder> out;
   if (flags.has("out")) {
     out.emplace(flags.text("out"), is_plan_file);
@@ -159,13 +198,15 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   progress.show("reading " + flags.positional());
   const grasp::ObjectFile object_file = load_object(flags);
   require_solid(object_file);
+  const LoadedSurroundings around = load_surroundings(flags, object_file.mesh);
   progress.show("voxels and contact scores");
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
   const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
   grasp::PlannerResult result = grasp::plan_grasps(
-      object, hand, options, {}, 0, [&](std::int64_t attempts, std::int64_t grasps) {
+      object, hand, options, around.surroundings, num_threads,
+      [&](std::int64_t attempts, std::int64_t grasps) {
         const std::string attempt =
             "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
         const std::string found = std::to_string(grasps) + " grasps";
@@ -181,20 +222,20 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
 
   if (result.grasps.empty()) {
     const std::string accepted(grasp::name_of(options.acceptance));
-    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s in %lld attempts: %s\n",
+    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s in %lld attempts (%s): %s\n",
                  flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
-                 static_cast<long long>(result.statistics.attempts),
+                 static_cast<long long>(result.statistics.attempts), stop_text(result.stop),
                  outcomes_text(result.statistics).c_str());
     return kNoGrasp;
   }
-  const grasp::GraspFile file =
-      grasp::make_grasp_file(object_file.record, hand, options, object, result);
-  if (out) write_files(file, object, flags, *out, progress);
+  grasp::GraspFile file =
+      grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
+  if (out) write_files(file, object, around.surroundings, flags, *out, progress);
   progress.clear();
   if (!flags.has("quiet")) {
-    std::printf("%s%zu of %d grasps in %lld attempts: %s\n", table_of(file.grasps).c_str(),
+    std::printf("%s%zu of %d grasps in %lld attempts (%s): %s\n", table_of(file.grasps).c_str(),
                 file.grasps.size(), options.count,
-                static_cast<long long>(result.statistics.attempts),
+                static_cast<long long>(result.statistics.attempts), stop_text(result.stop),
                 outcomes_text(result.statistics).c_str());
     if (out) std::printf("written to %s\n", out->target().c_str());
   }

@@ -58,11 +58,10 @@ po::options_description score_map_options() {
   return options;
 }
 
-po::options_description planner_options() {
-  const PlannerOptions defaults;
-  const grasp::TargetOptions& targets = defaults.targets;
-  const grasp::QualityOptions& quality = defaults.quality;
+namespace {
 
+po::options_description request_options() {
+  const PlannerOptions defaults;
   po::options_description request = option_group("Hand and request");
   add_option(request, "hand", "NAME|FILE", "barrett",
              "a shipped hand (graspfit hand list), or the description of any hand: URDF, MJCF or "
@@ -73,11 +72,22 @@ po::options_description planner_options() {
   add_integer(request, "contacts", static_cast<std::uint64_t>(defaults.num_contacts),
               "without --fingers: how many fingers must touch, the thumb first; at least 2 and, if "
               "not given, no more than the hand has [P]");
-  add_choice(request, "style", defaults.style, "where targets go: to the fingertips [P]");
+  add_choice(request, "style", defaults.style,
+             "where targets go: to the fingertips; power: also to the palm, and links behind the "
+             "tips are closed onto the object [P; how: R, A39]");
+  add_switch(request, "palm", "the palm must touch too, one target more [P]; power grasps: always");
+  add_switch(request, "no-palm", "power grasps: the palm need not touch");
   add_option(request, "approach", "X,Y,Z", std::nullopt,
              "wanted direction of the palm, toward the object, in the object's frame [P; reading: "
              "R, A23]");
+  add_number(request, "approach-angle-deg", defaults.approach_angle / kRadiansPerDegree,
+             "with --approach: largest angle of the palm's direction from it, above 0 to 180 "
+             "[R, A23]");
+  return request;
+}
 
+po::options_description search_options() {
+  const PlannerOptions defaults;
   po::options_description search = option_group("Search");
   add_integer(search, "count", static_cast<std::uint64_t>(defaults.count),
               "grasps to find, at least 1");
@@ -94,7 +104,36 @@ po::options_description planner_options() {
   add_option(search, "wall-clock-limit-s", "SECONDS", std::nullopt,
              "also stop after this time; results then depend on the machine, and say so");
 
+  add_integer(search, "threads", 0,
+              "attempts side by side; 0: as many as the machine has; the grasps do not depend on "
+              "it");
+  return search;
+}
+
+po::options_description distinct_options() {
+  const PlannerOptions defaults;
+  po::options_description distinct =
+      option_group("Two grasps are different if any of these is exceeded");
+  add_number(distinct, "distinct-translation-mm", defaults.distinct.translation * 1000.0,
+             "between their palm centers [R]");
+  add_number(distinct, "distinct-rotation-deg", defaults.distinct.rotation / kRadiansPerDegree,
+             "between their palms' orientations [R]");
+  add_number(distinct, "distinct-joints", defaults.distinct.joints,
+             "of an independent joint, in radians; of slides over 0.1 m [R]");
+  return distinct;
+}
+
+po::options_description target_options() {
+  const PlannerOptions defaults;
+  const grasp::TargetOptions& targets = defaults.targets;
+  const grasp::QualityOptions& quality = defaults.quality;
   po::options_description target = option_group("Target contacts and fitting");
+  add_choice(target, "target-search", targets.search,
+             "sets of targets at random [P], or best first until all are tried, which may end with "
+             "the proof that there is none [R]");
+  add_number(target, "ideal-m-bias", targets.ideal_m_bias,
+             "random sets: how strongly those with a large M of their own are preferred; 0: not "
+             "[R, A48]");
   add_number(target, "theta-max-deg", quality.theta_max / kRadiansPerDegree,
              "half-angle of the friction cones of targets and measure, in degrees between 0 and 90 "
              "[P; one angle for both: R, A47]");
@@ -107,6 +146,9 @@ po::options_description planner_options() {
              "bounding box's diagonal [R, A19]");
   add_number(target, "pool-fraction", targets.pool_fraction,
              "share of the ranked candidates that is drawn from, above 0 to 1 [R, A20]");
+  add_number(target, "pool-spacing-mm", targets.pool_spacing * 1000.0,
+             "of all candidates in a cube of this size the best one stays; 0: all [P: sampling]; a "
+             "pad's width makes ranked searches for four and more targets short");
   add_integer(
       target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
       "target sets drawn per attempt; the one that suits the fingertips' directions best is "
@@ -123,6 +165,58 @@ po::options_description planner_options() {
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
              "of clip volumes; without it max(0.5 voxel, 1 mm) [R, A33]");
 
+  add_option(target, "exclude-weak", "yes|no", targets.exclude_weak ? "yes" : "no",
+             "no targets on fragile features [R, A37]");
+  add_number(target, "weak-thickness-mm", defaults.weak->weak_thickness * 1000.0,
+             "slender features thinner than this are fragile: S = 0 in M1 [P; what is fragile: R, "
+             "A37]");
+  add_switch(target, "no-weak", "look for no fragile features: S = 1 everywhere [R, A37]");
+  return target;
+}
+
+po::options_description refinement_options() {
+  const PlannerOptions defaults;
+  po::options_description refinement =
+      option_group("From voxels to contacts, and the way there [R]");
+  const grasp::RefinementOptions& limits = defaults.refinement;
+  add_option(refinement, "refine", "on|off", defaults.refine ? "on" : "off",
+             "bring every claimed pad to true contact by exact queries; off: the paper's grasp, at "
+             "the level of voxels");
+  add_number(refinement, "largest-gap-mm", limits.largest_gap * 1000.0,
+             "a claimed pad within this of the object has contact");
+  add_number(refinement, "wanted-gap-mm", limits.wanted_gap * 1000.0,
+             "to which claimed pads are brought, below --largest-gap-mm");
+  add_number(refinement, "least-distance-mm", limits.least_distance * 1000.0,
+             "kept between all that must not touch");
+  add_number(refinement, "largest-shift-mm", limits.largest_shift * 1000.0,
+             "of the palm while contacts are refined; 0: it stays");
+  add_number(refinement, "largest-turn-deg", limits.largest_turn / kRadiansPerDegree,
+             "of the palm while contacts are refined");
+  add_integer(refinement, "refine-iterations", static_cast<std::uint64_t>(limits.max_iterations),
+              "at most");
+  add_option(refinement, "pre-grasps", "yes|no", defaults.pre_grasps ? "yes" : "no",
+             "a grasp needs a pre-grasp, open and clear, from which the straight way is free");
+  add_number(refinement, "pre-grasp-clearance-mm", defaults.pre_grasp.clearance * 1000.0,
+             "of every link from the object and what is around it");
+  add_number(refinement, "pre-grasp-retreat-mm", defaults.pre_grasp.largest_retreat * 1000.0,
+             "largest one of the palm, against its direction");
+  return refinement;
+}
+
+po::options_description force_options() {
+  const PlannerOptions defaults;
+  po::options_description forces = option_group("Forces: epsilon and squeeze [R]");
+  add_number(forces, "friction", defaults.friction,
+             "Coulomb's coefficient of epsilon and squeeze; targets and M have --theta-max-deg");
+  add_number(forces, "squeeze-force", defaults.squeeze.normal_sum,
+             "sum of the normal forces of all contacts in the squeeze, in newtons");
+  add_number(forces, "squeeze-stiffness", defaults.squeeze.stiffness,
+             "of revolute joints under position control, in N m/rad");
+  return forces;
+}
+
+po::options_description measure_options() {
+  const grasp::QualityOptions quality;
   po::options_description measure = option_group("Measure M = M1^w1 * M2^w2 * M3^w3");
   add_number(measure, "alpha", quality.alpha, "weight of contact area in M1 [P]");
   add_number(measure, "beta", quality.beta, "weight of the centroid's distance in M3 [P]");
@@ -134,9 +228,20 @@ po::options_description planner_options() {
   add_choice(measure, "regularity", quality.regularity, "definition of R in M3 [R, A13]");
   add_choice(measure, "centroid", quality.centroid,
              "centroid of the contacts' hull: of its area or volume, or of its corners [R, A15]");
+  return measure;
+}
 
+}  // namespace
+
+po::options_description planner_options() {
   po::options_description all = option_group();
-  all.add(request).add(search).add(target).add(measure);
+  all.add(request_options());
+  all.add(search_options());
+  all.add(distinct_options());
+  all.add(target_options());
+  all.add(refinement_options());
+  all.add(force_options());
+  all.add(measure_options());
   return all;
 }
 
@@ -150,6 +255,73 @@ void read_score_map_flags(const Flags& flags, PlannerOptions& options) {
   options.score.mean_filter_passes = flags.integer("mean-filter-passes");
   options.targets.score_threshold = flags.number("score-threshold");
 }
+
+namespace {
+
+/// An angle in degrees as radians; the default keeps its bits on the way.
+void read_angle(const Flags& flags, const std::string& name, double& angle) {
+  const double degrees = flags.number(name);
+  if (!flags.is_default(name)) angle = degrees * kRadiansPerDegree;
+}
+
+void read_millimeters(const Flags& flags, const std::string& name, double& length) {
+  const double millimeters = flags.number(name);
+  if (!flags.is_default(name)) length = millimeters / 1000.0;
+}
+
+void read_approach_flags(const Flags& flags, PlannerOptions& options) {
+  if (!flags.has("approach")) {
+    if (!flags.is_default("approach-angle-deg")) {
+      throw UsageError("--approach-angle-deg means nothing without --approach");
+    }
+    return;
+  }
+  const std::vector<double> approach = flags.numbers("approach");
+  if (approach.size() != 3) {
+    throw UsageError("--approach \"" + flags.text("approach") + "\" is not three numbers X,Y,Z");
+  }
+  options.approach_O = Eigen::Vector3d(approach[0], approach[1], approach[2]);
+  const double angle_deg = flags.number("approach-angle-deg");
+  if (!(angle_deg > 0.0 && angle_deg <= 180.0)) {
+    throw UsageError("--approach-angle-deg " + flags.text("approach-angle-deg") +
+                     " is not above 0 and at most 180 degrees");
+  }
+  read_angle(flags, "approach-angle-deg", options.approach_angle);
+}
+
+void read_weak_flags(const Flags& flags, PlannerOptions& options) {
+  options.targets.exclude_weak = flags.yes_or_no("exclude-weak");
+  read_millimeters(flags, "weak-thickness-mm", options.weak->weak_thickness);
+  if (!flags.has("no-weak")) return;
+  for (const char* flag : {"exclude-weak", "weak-thickness-mm"}) {
+    if (flags.is_default(flag)) continue;
+    throw UsageError("--" + std::string(flag) + " means nothing with --no-weak");
+  }
+  options.weak.reset();
+}
+
+/// Refinement, pre-grasps, squeeze and what tells grasps apart.
+void read_contact_flags(const Flags& flags, PlannerOptions& options) {
+  options.refine = flags.either("refine", "on", "off");
+  grasp::RefinementOptions& limits = options.refinement;
+  read_millimeters(flags, "largest-gap-mm", limits.largest_gap);
+  read_millimeters(flags, "wanted-gap-mm", limits.wanted_gap);
+  read_millimeters(flags, "least-distance-mm", limits.least_distance);
+  read_millimeters(flags, "largest-shift-mm", limits.largest_shift);
+  read_angle(flags, "largest-turn-deg", limits.largest_turn);
+  limits.max_iterations = flags.integer("refine-iterations");
+  options.pre_grasps = flags.yes_or_no("pre-grasps");
+  read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
+  read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);
+  options.friction = flags.number("friction");
+  options.squeeze.normal_sum = flags.number("squeeze-force");
+  options.squeeze.stiffness = flags.number("squeeze-stiffness");
+  read_millimeters(flags, "distinct-translation-mm", options.distinct.translation);
+  read_angle(flags, "distinct-rotation-deg", options.distinct.rotation);
+  options.distinct.joints = flags.number("distinct-joints");
+}
+
+}  // namespace
 
 PlannerOptions read_planner_flags(const Flags& flags) {
   PlannerOptions options;
@@ -166,13 +338,12 @@ PlannerOptions read_planner_flags(const Flags& flags) {
     }
     options.num_contacts = static_cast<int>(options.fingers.size());
   }
-  if (flags.has("approach")) {
-    const std::vector<double> approach = flags.numbers("approach");
-    if (approach.size() != 3) {
-      throw UsageError("--approach \"" + flags.text("approach") + "\" is not three numbers X,Y,Z");
-    }
-    options.approach_O = Eigen::Vector3d(approach[0], approach[1], approach[2]);
+  if (flags.has("palm") && flags.has("no-palm")) {
+    throw UsageError("--palm and --no-palm exclude each other");
   }
+  if (flags.has("palm")) options.palm = true;
+  if (flags.has("no-palm")) options.palm = false;
+  read_approach_flags(flags, options);
 
   options.count = flags.integer("count");
   options.seed = flags.unsigned_integer("seed");
@@ -203,6 +374,12 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   if (const auto thickness_mm = flags.optional_number("clip-thickness-mm")) {
     options.clip_thickness = *thickness_mm / 1000.0;
   }
+
+  options.targets.search = flags.choice<grasp::TargetSearch>("target-search");
+  options.targets.ideal_m_bias = flags.number("ideal-m-bias");
+  read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
+  read_weak_flags(flags, options);
+  read_contact_flags(flags, options);
 
   options.quality.alpha = flags.number("alpha");
   options.quality.beta = flags.number("beta");

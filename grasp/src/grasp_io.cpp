@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/pose_numbers.hpp"
 #include "internal/recorded_hand.hpp"
 
 namespace graspfit::grasp {
@@ -18,15 +17,16 @@ const char* library_version() { return GRASPFIT_VERSION; }
 
 GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& hand,
                           const PlannerOptions& options, const ObjectModel& object,
-                          const PlannerResult& result) {
+                          const PlannerResult& result, const SurroundingsRecord& surroundings) {
   GraspFile file;
   file.object = record;
+  file.surroundings = surroundings;
   file.hand = hand;
   file.link_mesh_sha256 = internal::link_mesh_hashes(hand);
   file.options = options;
-  for (int finger : requested_parts(hand, options).fingers) {
-    file.fingers.push_back(hand.fingers[finger].name);
-  }
+  const RequestedParts requested = requested_parts(hand, options);
+  for (int finger : requested.fingers) file.fingers.push_back(hand.fingers[finger].name);
+  file.palm = requested.palm;
   file.voxel_size = object.grid.lattice.voxel_size;
   file.clip_thickness = clip_thickness(options, file.voxel_size);
   file.merge_distance = merge_distance(options, file.voxel_size);
@@ -41,76 +41,59 @@ void write_grasps(const std::filesystem::path& path, const GraspFile& file) {
   geometry::write_file_atomically(path, to_json(file));
 }
 
+UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands::HandModel& hand,
+                                const TriangleMesh& object, const Surroundings& surroundings) {
+  UsedMeshFiles files;
+  files.object = "object.ply";
+  geometry::write_mesh(folder / files.object, object);
+  for (const geometry::MeshQuery& obstacle : surroundings.obstacles) {
+    files.obstacles.push_back("obstacle_" + std::to_string(files.obstacles.size() + 1) + ".ply");
+    geometry::write_mesh(folder / files.obstacles.back(), obstacle.mesh());
+  }
+  for (const hands::Link& link : hand.links) {
+    const std::size_t number = files.links.size();
+    files.links.emplace_back();
+    if (link.mesh_L.faces.empty()) continue;
+    std::string name = link.name;
+    for (char& c : name) {
+      const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                            (c >= '0' && c <= '9') || c == '-' || c == '_';
+      if (!is_plain) c = '_';
+    }
+    files.links.back() =
+        (number < 10 ? "link_0" : "link_") + std::to_string(number) + '_' + name + ".ply";
+    geometry::write_mesh(folder / files.links.back(), link.mesh_L);
+  }
+  return files;
+}
+
+Surroundings read_surroundings(const SurroundingsRecord& record,
+                               const std::vector<std::filesystem::path>& files) {
+  Surroundings surroundings;
+  surroundings.table_z_O = record.table_z_O;
+  for (std::size_t i = 0; i < record.obstacles.size(); ++i) {
+    surroundings.obstacles.emplace_back(
+        read_object(record.obstacles[i], files.empty() ? std::filesystem::path() : files.at(i)));
+  }
+  return surroundings;
+}
+
 double largest_contact_gap(const Grasp& grasp) {
   double gap = 0.0;
   for (const Contact& contact : grasp.contacts) gap = std::max(gap, contact.gap);
   return gap;
 }
 
+double largest_claimed_gap(const Grasp& grasp) {
+  double gap = 0.0;
+  for (const Contact& contact : grasp.contacts) {
+    if (contact.is_target) gap = std::max(gap, contact.gap);
+  }
+  return gap;
+}
+
 double largest_penetration(const Grasp& grasp) {
   return std::max(grasp.penetration.object_depth, grasp.penetration.self_depth);
-}
-
-QualityContext quality_context(const GraspFile& file, const TriangleMesh& object) {
-  QualityContext context;
-  context.center_of_mass_O = geometry::mass_properties(object).center_of_mass;
-  context.normalizing_radius = 0.5 * geometry::bounding_box(object).diagonal().norm();
-  context.hand = &file.hand;
-  return context;
-}
-
-ContactEstimationOptions contact_options(const GraspFile& file) {
-  ContactEstimationOptions options;
-  options.clip_thickness = file.clip_thickness;
-  options.averaging = file.options.averaging;
-  return options;
-}
-
-QualityOptions quality_options(const GraspFile& file) {
-  QualityOptions options = file.options.quality;
-  options.merge_distance = file.merge_distance;
-  return options;
-}
-
-std::string to_csv(const GraspFile& file) {
-  // A name with a separator or a quote in it is quoted as RFC 4180 says.
-  const auto cell = [](const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-  };
-
-  std::string csv =
-      "rank,m,m1,m2,m3,regularity,centroid_distance_m,num_contacts,num_stable_pairs,"
-      "largest_contact_gap_m,largest_penetration_m,usable,valid,attempt,"
-      "palm_x_m,palm_y_m,palm_z_m,palm_qw,palm_qx,palm_qy,palm_qz";
-  for (const hands::Joint& joint : file.hand.joints) {
-    csv += ',' + cell(joint.name + (joint.type == hands::JointType::Revolute ? "_rad" : "_m"));
-  }
-  csv += '\n';
-  for (std::size_t i = 0; i < file.grasps.size(); ++i) {
-    const Grasp& grasp = file.grasps[i];
-    const ContactQuality& quality = grasp.quality;
-    csv += std::to_string(i + 1);
-    for (double value : {quality.m, quality.m1, quality.m2, quality.m3, quality.regularity,
-                         quality.centroid_distance}) {
-      csv += ',' + shortest_decimal(value);
-    }
-    csv += ',' + std::to_string(grasp.contacts.size());
-    csv += ',' + std::to_string(quality.stable_pairs.size());
-    csv += ',' + shortest_decimal(largest_contact_gap(grasp));
-    csv += ',' + shortest_decimal(largest_penetration(grasp));
-    csv += grasp.is_usable() ? ",true" : ",false";
-    csv += grasp.is_valid() ? ",true," : ",false,";
-    csv += std::to_string(grasp.attempt);
-    const RigidTransform& X_OH = grasp.configuration.X_OH;
-    for (int axis = 0; axis < 3; ++axis) csv += ',' + shortest_decimal(X_OH.translation()[axis]);
-    for (double value : internal::rotation_wxyz(X_OH)) csv += ',' + shortest_decimal(value);
-    for (double value : grasp.configuration.q) csv += ',' + shortest_decimal(value);
-    csv += '\n';
-  }
-  return csv;
 }
 
 TriangleMesh posed_scene(const TriangleMesh& object, const hands::HandModel& hand,

@@ -5,12 +5,16 @@
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "internal/json_node.hpp"
+#include "internal/planner_options_json.hpp"
 #include "internal/recorded_hand.hpp"
 
 namespace graspfit::grasp {
 namespace {
 
 using internal::JsonNode;
+
+/// The only version of the format that is written and read.
+constexpr std::int64_t kVersion = 2;
 
 std::optional<double> number_or_none(const JsonNode& node) {
   return node.is_null() ? std::nullopt : std::optional(node.number());
@@ -66,6 +70,31 @@ ObjectRecord read_object_record(const JsonNode& node) {
   return object;
 }
 
+SurroundingsRecord read_surroundings_record(const JsonNode& node) {
+  SurroundingsRecord surroundings;
+  surroundings.table_z_O = number_or_none(node.at("table_z_O_m"));
+  for (const JsonNode& obstacle : node.at("obstacles").items()) {
+    surroundings.obstacles.push_back(read_object_record(obstacle));
+  }
+  return surroundings;
+}
+
+/// The names of meshes as used, where the file has them.
+std::optional<UsedMeshFiles> read_used_meshes(const JsonNode& root) {
+  const JsonNode object = root.at("object").at("used_mesh_file");
+  if (object.is_null()) return std::nullopt;
+  UsedMeshFiles files;
+  files.object = object.text();
+  for (const JsonNode& obstacle : root.at("surroundings").at("obstacles").items()) {
+    files.obstacles.push_back(obstacle.at("used_mesh_file").text());
+  }
+  for (const JsonNode& link : root.at("hand").at("links").items()) {
+    const JsonNode file = link.at("used_mesh_file");
+    files.links.push_back(file.is_null() ? std::string() : file.text());
+  }
+  return files;
+}
+
 internal::RecordedHand read_hand_record(const JsonNode& node) {
   internal::RecordedHand hand;
   hand.description_file = node.at("description_file").text();
@@ -76,81 +105,6 @@ internal::RecordedHand read_hand_record(const JsonNode& node) {
     hand.link_mesh_sha256.push_back(hash.is_null() ? std::string() : hash.text());
   }
   return hand;
-}
-
-PlannerOptions read_options(const JsonNode& planner) {
-  const JsonNode node = planner.at("options");
-  PlannerOptions options;
-  options.seed = planner.at("seed").unsigned_integer();
-  options.style = node.at("style").choice<GraspStyle>();
-  options.fingers = node.at("fingers").texts();
-  options.num_contacts = node.at("num_contacts").small_integer();
-  options.count = node.at("count").small_integer();
-  options.max_attempts = node.at("max_attempts").small_integer();
-  options.acceptance = node.at("acceptance").choice<Acceptance>();
-  options.search = node.at("search").choice<SearchRule>();
-  options.target_draws = node.at("target_draws").small_integer();
-  if (const JsonNode approach = node.at("approach_O"); !approach.is_null()) {
-    options.approach_O = approach.vector3();
-  }
-  options.wall_clock_limit_s = number_or_none(node.at("wall_clock_limit_s"));
-  options.resolution = node.at("resolution").small_integer();
-  options.clip_thickness = number_or_none(node.at("clip_thickness_m"));
-  options.averaging = node.at("averaging").choice<geometry::PatchAveraging>();
-
-  const JsonNode score = node.at("score");
-  options.score.neighborhood = score.at("neighborhood").small_integer();
-  options.score.gamma_deg = score.at("gamma_deg").number();
-  options.score.length_voxels = score.at("length_voxels").number();
-  options.score.normalization = score.at("normalization").choice<ScoreNormalization>();
-  options.score.plane_distance = score.at("plane_distance").choice<PlaneDistance>();
-  options.score.mean_filter_radius = score.at("mean_filter_radius").small_integer();
-  options.score.mean_filter_passes = score.at("mean_filter_passes").small_integer();
-  options.score.floor = score.at("floor").number();
-  options.score.median_factor = score.at("median_factor").number();
-
-  const JsonNode targets = node.at("targets");
-  options.targets.score_threshold = targets.at("score_threshold").number();
-  options.targets.theta_max = targets.at("theta_max_rad").number();
-  options.targets.pair_rule = targets.at("pair_rule").choice<PairRule>();
-  options.targets.edge_tolerance_rel = targets.at("edge_tolerance_rel").number();
-  options.targets.centroid_limit_rel = targets.at("centroid_limit_rel").number();
-  options.targets.pool_fraction = targets.at("pool_fraction").number();
-  options.targets.pool_minimum = targets.at("pool_minimum").small_integer();
-  options.targets.max_seeds = targets.at("max_seeds").small_integer();
-  options.targets.relax_after_seeds = targets.at("relax_after_seeds").small_integer();
-  options.targets.min_separation = targets.at("min_separation_m").number();
-
-  const JsonNode fitting = node.at("fitting");
-  options.fitting.clearance = fitting.at("clearance_m").number();
-  options.fitting.large_step_at = fitting.at("large_step_at_voxels").number();
-  options.fitting.large_step_limit = fitting.at("large_step_limit_voxels").number();
-  options.fitting.small_step = fitting.at("small_step_voxels").number();
-  options.fitting.max_halvings = fitting.at("max_halvings").small_integer();
-  options.fitting.max_iterations = fitting.at("max_iterations").small_integer();
-  options.fitting.sample_spacing = fitting.at("sample_spacing_voxels").number();
-  options.fitting.guard = fitting.at("guard").choice<PenetrationGuard>();
-  options.fitting.settle = fitting.at("settle").flag();
-  options.fitting.settle_tolerance = fitting.at("settle_tolerance_m").number();
-  options.self_overlap = node.at("self_overlap_m").number();
-
-  const JsonNode quality = node.at("quality");
-  options.quality.alpha = quality.at("alpha").number();
-  options.quality.beta = quality.at("beta").number();
-  options.quality.w1 = quality.at("w1").number();
-  options.quality.w2 = quality.at("w2").number();
-  options.quality.w3 = quality.at("w3").number();
-  options.quality.theta_max = quality.at("theta_max_rad").number();
-  options.quality.units = quality.at("units").choice<MeasureUnits>();
-  options.quality.regularity = quality.at("regularity").choice<Regularity>();
-  options.quality.centroid = quality.at("centroid").choice<HullCentroid>();
-  options.quality.merge_distance = quality.at("merge_distance_m").number();
-  try {
-    options.validate();
-  } catch (const geometry::InvalidInput& error) {
-    node.fail(error.what());
-  }
-  return options;
 }
 
 template <class Item>
@@ -169,22 +123,26 @@ class GraspReader {
   Grasp read(const JsonNode& node) const {
     Grasp grasp;
     grasp.configuration = read_configuration(node);
-    if (const auto c = read_optional_configuration(node.at("pre_grasp"))) {
-      grasp.pre_grasp = PreGrasp{*c, 0.0, 0.0, 0.0};
-    }
-    if (const auto c = read_optional_configuration(node.at("squeeze"))) {
-      grasp.squeeze = Squeeze{*c, {}, 0.0, false, false};
+    if (const JsonNode pre_grasp = node.at("pre_grasp"); !pre_grasp.is_null()) {
+      grasp.pre_grasp = read_pre_grasp(pre_grasp);
     }
     grasp.has_all_contacts = node.at("has_all_contacts").flag();
     for (const JsonNode& contact : node.at("contacts").items()) {
       grasp.contacts.push_back(read_contact(contact));
     }
+    if (const JsonNode squeeze = node.at("squeeze"); !squeeze.is_null()) {
+      grasp.squeeze = read_squeeze(squeeze, grasp.contacts.size());
+    }
     grasp.quality = read_quality(node, grasp.contacts.size());
+    if (const JsonNode wrench = node.at("wrench"); !wrench.is_null()) {
+      grasp.wrench = read_wrench(wrench);
+    }
     grasp.ideal_m = node.at("ideal_m").number();
     grasp.penetration = read_penetration(node.at("penetration"));
     grasp.targets = read_targets(node.at("targets"));
     grasp.attempt = node.at("attempt").integer();
     grasp.iterations = node.at("iterations").small_integer();
+    grasp.refinement_iterations = node.at("refinement_iterations").small_integer();
     return grasp;
   }
 
@@ -193,7 +151,7 @@ class GraspReader {
     return name.is_null() ? -1 : index_by_name(hand_.links, name);
   }
   int finger_or_palm(const JsonNode& name) const {
-    return name.text() == "palm" ? -1 : index_by_name(hand_.fingers, name);
+    return name.text() == "palm" ? kPalm : index_by_name(hand_.fingers, name);
   }
 
   hands::HandConfiguration read_configuration(const JsonNode& node) const {
@@ -212,9 +170,52 @@ class GraspReader {
     return configuration;
   }
 
-  std::optional<hands::HandConfiguration> read_optional_configuration(const JsonNode& node) const {
-    if (node.is_null()) return std::nullopt;
-    return read_configuration(node);
+  PreGrasp read_pre_grasp(const JsonNode& node) const {
+    return {.configuration = read_configuration(node),
+            .clearance = node.at("clearance_m").number(),
+            .opening = node.at("opening").number(),
+            .retreat = node.at("retreat_m").number()};
+  }
+
+  Squeeze read_squeeze(const JsonNode& node, std::size_t num_contacts) const {
+    Squeeze squeeze;
+    squeeze.configuration = read_configuration(node);
+    const JsonNode forces = node.at("forces_O_N");
+    const std::vector<JsonNode> items = forces.items();
+    if (items.size() != num_contacts) {
+      forces.fail("has " + std::to_string(items.size()) + " forces for " +
+                  std::to_string(num_contacts) + " contacts");
+    }
+    squeeze.forces_O.resize(3, static_cast<Eigen::Index>(items.size()));
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      squeeze.forces_O.col(static_cast<Eigen::Index>(i)) = items[i].vector3();
+    }
+    squeeze.residual = node.at("residual").number();
+    squeeze.is_balanced = node.at("is_balanced").flag();
+    squeeze.is_clamped = node.at("is_clamped").flag();
+    return squeeze;
+  }
+
+  static WrenchQuality read_wrench(const JsonNode& node) {
+    WrenchQuality wrench;
+    wrench.epsilon = node.at("epsilon").number();
+    wrench.volume = node.at("volume").number();
+    wrench.is_force_closure = node.at("is_force_closure").flag();
+    wrench.rank = node.at("rank").small_integer();
+    const JsonNode convention = node.at("convention");
+    if (const JsonNode tool = convention.at("tool"); !tool.is_null()) {
+      wrench.convention.tool = tool.choice<WrenchTool>();
+    }
+    wrench.convention.reference_point_O = convention.at("reference_point_O_m").vector3();
+    WrenchSpaceOptions& options = wrench.convention.options;
+    options.torque_scale = convention.at("torque_scale_m").positive_number();
+    options.friction = convention.at("friction").number();
+    options.num_cone_edges = convention.at("num_cone_edges").small_integer();
+    options.norm = convention.at("norm").choice<ForceNorm>();
+    options.force_scaling = convention.at("force_scaling").choice<ForceScaling>();
+    options.force_limit = convention.at("force_limit").number();
+    options.outside = convention.at("outside").choice<OutsideValue>();
+    return wrench;
   }
 
   Contact read_contact(const JsonNode& node) const {
@@ -268,15 +269,18 @@ class GraspReader {
     penetration.self_depth = node.at("self_depth_m").number();
     penetration.self_link_a = link_or_none(node.at("self_link_a"));
     penetration.self_link_b = link_or_none(node.at("self_link_b"));
+    penetration.surroundings_touched = node.at("surroundings_touched").flag();
     return penetration;
   }
 
   TargetContacts read_targets(const JsonNode& node) const {
     TargetContacts targets;
     targets.seeds_tried = node.at("seeds_tried").small_integer();
+    targets.rank = node.at("rank").number();
     for (const JsonNode& item : node.at("contacts").items()) {
       TargetContact target;
-      target.finger = finger_or_palm(item.at("finger"));
+      const JsonNode finger = item.at("finger");
+      target.finger = finger.is_null() ? kUnassigned : finger_or_palm(finger);
       target.point_O = item.at("point_O_m").vector3();
       target.outward_normal_O = item.at("outward_normal_O").vector3();
       target.patch = item.at("patch").small_integer();
@@ -295,6 +299,8 @@ PlannerStatistics read_statistics(const JsonNode& node) {
   statistics.attempts = node.at("attempts").integer();
   statistics.seeds_tried = node.at("seeds_tried").integer();
   statistics.fitting_iterations = node.at("fitting_iterations").integer();
+  statistics.refinement_iterations = node.at("refinement_iterations").integer();
+  statistics.duplicates = node.at("duplicates").integer();
   for (const auto& [name, count] : node.at("outcomes").members()) {
     bool is_known = false;
     // PoorShape is the last of the enumeration.
@@ -320,6 +326,7 @@ PlannerTimings read_timings(const JsonNode& node) {
   timings.object.voxels_s = object.at("voxels_s").number();
   timings.object.distance_s = object.at("distance_s").number();
   timings.object.scores_s = object.at("scores_s").number();
+  timings.object.weak_s = object.at("weak_s").number();
   timings.targets_s = node.at("targets_s").number();
   timings.fitting_s = node.at("fitting_s").number();
   timings.contact_tests_s = node.at("contact_tests_s").number();
@@ -337,13 +344,15 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
-  if (root.at("version").integer() != 1) {
-    root.at("version").fail("is " + std::to_string(root.at("version").integer()) +
-                            "; this program reads version 1");
+  if (const std::int64_t version = root.at("version").integer(); version != kVersion) {
+    root.at("version").fail("is " + std::to_string(version) + "; this program reads version " +
+                            std::to_string(kVersion) + ": plan again");
   }
 
   GraspFile file;
   file.object = read_object_record(root.at("object"));
+  file.surroundings = read_surroundings_record(root.at("surroundings"));
+  file.used_meshes = read_used_meshes(root);
   const JsonNode hand = root.at("hand");
   const internal::RecordedHand recorded_hand = read_hand_record(hand);
   try {
@@ -354,13 +363,15 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.link_mesh_sha256 = recorded_hand.link_mesh_sha256;
 
   const JsonNode planner = root.at("planner");
-  file.options = read_options(planner);
+  file.options =
+      internal::read_planner_options(planner.at("options"), planner.at("seed").unsigned_integer());
   file.version = planner.at("version").text();
   const JsonNode used = planner.at("used");
   for (const JsonNode& finger : used.at("fingers").items()) {
     index_by_name(file.hand.fingers, finger);
     file.fingers.push_back(finger.text());
   }
+  file.palm = used.at("palm").flag();
   file.voxel_size = used.at("voxel_size_m").positive_number();
   file.clip_thickness = used.at("clip_thickness_m").positive_number();
   file.merge_distance = used.at("merge_distance_m").positive_number();

@@ -76,7 +76,7 @@ template <>
 std::span<const NamedValue<MeasureUnits>> named_values<MeasureUnits>() {
   static constexpr std::array names = {
       NamedValue<MeasureUnits>{MeasureUnits::Normalized, "normalized"},
-      NamedValue<MeasureUnits>{MeasureUnits::Centimeters, "centimeters"}};
+      NamedValue<MeasureUnits>{MeasureUnits::Centimeters, "cm"}};
   return names;
 }
 
@@ -101,7 +101,50 @@ std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>() {
   static constexpr std::array names = {
       NamedValue<PlannerStop>{PlannerStop::Count, "count"},
       NamedValue<PlannerStop>{PlannerStop::Attempts, "attempts"},
+      NamedValue<PlannerStop>{PlannerStop::Exhausted, "exhausted"},
       NamedValue<PlannerStop>{PlannerStop::WallClock, "wall-clock"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<TargetSearch>> named_values<TargetSearch>() {
+  static constexpr std::array names = {NamedValue<TargetSearch>{TargetSearch::Random, "random"},
+                                       NamedValue<TargetSearch>{TargetSearch::Ranked, "ranked"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<WrenchTool>> named_values<WrenchTool>() {
+  static constexpr std::array names = {
+      NamedValue<WrenchTool>{WrenchTool::House, "house"},
+      NamedValue<WrenchTool>{WrenchTool::GraspIt, "graspit"},
+      NamedValue<WrenchTool>{WrenchTool::Simox, "simox"},
+      NamedValue<WrenchTool>{WrenchTool::DexNet, "dex-net"},
+      NamedValue<WrenchTool>{WrenchTool::Frogger, "frogger"},
+      NamedValue<WrenchTool>{WrenchTool::DexGraspBench, "dexgraspbench"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ForceNorm>> named_values<ForceNorm>() {
+  static constexpr std::array names = {NamedValue<ForceNorm>{ForceNorm::L1, "l1"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ForceScaling>> named_values<ForceScaling>() {
+  static constexpr std::array names = {
+      NamedValue<ForceScaling>{ForceScaling::UnitNormal, "unit-normal"},
+      NamedValue<ForceScaling>{ForceScaling::UnitEdge, "unit-edge"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<OutsideValue>> named_values<OutsideValue>() {
+  static constexpr std::array names = {
+      NamedValue<OutsideValue>{OutsideValue::Zero, "zero"},
+      NamedValue<OutsideValue>{OutsideValue::MinusOne, "minus-one"},
+      NamedValue<OutsideValue>{OutsideValue::Signed, "signed"}};
   return names;
 }
 

@@ -1,6 +1,8 @@
 """Every bad input ends in one clear line, a code of its kind, and no output left behind."""
 
+import json
 import os
+import shutil
 import signal
 import subprocess
 import time
@@ -117,6 +119,33 @@ class BadFlags(program.ProgramTest):
         self.refuse("--fingers", "thumb,,finger_1", says="empty")
         self.refuse("--fingers", "thumb,finger_1", "--contacts", "3", says="contradicts")
 
+    def test_palm_and_style(self):
+        self.refuse("--palm", "--no-palm", says="exclude")
+        hand = self.folder / "hand"
+        shutil.copytree(program.SOURCE_DIR / "hands/models/barrett", hand)
+        sidecar = hand / "barrett.graspfit.json"
+        data = json.loads(sidecar.read_text())
+        data["pads"] = [pad for pad in data["pads"] if pad["finger"] != "palm"]
+        data["palm"]["pad"] = None
+        sidecar.write_text(json.dumps(data))
+        for flags in (("--palm",), ("--style", "power")):
+            self.refuse("--hand", hand / "barrett.urdf", *flags, says=["barrett", "palm"])
+
+    def test_surroundings(self):
+        self.refuse("--table", "0.5", says=["--table", "highest z"])
+        self.refuse("--table", "low", says="--table")
+        self.refuse("--obstacle", self.folder / "no.off", says="no.off")
+        self.refuse("--obstacle-unit", "mm", says=["without --obstacle"])
+        self.refuse("--obstacle", self.object, "--obstacle-unit", "ft", says=["m|cm|mm|in"])
+        vertices, faces = box(0.1, 0.08, 0.06)
+        tray = self.write("tray.off", off_text(vertices, faces[2:]))
+        self.refuse("--obstacle", tray, says="tray.off")
+
+    def test_flags_that_mean_nothing_together(self):
+        self.refuse("--approach-angle-deg", "30", says="without --approach")
+        self.refuse("--no-weak", "--weak-thickness-mm", "4", says="with --no-weak")
+        self.refuse("--no-weak", "--exclude-weak", "no", says="with --no-weak")
+
     def test_values_out_of_range(self):
         for flag, *values in (
                 ("score-threshold", "-0.1", "1", "1.5"), ("theta-max-deg", "0", "-5", "90", "120"),
@@ -126,7 +155,13 @@ class BadFlags(program.ProgramTest):
                 ("clip-thickness-mm", "0", "-1"), ("wall-clock-limit-s", "0", "-1"),
                 ("edge-tolerance", "-1"), ("pool-fraction", "0", "1.1"), ("max-seeds", "0"),
                 ("clearance-mm", "-1"), ("mean-filter-radius", "-1"),
-                ("score-length-voxels", "0"), ("seed", "-1", "18446744073709551616")):
+                ("score-length-voxels", "0"), ("threads", "-1"), ("friction", "-0.1"),
+                ("squeeze-force", "0"), ("squeeze-stiffness", "0"), ("ideal-m-bias", "-1"),
+                ("weak-thickness-mm", "0"), ("largest-gap-mm", "0"), ("wanted-gap-mm", "0", "0.2"),
+                ("least-distance-mm", "0"), ("largest-shift-mm", "-1"), ("largest-turn-deg", "-1"),
+                ("refine-iterations", "0"), ("pre-grasp-clearance-mm", "0"),
+                ("pre-grasp-retreat-mm", "-1"), ("distinct-translation-mm", "-1"),
+                ("distinct-rotation-deg", "-1"), ("distinct-joints", "-1"), ("seed", "-1", "18446744073709551616")):
             for value in values:
                 with self.subTest(flag=flag, value=value):
                     self.refuse(f"--{flag}", value)
@@ -148,6 +183,8 @@ class BadFlags(program.ProgramTest):
             with self.subTest(value):
                 self.refuse(f"--count={value}", says="count")
         self.refuse("--beta", "0,3", says="point")
+        for value in ("0", "-10", "181"):
+            self.refuse("--approach", "0,0,1", f"--approach-angle-deg={value}", says="angle")
         for value in ("1,2", "1,2,3,4", "1,b,3", "0,0,0", "1,,3", "1,2,"):
             with self.subTest(value):
                 self.refuse(f"--approach={value}")
@@ -155,7 +192,8 @@ class BadFlags(program.ProgramTest):
     def test_unknown_choices(self):
         for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
-                     "self-intersections"):
+                     "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
+                     "settle"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

@@ -56,7 +56,7 @@ class Evaluate(program.ProgramTest):
     def test_reproduces_other_readings_too(self):
         done = program.run("plan", self.object, "--count", "2", "--accept", "usable",
                            "--search", "first",
-                           "--measure-units", "centimeters", "--regularity", "edge-only",
+                           "--measure-units", "cm", "--regularity", "edge-only",
                            "--centroid", "vertices", "--averaging", "plain", "--alpha", "0.7",
                            "--theta-max-deg", "40", "--clip-thickness-mm", "2.5", "--longest",
                            "0.13", "--out", self.folder / "other")
@@ -104,7 +104,7 @@ class Evaluate(program.ProgramTest):
 
         for keys, value, says in (
                 (("format",), "urdf", "graspfit-grasps"),
-                (("version",), 2, "version 1"),
+                (("version",), 1, "version 2"),
                 (("hand", "description_sha256"), "0" * 64, "/hand"),
                 (("hand", "sidecar_sha256"), "0" * 64, "sidecar"),
                 (("hand", "links", 0, "mesh_sha256"), "0" * 64, "mesh of link"),
@@ -114,7 +114,7 @@ class Evaluate(program.ProgramTest):
                 (("results", "grasps", 0, "X_OH", "rotation_wxyz"), [1, 1, 0, 0], "unit"),
                 (("results", "grasps", 0, "X_OH", "translation_m"), [1, 2], "3"),
                 (("planner", "used", "fingers"), ["pinky"], "pinky"),
-                (("planner", "options", "quality", "units"), "feet", "normalized|centimeters")):
+                (("planner", "options", "quality", "units"), "feet", "normalized|cm")):
             def change(data, keys=keys, value=value):
                 item(data, *keys[:-1])[keys[-1]] = value
 

@@ -9,6 +9,11 @@ import tempfile
 import program
 
 try:
+    import numpy
+    from scipy.spatial import ConvexHull
+except ImportError:
+    ConvexHull = None
+try:
     import jsonschema
 except ImportError:
     jsonschema = None
@@ -212,6 +217,52 @@ class GraspFile(program.ProgramTest):
             self.assertAlmostEqual(grasp["m"], m, delta=1e-12)
             self.assertEqual(grasp["usable"], grasp["m"] > 0)
             self.assertEqual(grasp["largest_contact_gap_m"], max(c["gap_m"] for c in contacts))
+
+    def test_epsilon_follows_from_contacts_and_convention_alone(self):
+        if ConvexHull is None:
+            print("SKIPPED: python3-scipy is not installed")
+            return
+        for grasp in self.data["results"]["grasps"]:
+            wrench = grasp["wrench"]
+            if wrench is None:  # not measured
+                continue
+            convention = wrench["convention"]
+            self.assertEqual((convention["tool"], convention["force_scaling"], convention["norm"],
+                              convention["outside"]), ("graspit", "unit-normal", "l1", "minus-one"))
+            wrenches = []
+            for contact in grasp["contacts"]:
+                n = contact["inward_normal_O"]
+                t1 = cross(n, [1, 0, 0] if abs(n[0]) < 0.9 else [0, 1, 0])
+                t1 = [x / math.sqrt(dot(t1, t1)) for x in t1]
+                t2 = cross(n, t1)
+                arm = minus(contact["point_O_m"], convention["reference_point_O_m"])
+                for i in range(convention["num_cone_edges"]):
+                    angle = 2 * math.pi * i / convention["num_cone_edges"]
+                    edge = [a + convention["friction"] * (math.cos(angle) * b + math.sin(angle) * c)
+                            for a, b, c in zip(n, t1, t2)]
+                    torque = [x / convention["torque_scale_m"] for x in cross(arm, edge)]
+                    wrenches.append([convention["force_limit"] * x for x in edge + torque])
+            if numpy.linalg.matrix_rank(numpy.subtract(wrenches, wrenches[0]), tol=1e-9) < 6:
+                self.assertLessEqual(wrench["epsilon"], 0)
+                continue
+            nearest = -ConvexHull(wrenches).equations[:, -1].max()
+            self.assertAlmostEqual(wrench["epsilon"], nearest if nearest > 0 else -1, delta=1e-9)
+            self.assertEqual(wrench["is_force_closure"], bool(nearest > 0))
+
+    def test_pre_grasp_and_squeeze_have_the_poses_that_their_joints_give(self):
+        hand = self.data["hand"]
+        shown = [grasp[key] for grasp in self.data["results"]["grasps"]
+                 for key in ("pre_grasp", "squeeze") if grasp[key]]
+        for configuration in shown:
+            self.assertEqual(configuration["X_OL"][hand["palm"]["link"]], configuration["X_OH"])
+            self.assertEqual(list(configuration["joints"]), [j["name"] for j in hand["joints"]])
+        for grasp in self.data["results"]["grasps"]:
+            if grasp["squeeze"]:
+                self.assertEqual(len(grasp["squeeze"]["forces_O_N"]), len(grasp["contacts"]))
+                self.assertEqual(grasp["squeeze"]["X_OH"], grasp["X_OH"])
+            if grasp["pre_grasp"]:
+                options = self.data["planner"]["options"]["pre_grasp"]
+                self.assertGreaterEqual(grasp["pre_grasp"]["clearance_m"], options["clearance_m"])
 
     def test_statistics_add_up(self):
         statistics = self.data["results"]["statistics"]

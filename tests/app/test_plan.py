@@ -35,11 +35,12 @@ class Plan(program.ProgramTest):
         self.assertEqual(done.stderr, "")  # no progress bar when piped
         names = sorted(path.name for path in (self.folder / "out").iterdir())
         posed = [f"grasp_00{i}.{extension}" for i in (1, 2) for extension in ("obj", "ply")]
-        self.assertEqual(names, sorted(posed + ["grasps.csv", "grasps.json"]))
+        meshes = [name for name in names if name.startswith("link_") or name == "object.ply"]
+        self.assertEqual(names, sorted(posed + meshes + ["grasps.csv", "grasps.json"]))
 
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0].split(), ["rank", "M", "M1", "M2", "M3", "contacts", "gap_mm",
-                                            "penetration_mm", "valid"])
+        self.assertEqual(lines[0].split(), ["rank", "M", "M1", "M2", "M3", "epsilon", "contacts",
+                                            "gap_mm", "penetration_mm", "valid"])
         self.assertEqual([line.split()[0] for line in lines[1:3]], ["1", "2"])
         file = json.loads((self.folder / "out/grasps.json").read_text())
         grasps = file["results"]["grasps"]
@@ -52,7 +53,12 @@ class Plan(program.ProgramTest):
         rows = (self.folder / "out/grasps.csv").read_text().splitlines()
         self.assertEqual(len(rows), 3)
         header = rows[0].split(",")
-        for column in ("m", "largest_penetration_m", "palm_x_m", "palm_qw"):
+        self.assertEqual(file["object"]["used_mesh_file"], "object.ply")
+        self.assertEqual([link["used_mesh_file"] for link in file["hand"]["links"]],
+                         sorted(meshes)[:-1])
+        self.assertRegex(lines[3], r"grasps in \d+ attempts \(.*\): ")
+        for column in ("m", "epsilon", "largest_claimed_gap_m", "largest_penetration_m", "palm_x_m",
+                       "palm_qw", "pre_grasp_clearance_m", "squeeze_residual"):
             self.assertIn(column, header)
         for joint in file["hand"]["joints"]:
             column = header.index(f"{joint['name']}_{joint['unit']}")
@@ -87,14 +93,16 @@ class Plan(program.ProgramTest):
     def test_existing_folder_keeps_foreign_files_and_loses_stale_ones(self):
         out = self.folder / "out"
         out.mkdir()
-        for name in ("notes.txt", "grasp_009.obj", "grasp_001.obj", "grasp_1.obj", "grasps.html"):
+        for name in ("notes.txt", "grasp_009.obj", "grasp_001.obj", "grasp_1.obj", "grasps.html",
+                     "obstacle_1.ply", "link_99_tail.ply"):
             (out / name).write_text("old")
         self.plan()
         self.assertEqual((out / "notes.txt").read_text(), "old")
         self.assertEqual((out / "grasp_1.obj").read_text(), "old")
         self.assertNotEqual((out / "grasp_001.obj").read_text(), "old")
         self.assertFalse((out / "grasp_009.obj").exists())
-        self.assertFalse((out / "grasps.html").exists())
+        for name in ("grasps.html", "obstacle_1.ply", "link_99_tail.ply"):
+            self.assertFalse((out / name).exists(), name)
         self.assertEqual([path.name for path in out.iterdir() if path.name.startswith(".")], [])
 
     def test_refused_run_leaves_an_earlier_result_alone(self):
@@ -126,6 +134,29 @@ class Plan(program.ProgramTest):
                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
             direction_O = [sum(r * d for r, d in zip(row, direction_H)) for row in rotation]
             self.assertGreater(sum(a * b for a, b in zip(direction_O, (-0.2, 0.1, -1))), 0)
+
+    def test_table_and_obstacles_are_recorded_and_their_meshes_written(self):
+        vertices, faces = program.box(20, 20, 20)  # millimeters, 10 cm above the torus
+        obstacle = self.write("box.off", program.off_text([(x, y, z + 110) for x, y, z in vertices],
+                                                          faces))
+        self.plan("--table", "-0.15", "--obstacle", obstacle, "--obstacle-unit", "mm")
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        self.assertEqual(file["surroundings"]["table_z_O_m"], -0.15)
+        record, = file["surroundings"]["obstacles"]
+        self.assertEqual((record["file"], record["meters_per_file_unit"]), (str(obstacle), 0.001))
+        self.assertAlmostEqual(record["mesh"]["bounding_box_m"]["upper"][2], 0.12, places=15)
+        self.assertTrue((self.folder / "out" / record["used_mesh_file"]).is_file())
+        done = program.run("evaluate", self.folder / "out/grasps.json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        obstacle.write_text(obstacle.read_text() + "\n")
+        self.assert_refused("evaluate", self.folder / "out/grasps.json", says=["box.off", "SHA-256"])
+
+    def test_threads_are_not_recorded_and_do_not_matter(self):
+        self.plan("--threads", "1", out="a")
+        self.plan("--threads", "2", out="b")
+        self.assertEqual(results_text(self.folder / "a/grasps.json"),
+                         results_text(self.folder / "b/grasps.json"))
+        self.assertNotIn("threads", (self.folder / "a/grasps.json").read_text())
 
     def test_units_scale_the_file(self):
         vertices, faces = program.torus()

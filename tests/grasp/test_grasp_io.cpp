@@ -1,20 +1,20 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <locale>
 #include <sstream>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
-#include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
@@ -43,6 +43,66 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+/// Every field away from its default, so that one that is not written, or not read, shows.
+grasp::PlannerOptions unusual_options() {
+  grasp::PlannerOptions options;
+  options.style = grasp::GraspStyle::Power;
+  options.palm = false;
+  options.seed = 18446744073709551615U;  // the largest there is
+  options.search = grasp::SearchRule::First;
+  options.acceptance = grasp::Acceptance::Quality;
+  options.count = 7;
+  options.max_attempts = 77;
+  options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
+  options.approach_angle = 0.4;
+  options.wall_clock_limit_s = 12.5;
+  options.resolution = 31;
+  options.clip_thickness = 0.1;
+  options.score.normalization = grasp::ScoreNormalization::Raw;
+  options.weak->weak_thickness = 0.004;
+  options.weak->min_length_ratio = 1.5;
+  options.weak->shape_diameter.trim_deviations = std::numeric_limits<double>::infinity();
+  options.targets.pair_rule = grasp::PairRule::AllPairs;
+  options.targets.search = grasp::TargetSearch::Ranked;
+  options.targets.exclude_weak = false;
+  options.targets.ideal_m_bias = 1.25;
+  options.targets.ideal_m_draws = 9;
+  options.targets.angle_weight = 0.5;
+  options.targets.pool_spacing = 0.01;
+  options.targets.palm_reach_tolerance = 0.02;
+  options.target_draws = 3;
+  options.fitting.give_up_distance = 0.02;
+  options.fitting.guard = grasp::PenetrationGuard::Voxels;
+  options.refine = false;
+  options.refinement.wanted_gap = 3e-5;
+  options.refinement.largest_gap = 3e-4;
+  options.refinement.least_distance = 2e-6;
+  options.refinement.max_iterations = 61;
+  options.refinement.reach = 0.04;
+  options.refinement.largest_shift = 0.01;
+  options.refinement.largest_turn = 0.25;
+  options.self_overlap = 0.002;
+  options.pre_grasps = false;
+  options.pre_grasp.clearance = 0.006;
+  options.pre_grasp.largest_retreat = 0.2;
+  options.pre_grasp.retreat_step = 0.02;
+  options.pre_grasp.opening_steps = 11;
+  options.pre_grasp.way_tolerance = 2e-5;
+  options.squeeze.normal_sum = 12.0;
+  options.squeeze.stiffness = 4.0;
+  options.squeeze.slide_stiffness = 2100.0;
+  options.squeeze.largest_residual = 0.06;
+  options.distinct.translation = 0.02;
+  options.distinct.rotation = 0.3;
+  options.distinct.joints = 0.4;
+  options.distinct.slide_scale = 0.2;
+  options.friction = 0.7;
+  options.quality.regularity = grasp::Regularity::EdgeOnly;
+  options.quality.units = grasp::MeasureUnits::Centimeters;
+  options.quality.alpha = 0.1;
+  return options;
+}
+
 /// A Barrett hand in some pose around a ball of 5 cm radius, measured as the planner measures.
 grasp::GraspFile sample_file(const fs::path& object_file) {
   geometry::write_mesh(object_file, geometry::ball(0.05, 2));
@@ -61,14 +121,11 @@ grasp::GraspFile sample_file(const fs::path& object_file) {
     file.link_mesh_sha256[i] = geometry::sha256_hex(geometry::read_file(
         fs::path(file.hand.description_file).parent_path() / file.hand.links[i].mesh_files.at(0)));
   }
-  file.options.seed = 18446744073709551615U;  // the largest there is
-  file.options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
-  file.options.wall_clock_limit_s = 12.5;
-  file.options.clip_thickness = 0.1;
-  file.options.score.normalization = grasp::ScoreNormalization::Raw;
-  file.options.targets.pair_rule = grasp::PairRule::AllPairs;
-  file.options.quality.regularity = grasp::Regularity::EdgeOnly;
-  file.options.quality.alpha = 0.1;
+  file.options = unusual_options();
+  file.options.quality.units = grasp::MeasureUnits::Normalized;
+  file.options.weak.reset();  // a search takes seconds
+  file.surroundings.table_z_O = -0.2;
+  file.surroundings.obstacles.push_back(object.record);
   file.fingers = {"thumb", "finger_1", "finger_2"};
   file.voxel_size = 0.1 / 30.0;
   file.clip_thickness = 0.1;  // so thick that every pad meets the ball
@@ -79,10 +136,13 @@ grasp::GraspFile sample_file(const fs::path& object_file) {
     file.statistics.outcomes[static_cast<grasp::AttemptOutcome>(i)] = i;
   }
   file.statistics.target_failures["no seed"] = 3;
+  file.statistics.duplicates = 2;
+  file.statistics.refinement_iterations = 123;
   file.timings.fitting_s = 0.25;
 
-  const hands::HandCollision collision(file.hand);
-  const geometry::MeshQuery query(object.mesh);
+  grasp::Surroundings surroundings;
+  surroundings.table_z_O = file.surroundings.table_z_O;
+  const grasp::RecordedScene scene(file, object.mesh, surroundings);
   geometry::Random random(3);
   for (int i = 0; i < 4; ++i) {
     hands::HandConfiguration configuration = hands::open_configuration(file.hand);
@@ -96,16 +156,33 @@ grasp::GraspFile sample_file(const fs::path& object_file) {
         Eigen::Translation3d(0.0, 0.0, 0.0) *
         Eigen::AngleAxisd(random.uniform(-3.14, 3.14), axis.normalized()) *
         Eigen::Translation3d(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), -0.15);
-    const grasp::QualityContext context = grasp::quality_context(file, object.mesh);
-    grasp::Grasp measured =
-        grasp::measure_grasp(file.hand, collision, query, context, configuration, {2, 0, 1},
-                             grasp::contact_options(file), grasp::quality_options(file));
+    grasp::Grasp measured = scene.measure(configuration);
     measured.attempt = i;
     measured.ideal_m = 1.0 / 3.0;
     measured.targets.contacts.resize(2);
     measured.targets.contacts[0].score = std::numeric_limits<double>::infinity();
     measured.targets.contacts[1].finger = 1;
-    if (i == 1) measured.squeeze = configuration;
+    measured.refinement_iterations = 10 + i;
+    if (i == 1) {
+      measured.pre_grasp = grasp::PreGrasp{hands::open_configuration(file.hand), 0.011, 0.7, 0.03};
+      measured.squeeze = grasp::Squeeze{
+          configuration,
+          Eigen::Matrix3Xd::Random(3, static_cast<Eigen::Index>(measured.contacts.size())), 0.125,
+          false, true};
+    }
+    if (i == 3) {
+      measured.wrench = {0.0625, 0.5, true, 6, {}};
+      measured.wrench.convention.tool = grasp::WrenchTool::GraspIt;
+      measured.wrench.convention.reference_point_O = Eigen::Vector3d(0.1, 0.2, 0.3);
+      measured.wrench.convention.options = {.num_cone_edges = 6,
+                                            .friction = 0.7,
+                                            .torque_scale = 0.05,
+                                            .force_scaling = grasp::ForceScaling::UnitEdge,
+                                            .force_limit = 2.0,
+                                            .outside = grasp::OutsideValue::MinusOne};
+      measured.penetration.surroundings_touched = true;
+      measured.targets.contacts[1].finger = grasp::kPalm;
+    }
     if (!measured.contacts.empty()) measured.contacts[0].weak = i == 2;
     file.grasps.push_back(measured);
   }
@@ -156,6 +233,13 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
   CHECK(read.object.repair.wrap->alpha_rel == 0.05);
   CHECK(read.object.repair.wrap->offset_rel == 0.01);
   CHECK(read.hand.name == written.hand.name);
+  CHECK(read.surroundings.table_z_O == -0.2);
+  REQUIRE(read.surroundings.obstacles.size() == 1);
+  CHECK(read.surroundings.obstacles[0].sha256 == written.object.sha256);
+  CHECK_FALSE(read.used_meshes);
+  CHECK(read.palm == written.palm);
+  CHECK(read.statistics.duplicates == written.statistics.duplicates);
+  CHECK(read.statistics.refinement_iterations == written.statistics.refinement_iterations);
   CHECK(read.options.seed == written.options.seed);
   CHECK(read.options.approach_O == written.options.approach_O);
   CHECK(read.options.wall_clock_limit_s == written.options.wall_clock_limit_s);
@@ -177,8 +261,30 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
     const grasp::Grasp& b = read.grasps[i];
     CHECK(b.configuration.q == a.configuration.q);
     CHECK(b.configuration.X_OH.translation() == a.configuration.X_OH.translation());
-    CHECK(b.squeeze.has_value() == a.squeeze.has_value());
-    CHECK_FALSE(b.pre_grasp.has_value());
+    CHECK(b.refinement_iterations == a.refinement_iterations);
+    REQUIRE(b.pre_grasp.has_value() == a.pre_grasp.has_value());
+    if (a.pre_grasp) {
+      CHECK(b.pre_grasp->configuration.q == a.pre_grasp->configuration.q);
+      CHECK(b.pre_grasp->clearance == a.pre_grasp->clearance);
+      CHECK(b.pre_grasp->opening == a.pre_grasp->opening);
+      CHECK(b.pre_grasp->retreat == a.pre_grasp->retreat);
+    }
+    REQUIRE(b.squeeze.has_value() == a.squeeze.has_value());
+    if (a.squeeze) {
+      CHECK(b.squeeze->configuration.q == a.squeeze->configuration.q);
+      CHECK(b.squeeze->forces_O == a.squeeze->forces_O);
+      CHECK(b.squeeze->residual == a.squeeze->residual);
+      CHECK(b.squeeze->is_balanced == a.squeeze->is_balanced);
+      CHECK(b.squeeze->is_clamped == a.squeeze->is_clamped);
+    }
+    CHECK(b.wrench.epsilon == a.wrench.epsilon);
+    CHECK(b.wrench.volume == a.wrench.volume);
+    CHECK(b.wrench.is_force_closure == a.wrench.is_force_closure);
+    CHECK(b.wrench.rank == a.wrench.rank);
+    if (!std::isnan(a.wrench.convention.options.torque_scale)) {
+      CHECK(grasp::describe(b.wrench.convention) == grasp::describe(a.wrench.convention));
+    }
+    CHECK(b.penetration.surroundings_touched == a.penetration.surroundings_touched);
     CHECK(b.quality.m == a.quality.m);
     CHECK(b.quality.m3 == a.quality.m3);
     CHECK(b.quality.stable_pairs.size() == a.quality.stable_pairs.size());
@@ -187,8 +293,8 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
     CHECK(b.penetration.object_link == a.penetration.object_link);
     CHECK(b.is_valid() == a.is_valid());
     CHECK(b.targets.contacts[0].score == a.targets.contacts[0].score);
-    CHECK(b.targets.contacts[0].finger == -1);
-    CHECK(b.targets.contacts[1].finger == 1);
+    CHECK(b.targets.contacts[0].finger == grasp::kUnassigned);
+    CHECK(b.targets.contacts[1].finger == a.targets.contacts[1].finger);
     REQUIRE(b.contacts.size() == a.contacts.size());
     for (std::size_t j = 0; j < a.contacts.size(); ++j) {
       some_contact = true;
@@ -201,6 +307,100 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
     }
   }
   CHECK(some_contact);
+}
+
+TEST_CASE("Every option of the planner comes back from a grasp file", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder / "ball.off");
+  file.grasps.clear();
+  file.options = unusual_options();
+  const std::string usual = [&file] {
+    grasp::GraspFile other = file;
+    other.options = {};
+    return grasp::to_json(other);
+  }();
+  grasp::write_grasps(folder / "grasps.json", file);
+  const std::string once = geometry::read_file(folder / "grasps.json");
+  grasp::write_grasps(folder / "grasps.json", grasp::read_grasps(folder / "grasps.json"));
+  CHECK(geometry::read_file(folder / "grasps.json") == once);
+  // Were a field written that the reader forgets, the second file would have its default.
+  for (const std::string field : {"style",
+                                  "palm",
+                                  "approach_angle_rad",
+                                  "weak_thickness_m",
+                                  "trim_deviations",
+                                  "exclude_weak",
+                                  "give_up_distance_m",
+                                  "ideal_m_bias",
+                                  "ideal_m_draws",
+                                  "angle_weight",
+                                  "pool_spacing_m",
+                                  "palm_reach_tolerance_m",
+                                  "refine",
+                                  "wanted_gap_m",
+                                  "largest_gap_m",
+                                  "least_distance_m",
+                                  "reach_m",
+                                  "largest_shift_m",
+                                  "largest_turn_rad",
+                                  "pre_grasps",
+                                  "largest_retreat_m",
+                                  "retreat_step_m",
+                                  "opening_steps",
+                                  "way_tolerance_m",
+                                  "normal_sum_N",
+                                  "stiffness_N_m_per_rad",
+                                  "slide_stiffness_N_per_m",
+                                  "slide_scale_m",
+                                  "largest_residual",
+                                  "translation_m",
+                                  "rotation_rad",
+                                  "joints_rad",
+                                  "friction",
+                                  "units"}) {
+    INFO(field);
+    const auto line = [&field](const std::string& text) {
+      const std::size_t at = text.find('"' + field + "\": ", text.find("\"options\": "));
+      REQUIRE(at != std::string::npos);
+      return text.substr(at, text.find('\n', at) - at);
+    };
+    CHECK(line(once) != line(usual));
+  }
+}
+
+TEST_CASE("Meshes as used are written beside a grasp file, which names them", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder / "ball.off");
+  const geometry::TriangleMesh object = grasp::read_object(file.object);
+  const grasp::Surroundings surroundings = grasp::read_surroundings(file.surroundings);
+  REQUIRE(surroundings.obstacles.size() == 1);
+  fs::create_directory(folder / "out");
+  file.used_meshes = grasp::write_used_meshes(folder / "out", file.hand, object, surroundings);
+  grasp::write_grasps(folder / "out/grasps.json", file);
+
+  const grasp::GraspFile read = grasp::read_grasps(folder / "out/grasps.json");
+  REQUIRE(read.used_meshes);
+  const auto mesh = [&folder](const std::string& name) {
+    return geometry::read_mesh(folder / ("out/" + name)).mesh;
+  };
+  CHECK(mesh(read.used_meshes->object) == object);
+  REQUIRE(read.used_meshes->obstacles.size() == 1);
+  CHECK(mesh(read.used_meshes->obstacles[0]) == object);
+  REQUIRE(read.used_meshes->links.size() == file.hand.links.size());
+  for (std::size_t i = 0; i < file.hand.links.size(); ++i) {
+    const geometry::TriangleMesh& link = file.hand.links[i].mesh_L;
+    CHECK(read.used_meshes->links[i].empty() == link.faces.empty());
+    if (!link.faces.empty()) CHECK(mesh(read.used_meshes->links[i]) == link);
+  }
+}
+
+TEST_CASE("An obstacle that has changed is not taken for the recorded one", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile file = sample_file(folder / "ball.off");
+  CHECK(grasp::read_surroundings(file.surroundings).table_z_O == -0.2);
+  std::ofstream(folder / "ball.off", std::ios::app) << "# changed\n";
+  CHECK_THROWS_WITH(grasp::read_surroundings(file.surroundings),
+                    Contains("ball.off") && Contains("SHA-256"));
 }
 
 TEST_CASE("A hand with package:// and file:// meshes, two on one link, is recorded and found again",
@@ -267,13 +467,11 @@ TEST_CASE("M computed again from a grasp file and the object is that of the file
   grasp::write_grasps(folder / "grasps.json", sample_file(folder / "ball.off"));
   const grasp::GraspFile file = grasp::read_grasps(folder / "grasps.json");
   const geometry::TriangleMesh mesh = grasp::read_object(file.object);
-  const hands::HandCollision collision(file.hand);
-  const geometry::MeshQuery query(mesh);
-  const grasp::QualityContext context = grasp::quality_context(file, mesh);
+  grasp::Surroundings surroundings;
+  surroundings.table_z_O = file.surroundings.table_z_O;
+  const grasp::RecordedScene scene(file, mesh, surroundings);
   for (const grasp::Grasp& stored : file.grasps) {
-    const grasp::Grasp again =
-        grasp::measure_grasp(file.hand, collision, query, context, stored.configuration, {2, 0, 1},
-                             grasp::contact_options(file), grasp::quality_options(file));
+    const grasp::Grasp again = scene.measure(stored.configuration);
     // The poses moved by about 1e-16 m; contact areas and points follow continuously.
     CHECK(again.quality.m == Approx(stored.quality.m).margin(1e-12));
     CHECK(again.quality.m1 == Approx(stored.quality.m1).margin(1e-12));
@@ -338,8 +536,13 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(refusal(path, good.substr(0, good.size() / 2)), Contains("is not JSON"));
   CHECK_THAT(refusal(path, "[]"), Contains("/: is not an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
-  CHECK_THAT(refusal(path, replaced(good, "\"version\": 1", "\"version\": 2")),
-             Contains("/version: is 2"));
+  CHECK_THAT(refusal(path, replaced(good, "\"version\": 2", "\"version\": 1")),
+             Contains("/version: is 1; this program reads version 2"));
+  CHECK_THAT(refusal(path, replaced(good, "\"outside\": \"minus-one\"", "\"outside\": \"far\"")),
+             Contains("/results/grasps/3/wrench/convention/outside: is \"far\"") &&
+                 Contains("zero|minus-one|signed"));
+  CHECK_THAT(refusal(path, replaced(good, "\"forces_O_N\": [", "\"forces_O_N\": [[0, 0, 0], ")),
+             Contains("/results/grasps/1/squeeze/forces_O_N: has"));
   CHECK_THAT(refusal(path, replaced(good, "\"alpha\": 0.1", "\"alpha\": 1e999")),
              Contains("bad.json"));
   CHECK_THAT(refusal(path, replaced(good, "\"stop\": \"wall-clock\"", "\"stop\": 3")),
@@ -386,7 +589,11 @@ TEST_CASE("The table has a row per grasp and a unit in every column that needs o
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   REQUIRE(lines.size() == 1 + file.grasps.size());
-  CHECK_THAT(lines[0], Contains("largest_penetration_m"));
+  for (const char* column :
+       {"largest_penetration_m", "epsilon", "largest_claimed_gap_m", "palm_touches",
+        "pre_grasp_clearance_m", "pre_grasp_palm_x_m", "squeeze_residual"}) {
+    CHECK_THAT(lines[0], Contains(column));
+  }
   CHECK_THAT(lines[0], Contains(file.hand.joints[0].name + "_rad"));
   const auto num_commas = [](const std::string& line) {
     return std::count(line.begin(), line.end(), ',');

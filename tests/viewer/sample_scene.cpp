@@ -120,7 +120,7 @@ grasp::Grasp grasp_at(double q, int num_contacts) {
 }  // namespace
 
 SampleScene sample_scene() {
-  SampleScene scene{geometry::ball(kBallRadius, 4), three_finger_hand(), {}};
+  SampleScene scene{geometry::ball(kBallRadius, 4), three_finger_hand(), {}, {}};
 
   grasp::Grasp valid = grasp_at(0.0, 3);
   valid.quality.m1 = 0.4;
@@ -129,6 +129,24 @@ SampleScene sample_scene() {
   valid.quality.m = 0.4;
   valid.ideal_m = 0.7;
   valid.attempt = 4;
+  grasp::PreGrasp start;
+  start.configuration = valid.configuration;
+  start.configuration.X_OH.translation().z() -= 0.03;
+  start.configuration.q.setConstant(-0.4);
+  start.clearance = 0.0065;
+  start.opening = 0.5;
+  start.retreat = 0.03;
+  valid.pre_grasp = start;
+  grasp::Squeeze squeeze;
+  squeeze.configuration = valid.configuration;
+  squeeze.configuration.q.setConstant(0.1);
+  squeeze.forces_O = Eigen::Matrix3Xd::Zero(3, 3);
+  squeeze.residual = 0.012;
+  squeeze.is_balanced = true;
+  valid.squeeze = squeeze;
+  valid.wrench.epsilon = 0.1234;
+  valid.wrench.is_force_closure = true;
+  valid.wrench.convention.options.torque_scale = kBallRadius;
   valid.iterations = 61;
 
   grasp::Grasp penetrating = grasp_at(0.12, 3);
@@ -145,6 +163,9 @@ SampleScene sample_scene() {
   open.quality.stable_pairs.clear();
 
   scene.grasps = {valid, penetrating, open};
+  scene.surroundings.table_z_O = -0.12;
+  scene.surroundings.obstacles.emplace_back(
+      geometry::transformed(geometry::box({0.03, 0.03, 0.03}), translation({0.11, 0.0, -0.1})));
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "graspfit/grasp/grasp.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_model.hpp"
 #include "graspfit/viewer/hand_page.hpp"
 
@@ -15,7 +16,9 @@ struct SampleScene {
   geometry::TriangleMesh object_O;
   hands::HandModel hand;
   /// #1 valid (M 0.4), #2 usable but penetrating (M 0.6), #3 with two contacts of three and M 0.
+  /// The first has a pre-grasp 30 mm back, a squeeze, and ε 0.1234.
   std::vector<grasp::Grasp> grasps;
+  grasp::Surroundings surroundings;  ///< A table at z = -0.12 m and a cube on it, off the hand.
 };
 SampleScene sample_scene();
 

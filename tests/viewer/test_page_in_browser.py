@@ -191,11 +191,11 @@ class GraspsInBrowser(PageInBrowser):
         self.element("grasp-1").click()
         contacts = [row.text for row in self.browser.find_elements(By.CSS_SELECTOR, "#contacts tbody tr")]
         # finger, gap [mm], area [mm²], d [mm], S of tests/viewer/sample_scene.cpp
-        self.assertEqual(contacts, ["1 thumb 0.00 40.0 8.00 1", "2 finger_1 0.20 50.0 8.50 1",
-                                    "3 finger_2 0.40 60.0 9.00 1"])
+        self.assertEqual(contacts, ["1 thumb 0.000 40.0 8.00 1", "2 finger_1 0.200 50.0 8.50 1",
+                                    "3 finger_2 0.400 60.0 9.00 1"])
         measures = self.text("measures")
         for part in ("M1 sustainability", "0.4000", "R regularity", "D centroid distance", "0.00 mm",
-                     "M of the targets", "0.7000"):
+                     "M of the targets", "0.7000", "ε", "force closure", "0.1234"):
             self.assertIn(part, measures)
         self.assertEqual(self.text("pairs").count("30.0°"), 3)
         for summary in self.browser.find_elements(By.TAG_NAME, "summary"):
@@ -203,12 +203,51 @@ class GraspsInBrowser(PageInBrowser):
         self.assertIn("joint_3", self.text("right"))
         self.assertIn("Attempt", self.text("right"))
 
+    def test_pre_grasp_grasp_and_squeeze_pose_the_hand(self):
+        self.open("ball.html")
+        self.element("grasp-1").click()
+        pressed = lambda name: self.element(f"configuration-{name}").get_attribute("aria-pressed")
+        plain = self.picture()
+        self.assertEqual(pressed("grasp"), "true")
+        joints = self.browser.find_element(By.CSS_SELECTOR, "#right details")
+        joints.find_element(By.TAG_NAME, "summary").click()
+        pictures = {}
+        for name, angle in (("pre_grasp", "-22.9 °"), ("squeeze", "5.7 °"), ("grasp", "0.0 °")):
+            self.element(f"configuration-{name}").click()
+            self.assertEqual(pressed(name), "true")
+            pictures[name] = self.picture(f"configuration_{name}")
+            joints = self.browser.find_element(By.CSS_SELECTOR, "#right details")
+            self.assertIn(f"joint_1 {angle}", joints.text.replace("\n", " "))
+        self.assert_differs(pictures["pre_grasp"], pictures["grasp"], "pre-grasp")
+        self.assert_differs(pictures["squeeze"], pictures["grasp"], "squeeze")
+        self.assert_same(plain, pictures["grasp"], "back at the grasp, another picture")
+        for part in ("Pre-grasp clearance", "6.5 mm", "30.0 mm", "balanced", "1.2 %"):
+            self.assertIn(part, self.text("ways"))
+
+        # A grasp without either shows itself, and its buttons are off.
+        self.element("configuration-pre_grasp").click()
+        self.assertIn("shown in its pre-grasp", self.text("shown"))
+        self.element("grasp-2").click()
+        self.assertFalse(self.element("configuration-pre_grasp").is_enabled())
+        self.assertEqual(pressed("grasp"), "true")
+
+    def test_table_and_obstacles_are_drawn_where_there_are_any(self):
+        self.open("ball.html")
+        with_table = self.picture("surroundings")
+        self.element("show-surroundings").click()
+        self.assertGreater(self.share_near(with_table, (188, 196, 186), 12),
+                           10 * self.share_near(self.picture(), (188, 196, 186), 12))
+        self.assertIn("Hand and surroundings\ntable and obstacles\nnone".replace("\n", " "),
+                      self.text("penetration").replace("\n", " "))
+        self.open("without_model.html")
+        self.assertEqual(self.browser.find_elements(By.ID, "show-surroundings"), [])
+
     def test_toggles_change_the_picture_and_back(self):
         self.open("ball.html")
         self.element("grasp-1").click()
         plain = self.picture()
         for layer in ("object", "hand", "contacts", "polygon", "palm", "center", "targets", "clips",
-                      "voxels", "scores"):
+                      "voxels", "scores", "surroundings"):
             with self.subTest(layer=layer):
                 box = self.element(f"show-{layer}")
                 box.click()

@@ -167,6 +167,42 @@ class RenderGrasps(unittest.TestCase):
                 self.assertGreater(share_near(view, (205, 50, 42), 45), 0.001, "contacts' color")
                 self.assertGreater(share_near(view, (95, 150, 100), 45), 0.0005, "stable pair's color")
 
+    def test_pre_grasp_table_and_epsilon_are_shown(self):
+        def poses(shift):
+            rotation = [1, 0, 0, 0]
+            return {
+                link: {"translation_m": [s * shift, 0, -2 * shift], "rotation_wxyz": rotation}
+                for link, s in (("palm", 0), ("thumb", 1), ("finger_1", -1), ("finger_2", 0))
+            }
+
+        def add(data):
+            grasp = data["results"]["grasps"][0]
+            grasp["X_OL"] = poses(0.0)
+            grasp["pre_grasp"] = {"X_OL": poses(0.015)}
+            grasp["wrench"] = {"epsilon": 0.125}
+            data["surroundings"] = {"table_z_O_m": -0.04, "obstacles": []}
+
+        self.change(add)
+        result = self.run_script("--width", "900", "--height", "500", "--up", "z")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        image = Image.open(self.folder / "grasp_001.png").convert("RGB")
+        if PICTURES:
+            shutil.copy(self.folder / "grasp_001.png", PICTURES / "pre_grasp.png")
+        thirds = [image.crop((300 * k, 50, 300 * (k + 1), 440)) for k in range(3)]
+        for third in thirds:
+            self.assertGreater(share_near(third, (98, 124, 150), 40), 0.02, "hand's color")
+        # The same direction of view, but the hand is elsewhere.
+        self.assertIsNotNone(ImageChops.difference(thirds[0], thirds[2]).getbbox())
+        self.assertGreater(share_near(thirds[2], (196, 207, 193), 25), 0.01, "table's color")
+
+    def test_missing_obstacle(self):
+        self.change(
+            lambda data: data.update(
+                surroundings={"table_z_O_m": None, "obstacles": [{"used_mesh_file": "obstacle_1.ply"}]}
+            )
+        )
+        self.assert_refused("obstacle_1.ply", "No such file")
+
     def test_no_grasps_is_no_error(self):
         self.change(lambda data: data["results"].update(grasps=[]))
         self.assertEqual(self.run_script().returncode, 0)

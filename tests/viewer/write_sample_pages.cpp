@@ -29,10 +29,12 @@ int main(int argc, char** argv) {
     input.grasps = scene.grasps;
     input.model = &model;
     input.clip_thickness = 0.003;
+    input.surroundings = &scene.surroundings;
     viewer::write_page(folder / "ball.html", input);
 
     input.title = "Without voxels";
     input.model = nullptr;
+    input.surroundings = nullptr;
     viewer::write_page(folder / "without_model.html", input);
 
     input.title = "No grasps";

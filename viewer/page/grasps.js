@@ -65,19 +65,37 @@ let selected = 0;       // position in `order`
 let highlighted = -1;   // contact under the pointer in the table
 const current = () => data.grasps[order[selected]];
 
+// What of a grasp the hand is shown in; the grasp itself where there is no such configuration.
+const kConfigurations = [
+  ['pre_grasp', 'Pre-grasp', 'Open and clear: where to start from'],
+  ['grasp', 'Grasp', 'In contact'],
+  ['squeeze', 'Squeeze', 'Joints commanded beyond the surface, so that the hand presses'],
+];
+let configuration = 'grasp';
+const shown = (grasp) => grasp[configuration] || grasp.grasp;
+
+const surroundings = data.surroundings || {table_z: null, obstacles: []};
+const hasTable = surroundings.table_z !== null;
+const obstacles = surroundings.obstacles.map((mesh) => {
+  const vertices = floats(mesh.vertices);
+  return {vertices, faces: integers(mesh.faces), bounds: boundsOf(vertices)};
+});
+const hasSurroundings = hasTable || obstacles.length > 0;
+if (hasTable) camera.up = 2;
+
 const layers = {
   object: true, hand: true, contacts: true, polygon: true, palm: true, center: true,
-  targets: false, clips: false, voxels: false, scores: false,
+  targets: false, clips: false, voxels: false, scores: false, surroundings: true,
 };
 
 function sizeOfScene() {
   return objectSize;
 }
 function linkPoses() {
-  return layers.hand && data.grasps.length > 0 ? current().X_OL : null;
+  return layers.hand && data.grasps.length > 0 ? shown(current()).X_OL : null;
 }
 function palmOf(grasp) {
-  return palmAt(grasp.X_OL[data.hand.palm.link]);
+  return palmAt(shown(grasp).X_OL[data.hand.palm.link]);
 }
 
 // Balls, tubes and cones that mark things, in O.
@@ -120,7 +138,7 @@ function marks() {
     }
   }
   if (layers.clips) {
-    for (const {points, edges} of clipVolumesAt(grasp.X_OL)) {
+    for (const {points, edges} of clipVolumesAt(shown(grasp).X_OL)) {
       for (const [i, j] of edges) tube(points[i], points[j], 0.0014 * s, kColors.clip);
     }
   }
@@ -136,15 +154,40 @@ function sheets() {
   }
   if (grasp && layers.clips) {
     const rgba = hex(kColors.clip, 0.28);
-    for (const {points, faces} of clipVolumesAt(grasp.X_OL)) {
+    for (const {points, faces} of clipVolumesAt(shown(grasp).X_OL)) {
       for (const [i, j, k] of faces) triangle(points[i], points[j], points[k], rgba);
     }
+  }
+  if (hasTable && layers.surroundings) {
+    const [a, b, c, d] = tableCorners();
+    const rgba = hex(kColors.surroundings, 0.45);
+    triangle(a, b, c, rgba);
+    triangle(a, c, d, rgba);
   }
   return made();
 }
 
+// Of the part of the table that is drawn: around the object, as wide again as it on each side.
+function tableCorners() {
+  const [low, high] = [objectBounds.low, objectBounds.high];
+  const margin = 0.75 * Math.max(high[0] - low[0], high[1] - low[1]);
+  const z = surroundings.table_z;
+  return [[low[0] - margin, low[1] - margin, z], [high[0] + margin, low[1] - margin, z],
+          [high[0] + margin, high[1] + margin, z], [low[0] - margin, high[1] + margin, z]];
+}
+
 function boundsOfScene() {
   const bounds = {low: objectBounds.low.slice(), high: objectBounds.high.slice()};
+  if (layers.surroundings) {
+    const corners = obstacles.flatMap((obstacle) => [obstacle.bounds.low, obstacle.bounds.high])
+        .concat(hasTable ? tableCorners() : []);
+    for (const corner of corners) {
+      for (let k = 0; k < 3; ++k) {
+        bounds.low[k] = Math.min(bounds.low[k], corner[k]);
+        bounds.high[k] = Math.max(bounds.high[k], corner[k]);
+      }
+    }
+  }
   const X_OL = linkPoses();
   if (X_OL) includeLinks(bounds, X_OL);
   return bounds;
@@ -217,6 +260,7 @@ function scoreTexture() {
 }
 function makeBackdrop() {
   scene.object = upload(surface(object.vertices, object.faces));
+  scene.obstacles = obstacles.map((mesh) => upload(surface(mesh.vertices, mesh.faces)));
   scene.scoreTexture = voxels && scoreTexture();
   scene.voxelsShown = '';
 }
@@ -254,6 +298,10 @@ function drawBackdrop(u) {
     constantColor(hex(kColors.object), kIdentity);
     drawMesh(scene.object);
     gl.uniform1i(u.has_scores, 0);
+  }
+  if (layers.surroundings) {
+    constantColor(hex(kColors.surroundings), kIdentity);
+    scene.obstacles.forEach(drawMesh);
   }
   updateVoxels();
   if (layers.voxels && voxels) {
@@ -299,7 +347,7 @@ function listenToKeys() {
 
 const kind = (grasp) => grasp.is_valid ? 'valid' : grasp.is_usable ? 'usable' : 'unusable';
 const kKinds = {
-  valid: 'M > 0, penetrates nothing, every requested finger touches',
+  valid: 'M > 0, touches nothing else, every requested finger and palm touches',
   usable: 'M > 0, but it penetrates or misses a requested contact',
   unusable: 'M = 0',
 };
@@ -307,7 +355,10 @@ const badge = (grasp) => element(
     'span', {className: `badge ${kind(grasp)}`, title: kKinds[kind(grasp)]}, kind(grasp));
 
 function makeList() {
-  const list = byId('list');
+  const list = element('div', {id: 'list', tabIndex: 0});
+  list.setAttribute('role', 'listbox');
+  list.setAttribute('aria-label', 'Grasps');
+  makeSection('grasps', 'Grasps, best first', list);
   order.forEach((index, position) => {
     const grasp = data.grasps[index];
     const {m, m1, m2, m3} = grasp.quality;
@@ -316,7 +367,8 @@ function makeList() {
         element('span', {className: 'm'}, `M ${fixed(m, 3)}`),
         badge(grasp),
         element('span', {className: 'parts'},
-                `M1 ${fixed(m1, 3)}   M2 ${fixed(m2, 3)}   M3 ${fixed(m3, 3)}`));
+                `M1 ${fixed(m1, 3)}   M2 ${fixed(m2, 3)}   M3 ${fixed(m3, 3)}` +
+                    (grasp.wrench ? `   ε ${fixed(grasp.wrench.epsilon, 3)}` : '')));
     row.setAttribute('role', 'option');
     row.addEventListener('click', () => select(position));
     list.append(row);
@@ -330,6 +382,29 @@ function makeList() {
       `${usable} usable, ${valid} valid · object ${size.join(' × ')} mm`;
 }
 
+// Buttons for pre-grasp, grasp and squeeze; those that the selected grasp lacks are off.
+function makeConfigurations() {
+  const buttons = element('div', {id: 'configurations'});
+  buttons.setAttribute('role', 'group');
+  buttons.setAttribute('aria-label', 'Configuration of the hand');
+  for (const [name, caption, title] of kConfigurations) {
+    const button = element('button', {type: 'button', id: `configuration-${name}`, title}, caption);
+    button.addEventListener('click', () => {
+      configuration = name;
+      select(selected);
+    });
+    buttons.append(button);
+  }
+  makeSection('hand-shown', 'Hand', buttons);
+}
+function updateConfigurations() {
+  for (const [name] of kConfigurations) {
+    const button = byId(`configuration-${name}`);
+    button.disabled = !current()[name];
+    button.setAttribute('aria-pressed', String(shown(current()) === current()[name]));
+  }
+}
+
 function makeToggles() {
   const without = voxels ? '' : 'This page was written without voxels and scores';
   const rows = [
@@ -341,6 +416,7 @@ function makeToggles() {
     ['center', 'Center of mass (CoM)', kColors.center, '', 'round'],
     ['targets', 'Targets, outward normals', kColors.target, '', 'round'],
     ['clips', 'Clip volumes of pads', kColors.clip, ''],
+    ...(hasSurroundings ? [['surroundings', 'Table and obstacles', kColors.surroundings, '']] : []),
     ['voxels', 'Voxels with surface', kColors.voxel, without],
     ['scores', 'Score map', 'ramp', without],
   ];
@@ -381,6 +457,11 @@ function showMeasures() {
   panel.append(element('div', {className: 'headline', title: kKinds[kind(grasp)]},
       element('span', {className: 'value', id: 'm'}, `M ${fixed(quality.m, 4)}`), badge(grasp)));
   panel.append(element('p', {className: 'soft'}, kKinds[kind(grasp)]));
+  if (shown(grasp) !== grasp.grasp) {
+    const name = kConfigurations.find(([key]) => key === configuration)[1].toLowerCase();
+    panel.append(element('p', {className: 'soft', id: 'shown'},
+                         `The hand is shown in its ${name}; numbers are the grasp’s.`));
+  }
 
   const rows = element('tbody', {},
       measureRow('M1 sustainability', 'single contacts: far from pad edges, large area', fixed(quality.m1, 4)),
@@ -390,6 +471,12 @@ function showMeasures() {
       measureRow('D centroid distance', 'contact polygon’s centroid to CoM', millimeters(quality.centroid_distance), 'mm'),
       measureRow('D as in M3', 'in the units chosen for the measure', fixed(quality.scaled_centroid_distance, 4)),
       measureRow('M of the targets', 'what the planner aimed for', fixed(grasp.ideal_m, 4)));
+  if (grasp.wrench) {
+    const row = measureRow('ε', grasp.wrench.is_force_closure ? 'force closure' : 'no force closure',
+                           fixed(grasp.wrench.epsilon, 4));
+    row.title = grasp.wrench.convention;
+    rows.append(row);
+  }
   panel.append(element('h2', {}, 'Measures'), element('table', {id: 'measures'}, rows));
 
   panel.append(element('h2', {}, 'Contacts'));
@@ -399,7 +486,7 @@ function showMeasures() {
     const row = element('tr', {className: 'contact', title: `link ${contact.link}`},
         element('td', {}, `${i + 1} ${contact.finger}`,
                 ...notes.map((note) => element('small', {className: 'soft'}, ` ${note}`))),
-        element('td', {}, millimeters(contact.gap)),
+        element('td', {}, millimeters(contact.gap, 3)),
         element('td', {}, fixed(contact.area * 1e6, contact.area < 1e-6 ? 3 : 1)),
         element('td', {}, millimeters(contact.d)),
         element('td', {}, contact.term ? fixed(contact.term.s, 0) : '–'));
@@ -437,13 +524,32 @@ function showMeasures() {
       measureRow('Hand and itself',
                  penetration.self_link_a ? `${penetration.self_link_a}, ${penetration.self_link_b}` : '',
                  penetration.self ? `${millimeters(penetration.self_depth)} mm` : 'none'),
+      measureRow('Hand and surroundings', 'table and obstacles', penetration.surroundings ? 'touch' : 'none'),
       measureRow('Requested contacts', '', grasp.has_all_contacts ? 'all there' : 'some missing'))));
+
+  const {pre_grasp: start, squeeze} = grasp;
+  const ways = element('tbody');
+  if (start) {
+    ways.append(
+        measureRow('Pre-grasp clearance', 'of the nearest link', millimeters(start.clearance, 1), 'mm'),
+        measureRow('Pre-grasp opening', 'share of the way to open joints', fixed(100 * start.opening, 0), '%'),
+        measureRow('Pre-grasp retreat', 'of the palm', millimeters(start.retreat, 1), 'mm'));
+  }
+  if (squeeze) {
+    ways.append(
+        measureRow('Squeeze', 'contact forces', squeeze.is_balanced ? 'balanced' : 'not balanced'),
+        measureRow('Unbalanced share', squeeze.is_clamped ? 'a joint is at its limit' : '',
+                   fixed(100 * squeeze.residual, 1), '%'));
+  }
+  if (start || squeeze) {
+    panel.append(element('h2', {}, 'Before and after'), element('table', {id: 'ways'}, ways));
+  }
 
   const joints = element('tbody');
   data.hand.joints.forEach((joint, i) => joints.append(measureRow(
       joint.name, joint.is_coupled ? 'coupled' : '',
-      joint.is_angle ? degrees(grasp.q[i]) : millimeters(grasp.q[i]), joint.is_angle ? '°' : 'mm')));
-  const X_OH = grasp.X_OL[data.hand.palm.link];
+      joint.is_angle ? degrees(shown(grasp).q[i]) : millimeters(shown(grasp).q[i]), joint.is_angle ? '°' : 'mm')));
+  const X_OH = shown(grasp).X_OL[data.hand.palm.link];
   const terms = element('tbody');
   grasp.contacts.forEach((contact, i) => contact.term && terms.append(measureRow(
       `${i + 1} ${contact.finger}`, '', `${fixed(contact.term.d, 4)}   ${fixed(contact.term.a, 4)}`)));
@@ -479,6 +585,7 @@ function select(position) {
   });
   const open = [...document.querySelectorAll('#right details')].map((details) => details.open);
   showMeasures();
+  updateConfigurations();
   [...document.querySelectorAll('#right details')].forEach((details, i) => details.open = open[i]);
   updateMarks();
   if (camera.isFitted) fit();
@@ -486,9 +593,17 @@ function select(position) {
 }
 
 makeList();
+if (data.grasps.length > 0) makeConfigurations();
 makeToggles();
 listenToKeys();
-startStage(view);
+byId('hint').append(' · ↑ ↓: other grasp');
+startStage(view, [
+  ['fit', 'Fit', 'The whole scene, same direction (F)'],
+  ['side', 'Side', 'Across the palm direction'],
+  ['front', 'Front', 'Toward the palm, object in front'],
+  ['behind', 'Behind', 'Along the palm direction, hand in front'],
+  ['polygon', 'Polygon', 'Contact polygon face on'],
+]);
 if (data.grasps.length > 0) {
   select(0);
 } else {

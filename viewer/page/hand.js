@@ -161,6 +161,10 @@ const shownPosition = (joint, value) =>
     joint.is_angle ? `${degrees(value)}°` : `${millimeters(value, 1)} mm`;
 
 function makeControls() {
+  const poseButtons = element('div', {id: 'poses'});
+  poseButtons.setAttribute('role', 'group');
+  poseButtons.setAttribute('aria-label', 'Poses');
+  makeSection('pose', 'Pose', poseButtons, element('div', {id: 'sliders'}));
   poses.forEach((pose, i) => {
     const button = element('button', {type: 'button', id: `pose-${i}`}, pose.name);
     button.addEventListener('click', () => {
@@ -302,9 +306,14 @@ document.addEventListener('keydown', (event) => {
 X_HL = linkPosesAt(q);
 // Up on the screen: where the fingers point, as nearly as an axis of H does.
 camera.up = data.views[0].up.map(Math.abs).reduce((best, x, k, all) => x > all[best] + 1e-9 ? k : best, 2);
-byId('up').selectedIndex = camera.up;
 makeControls();
 makeTables();
-startStage(view);
+startStage(view, [
+  ['fit', 'Fit', 'The whole hand, same direction (F)'],
+  ['oblique', 'Oblique', 'Palm and fingers from the side'],
+  ['side', 'Side', 'Across the palm direction'],
+  ['front', 'Front', 'Toward the palm'],
+  ['behind', 'Behind', 'Along the palm direction'],
+]);
 update();
 if (gl) view('oblique');

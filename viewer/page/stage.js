@@ -72,7 +72,7 @@ const hex = (text, alpha = 1) =>
 const kColors = {
   object: '#d9cfbf', hand: '#6f8fae', contact: '#d3302a', stable: '#2f8f57', edge: '#8a9097',
   palm: '#7b4bb3', center: '#20242a', target: '#e08a00', clip: '#139aa5', voxel: '#9fb3c4',
-  pad: '#d07a1f', joint: '#20242a', follower: '#8a9097',
+  surroundings: '#8fa38a', pad: '#d07a1f', joint: '#20242a', follower: '#8a9097',
   x: '#c8382f', y: '#3b8f3f', z: '#2f5fb5',
 };
 
@@ -793,8 +793,22 @@ function say(text) {
   byId('message').hidden = text === '';
 }
 
-// Makes the scene and listens; `view` looks along what a button's data-view names.
-function startStage(view) {
+// A section of the left column, before the layers.
+function makeSection(id, caption, ...children) {
+  const section = element('section', {id}, element('h2', {}, caption), ...children);
+  byId('layers').before(section);
+  return section;
+}
+
+// Makes the scene, a button for each of `views`, [name, caption, explanation], and listens; `view`
+// looks along what a button's name says.
+function startStage(view, views) {
+  for (const [name, caption, title] of views) {
+    const button = element('button', {type: 'button', title}, caption);
+    button.dataset.view = name;
+    byId('up').parentElement.before(button);
+  }
+  byId('up').selectedIndex = camera.up;
   if (!gl) {
     say('This browser does not offer WebGL 2, so there is no picture; all numbers are here.');
     return;

@@ -44,10 +44,12 @@ Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
 Json targets(const PageInput& input, const grasp::Grasp& grasp) {
   Json list = Json::array();
   for (const grasp::TargetContact& target : grasp.targets.contacts) {
-    list.push_back({{"point", to_json(target.point_O)},
-                    {"normal", to_json(target.outward_normal_O)},
-                    {"finger", target.finger < 0 ? "" : finger_name(input.hand, target.finger)},
-                    {"score", target.score}});
+    list.push_back(
+        {{"point", to_json(target.point_O)},
+         {"normal", to_json(target.outward_normal_O)},
+         {"finger",
+          target.finger == grasp::kUnassigned ? "" : finger_name(input.hand, target.finger)},
+         {"score", target.score}});
   }
   return list;
 }
@@ -76,22 +78,61 @@ Json penetration(const hands::HandModel& hand, const grasp::GraspPenetration& pe
           {"self", penetration.self_intersects},
           {"self_depth", penetration.self_depth},
           {"self_link_a", link_name(penetration.self_link_a)},
-          {"self_link_b", link_name(penetration.self_link_b)}};
+          {"self_link_b", link_name(penetration.self_link_b)},
+          {"surroundings", penetration.surroundings_touched}};
+}
+
+/// Joints and the poses of all links.
+Json configuration(const hands::HandModel& hand, const hands::HandConfiguration& configuration) {
+  Json poses = Json::array();
+  for (const RigidTransform& X_OL : hands::forward_kinematics(hand, configuration)) {
+    poses.push_back(to_json(X_OL));
+  }
+  const Eigen::VectorXd& q = configuration.q;
+  return {{"X_OL", poses}, {"q", std::vector<double>(q.data(), q.data() + q.size())}};
+}
+
+Json pre_grasp(const hands::HandModel& hand, const std::optional<grasp::PreGrasp>& pre_grasp) {
+  if (!pre_grasp) return {};
+  Json json = configuration(hand, pre_grasp->configuration);
+  json["clearance"] = pre_grasp->clearance;
+  json["opening"] = pre_grasp->opening;
+  json["retreat"] = pre_grasp->retreat;
+  return json;
+}
+
+Json squeeze(const hands::HandModel& hand, const std::optional<grasp::Squeeze>& squeeze) {
+  if (!squeeze) return {};
+  Json json = configuration(hand, squeeze->configuration);
+  json["residual"] = squeeze->residual;
+  json["is_balanced"] = squeeze->is_balanced;
+  json["is_clamped"] = squeeze->is_clamped;
+  Json forces = Json::array();
+  for (const auto& force : squeeze->forces_O.colwise()) {
+    forces.push_back(to_json(Eigen::Vector3d(force)));
+  }
+  json["forces"] = forces;
+  return json;
+}
+
+/// Nothing where it was not measured, which leaves the torque scale unset.
+Json wrench(const grasp::WrenchQuality& wrench) {
+  if (std::isnan(wrench.convention.options.torque_scale)) return {};
+  return {{"epsilon", wrench.epsilon},
+          {"is_force_closure", wrench.is_force_closure},
+          {"convention", grasp::describe(wrench.convention)}};
 }
 
 Json grasps(const PageInput& input) {
   Json list = Json::array();
   for (const grasp::Grasp& grasp : input.grasps) {
-    Json poses = Json::array();
-    for (const RigidTransform& X_OL : hands::forward_kinematics(input.hand, grasp.configuration)) {
-      poses.push_back(to_json(X_OL));
-    }
-    const Eigen::VectorXd& q = grasp.configuration.q;
-    list.push_back({{"X_OL", poses},
-                    {"q", std::vector<double>(q.data(), q.data() + q.size())},
+    list.push_back({{"grasp", configuration(input.hand, grasp.configuration)},
+                    {"pre_grasp", pre_grasp(input.hand, grasp.pre_grasp)},
+                    {"squeeze", squeeze(input.hand, grasp.squeeze)},
                     {"contacts", contacts(input, grasp)},
                     {"targets", targets(input, grasp)},
                     {"quality", quality(grasp.quality)},
+                    {"wrench", wrench(grasp.wrench)},
                     {"ideal_m", grasp.ideal_m},
                     {"penetration", penetration(input.hand, grasp.penetration)},
                     {"has_all_contacts", grasp.has_all_contacts},
@@ -101,6 +142,16 @@ Json grasps(const PageInput& input) {
                     {"iterations", grasp.iterations}});
   }
   return list;
+}
+
+Json surroundings(const grasp::Surroundings* surroundings) {
+  if (surroundings == nullptr || surroundings->is_empty()) return {};
+  Json obstacles = Json::array();
+  for (const geometry::MeshQuery& obstacle : surroundings->obstacles) {
+    obstacles.push_back(to_json(obstacle.mesh()));
+  }
+  return {{"table_z", surroundings->table_z_O ? Json(*surroundings->table_z_O) : Json()},
+          {"obstacles", obstacles}};
 }
 
 Json voxels(const grasp::ObjectModel& model) {
@@ -142,10 +193,14 @@ void validate(const PageInput& input) {
   for (std::size_t i = 0; i < input.grasps.size(); ++i) {
     const grasp::Grasp& grasp = input.grasps[i];
     const std::string name = "grasp " + std::to_string(i + 1);
-    if (grasp.configuration.q.size() != static_cast<Eigen::Index>(hand.joints.size())) {
-      refuse(name + " has " + std::to_string(grasp.configuration.q.size()) + " joint positions, " +
-             hand.name + " has " + std::to_string(hand.joints.size()) + " joints");
-    }
+    const auto require_joints = [&](const std::string& what, const Eigen::VectorXd& q) {
+      if (q.size() == static_cast<Eigen::Index>(hand.joints.size())) return;
+      refuse(what + " has " + std::to_string(q.size()) + " joint positions, " + hand.name +
+             " has " + std::to_string(hand.joints.size()) + " joints");
+    };
+    require_joints(name, grasp.configuration.q);
+    if (grasp.pre_grasp) require_joints("pre-grasp of " + name, grasp.pre_grasp->configuration.q);
+    if (grasp.squeeze) require_joints("squeeze of " + name, grasp.squeeze->configuration.q);
     for (const grasp::Contact& contact : grasp.contacts) {
       if (!is_index(contact.link, hand.links.size(), 0) ||
           !is_index(contact.finger, hand.fingers.size(), -1)) {
@@ -154,7 +209,7 @@ void validate(const PageInput& input) {
       }
     }
     for (const grasp::TargetContact& target : grasp.targets.contacts) {
-      if (!is_index(target.finger, hand.fingers.size(), -1)) {
+      if (!is_index(target.finger, hand.fingers.size(), grasp::kUnassigned)) {
         refuse(name + " has a target of finger " + std::to_string(target.finger) + ", which " +
                hand.name + " does not have");
       }
@@ -187,6 +242,7 @@ std::string page_data(const PageInput& input) {
                      {"center_of_mass", center_of_mass_O ? to_json(*center_of_mass_O) : Json()},
                      {"hand", hand_data(input.hand, input.clip_thickness)},
                      {"voxels", input.model ? voxels(*input.model) : Json()},
+                     {"surroundings", surroundings(input.surroundings)},
                      {"grasps", grasps(input)}};
   return script_text(data);
 }

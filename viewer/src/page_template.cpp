@@ -56,10 +56,8 @@ std::string filled(std::string_view rest, const Places& places) {
 
 std::string filled_page(const PageParts& parts) {
   const std::string title = escaped_for_html(parts.title);
-  const std::string main = filled(parts.main, {{"{{title}}", title}});
   return filled(kPageHtml, {{"{{title}}", title},
                             {"{{style}}", kPageCss},
-                            {"{{main}}", main},
                             {"{{stage}}", kStageJs},
                             {"{{script}}", parts.script},
                             {"{{data}}", parts.data}});

@@ -6,19 +6,16 @@
 namespace graspfit::viewer {
 
 // The files of viewer/page/, compiled in by viewer/page/embed.cmake: the frame of a page with the
-// places {{title}}, {{style}}, {{main}}, {{stage}}, {{script}} and {{data}}, and what goes there.
+// places {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and what goes there.
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
 extern const std::string_view kStageJs;  // before either page's own script
-extern const std::string_view kGraspsHtml;
 extern const std::string_view kGraspsJs;
-extern const std::string_view kHandHtml;
 extern const std::string_view kHandJs;
 
 // What tells one page from another.
 struct PageParts {
   std::string_view title;   // plain text
-  std::string_view main;    // HTML with the place {{title}}
   std::string_view script;  // after stage.js, in one function with it
   std::string_view data;    // JSON without "<"
 };

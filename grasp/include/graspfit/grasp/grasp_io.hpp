@@ -1,13 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
 #include "graspfit/grasp/surroundings.hpp"
+#include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::grasp {
@@ -15,16 +19,33 @@ namespace graspfit::grasp {
 /// Version of this library, such as "0.1.0".
 const char* library_version();
 
+/// What stands around the object, as it can be read again.
+struct SurroundingsRecord {
+  std::optional<double> table_z_O;      ///< Everything at or below z = this is solid [m].
+  std::vector<ObjectRecord> obstacles;  ///< Files in frame O; `center_of_mass_O` and the like too.
+};
+
+/// Names of files beside a grasp file that hold the meshes as they were used: scaled, repaired,
+/// closed, in meters; for whoever recomputes numbers without this program.
+struct UsedMeshFiles {
+  std::string object;                  ///< In O.
+  std::vector<std::string> links;      ///< In L each; empty text for a link without faces.
+  std::vector<std::string> obstacles;  ///< In O.
+};
+
 /// A grasp file (`grasps.json`): everything needed to recompute every number without this program.
 /// Its schema is grasp/grasps.schema.json.
 struct GraspFile {
   ObjectRecord object;
+  SurroundingsRecord surroundings;
+  std::optional<UsedMeshFiles> used_meshes;   ///< Empty: not written.
   hands::HandModel hand;                      ///< As loaded again from the files recorded.
   std::vector<std::string> link_mesh_sha256;  ///< One per link, of its mesh files one after the
                                               ///< other; empty text where it has none.
   PlannerOptions options;
   std::string version = library_version();  ///< Of the library that planned.
   std::vector<std::string> fingers;         ///< Requested, the thumb first; what `options` came to.
+  bool palm = false;                        ///< Requested too.
   double voxel_size = 0.0;                  ///< [m]
   double clip_thickness = 0.0;              ///< Used where a pad states none [m].
   double merge_distance = 0.0;              ///< Used by the measure [m].
@@ -38,7 +59,7 @@ struct GraspFile {
 /// @throws IoError if a link mesh of the hand can no longer be read.
 GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& hand,
                           const PlannerOptions& options, const ObjectModel& object,
-                          const PlannerResult& result);
+                          const PlannerResult& result, const SurroundingsRecord& surroundings = {});
 
 /// The file's text: results in one object, timings in another, numbers in shortest round-trip form
 /// in the C locale, keys in fixed order. Same result, same bytes (but for `timings`).
@@ -49,25 +70,57 @@ std::string to_json(const GraspFile& file);
 /// Writes `to_json` atomically. @throws IoError.
 void write_grasps(const std::filesystem::path& path, const GraspFile& file);
 
+/// Writes the meshes of object, obstacles and links as PLY (doubles) to a folder: "object.ply",
+/// "obstacle_1.ply", ..., "link_00_palm.ply", ... @throws IoError.
+UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands::HandModel& hand,
+                                const geometry::TriangleMesh& object,
+                                const Surroundings& surroundings = {});
+
 /// Reads a grasp file and the hand it names; checks the hashes of the hand's files. A hand that is
 /// not where the record says is looked for relative to the grasp file, then among the shipped hands
 /// by the name of its description.
-/// @throws IoError (file, JSON path, what) for malformed files, unknown versions, hash mismatch.
+/// @throws IoError (file, JSON path, what) for malformed files, other versions (1 is refused: its
+/// grasps lack what is measured today), hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);
 
 /// One row per grasp, units in the column names (`grasps.csv`).
 std::string to_csv(const GraspFile& file);
 
+/// The surroundings of a record; `files` says where its obstacles are (empty: where it says
+/// itself), else one for each.
+/// @throws IoError if a file is missing or its SHA-256 is another one.
+Surroundings read_surroundings(const SurroundingsRecord& record,
+                               const std::vector<std::filesystem::path>& files = {});
+
 /// The largest gap of a contact of the grasp [m]; zero without contacts.
 double largest_contact_gap(const Grasp& grasp);
+
+/// The same over the contacts that were asked for (`Contact::is_target`).
+double largest_claimed_gap(const Grasp& grasp);
 
 /// The deepest overlap found, with the object or of the hand with itself [m].
 double largest_penetration(const Grasp& grasp);
 
-/// What a grasp was measured with, as `measure_grasp` takes it: the mesh must be the record's own.
-QualityContext quality_context(const GraspFile& file, const geometry::TriangleMesh& object);
-ContactEstimationOptions contact_options(const GraspFile& file);
-QualityOptions quality_options(const GraspFile& file);
+/// All that the grasps of a file were measured in, prepared again from the meshes.
+class RecordedScene {
+ public:
+  /// `object` and `surroundings` must be the records' own; `file` must outlive this. Weak features
+  /// are found again if `file` was planned with them, or come from the user's cache.
+  RecordedScene(const GraspFile& file, geometry::TriangleMesh object, Surroundings surroundings);
+  RecordedScene(const RecordedScene&) = delete;
+  RecordedScene& operator=(const RecordedScene&) = delete;
+
+  /// As `measure_grasp`, for the fingers and palm that the file's grasps were to touch with.
+  Grasp measure(const hands::HandConfiguration& configuration) const;
+
+ private:
+  const GraspFile& file_;
+  geometry::MeshQuery object_;
+  hands::HandCollision collision_;
+  SurroundingsCollision surroundings_;
+  std::optional<geometry::WeakRegions> weak_;
+  RequestedParts requested_;
+};
 
 /// Posed hand links and the object as one mesh in frame O [m].
 geometry::TriangleMesh posed_scene(const geometry::TriangleMesh& object,

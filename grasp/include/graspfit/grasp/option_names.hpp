@@ -11,9 +11,11 @@
 #include "graspfit/grasp/contact_score_map.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/grasp/wrench_convention.hpp"
 
 /// \file
-/// What the choices of the planner are called in grasp files and on the command line.
+/// What the choices of the planner and of its measures are called in grasp files and on the command
+/// line.
 
 namespace graspfit::grasp {
 
@@ -24,8 +26,8 @@ struct NamedValue {
   std::string_view name;
 };
 
-/// All values of an enumeration of the planner's options, in their order of declaration. Defined
-/// for the types listed below; no others link.
+/// All values of an enumeration of the planner and of wrench conventions, in their order of
+/// declaration. Defined for the types listed below; no others link.
 template <class Enum>
 std::span<const NamedValue<Enum>> named_values();
 
@@ -53,6 +55,16 @@ template <>
 std::span<const NamedValue<HullCentroid>> named_values<HullCentroid>();
 template <>
 std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>();
+template <>
+std::span<const NamedValue<TargetSearch>> named_values<TargetSearch>();
+template <>
+std::span<const NamedValue<WrenchTool>> named_values<WrenchTool>();
+template <>
+std::span<const NamedValue<ForceNorm>> named_values<ForceNorm>();
+template <>
+std::span<const NamedValue<ForceScaling>> named_values<ForceScaling>();
+template <>
+std::span<const NamedValue<OutsideValue>> named_values<OutsideValue>();
 template <>
 std::span<const NamedValue<geometry::RepairMode>> named_values<geometry::RepairMode>();
 template <>

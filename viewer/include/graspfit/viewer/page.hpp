@@ -9,6 +9,7 @@
 #include "graspfit/geometry/triangle_mesh.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::viewer {
@@ -17,12 +18,15 @@ namespace graspfit::viewer {
 struct PageInput {
   std::string title;                 ///< Heading and window title, plain text in UTF-8.
   geometry::TriangleMesh object_O;   ///< With at least one face.
-  hands::HandModel hand;             ///< Link meshes are stored once, poses per grasp.
+  hands::HandModel hand;             ///< Link meshes are stored once, poses per grasp: of itself,
+                                     ///< and of its pre-grasp and squeeze where it has them.
   std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
   /// Voxels, patches and scores; without it the page has no voxel and score map layers.
   const grasp::ObjectModel* model = nullptr;
   double clip_thickness =
       0.0;  ///< Of clip volumes whose pad states none [m]; 0: those are not drawn.
+  /// Table and obstacles, drawn where there are any; null: none.
+  const grasp::Surroundings* surroundings = nullptr;
   /// Drawn where given; empty: the model's, or none without a model.
   std::optional<Eigen::Vector3d> center_of_mass_O;
 };
