@@ -28,13 +28,7 @@ using namespace graspfit;
 
 constexpr int kGrasps = 100;
 
-struct Measured {
-  double per_grasp_s = 0.0;
-  double model_s = 0.0;
-};
-
-Measured plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_name,
-                      double tree_s) {
+void plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_name, double tree_s) {
   const hands::HandModel hand = hands::find_hand(hand_name);
   grasp::PlannerOptions options;
   options.count = kGrasps;
@@ -64,11 +58,10 @@ Measured plan_hundred(const geometry::TriangleMesh& mesh, const std::string& han
     std::printf("  %-34s %8.2f ms  %5.1f %%\n", name.c_str(), seconds / kGrasps * 1e3,
                 100.0 * seconds / t.total_s);
   }
-  std::printf("  %-34s %8.2f ms  %5.2f x CGAL's tree\n", "per valid grasp",
-              measured.per_grasp_s * 1e3, measured.per_grasp_s / tree_s);
+  std::printf("  %-34s %8.2f ms  %5.2f x CGAL's tree\n", "per valid grasp", per_grasp_s * 1e3,
+              per_grasp_s / tree_s);
   std::printf("  %-34s %8.2f ms  %5.2f x CGAL's tree (model %.1f ms)\n", "with the object's model",
-              with_model * 1e3, with_model / tree_s, measured.model_s * 1e3);
-  return measured;
+              with_model_s * 1e3, with_model_s / tree_s, model_s * 1e3);
 }
 
 TEST_CASE("Time per valid grasp", "[!benchmark][planner]") {

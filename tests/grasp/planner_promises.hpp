@@ -269,7 +269,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   std::set<std::int64_t> attempts;
   for (std::size_t i = 0; i < result.grasps.size(); ++i) {
     const Grasp& g = result.grasps[i];
-    const auto wrong = [&](const auto&... parts) { report("grasp ", i, ": ", parts...); };
+    const auto wrong = [&](const auto&... words) { report("grasp ", i, ": ", words...); };
     if (!attempts.insert(g.attempt).second) wrong("attempt ", g.attempt, " twice");
     if (g.attempt < 0 || g.attempt > statistics.attempts) wrong("attempt ", g.attempt);
     if (g.iterations < 0 || g.iterations > options.fitting.max_iterations) {
