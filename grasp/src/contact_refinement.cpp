@@ -200,7 +200,13 @@ class Refinement {
       }
       return !opening.isZero(0.0);
     };
-    for (const int link : blocked.by_own_hand) open(link);
+    for (const int link : blocked.by_own_hand) {
+      open(link);
+      const VectorXd straightening = motion_.straightening(link, step);
+      for (Index i = 0; i < motion.size(); ++i) {
+        if (straightening[i] != 0.0) motion[i] = straightening[i];
+      }
+    }
     for (const int link : blocked.links) {
       withdraws = !open(link) || round >= kOpeningsOfFingersAlone || withdraws;
     }

@@ -21,8 +21,9 @@ HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool 
   entry_of_joint_.assign(num_joints, -1);
   ratio_.assign(num_joints, 1.0);
   lever_.assign(num_joints, 1.0);
-  const std::vector<RigidTransform> X_OL =
-      hands::forward_kinematics(hand, hands::open_configuration(hand));
+  const hands::HandConfiguration open = hands::open_configuration(hand);
+  open_q_ = open.q;
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, open);
   for (std::size_t j = 0; j < num_joints; ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.type == hands::JointType::Revolute) {
@@ -149,6 +150,20 @@ VectorXd HandMotion::opening(int link, double step) const {
   VectorXd lower, upper;
   bounds(step, lower, upper);
   return motion.cwiseMax(lower).cwiseMin(upper);
+}
+
+VectorXd HandMotion::straightening(int link, double step) const {
+  VectorXd motion = VectorXd::Zero(size());
+  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
+    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
+    if (j < 0 || hand_.joints[static_cast<std::size_t>(j)].closing_sign != 0) continue;
+    const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
+    if (entry < 0) continue;
+    const int joint = free_joints_[static_cast<std::size_t>(entry - 6)];
+    const double way = open_q_[joint] - configuration_.q[joint];
+    motion[entry] = std::clamp(way * lever_[static_cast<std::size_t>(joint)], -step, step);
+  }
+  return motion;
 }
 
 hands::HandConfiguration HandMotion::moved(const VectorXd& motion) const {

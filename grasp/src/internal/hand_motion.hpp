@@ -39,6 +39,10 @@ class HandMotion {
   /// The motion that opens the joints between a link and the palm, each by `step` [m] at its end.
   Eigen::VectorXd opening(int link, double step) const;
 
+  /// The same for those that neither open nor close (spread, abduction), toward where they stand in
+  /// the open hand: fingers that cross part by it.
+  Eigen::VectorXd straightening(int link, double step) const;
+
   /// The configuration after a motion; couplings and limits hold.
   hands::HandConfiguration moved(const Eigen::VectorXd& motion) const;
 
@@ -52,6 +56,7 @@ class HandMotion {
   std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, its leader's; −1: none.
   std::vector<double> ratio_;        ///< Of that entry.
   std::vector<double> lever_;        ///< Per joint [m/rad; 1 of a prismatic joint].
+  Eigen::VectorXd open_q_;           ///< Of the open hand.
   hands::HandConfiguration configuration_;
   std::vector<hands::RigidTransform> X_OL_;
   Eigen::Vector3d pivot_O_ = Eigen::Vector3d::Zero();
