@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exit_codes.hpp"
@@ -14,11 +15,18 @@ ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_shape(const std::vector<std::string>& arguments);
 ExitCode run_hand(const std::vector<std::string>& arguments);
+ExitCode run_experiment(const std::vector<std::string>& arguments);
 
 /// Whether `graspfit hand` has a command of that name.
 bool is_hand_command(const std::string& name);
 
+/// Whether `graspfit experiment` has a command of that name.
+bool is_experiment_command(const std::string& name);
+
 /// The program's version and those of the compiler and the libraries it was built with.
 std::string version_text();
+
+/// The same as pairs of name and version.
+std::vector<std::pair<std::string, std::string>> version_rows();
 
 }  // namespace graspfit::app

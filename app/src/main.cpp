@@ -25,6 +25,7 @@ const char* const kUsage =
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
+    "  graspfit experiment ...       lists, describes and runs tables of results\n"
     "\n"
     "graspfit COMMAND --help lists a command's options with their defaults and units.\n";
 
@@ -35,12 +36,13 @@ void print_error(const std::string& command, const std::string& what) {
 }
 
 using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 5> kCommands = {{{"plan", run_plan},
+constexpr std::array<std::pair<const char*, Run>, 6> kCommands = {{{"plan", run_plan},
                                                                    {"inspect", run_inspect},
                                                                    {"evaluate", run_evaluate},
                                                                    {"shape", run_shape},
-                                                                   {"hand", run_hand}}};
-const char* const kCommandNames = "plan, inspect, evaluate, shape and hand";
+                                                                   {"hand", run_hand},
+                                                                   {"experiment", run_experiment}}};
+const char* const kCommandNames = "plan, inspect, evaluate, shape, hand and experiment";
 
 const std::pair<const char*, Run>* find_command(const std::string& name) {
   const auto found = std::find_if(kCommands.begin(), kCommands.end(),
@@ -71,8 +73,10 @@ ExitCode run(const std::vector<std::string>& arguments) {
 std::string name_for_messages(const std::vector<std::string>& arguments) {
   if (arguments.empty() || find_command(arguments[0]) == nullptr) return "";
   const bool has_subcommand =
-      arguments[0] == "hand" && arguments.size() > 1 && is_hand_command(arguments[1]);
-  return has_subcommand ? "hand " + arguments[1] : arguments[0];
+      arguments.size() > 1 &&
+      ((arguments[0] == "hand" && is_hand_command(arguments[1])) ||
+       (arguments[0] == "experiment" && is_experiment_command(arguments[1])));
+  return has_subcommand ? arguments[0] + ' ' + arguments[1] : arguments[0];
 }
 
 /// Every exception ends here as one line and an exit code.

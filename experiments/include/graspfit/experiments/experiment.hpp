@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "graspfit/experiments/parameter_sweep.hpp"
+#include "graspfit/experiments/result_table.hpp"
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::experiments {
+
+/// A setting of a cell that cannot be used; who reads the configuration knows where it stands.
+class SettingError : public geometry::InvalidInput {
+ public:
+  /// `key` is the setting's name, or empty where none is to blame; `what` says value and what is
+  /// allowed.
+  SettingError(std::string key, const std::string& what)
+      : geometry::InvalidInput(what), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// A file that is not part of the repository is not on this machine: the cell is skipped, not
+/// failed, and tried again by the next run.
+class MissingData : public geometry::IoError {
+ public:
+  using geometry::IoError::IoError;
+};
+
+/// What a cell came to.
+struct CellResult {
+  ResultRow row;      ///< Of `Experiment::columns`.
+  ResultRow timings;  ///< Of `Experiment::timings`.
+};
+
+/// An experiment: a question, the unit of work that answers a part of it, and the columns in which
+/// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
+struct Experiment {
+  std::string slug;              ///< Letters, digits and _; the same in every file name.
+  std::vector<Column> columns;   ///< Results: the same bytes for every run.
+  std::vector<Column> timings;   ///< What may differ from run to run.
+  std::vector<Column> settings;  ///< Settings of its own, beside `planning_setting_names`.
+
+  /// Checks a cell's settings without doing its work. @throws SettingError.
+  std::function<void(const Cell&)> check;
+
+  /// Does a cell's work, on one thread; several may run at once. It may write files beside its row
+  /// into `folder`, which exists only from its first file on (`cell_folder`).
+  /// @throws MissingData, or anything else: a row with that reason.
+  std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
+
+  /// The files that a cell reads, for the manifest; those that are not there are left out.
+  std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;
+};
+
+/// All experiments, by slug. This is the registry: one line each in experiment_registry.cpp.
+const std::vector<Experiment>& all_experiments();
+
+/// @throws InvalidInput that lists the experiments, if there is none of that name.
+const Experiment& find_experiment(const std::string& slug);
+
+}  // namespace graspfit::experiments

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "graspfit/experiments/experiment.hpp"
+
+namespace graspfit::experiments {
+
+/// One `axis=a,b,...` of the command line.
+struct AxisChange {
+  std::string axis;
+  std::vector<std::string> values;
+};
+
+/// "axis=a,b" taken apart. @throws InvalidInput.
+AxisChange parse_axis_change(const std::string& text);
+
+/// What of an experiment's configuration is run.
+struct ConfigRequest {
+  bool is_quick = false;            ///< The few cells of its member `quick`.
+  std::vector<AxisChange> changes;  ///< In order.
+};
+
+/// A configuration, checked: every cell has settings that its experiment can use.
+struct ExperimentConfig {
+  std::string file;
+  std::string sha256;    ///< Of the file.
+  std::string question;  ///< For people.
+  std::string cell;      ///< What one cell computes, for people.
+  ParameterSweep sweep;
+  bool is_quick = false;
+  bool is_modified = false;  ///< By changes of the command line.
+
+  /// Everything that the results depend on as canonical JSON text: sweep and its settings.
+  std::string identity() const;
+};
+
+/// Reads `configs/<slug>.json`:
+///
+///     experiment   the slug again
+///     question     what it answers
+///     cell         what one cell computes
+///     seed         base of all seeds, an integer from 0
+///     seeds        optional; n adds a last axis "seed" with 1, ..., n
+///     settings     optional; settings of all cells
+///     axes         name -> values: plain values of the setting of that name, or objects with a
+///                  "name" (and perhaps a "note") and any settings
+///     quick        optional; axes: name -> labels that remain; settings; seeds
+///
+/// A change picks values of an axis by their labels; on an axis of plain values it may bring
+/// others, and the name of any setting makes a new axis.
+/// @throws IoError, InvalidInput: file, key, what is wrong, what is allowed.
+ExperimentConfig read_config(const Experiment& experiment, const std::filesystem::path& file,
+                             const ConfigRequest& request = {});
+
+/// Folder of the shipped configurations: `$GRASPFIT_EXPERIMENTS`, beside an installed program, or
+/// the sources'. @throws InvalidInput if there is none.
+std::filesystem::path config_folder();
+
+}  // namespace graspfit::experiments

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/experiments/experiment.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/object_file.hpp"
+
+namespace graspfit::experiments {
+
+/// What an object of a cell is.
+struct ObjectSettings {
+  std::string file;   ///< In the data folder; empty: `shape`.
+  std::string shape;  ///< Of `geometry::named_shape`, in meters.
+  std::optional<double>
+      size;  ///< Length of the bounding box along `size_axis` [m]; empty: as it is.
+  std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
+};
+
+/// What the planner is asked to do in a cell.
+struct PlanningSettings {
+  ObjectSettings object;
+  std::string hand;  ///< A shipped one, or a description in the data folder (has a '/').
+  grasp::PlannerOptions options;
+};
+
+/// Names of all settings with their units and meanings:
+///
+///     file or shape, size_m, size_axis (x|y|z|longest), hand
+///
+/// and the planner's options by the names that they have as flags of `graspfit plan`.
+const std::vector<Column>& planning_setting_names();
+
+/// The settings of a cell; its seed becomes the planner's. `others` are names that belong to the
+/// experiment itself and are passed over. @throws SettingError for unknown names and values that
+/// are not allowed.
+PlanningSettings planning_settings(const Cell& cell, const std::vector<Column>& others = {});
+
+/// The same from any JSON object, for settings within settings.
+PlanningSettings planning_settings(const std::string& settings, std::uint64_t seed,
+                                   const std::vector<Column>& others = {});
+
+/// The object of a cell, scaled and repaired. The last few are kept, for cells that share one.
+/// @throws MissingData if its file is not there; as `grasp::read_object_file`.
+std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings);
+
+/// The hand of a cell. @throws MissingData if its file is not there; as `hands::read_hand_model`.
+std::shared_ptr<const hands::HandModel> load_hand(const std::string& hand);
+
+/// The files of object and hand, for manifests.
+std::vector<std::filesystem::path> planning_inputs(const PlanningSettings& settings);
+
+}  // namespace graspfit::experiments

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "graspfit/experiments/experiment_config.hpp"
+
+namespace graspfit::experiments {
+
+/// The sources that this library was built from.
+struct BuildSource {
+  std::string commit;     ///< Empty where the sources were not under version control.
+  bool is_clean = false;  ///< Nothing differed from that commit, published results aside.
+};
+BuildSource build_source();
+
+/// SHA-256 of the running program, empty where the system does not say which it is.
+std::string program_sha256();
+
+/// Everything needed to run an experiment again. Written beside its results, never compared.
+struct RunManifest {
+  std::string command;                                        ///< As typed.
+  std::vector<std::pair<std::string, std::string>> versions;  ///< Of program, compiler, libraries.
+  BuildSource source = build_source();
+  std::string program = program_sha256();
+  std::map<std::string, std::string> inputs;  ///< SHA-256 by file, relative to the data folder for
+                                              ///< files in it.
+};
+
+/// The manifest's text: JSON with command, configuration, its hash, seed, commit, versions,
+/// machine, inputs, numbers of cells.
+std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
+                    const std::string& status_counts_json);
+
+/// Copies the results of a finished run from `folder` into `published` (`notebooks-data`).
+///
+/// @throws InvalidInput, saying which, for a quick or modified configuration, cells that were
+/// skipped, a program that was not built from a clean tree, and a tree at `sources` that is not,
+/// `published` aside, the one that the program was built from.
+void publish(const Experiment& experiment, const ExperimentConfig& config,
+             const std::filesystem::path& folder, const std::filesystem::path& sources,
+             const std::filesystem::path& published);
+
+/// Only the check of `publish` that can be made before the work.
+void require_publishable(const ExperimentConfig& config, const std::filesystem::path& sources);
+
+/// The repository that this library was built from; need not exist any more.
+std::filesystem::path source_folder();
+
+}  // namespace graspfit::experiments

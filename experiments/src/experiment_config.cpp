@@ -1,0 +1,385 @@
+#include "graspfit/experiments/experiment_config.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "internal/config_node.hpp"
+
+namespace graspfit::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using internal::ConfigNode;
+using Json = nlohmann::json;
+
+constexpr std::size_t kMostCells = 1000000;  // A sweep beyond that is a mistake in its axes.
+
+/// An axis with where its values were written, for messages.
+struct PlacedAxis {
+  Axis axis;
+  std::vector<std::string> places;  ///< One per value.
+};
+
+/// The configuration while it is put together.
+struct Draft {
+  std::string file;
+  Json settings = Json::object();
+  std::map<std::string, std::string> setting_places;
+  std::vector<PlacedAxis> axes;
+};
+
+bool is_label(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '+' || c == '-';
+  });
+}
+
+std::string plain_label(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+  if (value.is_number_integer()) return value.dump();
+  return geometry::shortest_decimal(value.get<double>());
+}
+
+std::string labels_text(const Axis& axis) {
+  std::string text;
+  for (const AxisValue& value : axis.values) text += (text.empty() ? "" : ", ") + value.label;
+  return text;
+}
+
+AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
+  AxisValue value;
+  Json settings = Json::object();
+  if (node.json().is_object()) {
+    value.label = node.at("name").text();
+    for (const auto& [key, member] : node.members()) {
+      if (key == "note") member.text();
+      if (key != "name" && key != "note") settings[key] = Json(member.json());
+    }
+  } else {
+    if (!node.json().is_primitive() || node.json().is_null()) {
+      node.fail("is " + node.json().dump() +
+                "; a value is a number, a text, true, false, or an object with a name");
+    }
+    settings[axis] = Json(node.json());
+    value.label = plain_label(settings[axis]);
+  }
+  if (!is_label(value.label)) {
+    node.fail("is named \"" + value.label + "\"; names are made of letters, digits and _.+-");
+  }
+  value.settings = settings.dump();
+  return value;
+}
+
+PlacedAxis read_axis(const std::string& name, const ConfigNode& node) {
+  if (!is_label(name) || name == "seed") {
+    node.fail("no axis can be named \"" + name + "\"; \"seeds\" makes the axis seed");
+  }
+  PlacedAxis placed;
+  placed.axis.name = name;
+  std::set<std::string> labels;
+  for (const ConfigNode& item : node.items()) {
+    placed.axis.values.push_back(read_axis_value(name, item));
+    placed.places.push_back(item.place());
+    if (!labels.insert(placed.axis.values.back().label).second) {
+      item.fail("is the second value named " + placed.axis.values.back().label);
+    }
+  }
+  return placed;
+}
+
+void read_settings(const ConfigNode& node, Draft& draft) {
+  for (const auto& [key, value] : node.members()) {
+    draft.settings[key] = Json(value.json());
+    draft.setting_places[key] = value.place();
+  }
+}
+
+PlacedAxis seed_axis(const ConfigNode& node) {
+  constexpr std::uint64_t kMostSeeds = 100000;
+  const std::uint64_t count = node.unsigned_integer();
+  if (count < 1 || count > kMostSeeds) {
+    node.fail("is " + std::to_string(count) + ", must be in [1, " + std::to_string(kMostSeeds) +
+              "]");
+  }
+  PlacedAxis placed;
+  placed.axis.name = "seed";
+  for (std::uint64_t seed = 1; seed <= count; ++seed) {
+    placed.axis.values.push_back({std::to_string(seed), "{}"});
+    placed.places.push_back(node.place());
+  }
+  return placed;
+}
+
+PlacedAxis* find_axis(Draft& draft, const std::string& name) {
+  const auto found = std::find_if(draft.axes.begin(), draft.axes.end(),
+                                  [&](const PlacedAxis& axis) { return axis.axis.name == name; });
+  return found == draft.axes.end() ? nullptr : &*found;
+}
+
+/// The value of an axis with that label, or −1.
+std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
+  const auto found = std::find_if(axis.values.begin(), axis.values.end(),
+                                  [&](const AxisValue& value) { return value.label == label; });
+  return found == axis.values.end() ? -1 : found - axis.values.begin();
+}
+
+/// Keeps the values with these labels, in their old order.
+void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
+  std::set<std::ptrdiff_t> kept;
+  for (const ConfigNode& label : labels.items()) {
+    const std::string name = label.json().is_primitive() ? plain_label(Json(label.json())) : "";
+    const std::ptrdiff_t index = find_value(placed.axis, name);
+    if (index < 0) {
+      label.fail("is no value of axis " + placed.axis.name + "; there are " +
+                 labels_text(placed.axis));
+    }
+    kept.insert(index);
+  }
+  PlacedAxis remaining;
+  remaining.axis.name = placed.axis.name;
+  for (const std::ptrdiff_t index : kept) {
+    remaining.axis.values.push_back(placed.axis.values[static_cast<std::size_t>(index)]);
+    remaining.places.push_back(placed.places[static_cast<std::size_t>(index)]);
+  }
+  placed = std::move(remaining);
+}
+
+void apply_quick(const ConfigNode& quick, Draft& draft) {
+  quick.require_members({}, {"axes", "settings", "seeds"});
+  if (quick.has("seeds")) {
+    PlacedAxis* const seeds = find_axis(draft, "seed");
+    if (seeds == nullptr) quick.at("seeds").fail("there are no \"seeds\" to have fewer of");
+    *seeds = seed_axis(quick.at("seeds"));
+  }
+  if (quick.has("settings")) read_settings(quick.at("settings"), draft);
+  if (!quick.has("axes")) return;
+  for (const auto& [name, labels] : quick.at("axes").members()) {
+    PlacedAxis* const placed = find_axis(draft, name);
+    if (placed == nullptr) labels.fail("there is no axis of that name");
+    keep_values(labels, *placed);
+  }
+}
+
+/// A value of the command line: a number, true or false as in JSON, else a text.
+Json parsed_value(const std::string& text) {
+  Json value = Json::parse(text, nullptr, false);
+  if (value.is_discarded() || !value.is_primitive() || value.is_null()) value = text;
+  return value;
+}
+
+/// Values of the command line for an axis of plain values, a setting, or the seeds.
+AxisValue changed_value(const AxisChange& change, const std::string& text) {
+  AxisValue value;
+  value.label = text;
+  if (change.axis == "seed") {
+    const Json seed = parsed_value(text);
+    if (!seed.is_number_unsigned()) {
+      throw geometry::InvalidInput("--set seed: \"" + text + "\" is not an integer from 0");
+    }
+    value.settings = "{}";
+  } else {
+    const Json parsed = parsed_value(text);
+    value.label = plain_label(parsed);
+    value.settings = Json{{change.axis, parsed}}.dump();
+  }
+  if (!is_label(value.label)) {
+    throw geometry::InvalidInput("--set " + change.axis + ": \"" + text +
+                                 "\" is made of more than letters, digits and _.+-");
+  }
+  return value;
+}
+
+/// Whether all values of an axis set what the axis is called, as plain values do.
+bool has_plain_values(const Axis& axis) {
+  return std::all_of(axis.values.begin(), axis.values.end(), [&](const AxisValue& value) {
+    const Json settings = Json::parse(value.settings);
+    return axis.name == "seed" || (settings.size() == 1 && settings.contains(axis.name));
+  });
+}
+
+void apply_change(const AxisChange& change, Draft& draft) {
+  PlacedAxis changed;
+  changed.axis.name = change.axis;
+  const PlacedAxis* const old = find_axis(draft, change.axis);
+  std::set<std::string> labels;
+  for (const std::string& text : change.values) {
+    const std::ptrdiff_t index = old == nullptr ? -1 : find_value(old->axis, text);
+    if (index >= 0) {
+      changed.axis.values.push_back(old->axis.values[static_cast<std::size_t>(index)]);
+    } else if (old == nullptr || has_plain_values(old->axis)) {
+      changed.axis.values.push_back(changed_value(change, text));
+    } else {
+      throw geometry::InvalidInput("--set " + change.axis + ": \"" + text +
+                                   "\" is no value of that axis; there are " +
+                                   labels_text(old->axis));
+    }
+    changed.places.push_back("--set " + change.axis);
+    if (!labels.insert(changed.axis.values.back().label).second) {
+      throw geometry::InvalidInput("--set " + change.axis + ": \"" + text + "\" is given twice");
+    }
+  }
+  if (PlacedAxis* const placed = find_axis(draft, change.axis)) {
+    *placed = std::move(changed);
+    return;
+  }
+  draft.settings.erase(change.axis);
+  // Seeds stay last.
+  const auto seeds = std::find_if(draft.axes.begin(), draft.axes.end(),
+                                  [](const PlacedAxis& axis) { return axis.axis.name == "seed"; });
+  draft.axes.insert(change.axis == "seed" ? draft.axes.end() : seeds, std::move(changed));
+}
+
+/// Settings belong to one axis: two that set the same would hide one another.
+void require_separate_axes(const Draft& draft) {
+  std::map<std::string, std::string> owners;
+  for (const PlacedAxis& placed : draft.axes) {
+    std::set<std::string> keys;
+    for (const AxisValue& value : placed.axis.values) {
+      const Json settings = Json::parse(value.settings);
+      for (const auto& [key, setting] : settings.items()) keys.insert(key);
+    }
+    for (const std::string& key : keys) {
+      const auto [owner, is_new] = owners.emplace(key, placed.axis.name);
+      if (!is_new) {
+        throw geometry::InvalidInput(draft.file + ": setting " + key + " is set by axis " +
+                                     owner->second + " and by axis " + placed.axis.name);
+      }
+    }
+  }
+}
+
+/// Where a setting of a cell was written.
+std::string place_of(const Draft& draft, const Cell& cell, const std::string& key) {
+  for (std::size_t i = 0; i < draft.axes.size(); ++i) {
+    const Axis& axis = draft.axes[i].axis;
+    const auto index = static_cast<std::size_t>(find_value(axis, cell.labels[i]));
+    if (!Json::parse(axis.values[index].settings).contains(key)) continue;
+    const std::string& place = draft.axes[i].places[index];
+    return key == axis.name ? place : place + '/' + key;
+  }
+  const auto found = draft.setting_places.find(key);
+  return found == draft.setting_places.end() ? "cell " + cell.key : found->second;
+}
+
+void check_cells(const Experiment& experiment, const Draft& draft, const ParameterSweep& sweep) {
+  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
+    const Cell cell = sweep.cell(i);
+    try {
+      experiment.check(cell);
+    } catch (const SettingError& error) {
+      const std::string& key = error.key();
+      throw geometry::InvalidInput(draft.file + ": " + place_of(draft, cell, key) + ": " +
+                                   error.what());
+    } catch (const geometry::InvalidInput& error) {
+      throw geometry::InvalidInput(draft.file + ": cell " + cell.key + ": " + error.what());
+    }
+  }
+}
+
+ParameterSweep sweep_of(const Draft& draft, const std::string& slug, std::uint64_t seed) {
+  ParameterSweep sweep;
+  sweep.experiment = slug;
+  sweep.base_seed = seed;
+  sweep.settings = draft.settings.dump();
+  std::size_t count = 1;
+  for (const PlacedAxis& placed : draft.axes) {
+    sweep.axes.push_back(placed.axis);
+    if (placed.axis.values.size() > kMostCells / count) {
+      throw geometry::InvalidInput(draft.file + ": more than " + std::to_string(kMostCells) +
+                                   " cells");
+    }
+    count *= placed.axis.values.size();
+  }
+  return sweep;
+}
+
+ConfigNode::Json parse(const std::string& file, const std::string& text) {
+  try {
+    return ConfigNode::Json::parse(text);
+  } catch (const ConfigNode::Json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 1, ...": the part in brackets is noise.
+    std::string what = error.what();
+    if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+    throw geometry::IoError(file + ": is not JSON: " + what);
+  }
+}
+
+}  // namespace
+
+AxisChange parse_axis_change(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  if (sign == std::string::npos || sign == 0 || sign + 1 == text.size()) {
+    throw geometry::InvalidInput("--set \"" + text + "\" is not AXIS=A,B,...");
+  }
+  AxisChange change{text.substr(0, sign), {}};
+  for (std::size_t begin = sign + 1; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end == begin) throw geometry::InvalidInput("--set \"" + text + "\" has an empty value");
+    change.values.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (text.back() == ',') throw geometry::InvalidInput("--set \"" + text + "\" has an empty value");
+  return change;
+}
+
+std::string ExperimentConfig::identity() const {
+  Json axes = Json::array();
+  for (const Axis& axis : sweep.axes) {
+    Json values = Json::array();
+    for (const AxisValue& value : axis.values) {
+      values.push_back({{"label", value.label}, {"settings", Json::parse(value.settings)}});
+    }
+    axes.push_back({{"name", axis.name}, {"values", values}});
+  }
+  const Json identity = {{"experiment", sweep.experiment},
+                         {"seed", sweep.base_seed},
+                         {"settings", Json::parse(sweep.settings)},
+                         {"axes", axes}};
+  return identity.dump();
+}
+
+ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
+                             const ConfigRequest& request) {
+  ExperimentConfig config;
+  config.file = file.string();
+  const std::string text = geometry::read_file(file);
+  config.sha256 = geometry::sha256_hex(text);
+  const ConfigNode::Json json = parse(config.file, text);
+  const ConfigNode root(config.file, json);
+  root.require_members({"experiment", "question", "cell", "seed", "axes"},
+                       {"seeds", "settings", "quick"});
+  if (root.at("experiment").text() != experiment.slug) {
+    root.at("experiment").fail("is not " + experiment.slug);
+  }
+  config.question = root.at("question").text();
+  config.cell = root.at("cell").text();
+
+  Draft draft;
+  draft.file = config.file;
+  if (root.has("settings")) read_settings(root.at("settings"), draft);
+  for (const auto& [name, values] : root.at("axes").members()) {
+    draft.axes.push_back(read_axis(name, values));
+  }
+  if (draft.axes.empty()) root.at("axes").fail("is empty; a sweep has at least one axis");
+  if (root.has("seeds")) draft.axes.push_back(seed_axis(root.at("seeds")));
+  if (request.is_quick) {
+    if (!root.has("quick")) root.at("quick");
+    apply_quick(root.at("quick"), draft);
+  }
+  for (const AxisChange& change : request.changes) apply_change(change, draft);
+  require_separate_axes(draft);
+
+  config.is_quick = request.is_quick;
+  config.is_modified = !request.changes.empty();
+  config.sweep = sweep_of(draft, experiment.slug, root.at("seed").unsigned_integer());
+  check_cells(experiment, draft, config.sweep);
+  return config;
+}
+
+}  // namespace graspfit::experiments

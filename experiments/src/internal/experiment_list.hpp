@@ -1,0 +1,15 @@
+#pragma once
+
+#include "graspfit/experiments/experiment.hpp"
+
+/// \file
+/// One function per experiment, in the source of its name.
+
+namespace graspfit::experiments::internal {
+
+Experiment force_closure();
+Experiment planner_everyday();
+Experiment planner_paper_objects();
+Experiment special_cases();
+
+}  // namespace graspfit::experiments::internal

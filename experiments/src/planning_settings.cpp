@@ -1,0 +1,308 @@
+#include "graspfit/experiments/planning_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "internal/setting_value.hpp"
+
+namespace graspfit::experiments {
+namespace {
+
+using grasp::PlannerOptions;
+using internal::SettingValue;
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+
+/// A setting by name.
+struct Setting {
+  Column name;
+  std::function<void(PlanningSettings&, const SettingValue&)> apply;
+};
+
+using Apply = std::function<void(PlannerOptions&, const SettingValue&)>;
+
+Setting option(const char* name, const char* unit, const char* meaning, Apply apply) {
+  return {{name, unit, meaning},
+          [apply = std::move(apply)](PlanningSettings& settings, const SettingValue& value) {
+            apply(settings.options, value);
+          }};
+}
+
+/// An option that is a member (of a member) of the planner's options; `Field` returns it.
+template <class Field>
+Setting number(const char* name, const char* unit, const char* meaning, Field field,
+               double factor = 1.0) {
+  return option(name, unit, meaning, [field, factor](PlannerOptions& o, const SettingValue& v) {
+    field(o) = v.number() * factor;
+  });
+}
+template <class Field>
+Setting integer(const char* name, const char* meaning, Field field) {
+  return option(name, "1", meaning,
+                [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.integer(); });
+}
+template <class Field>
+Setting yes_or_no(const char* name, const char* meaning, Field field) {
+  return option(name, "", meaning,
+                [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.yes_or_no(); });
+}
+template <class Enum, class Field>
+Setting choice(const char* name, const char* meaning, Field field) {
+  return option(name, "", meaning,
+                [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.choice<Enum>(); });
+}
+
+std::vector<Setting> object_and_hand_settings() {
+  return {{{"file", "", "the object's mesh in the data folder"},
+           [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
+          {{"shape", "", "instead of file: a shape of graspfit shape"},
+           [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
+          {{"size_m", "m", "length of the object's bounding box along size_axis"},
+           [](PlanningSettings& s, const SettingValue& v) { s.object.size = v.positive_number(); }},
+          {{"size_axis", "", "x, y, z or longest, which it is if not given"},
+           [](PlanningSettings& s, const SettingValue& v) {
+             if (v.text() != "longest") s.object.size_axis = v.axis();
+           }},
+          {{"hand", "", "a shipped hand, or a description in the data folder"},
+           [](PlanningSettings& s, const SettingValue& v) { s.hand = v.text(); }}};
+}
+
+std::vector<Setting> request_settings() {
+  return {choice<grasp::GraspStyle>(
+              "style", "where targets go", [](PlannerOptions & o) -> auto& { return o.style; }),
+          option("fingers", "", "array of the fingers that must touch, by the hand's names",
+                 [](PlannerOptions& o, const SettingValue& v) {
+                   o.fingers = v.texts();
+                   o.num_contacts = static_cast<int>(o.fingers.size());
+                 }),
+          integer(
+              "contacts", "without fingers: how many of them must touch",
+              [](PlannerOptions & o) -> auto& { return o.num_contacts; }),
+          option("palm", "", "true or false: whether the palm must touch",
+                 [](PlannerOptions& o, const SettingValue& v) { o.palm = v.yes_or_no(); }),
+          option("approach", "", "[x, y, z]: wanted direction of the palm in the object's frame",
+                 [](PlannerOptions& o, const SettingValue& v) { o.approach_O = v.vector3(); }),
+          number(
+              "approach-angle-deg", "deg", "largest angle of the palm's direction from it",
+              [](PlannerOptions & o) -> auto& { return o.approach_angle; }, kRadiansPerDegree),
+          integer(
+              "count", "grasps to collect", [](PlannerOptions & o) -> auto& { return o.count; }),
+          integer(
+              "max-attempts", "target sets fitted",
+              [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
+          choice<grasp::Acceptance>(
+              "accept", "which grasps are collected",
+              [](PlannerOptions & o) -> auto& { return o.acceptance; }),
+          choice<grasp::SearchRule>(
+              "search", "when the planner stops looking",
+              [](PlannerOptions & o) -> auto& { return o.search; })};
+}
+
+std::vector<Setting> score_settings() {
+  return {integer(
+              "resolution", "voxels along the object's longest extent",
+              [](PlannerOptions & o) -> auto& { return o.resolution; }),
+          choice<geometry::PatchAveraging>(
+              "averaging", "how pieces of surface are averaged",
+              [](PlannerOptions & o) -> auto& { return o.averaging; }),
+          integer(
+              "neighborhood", "edge of the score's window in voxels",
+              [](PlannerOptions & o) -> auto& { return o.score.neighborhood; }),
+          choice<grasp::ScoreNormalization>(
+              "score-normalization", "how raw scores become comparable with the threshold",
+              [](PlannerOptions & o) -> auto& { return o.score.normalization; }),
+          choice<grasp::PlaneDistance>(
+              "plane-distance", "distances of neighbors to the voxel's plane",
+              [](PlannerOptions & o) -> auto& { return o.score.plane_distance; }),
+          number(
+              "score-length-voxels", "1", "normalizer of the mean plane distance in voxels",
+              [](PlannerOptions & o) -> auto& { return o.score.length_voxels; }),
+          integer(
+              "mean-filter-radius", "of the smoothing of scores in voxels",
+              [](PlannerOptions & o) -> auto& { return o.score.mean_filter_radius; }),
+          integer(
+              "mean-filter-passes", "of the smoothing of scores",
+              [](PlannerOptions & o) -> auto& { return o.score.mean_filter_passes; }),
+          number(
+              "score-threshold", "1", "every target's score must exceed it",
+              [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
+          option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
+                 [](PlannerOptions& o, const SettingValue& v) {
+                   constexpr double kMetersPerMillimeter = 1e-3;
+                   if (v.number() == 0.0) {
+                     o.weak.reset();
+                   } else {
+                     o.weak = geometry::WeakRegionOptions{};
+                     o.weak->weak_thickness = v.number() * kMetersPerMillimeter;
+                   }
+                 })};
+}
+
+std::vector<Setting> target_settings() {
+  return {
+      option("theta-max-deg", "deg", "half-angle of the friction cones of targets and measure",
+             [](PlannerOptions& o, const SettingValue& v) {
+               o.quality.theta_max = o.targets.theta_max = v.number() * kRadiansPerDegree;
+             }),
+      choice<grasp::PairRule>(
+          "pair-rule", "with which targets a new one must form a stable pair",
+          [](PlannerOptions & o) -> auto& { return o.targets.pair_rule; }),
+      option("target-search", "", "random or ranked",
+             [](PlannerOptions& o, const SettingValue& v) {
+               const std::string name = v.text();
+               if (name != "random" && name != "ranked") v.fail("must be one of random|ranked");
+               o.targets.search =
+                   name == "random" ? grasp::TargetSearch::Random : grasp::TargetSearch::Ranked;
+             }),
+      yes_or_no(
+          "exclude-weak", "no targets on fragile parts",
+          [](PlannerOptions & o) -> auto& { return o.targets.exclude_weak; }),
+      number(
+          "ideal-m-bias", "1", "how strongly sets with a large ideal M are preferred",
+          [](PlannerOptions & o) -> auto& { return o.targets.ideal_m_bias; }),
+      number(
+          "edge-tolerance", "1", "largest difference of target distances over the first one",
+          [](PlannerOptions & o) -> auto& { return o.targets.edge_tolerance_rel; }),
+      number(
+          "centroid-limit", "1", "largest distance of the targets' centroid from the mass center",
+          [](PlannerOptions & o) -> auto& { return o.targets.centroid_limit_rel; }),
+      number(
+          "pool-fraction", "1", "share of the ranked candidates that is drawn from",
+          [](PlannerOptions & o) -> auto& { return o.targets.pool_fraction; }),
+      integer(
+          "target-draws", "target sets drawn per attempt",
+          [](PlannerOptions & o) -> auto& { return o.target_draws; }),
+      integer(
+          "max-seeds", "seeds tried per target set",
+          [](PlannerOptions & o) -> auto& { return o.targets.max_seeds; })};
+}
+
+std::vector<Setting> fitting_settings() {
+  constexpr double kMetersPerMillimeter = 1e-3;
+  return {
+      number(
+          "clearance-mm", "mm", "between the object and the palm at the start",
+          [](PlannerOptions & o) -> auto& { return o.fitting.clearance; }, kMetersPerMillimeter),
+      choice<grasp::PenetrationGuard>(
+          "guard", "what a motion must not enter",
+          [](PlannerOptions & o) -> auto& { return o.fitting.guard; }),
+      yes_or_no(
+          "settle", "fingers close on until they touch",
+          [](PlannerOptions & o) -> auto& { return o.fitting.settle; }),
+      option("clip-thickness-mm", "mm", "of clip volumes",
+             [](PlannerOptions& o, const SettingValue& v) {
+               o.clip_thickness = v.positive_number() * kMetersPerMillimeter;
+             }),
+      yes_or_no(
+          "refine", "contacts are made real by exact queries",
+          [](PlannerOptions & o) -> auto& { return o.refine; }),
+      yes_or_no(
+          "pre-grasps", "a grasp needs a pre-grasp with a free way in",
+          [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),
+      number(
+          "distinct-translation-mm", "mm", "palms farther apart are of distinct grasps",
+          [](PlannerOptions & o) -> auto& { return o.distinct.translation; }, kMetersPerMillimeter),
+      number(
+          "distinct-rotation-deg", "deg", "palms turned more are of distinct grasps",
+          [](PlannerOptions & o) -> auto& { return o.distinct.rotation; }, kRadiansPerDegree),
+      number(
+          "distinct-joints-rad", "rad", "joints that differ more are of distinct grasps",
+          [](PlannerOptions & o) -> auto& { return o.distinct.joints; })};
+}
+
+std::vector<Setting> measure_settings() {
+  return {
+      number(
+          "alpha", "1", "weight of contact area in M1",
+          [](PlannerOptions & o) -> auto& { return o.quality.alpha; }),
+      number(
+          "beta", "1", "weight of the centroid's distance in M3",
+          [](PlannerOptions & o) -> auto& { return o.quality.beta; }),
+      number(
+          "w1", "1", "exponent of M1", [](PlannerOptions & o) -> auto& { return o.quality.w1; }),
+      number(
+          "w2", "1", "exponent of M2", [](PlannerOptions & o) -> auto& { return o.quality.w2; }),
+      number(
+          "w3", "1", "exponent of M3", [](PlannerOptions & o) -> auto& { return o.quality.w3; }),
+      choice<grasp::MeasureUnits>(
+          "measure-units", "of distances and areas in M",
+          [](PlannerOptions & o) -> auto& { return o.quality.units; }),
+      choice<grasp::Regularity>(
+          "regularity", "definition of R in M3",
+          [](PlannerOptions & o) -> auto& { return o.quality.regularity; }),
+      choice<grasp::HullCentroid>(
+          "centroid", "centroid of the contacts' hull",
+          [](PlannerOptions & o) -> auto& { return o.quality.centroid; }),
+      number(
+          "friction", "1", "Coulomb's mu of epsilon and squeeze",
+          [](PlannerOptions & o) -> auto& { return o.friction; })};
+}
+
+const std::vector<Setting>& all_settings() {
+  static const std::vector<Setting> settings = [] {
+    std::vector<Setting> all;
+    for (std::vector<Setting> group :
+         {object_and_hand_settings(), request_settings(), score_settings(), target_settings(),
+          fitting_settings(), measure_settings()}) {
+      std::move(group.begin(), group.end(), std::back_inserter(all));
+    }
+    return all;
+  }();
+  return settings;
+}
+
+[[noreturn]] void fail_unknown(const std::string& key, const std::vector<Column>& others) {
+  std::string names;
+  for (const Column& other : others) names += (names.empty() ? "" : ", ") + other.name;
+  for (const Setting& setting : all_settings()) {
+    names += (names.empty() ? "" : ", ") + setting.name.name;
+  }
+  throw SettingError(key, "is no setting; there are " + names);
+}
+
+}  // namespace
+
+const std::vector<Column>& planning_setting_names() {
+  static const std::vector<Column> names = [] {
+    std::vector<Column> columns;
+    for (const Setting& setting : all_settings()) columns.push_back(setting.name);
+    return columns;
+  }();
+  return names;
+}
+
+PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
+                                   const std::vector<Column>& others) {
+  const nlohmann::json json = nlohmann::json::parse(text);
+  PlanningSettings settings;
+  for (const auto& [key, value] : json.items()) {
+    if (std::any_of(others.begin(), others.end(),
+                    [&, &name = key](const Column& other) { return other.name == name; })) {
+      continue;
+    }
+    const auto found = std::find_if(
+        all_settings().begin(), all_settings().end(),
+        [&, &name = key](const Setting& setting) { return setting.name.name == name; });
+    if (found == all_settings().end()) fail_unknown(key, others);
+    found->apply(settings, SettingValue(key, value));
+  }
+  if (settings.object.file.empty() == settings.object.shape.empty()) {
+    throw SettingError("", "an object is either a file or a shape; set one of the two");
+  }
+  if (settings.hand.empty()) throw SettingError("", "there is no setting hand");
+  settings.options.seed = seed;
+  try {
+    settings.options.validate();
+  } catch (const geometry::InvalidInput& error) {
+    throw SettingError("", error.what());
+  }
+  return settings;
+}
+
+PlanningSettings planning_settings(const Cell& cell, const std::vector<Column>& others) {
+  return planning_settings(cell.settings, cell.seed, others);
+}
+
+}  // namespace graspfit::experiments

@@ -1,0 +1,155 @@
+#include "graspfit/experiments/run_manifest.hpp"
+
+#include <sys/utsname.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
+
+#include "build_source.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
+
+namespace graspfit::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string processor_name() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);) {
+    if (line.rfind("model name", 0) != 0) continue;
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "";
+}
+
+Json machine() {
+  utsname system{};
+  ::uname(&system);
+  return {{"system", std::string(system.sysname) + ' ' + system.release + ' ' + system.machine},
+          {"processor", processor_name()},
+          {"num_processors", std::thread::hardware_concurrency()}};
+}
+
+/// A path as one word of the shell.
+std::string quoted(const fs::path& path) {
+  std::string text = "'";
+  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// What git prints in a repository, and whether it ended well.
+struct GitAnswer {
+  bool is_success = false;
+  std::string output;
+};
+GitAnswer git(const fs::path& repository, const std::string& arguments) {
+  const std::string command = "git -C " + quoted(repository) + ' ' + arguments + " 2>/dev/null";
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  GitAnswer answer;
+  std::array<char, 4096> buffer;
+  for (std::size_t count; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+    answer.output.append(buffer.data(), count);
+  }
+  answer.is_success = ::pclose(pipe) == 0;
+  return answer;
+}
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw geometry::InvalidInput("results are not published: " + why);
+}
+
+/// Skipped cells of a finished run, from its manifest.
+std::size_t num_skipped(const fs::path& manifest) {
+  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
+  if (json.is_discarded() || !json.contains("cells")) refuse(manifest.string() + " is damaged");
+  return json.at("cells").value("skipped", std::size_t{0});
+}
+
+}  // namespace
+
+BuildSource build_source() { return {kBuildCommit, kIsBuildClean}; }
+
+std::string program_sha256() {
+  static const std::string hash = [] {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? "" : geometry::sha256_hex(geometry::read_file(program));
+  }();
+  return hash;
+}
+
+std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
+                    const std::string& status_counts_json) {
+  Json versions;
+  for (const auto& [name, version] : manifest.versions) versions[name] = version;
+  const Json json = {{"experiment", config.sweep.experiment},
+                     {"command", manifest.command},
+                     {"cells", Json::parse(status_counts_json)},
+                     {"config",
+                      {{"file", fs::path(config.file).filename().string()},
+                       {"sha256", config.sha256},
+                       {"is_quick", config.is_quick},
+                       {"is_modified", config.is_modified},
+                       {"as_run", Json::parse(config.identity())}}},
+                     {"seed", config.sweep.base_seed},
+                     {"commit", manifest.source.commit},
+                     {"is_commit_clean", manifest.source.is_clean},
+                     {"program_sha256", manifest.program},
+                     {"versions", versions},
+                     {"machine", machine()},
+                     {"inputs_sha256", Json(manifest.inputs)}};
+  return json.dump(2) + '\n';
+}
+
+void require_publishable(const ExperimentConfig& config, const fs::path& sources) {
+  if (config.is_quick) refuse("--quick runs a few cells only");
+  if (config.is_modified) refuse("--set changes the configuration");
+  std::error_code error;
+  const fs::path configs = sources / "experiments/configs";
+  if (!fs::equivalent(fs::path(config.file).parent_path(), configs, error)) {
+    refuse("the configuration " + config.file + " is not one of " + configs.string());
+  }
+  const BuildSource built = build_source();
+  if (built.commit.empty() || !built.is_clean) {
+    refuse("the program was not built from a clean commit; commit, build again and run again");
+  }
+  constexpr const char* kAside = " -- . ':(exclude)notebooks-data'";
+  const GitAnswer untracked =
+      git(sources, std::string("ls-files --others --exclude-standard") + kAside);
+  if (!untracked.is_success) refuse(sources.string() + " is not under version control");
+  if (!untracked.output.empty()) {
+    refuse(sources.string() + " has files that are not committed: " +
+           untracked.output.substr(0, untracked.output.find('\n')));
+  }
+  const GitAnswer changed = git(sources, "diff --name-only " + built.commit + kAside);
+  if (!changed.is_success) refuse("commit " + built.commit + " is not in " + sources.string());
+  if (!changed.output.empty()) {
+    refuse(sources.string() + " is no longer what the program was built from (" + built.commit +
+           "): " + changed.output.substr(0, changed.output.find('\n')));
+  }
+}
+
+void publish(const Experiment& experiment, const ExperimentConfig& config, const fs::path& folder,
+             const fs::path& sources, const fs::path& published) {
+  require_publishable(config, sources);
+  const fs::path manifest = folder / (experiment.slug + ".manifest.json");
+  if (const std::size_t skipped = num_skipped(manifest); skipped > 0) {
+    refuse(std::to_string(skipped) + " cells were skipped for want of data");
+  }
+  std::error_code error;
+  fs::create_directories(published, error);
+  if (error) throw geometry::IoError(published.string() + ": " + error.message());
+  for (const char* const ending : {".csv", ".timing.csv", ".manifest.json"}) {
+    const std::string name = experiment.slug + ending;
+    geometry::write_file_atomically(published / name, geometry::read_file(folder / name));
+  }
+}
+
+}  // namespace graspfit::experiments

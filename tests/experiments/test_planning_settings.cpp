@@ -1,0 +1,109 @@
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "graspfit/experiments/planning_settings.hpp"
+#include "support/catch.hpp"
+
+using namespace graspfit::experiments;
+namespace grasp = graspfit::grasp;
+
+namespace {
+
+/// The settings of a ball and a Barrett hand with these members on top.
+PlanningSettings settings_with(const std::string& members) {
+  return planning_settings(R"({"shape": "ball", "hand": "barrett")" + members + "}", 5);
+}
+
+}  // namespace
+
+TEST_CASE("Settings reach the option that they name", "[experiments][planning_settings]") {
+  const PlanningSettings plain = settings_with("");
+  CHECK(plain.options.seed == 5);
+  CHECK(plain.object.shape == "ball");
+  CHECK_FALSE(plain.object.size.has_value());
+
+  const PlanningSettings settings = settings_with(R"(,
+    "size_m": 0.08, "size_axis": "y", "style": "power", "fingers": ["thumb", "finger_1"],
+    "palm": false, "approach": [0, 0, -1], "approach-angle-deg": 45, "resolution": 20,
+    "theta-max-deg": 30, "score-threshold": 0.5, "target-search": "ranked", "refine": false,
+    "weak-thickness-mm": 4, "clearance-mm": 10, "search": "first", "w3": 0.25, "friction": 0.7)");
+  const grasp::PlannerOptions& options = settings.options;
+  CHECK(settings.object.size == 0.08);
+  CHECK(settings.object.size_axis == 1);
+  CHECK(options.style == grasp::GraspStyle::Power);
+  CHECK(options.fingers == std::vector<std::string>{"thumb", "finger_1"});
+  CHECK(options.num_contacts == 2);
+  CHECK(options.palm == false);
+  CHECK(*options.approach_O == Eigen::Vector3d(0, 0, -1));
+  CHECK(options.approach_angle == Approx(std::numbers::pi / 4));
+  CHECK(options.resolution == 20);
+  CHECK(options.quality.theta_max == Approx(std::numbers::pi / 6));
+  CHECK(options.targets.theta_max == options.quality.theta_max);
+  CHECK(options.targets.score_threshold == 0.5);
+  CHECK(options.targets.search == grasp::TargetSearch::Ranked);
+  CHECK_FALSE(options.refine);
+  CHECK(options.weak->weak_thickness == Approx(0.004));
+  CHECK(options.fitting.clearance == Approx(0.01));
+  CHECK(options.search == grasp::SearchRule::First);
+  CHECK(options.quality.w3 == 0.25);
+  CHECK(options.friction == 0.7);
+  CHECK_FALSE(settings_with(R"(, "weak-thickness-mm": 0)").options.weak.has_value());
+}
+
+TEST_CASE("The paper's angle keeps its bits on the way through degrees",
+          "[experiments][planning_settings]") {
+  const PlanningSettings settings = settings_with(R"(, "theta-max-deg": 45)");
+  CHECK(settings.options.quality.theta_max == grasp::PlannerOptions{}.quality.theta_max);
+}
+
+TEST_CASE("Settings that cannot be used say which and what is allowed",
+          "[experiments][planning_settings]") {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+      {R"(, "styles": "power")", {"styles", "is no setting; there are file, shape"}},
+      {R"(, "style": "pinch")", {"style", "is \"pinch\", must be one of precision|power"}},
+      {R"(, "resolution": 20.5)", {"resolution", "must be an integer"}},
+      {R"(, "resolution": 1)", {"", "resolution = 1"}},
+      {R"(, "size_m": 0)", {"size_m", "is 0, must be > 0"}},
+      {R"(, "size_axis": "w")", {"size_axis", "must be one of x|y|z"}},
+      {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
+      {R"(, "fingers": [])", {"fingers", "at least one value"}},
+      {R"(, "file": "ball.obj")", {"", "either a file or a shape"}},
+      {R"(, "refine": "yes")", {"refine", "must be true or false"}}};
+  for (const auto& [members, expected] : cases) {
+    INFO(members);
+    try {
+      settings_with(members);
+      FAIL("accepted");
+    } catch (const SettingError& error) {
+      CHECK(error.key() == expected[0]);
+      CHECK_THAT(error.what(), Catch::Contains(expected[1]));
+    }
+  }
+}
+
+TEST_CASE("Every setting has a name of its own, a meaning and a unit",
+          "[experiments][planning_settings]") {
+  std::set<std::string> names;
+  for (const Column& setting : planning_setting_names()) {
+    CHECK(names.insert(setting.name).second);
+    CHECK_FALSE(setting.meaning.empty());
+  }
+  CHECK(names.count("score-threshold") == 1);
+}
+
+TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings]") {
+  ObjectSettings torus;
+  torus.shape = "torus";
+  torus.size = 0.16;
+  torus.size_axis = 0;
+  const auto object = load_object(torus);
+  CHECK(graspfit::geometry::bounding_box(object->mesh).sizes().x() == Approx(0.16));
+  CHECK(load_object(torus) == object);  // not built again
+
+  ObjectSettings missing;
+  missing.file = "meshes/no_such_object.off";
+  CHECK_THROWS_WITH(load_object(missing), Catch::Contains("GRASPFIT_DATA"));
+  CHECK_THROWS_AS(load_object(missing), MissingData);
+  CHECK_THROWS_AS(load_hand("hands/no_such_hand.urdf"), MissingData);
+}

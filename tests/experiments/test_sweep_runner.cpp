@@ -1,0 +1,230 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "counting_experiment.hpp"
+#include "graspfit/experiments/sweep_runner.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace graspfit::experiments;
+using graspfit::geometry::read_file;
+using graspfit::testing::counting_experiment;
+using graspfit::testing::kCountingConfig;
+using graspfit::testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+namespace {
+
+ExperimentConfig config_in(const TemporaryFolder& folder, const ConfigRequest& request = {}) {
+  return read_config(counting_experiment(), folder.write("counting.json", kCountingConfig),
+                     request);
+}
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::istringstream stream(read_file(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The table of a run that nothing disturbs.
+std::string undisturbed_table(const TemporaryFolder& folder) {
+  const fs::path out = folder.path() / "undisturbed";
+  run_sweep(counting_experiment(), config_in(folder), {}, {out, 1});
+  return read_file(out / "counting.csv");
+}
+
+/// The experiment with cells that take a while, so that a kill comes in the middle.
+Experiment slow_experiment() {
+  Experiment experiment = counting_experiment();
+  const auto run = experiment.run;
+  experiment.run = [run](const Cell& cell, const fs::path& folder) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return run(cell, folder);
+  };
+  return experiment;
+}
+
+std::size_t num_lines(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(file, error) ? lines_of(file).size() : 0;
+}
+
+/// Runs the slow experiment in a process of its own and kills it once it has finished cells.
+void run_and_kill(const ExperimentConfig& config, const fs::path& out, std::size_t at_line) {
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    try {
+      run_sweep(slow_experiment(), config, {}, {out, 1});
+    } catch (...) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  while (num_lines(out / "counting.cells") < at_line) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    REQUIRE(::waitpid(child, nullptr, WNOHANG) == 0);
+  }
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFSIGNALED(status));
+}
+
+}  // namespace
+
+TEST_CASE("A sweep writes one row per cell in sweep order, failures with their reason",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "results";
+  RunManifest manifest;
+  manifest.command = "graspfit experiment run counting";
+  const RunProgress done = run_sweep(counting_experiment(), config_in(folder), manifest, {out, 1});
+  CHECK(done.num_cells == 24);
+  CHECK(done.num_done == 24);
+  CHECK(done.num_failed == 2);
+  CHECK(done.num_skipped == 0);
+
+  const std::vector<std::string> rows = lines_of(out / "counting.csv");
+  REQUIRE(rows.size() == 25);
+  CHECK(rows[0] == "letter,step,seed,cell_seed,status,reason,sum,digits,text");
+  CHECK(rows[1] == "a,0,1,5805151507310987,ok,,101,987,\"one, two\"");
+  CHECK(rows[3].rfind("a,0.5,1,", 0) == 0);
+  CHECK(rows[21].find(",failed,\"no sum for \"\"c\"\", says the test\",,,") != std::string::npos);
+  CHECK(lines_of(out / "counting.timing.csv")[0] == "letter,step,seed,wall_s,cpu_s,nothing_s");
+
+  const auto json = nlohmann::json::parse(read_file(out / "counting.manifest.json"));
+  CHECK(json.at("command") == manifest.command);
+  CHECK(json.at("seed") == 7);
+  CHECK(json.at("cells").at("failed") == 2);
+  CHECK(json.at("config").at("is_quick") == false);
+  CHECK(json.at("config").at("as_run").at("axes").size() == 3);
+}
+
+TEST_CASE("One job and several write the same bytes", "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const std::string expected = undisturbed_table(folder);
+  for (const int jobs : {2, 7}) {
+    const fs::path out = folder.path() / std::to_string(jobs);
+    run_sweep(counting_experiment(), config_in(folder), {}, {out, jobs});
+    CHECK(read_file(out / "counting.csv") == expected);
+  }
+}
+
+TEST_CASE("A sweep killed again and again ends in the same bytes and repeats no finished cell",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const std::string expected = undisturbed_table(folder);
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "killed";
+  for (const std::size_t at_line : {3, 8, 15}) {
+    run_and_kill(config, out, at_line);
+    CHECK_FALSE(fs::exists(out / "counting.csv"));
+  }
+  int num_run = 0;
+  Experiment counted = counting_experiment();
+  counted.run = [&num_run, run = counted.run](const Cell& cell, const fs::path& cells) {
+    ++num_run;
+    return run(cell, cells);
+  };
+  const RunProgress done = run_sweep(counted, config, {}, {out, 1});
+  CHECK(done.num_resumed >= 14);
+  CHECK(num_run == static_cast<int>(24 - done.num_resumed));
+  CHECK(read_file(out / "counting.csv") == expected);
+}
+
+TEST_CASE("Whatever is cut off or damaged of the finished cells is done again",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const std::string expected = undisturbed_table(folder);
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "undisturbed";
+  const std::string cells = read_file(out / "counting.cells");
+  const std::size_t header = cells.find('\n') + 1;
+  const auto run_again = [&](const std::string& text) {
+    std::ofstream(out / "counting.cells", std::ios::binary) << text;
+    const RunProgress done = run_sweep(counting_experiment(), config, {}, {out, 2});
+    CHECK(read_file(out / "counting.csv") == expected);
+    return done.num_resumed;
+  };
+  CHECK(run_again(cells) == 24);
+  CHECK(run_again(cells.substr(0, header / 2)) == 0);
+  CHECK(run_again(cells.substr(0, header)) == 0);
+  CHECK(run_again(cells.substr(0, cells.size() - 1)) == 23);
+  CHECK(run_again(cells.substr(0, cells.size() - 40)) == 23);
+  std::string damaged = cells;
+  damaged[header + 60] ^= 1;
+  CHECK(run_again(damaged) == 23);
+}
+
+TEST_CASE("Data that is missing is skipped, said, and tried again", "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const std::string expected = undisturbed_table(folder);
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "results";
+  Experiment without = counting_experiment();
+  without.run = [run = without.run](const Cell& cell, const fs::path& cells) -> CellResult {
+    if (cell.labels[0] == "b") throw MissingData("b.off is not there");
+    return run(cell, cells);
+  };
+  const RunProgress first = run_sweep(without, config, {}, {out, 2});
+  CHECK(first.num_skipped == 8);
+  CHECK(first.num_done == 16);
+  CHECK(lines_of(out / "counting.csv")[9].find(",skipped,b.off is not there,,,") !=
+        std::string::npos);
+  const RunProgress second = run_sweep(counting_experiment(), config, {}, {out, 2});
+  CHECK(second.num_resumed == 16);
+  CHECK(second.num_done == 24);
+  CHECK(read_file(out / "counting.csv") == expected);
+}
+
+TEST_CASE("Results of another configuration or another run's folder are not touched",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "undisturbed";
+  const std::string expected = undisturbed_table(folder);
+  const ExperimentConfig other = config_in(folder, {false, {{"base", {"1"}}}});
+  CHECK_THROWS_WITH(run_sweep(counting_experiment(), other, {}, {out, 1}),
+                    Catch::Contains("holds results of another configuration"));
+  RunManifest rebuilt;
+  rebuilt.program = "another";
+  CHECK_THROWS_WITH(run_sweep(counting_experiment(), config_in(folder), rebuilt, {out, 1}),
+                    Catch::Contains("holds results of another build"));
+  CHECK_THROWS_AS(run_sweep(counting_experiment(), config_in(folder), {}, {out, 0}),
+                  graspfit::geometry::InvalidInput);
+  CHECK(read_file(out / "counting.csv") == expected);
+
+  // A second run in the same folder while the first is at work.
+  Experiment nested = counting_experiment();
+  std::string refusal;
+  nested.run = [&](const Cell&, const fs::path&) -> CellResult {
+    try {
+      run_sweep(counting_experiment(), config_in(folder), {}, {folder.path() / "busy", 1});
+    } catch (const graspfit::geometry::IoError& error) {
+      refusal = error.what();
+    }
+    throw MissingData("nothing");
+  };
+  run_sweep(nested, config_in(folder), {}, {folder.path() / "busy", 1});
+  CHECK_THAT(refusal, Catch::Contains("is in use by another run"));
+}
+
+TEST_CASE("Neither quick nor modified results are published", "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(require_publishable(config_in(folder, {true, {}}), source_folder()),
+                    Catch::Contains("--quick"));
+  CHECK_THROWS_WITH(
+      require_publishable(config_in(folder, {false, {{"letter", {"a"}}}}), source_folder()),
+      Catch::Contains("--set"));
+  // Nor those of a configuration that is not among the sources.
+  CHECK_THROWS_WITH(require_publishable(config_in(folder), source_folder()),
+                    Catch::Contains("is not one of"));
+}
