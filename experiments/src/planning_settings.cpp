@@ -14,6 +14,7 @@ using grasp::PlannerOptions;
 using internal::SettingValue;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+constexpr double kMetersPerMillimeter = 1e-3;
 
 /// A setting by name.
 struct Setting {
@@ -130,7 +131,6 @@ std::vector<Setting> score_settings() {
               [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
           option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
                  [](PlannerOptions& o, const SettingValue& v) {
-                   constexpr double kMetersPerMillimeter = 1e-3;
                    if (v.number() == 0.0) {
                      o.weak.reset();
                    } else {
@@ -149,13 +149,9 @@ std::vector<Setting> target_settings() {
       choice<grasp::PairRule>(
           "pair-rule", "with which targets a new one must form a stable pair",
           [](PlannerOptions & o) -> auto& { return o.targets.pair_rule; }),
-      option("target-search", "", "random or ranked",
-             [](PlannerOptions& o, const SettingValue& v) {
-               const std::string name = v.text();
-               if (name != "random" && name != "ranked") v.fail("must be one of random|ranked");
-               o.targets.search =
-                   name == "random" ? grasp::TargetSearch::Random : grasp::TargetSearch::Ranked;
-             }),
+      choice<grasp::TargetSearch>(
+          "target-search", "how target sets are found",
+          [](PlannerOptions & o) -> auto& { return o.targets.search; }),
       yes_or_no(
           "exclude-weak", "no targets on fragile parts",
           [](PlannerOptions & o) -> auto& { return o.targets.exclude_weak; }),
@@ -171,6 +167,9 @@ std::vector<Setting> target_settings() {
       number(
           "pool-fraction", "1", "share of the ranked candidates that is drawn from",
           [](PlannerOptions & o) -> auto& { return o.targets.pool_fraction; }),
+      number(
+          "pool-spacing-mm", "mm", "candidates nearer than this to a better one are passed over",
+          [](PlannerOptions & o) -> auto& { return o.targets.pool_spacing; }, kMetersPerMillimeter),
       integer(
           "target-draws", "target sets drawn per attempt",
           [](PlannerOptions & o) -> auto& { return o.target_draws; }),
@@ -180,7 +179,6 @@ std::vector<Setting> target_settings() {
 }
 
 std::vector<Setting> fitting_settings() {
-  constexpr double kMetersPerMillimeter = 1e-3;
   return {
       number(
           "clearance-mm", "mm", "between the object and the palm at the start",
@@ -198,9 +196,33 @@ std::vector<Setting> fitting_settings() {
       yes_or_no(
           "refine", "contacts are made real by exact queries",
           [](PlannerOptions & o) -> auto& { return o.refine; }),
+      number(
+          "largest-gap-mm", "mm", "a claimed pad within this has contact",
+          [](PlannerOptions & o) -> auto& { return o.refinement.largest_gap; },
+          kMetersPerMillimeter),
+      number(
+          "wanted-gap-mm", "mm", "to which claimed pads are brought",
+          [](PlannerOptions & o) -> auto& { return o.refinement.wanted_gap; },
+          kMetersPerMillimeter),
+      integer(
+          "refine-iterations", "of contact refinement",
+          [](PlannerOptions & o) -> auto& { return o.refinement.max_iterations; }),
       yes_or_no(
           "pre-grasps", "a grasp needs a pre-grasp with a free way in",
           [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),
+      number(
+          "pre-grasp-clearance-mm", "mm", "of every link in the pre-grasp",
+          [](PlannerOptions & o) -> auto& { return o.pre_grasp.clearance; }, kMetersPerMillimeter),
+      number(
+          "pre-grasp-retreat-mm", "mm", "largest retreat of the palm to the pre-grasp",
+          [](PlannerOptions & o) -> auto& { return o.pre_grasp.largest_retreat; },
+          kMetersPerMillimeter),
+      number(
+          "squeeze-force", "N", "sum of the normal forces of the squeeze",
+          [](PlannerOptions & o) -> auto& { return o.squeeze.normal_sum; }),
+      number(
+          "squeeze-stiffness", "N m/rad", "of the position-controlled joints",
+          [](PlannerOptions & o) -> auto& { return o.squeeze.stiffness; }),
       number(
           "distinct-translation-mm", "mm", "palms farther apart are of distinct grasps",
           [](PlannerOptions & o) -> auto& { return o.distinct.translation; }, kMetersPerMillimeter),
@@ -208,7 +230,7 @@ std::vector<Setting> fitting_settings() {
           "distinct-rotation-deg", "deg", "palms turned more are of distinct grasps",
           [](PlannerOptions & o) -> auto& { return o.distinct.rotation; }, kRadiansPerDegree),
       number(
-          "distinct-joints-rad", "rad", "joints that differ more are of distinct grasps",
+          "distinct-joints", "rad", "joints that differ more are of distinct grasps",
           [](PlannerOptions & o) -> auto& { return o.distinct.joints; })};
 }
 
