@@ -149,6 +149,9 @@ po::options_description target_options() {
   add_number(target, "pool-spacing-mm", targets.pool_spacing * 1000.0,
              "of all candidates in a cube of this size the best one stays; 0: all [P: sampling]; a "
              "pad's width makes ranked searches for four and more targets short");
+  add_integer(target, "max-placements", static_cast<std::uint64_t>(defaults.max_placements),
+              "sides of one target set that are fitted, those that suit the fingertips best first "
+              "[R, A23]");
   add_integer(
       target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
       "target sets drawn per attempt; the one that suits the fingertips' directions best is "
@@ -350,6 +353,7 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
+  options.max_placements = flags.integer("max-placements");
   options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
   options.fitting.settle = flags.yes_or_no("settle");
   options.max_attempts = flags.integer("max-attempts");

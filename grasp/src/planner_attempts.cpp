@@ -12,6 +12,10 @@
 namespace graspfit::grasp::internal {
 namespace {
 
+// Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
+// sets are drawn.
+constexpr int kSidesPerDraw = 2;
+
 /// `options` with what the planner's rules set where they leave it open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                   PlannerOptions options) {
@@ -21,6 +25,8 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
     options.targets.min_separation = fingertip_width(hand, parts.fingers);
   }
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
+  // Refinement moves the palm too, and would undo what settling did.
+  options.fitting.settle = options.fitting.settle && !options.refine;
   return options;
 }
 
@@ -125,7 +131,10 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
 
 AttemptResult PlannerAttempts::make(std::int64_t number) const {
   AttemptResult work;  // counters and times of everything that this attempt tries
-  const std::vector<Start> starts = draw_starts(number, work);
+  std::vector<Start> starts = draw_starts(number, work);
+  if (starts.size() > static_cast<std::size_t>(options_.max_placements)) {
+    starts.erase(starts.begin() + options_.max_placements, starts.end());
+  }
   std::optional<AttemptResult> best;
   for (const Start& start : starts) {
     AttemptResult tried = try_start(start, number);
@@ -166,7 +175,8 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t nu
   std::vector<Start> best;
   TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
   double best_tilt = std::numeric_limits<double>::infinity();
-  for (int draw = 0; draw < options_.target_draws; ++draw) {
+  int num_judged = 0;
+  for (int draw = 0; draw < num_draws() && num_judged < kSidesPerDraw * num_draws(); ++draw) {
     const TargetSelection selection =
         select_target_contacts(object_, distances_, parts_, options_.targets, random);
     result.seeds_tried += selection.seeds_tried;
@@ -176,6 +186,7 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t nu
     }
     std::vector<Start> starts = starts_of(*selection.targets);
     if (starts.empty()) continue;
+    num_judged += static_cast<int>(starts.size());
     if (options_.target_draws == 1) return starts;
     const double tilt = std::min_element(starts.begin(), starts.end(), by_tilt)->tilt;
     if (tilt >= best_tilt) continue;
@@ -185,6 +196,11 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t nu
   }
   if (best.empty()) result.target_failure = failure;
   return best;
+}
+
+/// Sets with a target for the palm are chosen by the fingers' reach already.
+int PlannerAttempts::num_draws() const {
+  return parts_.palm ? std::max(1, options_.target_draws / 4) : options_.target_draws;
 }
 
 /// The sides from which to reach for a set, in the order of their placements.

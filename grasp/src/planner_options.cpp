@@ -41,6 +41,7 @@ void PlannerOptions::validate() const {
             *clip_thickness, "finite and > 0 m");
   }
   require(target_draws >= 1, "target_draws", target_draws, ">= 1");
+  require(max_placements >= 1, "max_placements", max_placements, ">= 1");
   require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap", self_overlap,
           "finite and >= 0 m");
   require(approach_angle > 0.0 && approach_angle <= std::numbers::pi, "approach_angle",

@@ -218,6 +218,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("acceptance", options.acceptance);
   at("search", options.search);
   at("target_draws", options.target_draws);
+  at("max_placements", options.max_placements);
   at("approach_O", options.approach_O);
   at("approach_angle_rad", options.approach_angle);
   at("wall_clock_limit_s", options.wall_clock_limit_s);

@@ -44,6 +44,7 @@ class PlannerAttempts {
   };
 
   std::vector<Start> draw_starts(std::int64_t number, AttemptResult& result) const;
+  int num_draws() const;
   std::vector<Start> starts_of(const TargetContacts& targets) const;
   std::optional<TargetContacts> ranked_targets(std::int64_t number) const;
   AttemptResult try_start(const Start& start, std::int64_t number) const;

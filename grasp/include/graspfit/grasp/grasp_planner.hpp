@@ -67,7 +67,9 @@ struct PlannerOptions {
   /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, the side with more room first.
-  int target_draws = 8;
+  int target_draws = 32;
+  int max_placements = 4;  ///< Sides of one target set that are fitted, the flattest first, ≥ 1
+                           ///< (A23) [R]. Three and more targets have two, two have sixteen.
   FittingOptions fitting;
   /// Whether claimed contacts are made real by exact queries after fitting [R]; without: the
   /// paper's voxel-level grasp.
