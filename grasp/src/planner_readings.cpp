@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A15", text(name_of(quality.centroid))},
       {"A16", "the palm is a finger of its own; links of one finger do not pair"},
       {"A17", text(name_of(targets.pair_rule))},
-      {"A18", "per pair of fingers, by sampling forward kinematics"},
+      {"A18", "per pair of fingers, by sampling forward kinematics; some assignment must fit all"},
       {"A19", "edges within " + shortest_decimal(targets.edge_tolerance_rel) +
                   ", centroid within " + shortest_decimal(targets.centroid_limit_rel) +
                   " of the normalizing radius, ranked; relaxed by half after " +
@@ -53,16 +53,16 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   std::to_string(options.target_draws) + " sets"},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
-      {"A23", options.approach_O
-                  ? "normal of the targets within 90 degrees of the approach direction"
-                  : "both normals of the targets, more room first"},
-      {"A24", "clear of the object by " + shortest_decimal(fitting.clearance) + " m"},
+      {"A23",
+       options.approach_O
+           ? "sides of the targets within the cone of the approach direction"
+           : "both normals of the targets, 16 directions for two, against the palm's own target"},
+      {"A24",
+       "behind the posture at the targets, clear by " + shortest_decimal(fitting.clearance) + " m"},
       {"A25", "joint limits that open; spread aligned with the targets"},
       {"A26", "least sum of squared angular errors of the fingers that share a joint"},
       {"A27", "coupled, with breakaway"},
-      {"A28",
-       "abduction toward the target's azimuth, clamped; hands whose open tips lie on one side of "
-       "the palm turn about the middle of their fingertips"},
+      {"A28", "all joints of a finger, to the posture at the targets by least squares"},
       {"A29", "whole-hand motion after the first contact only if no contact is lost"},
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
@@ -70,7 +70,9 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A31", "a part without contact fails the attempt"},
       {"A32", std::string("small steps until contact or penetration; guard on ") +
                   std::string(name_of(fitting.guard)) +
-                  (fitting.settle ? ", fingers then settle on the surface" : "")},
+                  (options.refine   ? ", contacts then refined"
+                   : fitting.settle ? ", fingers then settle on the surface"
+                                    : "")},
       {"A33", options.clip_thickness
                   ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
                   : "clip volume max(0.5 voxel, 1 mm) thick"},
@@ -79,17 +81,24 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A36", std::string(name_of(options.search)) + " " +
                   std::string(name_of(options.acceptance)) + " of at most " +
                   std::to_string(options.max_attempts) + " attempts"},
-      {"A37", "unknown: counts as not weak"},
-      {"A40", "overlap of different fingers above " + shortest_decimal(options.self_overlap) +
-                  " m ends the attempt"},
+      {"A37", options.weak ? "slender features thinner than " +
+                                 shortest_decimal(options.weak->weak_thickness) + " m"
+                           : text("not looked for: nothing counts as weak")},
+      {"A39", "palm first, then every finger joint by joint"},
+      {"A40", options.refine ? text("none, decided on the meshes")
+                             : "overlap of different fingers above " +
+                                   shortest_decimal(options.self_overlap) + " m ends the attempt"},
       {"A41", "volume integral over the closed mesh"},
       {"A42", "outline of the pad"},
       {"A43", "Euclidean"},
       {"A44", "the hand gives way for the stopped one of fingers that share a joint"},
+      {"A45", "table and obstacles are solid"},
       {"A46", "repaired or refused; see object.repair"},
       {"A47",
        targets.theta_max == quality.theta_max ? "one angle for targets and measure" : "two angles"},
-      {"A48", "measure not used in target selection"},
+      {"A48", targets.ideal_m_bias > 0.0
+                  ? "complete sets drawn by (ideal M)^" + shortest_decimal(targets.ideal_m_bias)
+                  : text("measure not used in target selection")},
   };
 }
 
