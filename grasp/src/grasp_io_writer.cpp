@@ -42,10 +42,10 @@ Json conventions() {
        "object surface inside the pad's clip volume: point and normal are means over the clipped "
        "pieces, the point projected to the surface; area_m2 is their area; pad_boundary_distance_m "
        "is the distance of the point, in the pad's plane, from the outline; gap_m is the smallest "
-       "height of the surface over the pad along the pad's z, the pad being flat, or the upper "
-       "side "
-       "of the hull of outline and surface; weak is null where it is not known; target: the pad "
-       "was "
+       "distance between the pad's part of the link's mesh and the object's surface, 0 where they "
+       "cross: of the mesh, its faces that look along the pad's z, cut along the prism over the "
+       "outline, not deeper than 1 mm below the pad; weak is null where it is not known; target: "
+       "the pad was "
        "asked to touch"},
       {"used_mesh_file",
        "the mesh as it was used, beside this file: scaled, repaired, closed, in meters, as PLY; of "

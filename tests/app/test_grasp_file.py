@@ -224,8 +224,7 @@ class GraspFile(program.ProgramTest):
             return
         for grasp in self.data["results"]["grasps"]:
             wrench = grasp["wrench"]
-            if wrench is None:  # not measured
-                continue
+            self.assertIsNotNone(wrench)
             convention = wrench["convention"]
             self.assertEqual((convention["tool"], convention["force_scaling"], convention["norm"],
                               convention["outside"]), ("graspit", "unit-normal", "l1", "minus-one"))

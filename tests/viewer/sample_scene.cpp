@@ -150,6 +150,10 @@ SampleScene sample_scene() {
   valid.iterations = 61;
 
   grasp::Grasp penetrating = grasp_at(0.12, 3);
+  // As of two contacts that are opposite each other but for rounding.
+  penetrating.wrench.epsilon = 1e-17;
+  penetrating.wrench.is_force_closure = true;
+  penetrating.wrench.convention.options.torque_scale = kBallRadius;
   penetrating.quality.m1 = 0.6;
   penetrating.quality.m2 = 1.0;
   penetrating.quality.m3 = 1.0;

@@ -197,11 +197,17 @@ class GraspsInBrowser(PageInBrowser):
         for part in ("M1 sustainability", "0.4000", "R regularity", "D centroid distance", "0.00 mm",
                      "M of the targets", "0.7000", "ε", "force closure", "0.1234"):
             self.assertIn(part, measures)
+        self.assertNotIn("no force closure", measures)
         self.assertEqual(self.text("pairs").count("30.0°"), 3)
         for summary in self.browser.find_elements(By.TAG_NAME, "summary"):
             summary.click()
         self.assertIn("joint_3", self.text("right"))
         self.assertIn("Attempt", self.text("right"))
+
+    def test_closure_that_only_rounding_makes_is_none(self):
+        self.open("ball.html")
+        self.element("grasp-2").click()
+        self.assertIn("no force closure", self.text("measures"))
 
     def test_pre_grasp_grasp_and_squeeze_pose_the_hand(self):
         self.open("ball.html")

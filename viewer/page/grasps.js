@@ -1,5 +1,8 @@
 // The page of grasps: reads the data element, draws the scene, fills the lists. After stage.js.
 
+// Contacts that are opposite each other but for rounding close exactly as rounded, with less ε.
+const kRoundedEpsilon = 1e-9;
+
 const kRamp = ['#c8392b', '#e8803a', '#f3cf5b', '#9cc45b', '#2f8f4e'];
 function rampColor(score) {
   const t = Math.min(Math.max(score, 0), 1) * (kRamp.length - 1);
@@ -472,7 +475,8 @@ function showMeasures() {
       measureRow('D as in M3', 'in the units chosen for the measure', fixed(quality.scaled_centroid_distance, 4)),
       measureRow('M of the targets', 'what the planner aimed for', fixed(grasp.ideal_m, 4)));
   if (grasp.wrench) {
-    const row = measureRow('ε', grasp.wrench.is_force_closure ? 'force closure' : 'no force closure',
+    const closes = grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
+    const row = measureRow('ε', closes ? 'force closure' : 'no force closure',
                            fixed(grasp.wrench.epsilon, 4));
     row.title = grasp.wrench.convention;
     rows.append(row);
@@ -497,7 +501,7 @@ function showMeasures() {
   panel.append(element('table', {id: 'contacts'},
       element('thead', {}, element('tr', {},
           element('th', {scope: 'col'}, 'Finger'),
-          element('th', {scope: 'col', title: 'Smallest height of the surface over the pad'}, 'gap mm'),
+          element('th', {scope: 'col', title: 'Between the pad’s part of the link’s mesh and the object'}, 'gap mm'),
           element('th', {scope: 'col', title: 'Object surface inside the pad’s clip volume'}, 'area mm²'),
           element('th', {scope: 'col', title: 'From the contact point to the pad’s edge'}, 'd mm'),
           element('th', {scope: 'col', title: 'Strength: 0 on a weak feature of the object, else 1'}, 'S'))),
