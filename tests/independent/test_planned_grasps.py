@@ -102,10 +102,10 @@ class Hands(Planned):
 
     def test_voxel_only_grasps_that_cut_the_object(self):
         _, record = self.assert_agrees(
-            self.shape("torus", "--set", "major_radius=0.05,minor_radius=0.02"),
-            "--count", 2, "--max-attempts", 10, "--refine", "off", "--guard", "voxels", "--settle",
-            "no", "--accept", "usable", "--search", "first", "--averaging", "plain",
-            "--regularity", "angle-only", "--centroid", "vertices")
+            self.shape("ball", "--set", "radius=0.03"), "--count", 4, "--max-attempts", 10,
+            "--refine", "off", "--guard", "voxels", "--settle", "no", "--accept", "usable",
+            "--search", "first", "--averaging", "plain", "--regularity", "angle-only",
+            "--centroid", "vertices")
         self.assertTrue(any(grasp["penetration"]["object_intersects"]
                             for grasp in record["results"]["grasps"]))
 
