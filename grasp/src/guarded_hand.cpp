@@ -49,6 +49,11 @@ float GuardedHand::measured(int link, const RigidTransform& X_OL) {
                                   static_cast<float>(options_.large_step_limit + 1.0));
 }
 
+double GuardedHand::measured_room(int link, double enough) const {
+  return std::min(enough,
+                  surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance);
+}
+
 void GuardedHand::put(const hands::HandConfiguration& configuration) {
   configuration_ = configuration;
   X_OL_ = hands::forward_kinematics(model_, configuration_);
@@ -59,8 +64,7 @@ void GuardedHand::measure_all() {
   const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
   for (const int link : all_links_) {
     distance_[link] = measured(link, X_OL_[link]);
-    if (surroundings_.surroundings().is_empty()) continue;
-    room_[link] = surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance;
+    if (!surroundings_.surroundings().is_empty()) room_[link] = measured_room(link, enough);
   }
 }
 
@@ -128,8 +132,7 @@ void GuardedHand::accept() {
   const double near = options_.large_step_at * voxel_size_;
   const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
   for (const int link : all_links_) {
-    if (room_[link] > near) continue;
-    room_[link] = surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance;
+    if (room_[link] <= near) room_[link] = measured_room(link, enough);
   }
 }
 

@@ -49,6 +49,8 @@ class GuardedHand {
 
  private:
   float measured(int link, const geometry::RigidTransform& X_OL);
+  /// Never more than `enough`: what is farther comes nearer in later motions.
+  double measured_room(int link, double enough) const;
   bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL) const;
 
   const FittingHand& hand_;
