@@ -38,9 +38,10 @@ constexpr double kNearPerStep = 2.0;    // near is what is within so many times 
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
 constexpr double kRoomPerGap = 0.1;     // kept to everything, per largest gap that is left
 constexpr double kMostRoom = 3e-4;      // [m]
+constexpr double kPartingShare = 0.3;   // of a step that bodies too near may be asked to part by
 constexpr int kMostHalvings = 5;
-constexpr int kPatience = 5;             // steps within which the gaps must shrink
-constexpr double kLeastProgress = 0.75;  // to this share
+constexpr int kPatience = 8;             // steps within which the gaps must shrink
+constexpr double kLeastProgress = 0.85;  // to this share
 
 // The way out of a start that cuts something: steps that grow, 3 cm in all.
 constexpr int kMostOpenings = 14;
@@ -68,11 +69,15 @@ class Rows {
   }
   void require(const RowVectorXd& row, double least) {
     limits_.push_back(row);
-    least_.push_back(std::min(0.0, least));
+    least_.push_back(least);
   }
+  /// Limits that cannot all be met at once ask for no more than that nothing gets worse.
   VectorXd solve() const {
-    return internal::constrained_least_squares(matrix(rows_), vector(values_), matrix(limits_),
-                                               vector(least_));
+    const MatrixXd a = matrix(rows_), g = matrix(limits_);
+    const VectorXd b = vector(values_), h = vector(least_);
+    const VectorXd x = internal::constrained_least_squares(a, b, g, h);
+    if (((g * x - h).array() >= -kShortestStep).all()) return x;
+    return internal::constrained_least_squares(a, b, g, h.cwiseMin(0.0));
   }
   std::vector<RowVectorXd>& limits() { return limits_; }
   std::vector<double>& least() { return least_; }
@@ -317,7 +322,8 @@ class Refinement {
       }
       // What even the longest step leaves clear needs no row.
       if (near.distance - trust * row.cwiseAbs().sum() > room) continue;
-      rows.require(row, room - near.distance);
+      // Bodies that all but touch go apart first: along a curved surface they would meet at once.
+      rows.require(row, std::min(room - near.distance, kPartingShare * trust));
       if (near.distance < room) rows.want(row, room - near.distance, kRoomWeight);
     }
     add_limits(trust, rows);

@@ -4,8 +4,9 @@
 
 namespace graspfit::grasp::internal {
 
-/// The x that minimizes ‖A x − b‖ subject to G x ≥ h, for an A of full column rank and an h ≤ 0,
-/// so that x = 0 is allowed. Approximate, to rounding; small violations of that size are possible.
+/// The x that minimizes ‖A x − b‖ subject to G x ≥ h, for an A of full column rank. Approximate, to
+/// rounding; small violations of that size are possible. If no x meets all rows, something that
+/// violates some: test it (h ≤ 0 allows x = 0).
 ///
 /// By QR factorization of A the least distance problem, that by nonnegative least squares of its
 /// dual [Lawson & Hanson 1974, ch. 23].
