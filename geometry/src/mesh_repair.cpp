@@ -2,6 +2,7 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
+#include <CGAL/exceptions.h>
 #include <CGAL/utility.h>
 
 #include <Eigen/Geometry>
@@ -354,7 +355,7 @@ class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor
   std::int64_t facets_left_;
 };
 
-/// Wraps the faces and orients the wrap outward. No faces if CGAL does not come to an end.
+/// Wraps the faces and orients the wrap outward. No faces if CGAL does not come to a good end.
 TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, double extent) {
   std::vector<Kernel::Point_3> points;
   for (const Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
@@ -368,6 +369,9 @@ TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, d
     CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap, CGAL::parameters::default_values(),
                        CGAL::parameters::visitor(std::ref(limit)));
   } catch (const WrapLimit::Exceeded&) {
+    return {};
+  } catch (const CGAL::Failure_exception&) {
+    // In builds with assertions CGAL says where rounding defeated it before it starts going round.
     return {};
   }
   TriangleMesh result;
