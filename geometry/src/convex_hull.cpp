@@ -65,7 +65,7 @@ Vector3d mean_of(std::span<const Vector3d> points, const std::vector<std::size_t
   return sum / static_cast<double>(indices.size());
 }
 
-/// Area and centroid of a (nearly) planar polygon.
+/// Area and centroid of a planar polygon.
 void measure_polygon(std::span<const Vector3d> points, ConvexHull3& hull) {
   const Vector3d& apex = points[hull.vertices.front()];
   Vector3d total = Vector3d::Zero();
@@ -188,14 +188,16 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
     make_segment(points, distinct, axes.col(0), hull);
   } else if (is_nearly_flat) {
     std::vector<Vector3d> flat(points.size(), Vector3d::Zero());
+    std::vector<Vector3d> projected(points.begin(), points.end());
     for (const std::size_t i : distinct) {
       flat[i] = {points[i].dot(axes.col(0)), points[i].dot(axes.col(1)), 0.0};
+      projected[i] -= axes.col(2).dot(points[i] - mean) * axes.col(2);
     }
     std::vector<std::size_t> around = polygon_around(flat, distinct);
     if (around.size() < 3) {  // a needle, once it is projected and rounded
       make_segment(points, distinct, axes.col(0), hull);
     } else {
-      make_polygon(points, std::move(around), hull);
+      make_polygon(projected, std::move(around), hull);
     }
   } else if (hull.rank == 2) {
     make_polygon(points, corners_around(exact), hull);

@@ -41,9 +41,10 @@ void plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_na
   const grasp::PlannerResult result = grasp::plan_grasps(object, hand, options, {}, 1);
   REQUIRE(result.grasps.size() == kGrasps);
   const grasp::PlannerTimings& t = result.timings;
-  const Measured measured{t.total_s / kGrasps, model.query_s + model.patches_s + model.voxels_s +
-                                                   model.distance_s + model.scores_s};
-  const double with_model = measured.per_grasp_s + measured.model_s / kGrasps;
+  const double per_grasp_s = t.total_s / kGrasps;
+  const double model_s =
+      model.query_s + model.patches_s + model.voxels_s + model.distance_s + model.scores_s;
+  const double with_model_s = per_grasp_s + model_s / kGrasps;
   std::printf("\n%s on the bunny: %lld attempts for %d valid grasps, one core\n", hand_name.c_str(),
               static_cast<long long>(result.statistics.attempts), kGrasps);
   const double rest_s =

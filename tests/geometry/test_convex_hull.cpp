@@ -86,6 +86,19 @@ TEST_CASE("An ulp off the plane is a solid, unless a threshold says flat",
   CHECK(convex_hull(points).rank == 2);
 }
 
+TEST_CASE("A nearly flat polygon is measured in its plane, whatever the order of its points",
+          "[geometry][convex_hull]") {
+  // Corners of a unit square by turns 2 cm above and below the plane that fits them best.
+  Points points = {{0, 0, 0.02}, {1, 0, -0.02}, {1, 1, 0.02}, {0, 1, -0.02}};
+  for (std::size_t first = 0; first < points.size(); ++first) {
+    const ConvexHull3 square = convex_hull(points, {.planar_rel = 0.1});
+    CHECK(square.rank == 2);
+    CHECK(square.measure == Approx(1.0));
+    CHECK((square.centroid - Eigen::Vector3d(0.5, 0.5, 0.0)).norm() < 1e-14);
+    std::rotate(points.begin(), points.begin() + 1, points.end());
+  }
+}
+
 TEST_CASE("A flattened needle is a segment, and a hull without measure has a centroid",
           "[geometry][convex_hull]") {
   // Thickness along both short axes is far below an ulp of the long one, so that the projected

@@ -27,7 +27,7 @@ struct HullOptions {
   double collinear_rel = 0.0;  ///< Second over first singular value of the centered points, ≥ 0.
   double planar_rel = 0.0;     ///< Thickness over extent (range along the third / first principal
                             ///< axis), ≥ 0. Planar points are projected to their best-fit plane
-                            ///< before the polygon is taken.
+                            ///< before the polygon is taken and measured.
 };
 
 /// Hull, its measure and centroid: `ConvexPolytope` in space, with thresholds that let nearly flat
