@@ -54,7 +54,7 @@ PlanningSettings settings_of(const Cell& cell) {
 std::vector<Column> columns_of(const std::string& prefix, const std::string& which) {
   return {{prefix + "grasps", "1", which + "grasps found, at most `sample`"},
           {prefix + "attempts", "1", "attempts up to the last of them"},
-          {prefix + "closed_share", "1", "share of them that is force closed"},
+          {prefix + "closed_share", "1", "share of them that is force closed (epsilon above 1e-9)"},
           {prefix + "median_epsilon", "1", "median of their epsilon, 0 without closure"},
           {prefix + "mean_epsilon", "1", "mean of the same"},
           {prefix + "mean_m", "1", "their mean M"}};
@@ -97,7 +97,7 @@ std::int64_t fill(const std::string& prefix, const std::vector<const grasp::Gras
   for (const grasp::Grasp* grasp : sample) {
     epsilons.push_back(epsilon_of(*grasp));
     ms.push_back(grasp->quality.m);
-    if (grasp->wrench.is_force_closure) ++closed;
+    if (is_closed(*grasp)) ++closed;
   }
   const std::int64_t attempts =
       is_full ? sample.back()->attempt + 1 : planned.result.statistics.attempts;

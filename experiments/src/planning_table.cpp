@@ -62,7 +62,7 @@ Measures measures_of(const std::vector<grasp::Grasp>& grasps) {
     measures.largest_penetration =
         std::max(measures.largest_penetration, grasp::largest_penetration(grasp));
     if (grasp.penetration.is_any()) ++measures.num_penetrating;
-    if (grasp.wrench.is_force_closure) ++measures.num_closed;
+    if (is_closed(grasp)) ++measures.num_closed;
     if (grasp.squeeze && grasp.squeeze->is_balanced) ++measures.num_squeezed;
   }
   return measures;
@@ -123,7 +123,8 @@ std::vector<Column> planning_columns() {
       {"mean_num_contacts", "1", "mean N'"},
       {"best_epsilon", "1", "epsilon of the grasp with the largest M, GraspIt!'s convention"},
       {"median_epsilon", "1", "median of epsilon"},
-      {"force_closed_share", "1", "share with force closure at the friction of epsilon"},
+      {"force_closed_share", "1",
+       "share with force closure (epsilon above 1e-9) at the friction of epsilon"},
       {"balanced_share", "1", "share whose squeeze balances"},
       {"num_penetrating", "1", "grasps that touch with what must not touch, decided exactly"},
       {"largest_penetration_m", "m", "deepest overlap with the object or of the hand with itself"},
@@ -211,6 +212,11 @@ void fill_planning_timings(const Planned& planned, ResultRow& row) {
   row.set("refinement_s", timings.refinement_s);
   row.set("measure_s", timings.measure_s);
   row.set("pre_grasp_s", timings.pre_grasp_s);
+}
+
+bool is_closed(const grasp::Grasp& grasp) {
+  constexpr double kRoundedEpsilon = 1e-9;  // far above the rounding of wrenches, 1e-16
+  return grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
 }
 
 std::optional<double> median(std::vector<double> values) {

@@ -35,6 +35,10 @@ void fill_planning_columns(const Planned& planned, ResultRow& row);
 std::vector<Column> planning_timings();
 void fill_planning_timings(const Planned& planned, ResultRow& row);
 
+/// Whether a grasp has force closure with an epsilon above 1e-9. Two contacts opposite each other
+/// have it, too, as their wrenches are rounded, with an epsilon of 1e-17: they count as open.
+bool is_closed(const grasp::Grasp& grasp);
+
 /// The middle of some numbers, mean of the middle two; empty without any.
 std::optional<double> median(std::vector<double> values);
 /// The arithmetic mean; empty without any.
