@@ -234,7 +234,7 @@ class NoGrasp(program.ProgramTest):
         message = self.assert_refused(
             "plan", self.write_torus(), "--theta-max-deg", "0.5", "--max-attempts", "4",
             "--out", self.folder / "out", code=3, says=["no valid grasp", "4 attempts"])
-        self.assertRegex(message, r"attempts: .* \d+")
+        self.assertRegex(message, r"4 attempts \(all attempts made\): .* \d+")
 
 
 class Interrupts(program.ProgramTest):

@@ -136,9 +136,9 @@ class Plan(program.ProgramTest):
             self.assertGreater(sum(a * b for a, b in zip(direction_O, (-0.2, 0.1, -1))), 0)
 
     def test_table_and_obstacles_are_recorded_and_their_meshes_written(self):
-        vertices, faces = program.box(20, 20, 20)  # millimeters, 10 cm above the torus
-        obstacle = self.write("box.off", program.off_text([(x, y, z + 110) for x, y, z in vertices],
-                                                          faces))
+        vertices, faces = program.box(20, 20, 20)  # millimeters, beside the way in from above
+        vertices = [(x + 150, y, z + 110) for x, y, z in vertices]
+        obstacle = self.write("box.off", program.off_text(vertices, faces))
         self.plan("--table", "-0.15", "--obstacle", obstacle, "--obstacle-unit", "mm")
         file = json.loads((self.folder / "out/grasps.json").read_text())
         self.assertEqual(file["surroundings"]["table_z_O_m"], -0.15)
