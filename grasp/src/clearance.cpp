@@ -13,6 +13,11 @@ using hands::RigidTransform;
 
 namespace {
 
+/// Bodies that are not near are asked how far they are, up to so much more [m] and to half of it:
+/// for so long they need not be asked again.
+constexpr double kAhead = 0.04;
+constexpr double kAheadShare = 0.5;
+
 /// Bound of how far any point of a ball in L moves from one pose to another.
 double motion_bound(const RigidTransform& from, const RigidTransform& to, const Vector3d& center,
                     double radius) {
@@ -47,25 +52,38 @@ bool Clearance::surely_beyond(const Known& known, const RigidTransform& X, const
   return known.is_known && known.at_least - motion_bound(known.X, X, center, radius) > enough;
 }
 
-bool Clearance::find(const LinkPoses& X_OL, double enough, double least,
-                     std::vector<NearPoints>& near) {
-  near.clear();
+std::optional<SurfaceProximity> Clearance::nearest(Known& known, const geometry::MeshQuery& a,
+                                                   const geometry::MeshQuery& b,
+                                                   const RigidTransform& X, double enough) {
+  if (!known.is_near) {
+    const auto found =
+        geometry::surface_clearance(a, b, X, enough + kAhead, kAheadShare, known.seed);
+    known = {found.at_least, X, found.nearest, true, false};
+    if (found.at_least > enough) return std::nullopt;
+  }
+  const auto result = geometry::nearest_points(a, b, X, enough, known.seed);
+  if (!result) {
+    known = {enough, X, known.seed, true, false};
+  } else {
+    known = {result->distance, X, {result->face_a, result->face_b}, true, true};
+  }
+  return result;
+}
+
+std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
+  std::vector<NearPoints> near;
   for (std::size_t link = 0; link < pieces_.size(); ++link) {
     const auto& pieces = hand_.pieces(static_cast<int>(link));
+    const RigidTransform& X = X_OL[link];
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       Known& known = pieces_[link][i];
       const FittingHand::Piece& piece = pieces[i];
-      const RigidTransform& X = X_OL[link];
       if (surely_beyond(known, X, piece.center_L, piece.radius, enough)) continue;
-      const auto nearest =
-          geometry::nearest_points(object_.query, piece.surface_L, X, enough, known.seed);
-      known = {nearest ? nearest->distance : enough, X, known.seed, true};
-      if (!nearest) continue;
-      known.seed = {nearest->face_a, nearest->face_b};
-      if (nearest->distance < least) return false;
-      near.push_back({nearest->distance, static_cast<int>(link), -1, nearest->point_on_b_A,
-                      nearest->point_on_a_A,
-                      (nearest->point_on_b_A - nearest->point_on_a_A).normalized()});
+      const auto found = nearest(known, object_.query, piece.surface_L, X, enough);
+      if (!found) continue;
+      near.push_back({found->distance, static_cast<int>(link), -1, found->point_on_b_A,
+                      found->point_on_a_A,
+                      (found->point_on_b_A - found->point_on_a_A).normalized()});
     }
   }
   if (!surroundings_.surroundings().is_empty()) {
@@ -73,7 +91,6 @@ bool Clearance::find(const LinkPoses& X_OL, double enough, double least,
       if (!hand_.collision().link_solid(static_cast<int>(link))) continue;
       const SurroundingsDistance found =
           surroundings_.distance(hand_.collision(), static_cast<int>(link), X_OL[link], enough);
-      if (found.distance < least) return false;
       if (found.distance > enough) continue;
       near.push_back({found.distance, static_cast<int>(link), -1, found.point_on_link_O,
                       found.point_on_link_O - found.distance * found.normal_O, found.normal_O});
@@ -90,16 +107,48 @@ bool Clearance::find(const LinkPoses& X_OL, double enough, double least,
       continue;
     }
     if (surely_beyond(known, X_AB, centers_L_[index_b], radii_[index_b], enough)) continue;
-    const auto nearest =
-        geometry::nearest_points(*hand_.collision().link_solid(a), *hand_.collision().link_solid(b),
-                                 X_AB, enough, known.seed);
-    known = {nearest ? nearest->distance : enough, X_AB, known.seed, true};
-    if (!nearest) continue;
-    known.seed = {nearest->face_a, nearest->face_b};
-    if (nearest->distance < least) return false;
-    const Vector3d on_a = X_OL[index_a] * nearest->point_on_a_A;
-    const Vector3d on_b = X_OL[index_a] * nearest->point_on_b_A;
-    near.push_back({nearest->distance, b, a, on_b, on_a, (on_b - on_a).normalized()});
+    const auto found = nearest(known, *hand_.collision().link_solid(a),
+                               *hand_.collision().link_solid(b), X_AB, enough);
+    if (!found) continue;
+    const Vector3d on_a = X_OL[index_a] * found->point_on_a_A;
+    const Vector3d on_b = X_OL[index_a] * found->point_on_b_A;
+    near.push_back({found->distance, b, a, on_b, on_a, (on_b - on_a).normalized()});
+  }
+  return near;
+}
+
+bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
+  const auto is_near = [&](const Known& known, const geometry::MeshQuery& a,
+                           const geometry::MeshQuery& b, const RigidTransform& X,
+                           const Vector3d& center, double radius) {
+    return !surely_beyond(known, X, center, radius, least) &&
+           geometry::nearest_points(a, b, X, least, known.seed, least);
+  };
+  for (std::size_t link = 0; link < pieces_.size(); ++link) {
+    const auto& pieces = hand_.pieces(static_cast<int>(link));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (is_near(pieces_[link][i], object_.query, pieces[i].surface_L, X_OL[link],
+                  pieces[i].center_L, pieces[i].radius)) {
+        return false;
+      }
+    }
+  }
+  for (std::size_t link = 0; link < X_OL.size(); ++link) {
+    const auto index = static_cast<int>(link);
+    if (surroundings_.surroundings().is_empty()) break;
+    if (!hand_.collision().link_solid(index)) continue;
+    if (surroundings_.distance(hand_.collision(), index, X_OL[link], least).distance <= least) {
+      return false;
+    }
+  }
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const auto a = static_cast<std::size_t>(pairs_[p].first);
+    const auto b = static_cast<std::size_t>(pairs_[p].second);
+    if (is_near(pair_known_[p], *hand_.collision().link_solid(pairs_[p].first),
+                *hand_.collision().link_solid(pairs_[p].second), X_OL[a].inverse() * X_OL[b],
+                centers_L_[b], radii_[b])) {
+      return false;
+    }
   }
   return true;
 }
@@ -110,7 +159,7 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) {
     const auto& solid = hand_.collision().link_solid(link);
     if (!solid) continue;
     const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
-    if (geometry::nearest_points(object_.query, *solid, X, least) ||
+    if (geometry::nearest_points(object_.query, *solid, X, least, {}, least) ||
         surroundings_.touches(hand_.collision(), link, X)) {
       result.links.push_back(link);
     }
@@ -119,7 +168,7 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) {
     const RigidTransform X_AB =
         X_OL[static_cast<std::size_t>(a)].inverse() * X_OL[static_cast<std::size_t>(b)];
     if (!geometry::nearest_points(*hand_.collision().link_solid(a),
-                                  *hand_.collision().link_solid(b), X_AB, least)) {
+                                  *hand_.collision().link_solid(b), X_AB, least, {}, least)) {
       continue;
     }
     result.by_own_hand.push_back(a);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "graspfit/geometry/convex_clip.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/pad_surface.hpp"
+#include "internal/contact_test.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -92,6 +94,39 @@ struct CutFace {
   geometry::ConvexVolume cutting;
 };
 
+/// The object's triangles that may have area in a clip volume, ascending.
+struct FacesInVolume {
+  std::vector<std::int32_t> inside;  ///< As a whole, and none of them thin.
+  std::vector<CutFace> cut;
+  bool has_thin = false;  ///< Among those cut: whether it has area at all is for the clip to say.
+};
+
+FacesInVolume faces_in_clip_volume(const hands::ContactPad& pad, const RigidTransform& X_OC,
+                                   const geometry::MeshQuery& object,
+                                   const ContactEstimationOptions& options) {
+  const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
+  FacesInVolume result;
+  const std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);
+  if (faces.empty()) return result;
+  const geometry::ConvexVolume volume_O =
+      hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
+  for (const std::int32_t face : faces) {
+    const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);
+    std::optional<geometry::ConvexVolume> cutting = cutting_half_spaces(triangle, volume_O);
+    if (!cutting) continue;
+    const auto& [a, b, c] = triangle;
+    const bool is_thin = (b - a).cross(c - a).norm() <=
+                         kThinRel * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
+    result.has_thin = result.has_thin || is_thin;
+    if (cutting->empty() && !is_thin) {
+      result.inside.push_back(face);
+    } else {
+      result.cut.push_back({face, std::move(*cutting)});
+    }
+  }
+  return result;
+}
+
 /// Sums over the pieces of surface inside a clip volume.
 class SurfaceMean {
  public:
@@ -121,6 +156,47 @@ class SurfaceMean {
   Vector3d outward_normal_O_ = Vector3d::Zero();
 };
 
+SurfaceMean mean_over(const FacesInVolume& faces, const geometry::TriangleMesh& mesh,
+                      geometry::PatchAveraging averaging,
+                      const std::function<bool(std::int32_t)>& is_weak) {
+  SurfaceMean mean(averaging);
+  for (const std::int32_t face : faces.inside) {
+    const auto [a, b, c] = geometry::corners(mesh, face);
+    const Vector3d twice_area = (b - a).cross(c - a);
+    mean.add(0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized(), is_weak(face));
+  }
+  for (const CutFace& cut : faces.cut) {
+    if (const auto piece = geometry::clip(geometry::corners(mesh, cut.face), cut.cutting)) {
+      mean.add(piece->area, piece->centroid, geometry::face_normal(mesh, cut.face),
+               is_weak(cut.face));
+    }
+  }
+  return mean;
+}
+
+bool is_contact(const SurfaceMean& mean) {
+  return mean.area() > 0.0 && mean.outward_normal_O().norm() >= kSmallestMeanNormal;
+}
+
+/// Whether the normals of all faces are so alike that no mean of them is too short for a contact.
+bool are_normals_alike(const FacesInVolume& faces, const geometry::TriangleMesh& mesh) {
+  constexpr double kAlike = 2.0 * kSmallestMeanNormal;  // its component along the first one
+  if (faces.has_thin) return false;
+  const Vector3d first =
+      geometry::face_normal(mesh, faces.inside.empty() ? faces.cut[0].face : faces.inside[0]);
+  const auto is_alike = [&](std::int32_t face) {
+    return geometry::face_normal(mesh, face).dot(first) >= kAlike;
+  };
+  return std::all_of(faces.inside.begin(), faces.inside.end(), is_alike) &&
+         std::all_of(faces.cut.begin(), faces.cut.end(),
+                     [&](const CutFace& cut) { return is_alike(cut.face); });
+}
+
+void require_pad(const hands::HandModel& hand, int pad) {
+  internal::require(pad >= 0 && pad < static_cast<int>(hand.pads.size()), "estimate_contact", "pad",
+                    pad, "an index into the pads of hand " + hand.name);
+}
+
 }  // namespace
 
 std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L, const RigidTransform& X_OL,
@@ -141,9 +217,7 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
                                         const ContactEstimationOptions& options,
                                         const geometry::WeakRegions* weak_regions) {
   options.validate();
-  internal::require(pad_index >= 0 && pad_index < static_cast<int>(hand.pads.size()),
-                    "estimate_contact", "pad", pad_index,
-                    "an index into the pads of hand " + hand.name);
+  require_pad(hand, pad_index);
   if (weak_regions && weak_regions->is_weak.size() != object.mesh().faces.size()) {
     throw geometry::InvalidInput(
         "estimate_contact: weak regions of " + std::to_string(weak_regions->is_weak.size()) +
@@ -152,44 +226,14 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   const bool knows_weak = weak_regions && weak_regions->outcome != geometry::WeakOutcome::TooCoarse;
   const auto is_weak = [&](std::int32_t face) { return knows_weak && weak_regions->is_weak[face]; };
   const hands::ContactPad& pad = hand.pads[pad_index];
-  const double thickness = pad.clip_thickness.value_or(options.clip_thickness);
+  const FacesInVolume faces = faces_in_clip_volume(pad, X_OC, object, options);
+  const SurfaceMean mean = mean_over(faces, object.mesh(), options.averaging, is_weak);
+  if (!is_contact(mean)) return std::nullopt;
 
-  const std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);
-  if (faces.empty()) return std::nullopt;
-  const geometry::ConvexVolume volume_O =
-      hands::transformed(hands::clip_volume_C(pad, thickness), X_OC);
   const RigidTransform X_CO = X_OC.inverse();
-  SurfaceMean mean(options.averaging);
-  std::vector<CutFace> cut_faces;
-  for (const std::int32_t face : faces) {
-    const std::array<Vector3d, 3> triangle = geometry::corners(object.mesh(), face);
-    std::optional<geometry::ConvexVolume> cutting = cutting_half_spaces(triangle, volume_O);
-    if (!cutting) continue;
-    const auto& [a, b, c] = triangle;
-    const Vector3d twice_area = (b - a).cross(c - a);
-    // Whether a triangle this thin has area at all is for the exact clip to say.
-    const bool is_thin =
-        twice_area.norm() <= kThinRel * std::max((b - a).squaredNorm(), (c - a).squaredNorm());
-    if (!cutting->empty() || is_thin) {
-      cut_faces.push_back({face, std::move(*cutting)});
-    } else {
-      mean.add(0.5 * twice_area.norm(), (a + b + c) / 3.0, twice_area.normalized(), is_weak(face));
-    }
-  }
-  for (const CutFace& cut : cut_faces) {
-    if (const auto piece =
-            geometry::clip(geometry::corners(object.mesh(), cut.face), cut.cutting)) {
-      mean.add(piece->area, piece->centroid, geometry::face_normal(object.mesh(), cut.face),
-               is_weak(cut.face));
-    }
-  }
-  if (!(mean.area() > 0.0)) return std::nullopt;
-  const Vector3d outward_normal_O = mean.outward_normal_O();
-  if (outward_normal_O.norm() < kSmallestMeanNormal) return std::nullopt;
-
   Contact contact;
   contact.point_O = object.closest_point(mean.centroid_O()).point;
-  contact.inward_normal_O = -outward_normal_O.normalized();
+  contact.inward_normal_O = -mean.outward_normal_O().normalized();
   contact.area = mean.area();
   contact.pad_boundary_distance = hands::boundary_distance(pad, (X_CO * contact.point_O).head<2>());
   contact.gap = pad_gap(geometry::MeshQuery(hands::pad_surface_L(hand, pad_index)),
@@ -200,6 +244,25 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad_in
   contact.finger = pad.finger;
   if (knows_weak) contact.weak = 2.0 * mean.weak_area() >= mean.area();
   return contact;
+}
+
+bool has_contact(const hands::HandModel& hand, int pad, const RigidTransform& X_OC,
+                 const geometry::MeshQuery& object, const ContactEstimationOptions& options) {
+  options.validate();
+  require_pad(hand, pad);
+  const geometry::TriangleMesh& mesh = object.mesh();
+  const FacesInVolume faces =
+      faces_in_clip_volume(hand.pads[static_cast<std::size_t>(pad)], X_OC, object, options);
+  if (faces.inside.empty() && faces.cut.empty()) return false;
+  if (!are_normals_alike(faces, mesh)) {
+    return is_contact(
+        mean_over(faces, mesh, options.averaging, [](std::int32_t) { return false; }));
+  }
+  return !faces.inside.empty() ||
+         std::any_of(faces.cut.begin(), faces.cut.end(), [&](const CutFace& cut) {
+           const auto piece = geometry::clip(geometry::corners(mesh, cut.face), cut.cutting);
+           return piece && piece->area > 0.0;
+         });
 }
 
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,

@@ -8,6 +8,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/clearance.hpp"
 #include "internal/constrained_least_squares.hpp"
+#include "internal/contact_test.hpp"
 #include "internal/hand_motion.hpp"
 #include "internal/option_check.hpp"
 
@@ -118,7 +119,15 @@ class Refinement {
     go_to(start);
     RefinementResult result;
     result.stop = make_clear();
-    if (result.stop == RefinementStop::Contact) result.stop = approach(result.iterations);
+    if (result.stop == RefinementStop::Contact) {
+      const HandConfiguration clear = configuration_;
+      result.stop = approach(result.iterations);
+      // Nearest points tell to rounding; what counts is exact.
+      if (!clearance_.is_clear_of_world(X_OL_) || !clearance_.is_clear_of_itself(X_OL_)) {
+        go_to(clear);
+        result.stop = RefinementStop::GapLeft;
+      }
+    }
     result.configuration = configuration_;
     result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_,
                                         object_.weak ? &*object_.weak : nullptr);
@@ -252,9 +261,8 @@ class Refinement {
   bool all_touch() const {
     return largest_gap() <= options_.largest_gap &&
            std::all_of(claims_.begin(), claims_.end(), [&](const Claim& claim) {
-             return estimate_contact(model_, claim.pad, hands::pad_pose(model_, claim.pad, X_OL_),
-                                     object_.query, contact_options_)
-                 .has_value();
+             return has_contact(model_, claim.pad, hands::pad_pose(model_, claim.pad, X_OL_),
+                                object_.query, contact_options_);
            });
   }
 
@@ -263,15 +271,20 @@ class Refinement {
     if (!measure_gaps() || largest_gap() > options_.reach) return RefinementStop::OutOfReach;
     double trust = kLongestStep;
     std::vector<double> sums = {sum_of_gaps()};
-    bool is_near_known = false;
+    bool has_moved = true;
     while (!all_touch()) {
       if (iterations == options_.max_iterations) return RefinementStop::IterationLimit;
       ++iterations;
-      if (!is_near_known) clearance_.find(X_OL_, kNearPerStep * trust, 0.0, near_);
+      if (has_moved) {
+        near_ = clearance_.find(X_OL_, kNearPerStep * trust);
+      } else {
+        std::erase_if(near_,
+                      [&](const NearPoints& near) { return near.distance > kNearPerStep * trust; });
+      }
       const double share = step(trust);
-      is_near_known = share > 0.0;
+      has_moved = share > 0.0;
       trust = share == 1.0 ? std::min(2.0 * trust, kLongestStep) : trust * std::max(share, 0.1);
-      if (share > 0.0) measure_gaps();
+      if (has_moved) measure_gaps();
       sums.push_back(sum_of_gaps());
       const bool is_stuck = static_cast<int>(sums.size()) > kPatience &&
                             sums.back() > kLeastProgress * sums[sums.size() - 1 - kPatience];
@@ -288,14 +301,9 @@ class Refinement {
       const HandConfiguration candidate = motion_.moved(share * motion);
       if (!is_within_limits(candidate)) continue;
       const LinkPoses X_OL = hands::forward_kinematics(model_, candidate);
-      if (!clearance_.find(X_OL, kNearPerStep * trust, least_, trial_near_)) {
-        continue;
-      }
-      // Nearest points tell to rounding; what counts is exact.
-      if (!clearance_.is_clear_of_world(X_OL) || !clearance_.is_clear_of_itself(X_OL)) continue;
+      if (!clearance_.is_apart(X_OL, least_)) continue;
       configuration_ = candidate;
       X_OL_ = X_OL;
-      near_.swap(trial_near_);
       return share;
     }
     return 0.0;
@@ -379,7 +387,6 @@ class Refinement {
   HandConfiguration configuration_;
   LinkPoses X_OL_;
   std::vector<NearPoints> near_;
-  std::vector<NearPoints> trial_near_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/contact_test.hpp"
 #include "internal/finger_alignment.hpp"
 #include "internal/stopwatch.hpp"
 #include "internal/target_marks.hpp"
@@ -186,7 +187,7 @@ void FittingLoop::seat_palm() {
 
 bool FittingLoop::palm_touches() {
   return state_.distance(model_.pads[model_.palm.pad].link) <= options_.large_step_at &&
-         contact_of(model_.palm.pad, state_.X_OL()).has_value();
+         has_contact_at(model_.palm.pad, state_.X_OL());
 }
 
 /// Accepts `candidate` if the guard lets every moved link through and no touching part loses
@@ -197,23 +198,23 @@ bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std:
   for (const Part& part : parts_) {
     if (part.state != Part::State::Touching || part.pad < 0) continue;
     if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
-    if (!contact_of(part.pad, state_.trial_X_OL())) return false;
+    if (!has_contact_at(part.pad, state_.trial_X_OL())) return false;
   }
   if (!state_.passes_exact(moved)) return false;
   state_.accept();
   return true;
 }
 
-std::optional<Contact> FittingLoop::contact_of(int pad, const std::vector<RigidTransform>& X_OL) {
+bool FittingLoop::has_contact_at(int pad, const std::vector<RigidTransform>& X_OL) {
   const Stopwatch watch(contact_tests_s_);
-  return estimate_contact(model_, pad, hands::pad_pose(model_, pad, X_OL), object_.query,
-                          contact_options_);
+  return has_contact(model_, pad, hands::pad_pose(model_, pad, X_OL), object_.query,
+                     contact_options_);
 }
 
 /// Section 10: the clip test is made once the tip link shares a voxel with the surface.
 bool FittingLoop::touches(const Part& part) {
   return part.pad >= 0 && state_.distance(part.tip_link) == 0.0F &&
-         contact_of(part.pad, state_.X_OL()).has_value();
+         has_contact_at(part.pad, state_.X_OL());
 }
 
 /// Distance of the farthest point of `link` from the origin of `joint`, enlarged by what coupled
@@ -411,7 +412,6 @@ void FittingLoop::finish(FittingResult& result) {
     const Stopwatch watch(contact_tests_s_);
     result.contacts = estimate_contacts(model_, state_.X_OL(), object_.query, contact_options_);
   }
-  result.contact_tests_s = contact_tests_s_;
   bool has_all = true;
   bool is_blocked = false;
   const auto look_at = [&](int pad, bool is_stopped) {
@@ -426,6 +426,7 @@ void FittingLoop::finish(FittingResult& result) {
     if (part.has_target) look_at(part.pad, part.state == Part::State::Blocked);
   }
   if (has_palm_target_) look_at(model_.palm.pad, true);
+  result.contact_tests_s = contact_tests_s_;
   const bool is_out_of_budget = result.iterations >= options_.max_iterations && num_free() > 0;
   result.stop = is_out_of_budget ? FittingStop::IterationLimit
                 : has_all        ? FittingStop::Contact

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "graspfit/geometry/mesh_intersection.hpp"
-#include "graspfit/geometry/surface_clearance.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/option_check.hpp"
 #include "internal/straight_way.hpp"
@@ -29,7 +29,23 @@ constexpr double kNearEnough = 0.8;
 struct LinkPair {
   int a;
   int b;
+  geometry::ProximitySeed seed;  ///< Faces near each other at the last look.
 };
+
+/// A link, to be kept from object and surroundings.
+struct GuardedLink {
+  int link;
+  geometry::ProximitySeed seed;  ///< With the object.
+};
+
+/// Whether all pass; one that fails goes first, to be asked first the next time.
+template <class T, class Test>
+bool all_pass(std::vector<T>& items, const Test& test) {
+  const auto failed = std::find_if_not(items.begin(), items.end(), test);
+  if (failed == items.end()) return true;
+  std::rotate(items.begin(), failed, failed + 1);
+  return false;
+}
 
 /// The search for one grasp's pre-grasp.
 class PreGraspSearch {
@@ -43,16 +59,17 @@ class PreGraspSearch {
         surroundings_(surroundings),
         grasp_(grasp),
         options_(options),
-        open_q_(hands::open_configuration(hand).q) {
+        open_q_(hands::open_configuration(hand).q),
+        X_OL_grasp_(hands::forward_kinematics(hand, grasp)) {
     for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
-      if (collision.link_solid(link)) links_.push_back(link);
+      if (collision.link_solid(link)) links_.push_back({link, {}});
     }
-    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
-    for (const int a : links_) {
-      for (const int b : links_) {
-        if (b <= a || hand.is_excluded(a, b)) continue;
-        const bool touch = geometry::do_intersect(solid(a), solid(b), between(X_OL, a, b));
-        if (!touch) pairs_.push_back({a, b});
+    for (const GuardedLink& a : links_) {
+      for (const GuardedLink& b : links_) {
+        if (b.link <= a.link || hand.is_excluded(a.link, b.link)) continue;
+        const bool touch = geometry::do_intersect(solid(a.link), solid(b.link),
+                                                  between(X_OL_grasp_, a.link, b.link));
+        if (!touch) pairs_.push_back({a.link, b.link, {}});
       }
     }
   }
@@ -69,9 +86,9 @@ class PreGraspSearch {
       for (int i = 0; i <= num_retreats; ++i) {
         const double retreat = i * options_.retreat_step;
         const HandConfiguration start{retreated(retreat), q};
-        const double clearance = clearance_at(start);
-        if (clearance < options_.clearance || !is_free(start)) continue;
-        return PreGrasp{start, clearance, opening, retreat};
+        const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
+        if (!is_clear(X_OL) || !is_free(start, X_OL)) continue;
+        return PreGrasp{start, nearest_distance(X_OL), opening, retreat};
       }
     }
     return std::nullopt;
@@ -102,71 +119,67 @@ class PreGraspSearch {
     return X_OH;
   }
 
-  /// Lower bound of the distance of the surfaces of a link and the object, up to `enough`: at least
-  /// this share of it.
-  double object_clearance(int link, const RigidTransform& X_OL, double enough,
-                          double share = kNearEnough) const {
-    return geometry::surface_clearance(object_, solid(link), X_OL, enough, share);
-  }
-
   double surroundings_distance(int link, const RigidTransform& X_OL, double enough) const {
     return surroundings_.distance(collision_, link, X_OL, enough).distance;
   }
 
-  /// Whether a link is surely nearer to the object than the wanted clearance, or in it.
-  bool is_too_near(int link, const RigidTransform& X_OL) const {
+  /// Whether every link keeps the wanted clearance.
+  bool is_clear(const std::vector<RigidTransform>& X_OL) {
     const double wanted = options_.clearance;
-    if (object_clearance(link, X_OL, wanted) < kNearEnough * wanted) return true;
-    return object_clearance(link, X_OL, wanted, 1.0) < wanted ||
-           collision_.link_intersects(object_, link, X_OL);
-  }
-
-  /// Distance of the nearest link from object and surroundings; 0 as soon as one link is known to
-  /// be nearer. Asks the link first that was too near last time.
-  double clearance_at(const HandConfiguration& start) {
-    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const RigidTransform& X = X_OL[static_cast<std::size_t>(links_[i])];
-      if (surroundings_distance(links_[i], X, options_.clearance) >= options_.clearance &&
-          !is_too_near(links_[i], X)) {
-        continue;
-      }
-      std::rotate(links_.begin(), links_.begin() + static_cast<std::ptrdiff_t>(i),
-                  links_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      return 0.0;
-    }
-    return nearest_distance(X_OL);
+    return all_pass(links_, [&](GuardedLink& guarded) {
+      const int link = guarded.link;
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+      if (surroundings_distance(link, X, wanted) < wanted) return false;
+      const auto near =
+          geometry::nearest_points(object_, solid(link), X, wanted, guarded.seed, wanted);
+      if (near) guarded.seed = {near->face_a, near->face_b};
+      return !near && !collision_.link_intersects(object_, link, X);
+    });
   }
 
   /// Distance of the nearest link, where none is in the object.
   double nearest_distance(const std::vector<RigidTransform>& X_OL) const {
     double nearest = kInfinity;
-    for (const int link : links_) {
-      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
-      nearest = std::min(nearest, surroundings_distance(link, X, nearest));
-      nearest = std::min(nearest, object_clearance(link, X, nearest, 1.0));
+    for (const GuardedLink& guarded : links_) {
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(guarded.link)];
+      nearest = std::min(nearest, surroundings_distance(guarded.link, X, nearest));
+      nearest =
+          geometry::surface_clearance(object_, solid(guarded.link), X, nearest, 1.0, guarded.seed)
+              .at_least;
     }
     return nearest;
   }
 
+  /// Lower bound of the distance of two surfaces, up to `enough`; starts from the faces that were
+  /// near at the last look.
+  static double clearance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
+                          const RigidTransform& X_AB, double enough,
+                          geometry::ProximitySeed& seed) {
+    const auto found = geometry::surface_clearance(a, b, X_AB, enough, kNearEnough, seed);
+    seed = found.nearest;
+    return found.at_least;
+  }
+
   /// Surfaces that stay apart do not bring a body into another that was not there: at the start no
   /// link is in the object, in the grasp none of the pairs is one in the other.
-  bool is_free(const HandConfiguration& start) const {
+  bool is_free(const HandConfiguration& start, const std::vector<RigidTransform>& X_OL_start) {
     const internal::StraightWay way(hand_, start, grasp_);
-    const auto poses = [&](double share) {
-      return hands::forward_kinematics(hand_, interpolated(start, grasp_, share));
-    };
     const auto stays_apart = [&](double speed, const auto& distance) {
-      return internal::are_apart_on_way(speed, options_.way_tolerance,
-                                        [&](double share, double enough) {
-                                          return std::min(distance(poses(share), enough), enough);
-                                        });
+      return internal::are_apart_on_way(
+          speed, options_.way_tolerance, [&](double share, double enough) {
+            if (share == 0.0) return std::min(distance(X_OL_start, enough), enough);
+            if (share == 1.0) return std::min(distance(X_OL_grasp_, enough), enough);
+            const auto X_OL = hands::forward_kinematics(hand_, interpolated(start, grasp_, share));
+            return std::min(distance(X_OL, enough), enough);
+          });
     };
-    const auto is_link_free = [&](int link) {
+    const auto is_link_free = [&](GuardedLink& guarded) {
+      const int link = guarded.link;
       const auto index = static_cast<std::size_t>(link);
       return stays_apart(way.speed(link),
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
-                           return object_clearance(link, X_OL[index], enough);
+                           return clearance(object_, solid(link), X_OL[index], enough,
+                                            guarded.seed);
                          }) &&
              (surroundings_.surroundings().is_empty() ||
               stays_apart(way.speed(link),
@@ -174,16 +187,14 @@ class PreGraspSearch {
                             return surroundings_distance(link, X_OL[index], enough);
                           }));
     };
-    const auto is_pair_free = [&](const LinkPair& pair) {
+    const auto is_pair_free = [&](LinkPair& pair) {
       return stays_apart(way.relative_speed(pair.a, pair.b),
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
-                           return geometry::surface_clearance(solid(pair.a), solid(pair.b),
-                                                              between(X_OL, pair.a, pair.b), enough,
-                                                              kNearEnough);
+                           return clearance(solid(pair.a), solid(pair.b),
+                                            between(X_OL, pair.a, pair.b), enough, pair.seed);
                          });
     };
-    return std::all_of(links_.begin(), links_.end(), is_link_free) &&
-           std::all_of(pairs_.begin(), pairs_.end(), is_pair_free);
+    return all_pass(links_, is_link_free) && all_pass(pairs_, is_pair_free);
   }
 
   const hands::HandModel& hand_;
@@ -193,8 +204,9 @@ class PreGraspSearch {
   const HandConfiguration& grasp_;
   const PreGraspOptions& options_;
   const Eigen::VectorXd open_q_;
-  std::vector<int> links_;       ///< Those with a solid.
-  std::vector<LinkPair> pairs_;  ///< To be kept apart from each other.
+  const std::vector<RigidTransform> X_OL_grasp_;
+  std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
+  std::vector<LinkPair> pairs_;     ///< To be kept apart from each other, likewise.
 };
 
 }  // namespace

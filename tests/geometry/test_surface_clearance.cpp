@@ -4,7 +4,7 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
-#include "graspfit/geometry/surface_clearance.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
@@ -28,7 +28,7 @@ TEST_CASE("Surface clearance bounds the distance from below, as near as asked",
     (distance > 0.0 ? num_apart : num_crossing) += 1;
     for (const double enough : {1.0, 0.02, 1e-4}) {
       for (const double share : {0.5, 0.8, 1.0}) {
-        const double bound = surface_clearance(a, b, X, enough, share);
+        const double bound = surface_clearance(a, b, X, enough, share).at_least;
         CHECK(bound <= std::min(distance, enough) + 1e-13);
         CHECK(bound >= std::min(share * distance, enough) - 1e-13);
       }
@@ -45,13 +45,14 @@ TEST_CASE("Surface clearance is zero where edges pass through faces far from cor
   const MeshQuery bar(box({0.01, 0.01, 1.0}));
   RigidTransform X = RigidTransform::Identity();
   X.translation() = Vector3d(0.11, -0.2, 0.0);
-  CHECK(surface_clearance(plate, bar, X, 1.0, 1.0) == 0.0);
-  CHECK(surface_clearance(bar, plate, X.inverse(), 1.0, 1.0) == 0.0);
+  CHECK(surface_clearance(plate, bar, X, 1.0, 1.0).at_least == 0.0);
+  CHECK(surface_clearance(bar, plate, X.inverse(), 1.0, 1.0).at_least == 0.0);
   // Beside it the bar is as far as its side is: 0.1 m less half its width.
   X.translation() = Vector3d(0.6, 0.0, 0.0);
-  CHECK(surface_clearance(plate, bar, X, 1.0, 1.0) == Approx(0.095).epsilon(1e-12));
+  CHECK(surface_clearance(plate, bar, X, 1.0, 1.0).at_least == Approx(0.095).epsilon(1e-12));
   // What lies inside without a crossing is as far from the surface as it is.
   const MeshQuery inner(box({0.1, 0.1, 0.1}));
   const MeshQuery outer(box({1.0, 1.0, 1.0}));
-  CHECK(surface_clearance(outer, inner, RigidTransform::Identity(), 1.0, 1.0) == Approx(0.45));
+  CHECK(surface_clearance(outer, inner, RigidTransform::Identity(), 1.0, 1.0).at_least ==
+        Approx(0.45));
 }

@@ -7,6 +7,7 @@
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/contact_estimation.hpp"
+#include "internal/contact_test.hpp"
 #include "pad_hand.hpp"
 #include "support/catch.hpp"
 
@@ -186,7 +187,10 @@ TEST_CASE("The two sides of a plate thinner than the clip volume cancel",
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const auto contact_on_plate = [&](double thickness) {
     const MeshQuery plate(geometry::box({0.2, 0.2, thickness}));
-    return estimate_contact(hand, 1, above(0.02, 0.03, thickness / 2, 0.0005), plate, kOptions);
+    const RigidTransform X_OC = above(0.02, 0.03, thickness / 2, 0.0005);
+    const bool is_contact = estimate_contact(hand, 1, X_OC, plate, kOptions).has_value();
+    CHECK(has_contact(hand, 1, X_OC, plate, kOptions) == is_contact);
+    return is_contact;
   };
   CHECK_FALSE(contact_on_plate(0.001));
   CHECK(contact_on_plate(0.003));
@@ -254,6 +258,7 @@ TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]")
     const auto contact = estimate_contact(hand, 1, X_OC, torus, kOptions);
     // The sums run in another order.
     CHECK((contact ? contact->area : 0.0) == Approx(area).epsilon(kRounding));
+    CHECK(has_contact(hand, 1, X_OC, torus, kOptions) == contact.has_value());
     if (contact) ++num_contacts;
   }
   CHECK(num_contacts > 30);

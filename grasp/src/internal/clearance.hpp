@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,9 +32,12 @@ class Clearance {
             const SurroundingsCollision& surroundings);
 
   /// All near points closer than `enough` [m], in a fixed order: pieces of links against the
-  /// object, links against the surroundings, links against each other. False, and `near` is
-  /// incomplete, as soon as something is closer than `least` [m].
-  bool find(const LinkPoses& X_OL, double enough, double least, std::vector<NearPoints>& near);
+  /// object, links against the surroundings, links against each other.
+  std::vector<NearPoints> find(const LinkPoses& X_OL, double enough);
+
+  /// Whether nothing is within `least` [m] of anything else, to the rounding of distances. What the
+  /// last answers of `find` settle is not looked at.
+  bool is_apart(const LinkPoses& X_OL, double least) const;
 
   /// Links that are closer than `least` to something.
   struct Blocked {
@@ -54,7 +58,13 @@ class Clearance {
     hands::RigidTransform X = hands::RigidTransform::Identity();
     geometry::ProximitySeed seed;
     bool is_known = false;
+    bool is_near = false;  ///< Nearer than what was asked for, the last time.
   };
+  static std::optional<geometry::SurfaceProximity> nearest(Known& known,
+                                                           const geometry::MeshQuery& a,
+                                                           const geometry::MeshQuery& b,
+                                                           const hands::RigidTransform& X,
+                                                           double enough);
   static bool surely_beyond(const Known& known, const hands::RigidTransform& X,
                             const Eigen::Vector3d& center, double radius, double enough);
 

@@ -62,7 +62,7 @@ class FittingLoop {
   bool is_hopeless(const Part& part) const;
   bool touches(const Part& part);
   bool palm_touches();
-  std::optional<Contact> contact_of(int pad, const std::vector<geometry::RigidTransform>& X_OL);
+  bool has_contact_at(int pad, const std::vector<geometry::RigidTransform>& X_OL);
   Eigen::Vector3d palm_direction() const;
 
   const FittingHand& hand_;
