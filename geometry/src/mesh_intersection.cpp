@@ -12,6 +12,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
 #include "internal/box_tree.hpp"
 #include "internal/mesh_query_impl.hpp"
 #include "internal/winding.hpp"
@@ -43,10 +44,6 @@ SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
 
 bool overlap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
   return (lower_a.array() <= b.upper.array()).all() && (b.lower.array() <= upper_a.array()).all();
-}
-
-double squared_gap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
-  return (lower_a - b.upper).cwiseMax(b.lower - upper_a).cwiseMax(0.0).squaredNorm();
 }
 
 Corners mapped(const Corners& corners, const RigidTransform& X_AB) {
@@ -365,44 +362,6 @@ class DeepestPoint {
   std::priority_queue<Item> open_;
 };
 
-/// Nearest points of two segments (p0, p1) and (q0, q1).
-std::pair<Vector3d, Vector3d> closest_on_segments(const Vector3d& p0, const Vector3d& p1,
-                                                  const Vector3d& q0, const Vector3d& q1) {
-  const Vector3d u = p1 - p0;
-  const Vector3d v = q1 - q0;
-  const Vector3d w = p0 - q0;
-  const double a = u.squaredNorm();
-  const double b = u.dot(v);
-  const double c = v.squaredNorm();
-  const double d = u.dot(w);
-  const double e = v.dot(w);
-  const double denominator = a * c - b * b;
-  double s = denominator > 0.0 ? std::clamp((b * e - c * d) / denominator, 0.0, 1.0) : 0.0;
-  double t = c > 0.0 ? (b * s + e) / c : 0.0;
-  if (t < 0.0 || t > 1.0) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = a > 0.0 ? std::clamp((b * t - d) / a, 0.0, 1.0) : 0.0;
-  }
-  return {p0 + s * u, q0 + t * v};
-}
-
-/// Improves `best` by the nearest points of two triangles that do not cross: a corner against a
-/// triangle, or an edge against an edge.
-void improve(const Corners& a, const Corners& b, MeshDistance& best) {
-  const auto offer = [&](const Vector3d& on_a, const Vector3d& on_b) {
-    const double distance = (on_a - on_b).norm();
-    if (distance < best.distance) best = {distance, on_a, on_b};
-  };
-  for (int i = 0; i < 3; ++i) {
-    offer(a[i], internal::closest_on_triangle(a[i], b));
-    offer(internal::closest_on_triangle(b[i], a), b[i]);
-    for (int j = 0; j < 3; ++j) {
-      const auto [on_a, on_b] = closest_on_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
-      offer(on_a, on_b);
-    }
-  }
-}
-
 }  // namespace
 
 void PenetrationOptions::validate() const {
@@ -447,50 +406,12 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
 }
 
 MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
-  MeshDistance best{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero()};
-  if (do_intersect(a, b, X_AB)) return {0.0, Vector3d::Zero(), Vector3d::Zero()};
-  const BoxTree& tree_a = a.impl().tree;
-  const BoxTree& tree_b = b.impl().tree;
-  struct Pair {
-    double squared_gap;
-    std::int32_t node_a;
-    std::int32_t node_b;
-    bool operator<(const Pair& other) const { return squared_gap > other.squared_gap; }
-  };
-  std::priority_queue<Pair> open;
-  const auto push = [&](std::int32_t i, std::int32_t j) {
-    const double gap =
-        squared_gap(tree_a.nodes[i].lower, tree_a.nodes[i].upper, seen_from(tree_b.nodes[j], X_AB));
-    if (gap < best.distance * best.distance) open.push({gap, i, j});
-  };
-  push(0, 0);
-  while (!open.empty()) {
-    const Pair pair = open.top();
-    open.pop();
-    if (pair.squared_gap >= best.distance * best.distance) break;
-    const BoxTree::Node& node_a = tree_a.nodes[pair.node_a];
-    const BoxTree::Node& node_b = tree_b.nodes[pair.node_b];
-    if (node_a.count > 0 && node_b.count > 0) {
-      for (std::int32_t t = 0; t < node_b.count; ++t) {
-        const Corners triangle_b = mapped(tree_b.triangles[node_b.first + t].corners, X_AB);
-        for (std::int32_t s = 0; s < node_a.count; ++s) {
-          improve(tree_a.triangles[node_a.first + s].corners, triangle_b, best);
-        }
-      }
-      continue;
-    }
-    const bool split_a =
-        node_a.count == 0 && (node_b.count > 0 || (node_a.upper - node_a.lower).squaredNorm() >=
-                                                      (node_b.upper - node_b.lower).squaredNorm());
-    if (split_a) {
-      push(pair.node_a + 1, pair.node_b);
-      push(node_a.first, pair.node_b);
-    } else {
-      push(pair.node_a, pair.node_b + 1);
-      push(pair.node_a, node_b.first);
-    }
-  }
-  return best;
+  const MeshDistance none{0.0, Vector3d::Zero(), Vector3d::Zero()};
+  if (do_intersect(a, b, X_AB)) return none;
+  const std::optional<SurfaceProximity> nearest =
+      nearest_points(a, b, X_AB, std::numeric_limits<double>::infinity());
+  return nearest ? MeshDistance{nearest->distance, nearest->point_on_a_A, nearest->point_on_b_A}
+                 : none;
 }
 
 }  // namespace graspfit::geometry
