@@ -23,8 +23,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostSteps = 1000;
 
-/// Share of a distance that a proof is content with: the last fifth costs more than a step more.
-constexpr double kNearEnough = 0.8;
+/// Share of a distance that a proof is content with: the rest costs more than steps more do.
+constexpr double kNearEnough = 0.6;
 
 struct LinkPair {
   int a;
