@@ -48,7 +48,7 @@ constexpr double kLeastProgress = 0.85;  // to this share
 constexpr int kMostOpenings = 14;
 constexpr double kFirstOpening = 5e-4;  // [m]
 constexpr double kOpeningGrowth = 1.2;
-constexpr int kOpeningsOfFingersAlone = 5;
+constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm
 
 /// A pad that must touch.
 struct Claim {
