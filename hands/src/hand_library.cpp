@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/hand_io.hpp"
+#include "internal/description_package.hpp"
 
 namespace graspfit::hands {
 
@@ -17,11 +18,6 @@ fs::path program_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return error ? fs::path() : program.parent_path();
-}
-
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
 }
 
 /// The folder of the hand library. A program of the build tree uses the sources' hands, so that a
@@ -38,7 +34,8 @@ fs::path library_folder() {
   std::vector<fs::path> candidates;
   if (!program.empty()) {
     candidates.push_back(program.parent_path() / "share/graspfit/hands");
-    if (lies_in(program, GRASPFIT_BUILD_FOLDER)) candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
+    if (internal::lies_in(program, GRASPFIT_BUILD_FOLDER))
+      candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
   }
   candidates.emplace_back(GRASPFIT_INSTALLED_HANDS);
   candidates.emplace_back(GRASPFIT_SOURCE_HANDS);

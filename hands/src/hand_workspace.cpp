@@ -79,7 +79,7 @@ class Hand {
  public:
   explicit Hand(const HandModel& model) : model_(model), open_(open_configuration(model).q) {
     for (const ContactPad& pad : model.pads) {
-      contact_points_C_.emplace_back(0.0, 0.0, -height_over_pad(pad, Vector3d::Zero()));
+      contact_points_C_.push_back(pad_contact_point_C(pad));
     }
     // Where a breakaway joint keeps nothing but what its coupling asks for.
     for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {

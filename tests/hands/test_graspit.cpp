@@ -9,9 +9,10 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
-#include "hand_folder.hpp"
+#include "sidecar_text.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
 namespace {
@@ -24,8 +25,8 @@ using hands::HandConfiguration;
 using hands::HandModel;
 using hands::RigidTransform;
 using std::numbers::pi;
-using testing::HandFolder;
 using testing::least_sidecar;
+using testing::TemporaryFolder;
 using testing::with;
 namespace fs = std::filesystem;
 
@@ -115,13 +116,13 @@ endsolid t
 )";
 
 /// Writes kRobot or an edit of it with a sidecar that leaves its kinematics alone.
-fs::path write_robot(const HandFolder& folder, const std::string& xml = kRobot) {
+fs::path write_robot(const TemporaryFolder& folder, const std::string& xml = kRobot) {
   folder.write("odd.graspfit.json",
                least_sidecar("palm", "chain0_bar", "d1_chain0_joint1", {"d1_chain0_joint1"}));
   return folder.write("odd.xml", xml);
 }
 
-void write_bodies(const HandFolder& folder) {
+void write_bodies(const TemporaryFolder& folder) {
   folder.write("iv/bar.xml",
                "<?xml version=\"1.0\"?><root><mass>5</mass>"
                "<geometryFile type=\"off\"> bar.off </geometryFile></root>");
@@ -164,7 +165,7 @@ Line axis_line(const HandModel& hand, const std::vector<RigidTransform>& X_OL,
 }
 
 TEST_CASE("GraspIt!'s chains are multiplied as Denavit and Hartenberg say", "[hands][graspit]") {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   write_bodies(folder);
   const HandModel hand = hands::read_hand_model(write_robot(folder));
   CHECK(hand.name == "Odd");
@@ -217,7 +218,7 @@ TEST_CASE("GraspIt!'s chains are multiplied as Denavit and Hartenberg say", "[ha
 
 TEST_CASE("Joints on one degree of freedom follow the first, within the limits of all",
           "[hands][graspit]") {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   const auto reading = hands::read_hand(write_robot(folder));
   const HandModel& hand = reading.model;
   std::vector<std::string> names;
@@ -252,7 +253,7 @@ TEST_CASE("Joints on one degree of freedom follow the first, within the limits o
 }
 
 TEST_CASE("A bad GraspIt! file gives one line with the file and the item", "[hands][graspit]") {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   const auto bad = [&](const std::string& old, const std::string& fresh, const std::string& about) {
     CAPTURE(old, fresh);
     const fs::path file = write_robot(folder, with(kRobot, old, fresh));
@@ -332,7 +333,7 @@ const std::string kFingerUrdf = R"(<robot name="finger">
 
 TEST_CASE("Meshes come from the URDF beside it, wherever its angles are counted from",
           "[hands][graspit]") {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   folder.write("other.urdf", kFingerUrdf);
   folder.write("finger.graspfit.json", least_sidecar("palm", "one", "d0_chain0_joint0", {}));
   folder.write("other.graspfit.json", least_sidecar("mount", "bone1", "turn", {}));
@@ -371,7 +372,7 @@ TEST_CASE("A URDF whose joints stand elsewhere lends no mesh, and the finding sa
           "[hands][graspit]") {
   const auto check = [](const std::vector<std::string>& urdfs, const std::string& why) {
     CAPTURE(why);
-    const HandFolder folder;
+    const TemporaryFolder folder;
     for (std::size_t i = 0; i < urdfs.size(); ++i) {
       folder.write("other" + std::to_string(i) + ".urdf", urdfs[i]);
     }
@@ -393,7 +394,7 @@ TEST_CASE("A URDF whose joints stand elsewhere lends no mesh, and the finding sa
               "<joint name=\"turn\" type=\"fixed\">")},
         "it has 1 joints, not 2");
   // 40 um is within it: no finding.
-  const HandFolder folder;
+  const TemporaryFolder folder;
   folder.write("other.urdf", with(kFingerUrdf, "0 0.05 -0.007", "0 0.05004 -0.007"));
   folder.write("finger.graspfit.json", least_sidecar("palm", "one", "d0_chain0_joint0", {}));
   CHECK_FALSE(
@@ -426,7 +427,7 @@ const SharedHand kHumanUrdf = {"human_hand_20dof", "HumanHand.urdf", "base_link"
                                "palm_index1_0_joint"};
 
 hands::HandReading read_shared(const SharedHand& hand, const fs::path& file) {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   folder.copy(file.parent_path());
   for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "meshes")) {
     if (!entry.is_regular_file()) continue;

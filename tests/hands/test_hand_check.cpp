@@ -5,9 +5,10 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/hand_check.hpp"
 #include "graspfit/hands/hand_library.hpp"
-#include "hand_folder.hpp"
+#include "sidecar_text.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
 namespace {
@@ -16,7 +17,7 @@ using namespace graspfit;
 using hands::FindingKind;
 using hands::HandCheck;
 using hands::HandFinding;
-using testing::HandFolder;
+using testing::TemporaryFolder;
 using testing::with;
 
 /// Two fingers of two boxes that bend toward each other over a palm.
@@ -69,7 +70,7 @@ const std::string kPinchSidecar = R"({
 })";
 
 HandCheck check_text(const std::string& urdf, const std::string& sidecar) {
-  const HandFolder folder;
+  const TemporaryFolder folder;
   if (!sidecar.empty()) folder.write("pinch.graspfit.json", sidecar);
   return hands::check_hand(folder.write("pinch.urdf", urdf));
 }
@@ -144,7 +145,7 @@ TEST_CASE("Bad content is reported, a file that cannot be read thrown", "[hands]
     CHECK_FALSE(check.model.has_value());
     CHECK(check.count(FindingKind::Fault) > 0);
   }
-  const HandFolder folder;
+  const TemporaryFolder folder;
   CHECK_THROWS_AS(hands::check_hand(folder.path() / "none.urdf"), geometry::IoError);
   CHECK_THROWS_AS(hands::check_hand(folder.path()), geometry::IoError);
 }

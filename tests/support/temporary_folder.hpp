@@ -37,6 +37,11 @@ class TemporaryFolder {
     return file;
   }
 
+  /// Copies a whole folder's content into this one.
+  void copy(const std::filesystem::path& folder) const {
+    std::filesystem::copy(folder, path_, std::filesystem::copy_options::recursive);
+  }
+
  private:
   std::filesystem::path path_;
 };
