@@ -38,7 +38,8 @@ enum class RefinementStop {
 struct RefinementResult {
   RefinementStop stop = RefinementStop::IterationLimit;
   hands::HandConfiguration configuration;  ///< Clear of the object, the surroundings and itself,
-                                           ///< decided exactly, unless `stop` is Intersecting.
+                                           ///< decided exactly, unless `stop` is Intersecting
+                                           ///< or SelfCollision.
   std::vector<Contact> contacts;  ///< Of all pads, in pad order; is_target set for claimed ones.
   double largest_gap = 0.0;       ///< Of the claimed pads [m].
   int worst_pad = -1;             ///< The pad with that gap.
@@ -49,15 +50,17 @@ struct RefinementResult {
 /// at, to one where each of `claimed_pads` is within `largest_gap` of the object's surface and no
 /// link touches the object anywhere, the surroundings, or another link (exclusions besides).
 ///
-/// Method: constrained least squares on exact nearest points. In each step the motion of palm and
+/// Method: constrained least squares on nearest points. In each step the motion of palm and
 /// independent joints, small in a weighted norm, that takes the gaps of claimed pads to
 /// `wanted_gap` while no near pair of bodies comes closer than `least_distance`, to first order;
-/// the step is shortened until the true meshes stay clear. A start that cuts the object is first
-/// opened and withdrawn until clear. Where `targets` are given, pads are also drawn, weakly, toward
-/// their targets and to lie flat on the surface there.
+/// the step is shortened until rounded distances leave half of that. That the start and the end are
+/// clear is decided exactly on the true meshes; an end that is not counts as GapLeft, at the start.
+/// A start that cuts something is first opened, straightened and withdrawn until clear. Where
+/// `targets` are given, pads are also drawn, weakly, toward their targets and to lie flat on the
+/// surface there.
 ///
-/// Gap: smallest distance between the surface of the pad's link inside the pad's clip volume and
-/// the object. Deterministic.
+/// Gap: as `Contact::gap`, the distance between the pad's part of the link's mesh and the object.
+/// Deterministic.
 RefinementResult refine_contacts(const FittingHand& hand, const ObjectModel& object,
                                  const SurroundingsCollision& surroundings,
                                  const std::vector<int>& claimed_pads,
