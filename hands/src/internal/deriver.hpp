@@ -32,9 +32,9 @@ inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 /// A finger: bodies from the one on the palm to the tip, and what moves them.
 struct Chain {
   std::vector<int> bodies;
-  std::vector<int> joints;   ///< Above each of the bodies.
-  Vector3d tip_B;            ///< In the frame of the last body's first link.
-  std::vector<int> leaders;  ///< Independent joints that move it, proximal to distal.
+  std::vector<int> joints;            ///< Above each of the bodies.
+  Vector3d tip_B = Vector3d::Zero();  ///< In the frame of the last body's first link.
+  std::vector<int> leaders;           ///< Independent joints that move it, proximal to distal.
 };
 
 /// What an independent joint does to the hand.
