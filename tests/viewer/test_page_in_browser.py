@@ -20,6 +20,7 @@ os.environ["NO_PROXY"] = os.environ["no_proxy"] = "localhost,127.0.0.1"  # the d
 try:
     from PIL import Image, ImageChops
     from selenium import webdriver
+    from selenium.common.exceptions import SessionNotCreatedException
     from selenium.webdriver.chrome.options import Options
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.utils import is_connectable
@@ -73,9 +74,20 @@ def start_browser(chromium, chromedriver, profile):
 class PageInBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.profile = tempfile.TemporaryDirectory(prefix="graspfit_browser_", ignore_cleanup_errors=True)
-        cls.browser = start_browser(CHROMIUM, CHROMEDRIVER, cls.profile.name)
+        cls.profile, cls.browser = cls.started()
         cls.browser.set_script_timeout(30)
+
+    @classmethod
+    def started(cls):
+        """A browser with a profile of its own. On a busy machine its first start may time out: a second is tried."""
+        for is_last in (False, True):
+            profile = tempfile.TemporaryDirectory(prefix="graspfit_browser_", ignore_cleanup_errors=True)
+            try:
+                return profile, start_browser(CHROMIUM, CHROMEDRIVER, profile.name)
+            except SessionNotCreatedException:
+                profile.cleanup()
+                if is_last:
+                    raise
 
     @classmethod
     def tearDownClass(cls):
