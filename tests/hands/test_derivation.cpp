@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -20,6 +18,7 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
 namespace {
@@ -33,32 +32,7 @@ using hands::HandModel;
 using hands::Joint;
 using hands::RigidTransform;
 using nlohmann::json;
-
-/// A folder of its own that goes away with the test.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = fs::temp_directory_path() /
-            ("graspfit_derivation_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    fs::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using Folder = testing::TemporaryFolder;
 
 /// A copy of the shipped hands whose sidecars keep only the given members.
 class StrippedHands {

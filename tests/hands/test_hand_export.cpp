@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <set>
@@ -13,6 +12,7 @@
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace {
 
@@ -20,21 +20,7 @@ using namespace graspfit;
 namespace fs = std::filesystem;
 using hands::HandModel;
 using hands::RigidTransform;
-
-/// A folder that goes when the test ends.
-class Folder {
- public:
-  Folder() : path_((fs::temp_directory_path() / "graspfit_export_XXXXXX").string()) {
-    REQUIRE(mkdtemp(path_.data()) != nullptr);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path path() const { return path_; }
-
- private:
-  std::string path_;
-};
+using Folder = testing::TemporaryFolder;
 
 fs::path exported(const HandModel& hand, const fs::path& folder) {
   return hands::export_hand(hand, folder).back();

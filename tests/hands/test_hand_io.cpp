@@ -1,8 +1,5 @@
-#include <unistd.h>
-
 #include <clocale>
 #include <filesystem>
-#include <fstream>
 #include <locale>
 #include <string>
 
@@ -10,6 +7,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
 namespace {
@@ -18,33 +16,7 @@ using namespace graspfit;
 using Eigen::Vector3d;
 using hands::HandModel;
 namespace fs = std::filesystem;
-
-/// A folder of its own that goes away with the test.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = fs::temp_directory_path() /
-            ("graspfit_hand_io_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    fs::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using Folder = testing::TemporaryFolder;
 
 const std::string kUrdf = R"(<?xml version="1.0"?>
 <robot name="pinch">
