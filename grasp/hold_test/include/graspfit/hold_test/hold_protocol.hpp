@@ -21,35 +21,55 @@ enum class HoldLoad {
 };
 
 /// A named way to decide whether a grasp holds: every number that the verdict depends on
-/// (DexGraspBench, Dexonomy, MultiDex; `source` cites it). A protocol is a value: copy one, change
-/// a knob, and give it a name of its own.
+/// (DexGraspBench, Dexonomy, MultiDex; `source` says where each comes from). A protocol is a value:
+/// copy one, change a knob, and give it a name of its own.
 struct HoldProtocol {
   std::string name;
   std::string source;
   HoldLoad load = HoldLoad::SixForces;
   SqueezeRule squeeze = SqueezeRule::Forces;
-  double step = 0.004;                                 ///< [s]
-  double gravity = 0.0;                                ///< Along −z of O [m/s²].
-  double sliding_friction = 0.6;                       ///< Coulomb's μ of all bodies.
-  double torsional_friction = 0.02;                    ///< [m]
-  std::array<double, 3> solimp = {0.5, 0.99, 0.0001};  ///< Of the hand's contacts (MuJoCo).
-  std::array<double, 2> solref = {0.005, 1.0};
-  double impratio = 10.0;
+
+  double step = 0.004;               ///< Of the simulation [s].
+  double sliding_friction = 0.6;     ///< Coulomb's μ of all bodies.
+  double torsional_friction = 0.02;  ///< [m]
+  double impratio = 10.0;            ///< Of frictional to normal constraint impedance (MuJoCo).
   int noslip_iterations = 2;
-  double object_mass = 0.1;         ///< [kg]
+  /// Contact parameters of hand and object (MuJoCo); where both meet, the engine takes the mean.
+  std::array<double, 3> hand_solimp = {0.5, 0.99, 0.0001};
+  std::array<double, 2> hand_solref = {0.005, 1.0};
+  std::array<double, 3> object_solimp = {0.9, 0.95, 0.001};  ///< MuJoCo's defaults.
+  std::array<double, 2> object_solref = {0.02, 1.0};
+  bool multi_point_contacts = true;  ///< Several contacts where flat pieces meet (MuJoCo's
+                                     ///< multiccd): with one, light flat pads shake loose.
+
+  double object_mass = 0.1;             ///< [kg]
+  double object_linear_damping = 0.0;   ///< Of the object's motion [1/s].
+  double object_angular_damping = 0.0;  ///< [1/s]
+
   double stiffness = 5.0;           ///< kp of revolute joints [N m/rad].
   double slide_stiffness = 2000.0;  ///< kp of slides [N/m].
-  double extrapolation = 1.0;       ///< See SqueezeRule.
-  double approach_time = 0.4;       ///< Pre-grasp to grasp, linear [s].
-  double squeeze_time = 0.4;        ///< Grasp to squeeze, linear [s].
-  double force = 1.0;               ///< [N]
-  double hold_time = 2.0;           ///< [s]
-  double check_interval = 0.2;      ///< [s]
-  double largest_shift = 0.05;      ///< Of the center of mass, from the squeezed pose, in the
-                                    ///< palm's frame [m]: at or above it the grasp fails.
+  double damping_time = 0.02;       ///< Damping of a joint over its stiffness [s]: 0.1 N m s/rad at
+                                    ///< kp 5, the Allegro hand's of MuJoCo Menagerie.
+  double armature = 1e-4;           ///< Rotor inertia of revolute joints [kg m²].
+  double slide_armature = 0.01;     ///< Of slides [kg].
+  double link_density = 800.0;      ///< Of links whose description says no mass [kg/m³].
+
+  double extrapolation = 1.0;  ///< See SqueezeRule.
+  double approach_time = 0.4;  ///< Pre-grasp to grasp, linear [s].
+  double squeeze_time = 0.4;   ///< Grasp to squeeze, linear [s].
+  double force = 1.0;          ///< Of HoldLoad::SixForces [N].
+  double gravity = 9.81;       ///< Of HoldLoad::Lift, on the object alone, along −z of O [m/s²].
+  double lift_height = 0.1;    ///< Of HoldLoad::Lift [m].
+  double lift_time = 0.4;      ///< [s]
+  double hold_time = 2.0;      ///< Under load, lifting included [s].
+  double check_interval = 0.2;  ///< [s]
+  double largest_shift = 0.05;  ///< Of the center of mass, from the squeezed pose, in the palm's
+                                ///< frame [m]: at or above it the grasp fails; so it does where the
+                                ///< object gets as far from its planned pose before the load.
   double largest_turn = 0.26179938779914941;  ///< The same for the rotation [rad] (15°).
-  double largest_penetration = 0.01;          ///< Deeper at the pre-grasp: rejected untested [m].
-  double lift_height = 0.1;                   ///< Of HoldLoad::Lift [m].
+  double largest_penetration = 0.01;  ///< Of hand and object or hand and hand at the pre-grasp [m]:
+                                      ///< deeper is rejected untested.
+
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 

@@ -36,8 +36,8 @@ HoldHand prepare_hold_hand(const hands::HandModel& hand,
 
 /// How far a test came.
 enum class HoldStage {
-  Rejected,  ///< Deeper than allowed at the pre-grasp, or the grasp has none: not simulated.
-  Approach,  ///< Lost between pre-grasp and squeeze.
+  Rejected,  ///< Deeper than allowed at the pre-grasp, or no pre-grasp or squeeze: not simulated.
+  Approach,  ///< Lost between pre-grasp and squeeze: before any load.
   Load,      ///< Lost under load.
   Held,      ///< Not lost.
 };
@@ -47,19 +47,24 @@ struct DirectionVerdict {
   Eigen::Vector3d direction_O = Eigen::Vector3d::Zero();  ///< Unit.
   HoldStage stage = HoldStage::Held;
   std::optional<double> failed_at;  ///< Of the first failing check, since the load began [s].
-  double largest_shift = 0.0;       ///< At any check [m].
+  double largest_shift = 0.0;       ///< At any check up to that one, from the squeezed pose [m].
   double largest_turn = 0.0;        ///< [rad]
 };
 
 /// What the test says of one grasp.
 struct HoldVerdict {
   HoldStage stage = HoldStage::Rejected;  ///< The earliest of all directions.
-  std::string reason;                     ///< Of a rejection; empty else.
+  std::string reason;  ///< Of a rejection, or of a simulation that went wrong; empty else.
+  double approach_shift =
+      0.0;                     ///< Largest at any check before the load, from the planned pose [m].
+  double approach_turn = 0.0;  ///< [rad]
+  double squeeze_force = 0.0;  ///< Sum of the normal forces on the object once squeezed [N].
+  /// Six, or one for HoldLoad::Lift; none of a rejected grasp.
   std::vector<DirectionVerdict> directions;
   bool held() const { return stage == HoldStage::Held; }
 };
 
-/// The smallest loads that fail.
+/// The smallest loads at the center of mass that fail, applied at once and held as the test's own.
 struct HoldMargin {
   double force = 0.0;  ///< Least over the six directions [N].
   Eigen::Vector3d force_direction_O = Eigen::Vector3d::Zero();
@@ -75,19 +80,28 @@ struct HoldFrame {
 };
 
 /// Tests grasps of one hand on one object in MuJoCo, the hand's base fixed to the world. One thread
-/// at a time per HoldTest; build one per thread. Same grasp, same verdict.
+/// at a time per HoldTest; build one per thread. Same grasp, same verdict, whatever was tested
+/// before. No warning or error of the engine is printed or ends the program: a simulation that
+/// diverges is a grasp that fails, and `reason` says so.
 class HoldTest {
  public:
-  /// @throws InvalidInput for a bad protocol and in a build without MuJoCo.
+  /// @throws InvalidInput for a bad protocol, a model that the engine refuses (its words), and in a
+  /// build without MuJoCo.
   HoldTest(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol);
   ~HoldTest();
   HoldTest(HoldTest&&) noexcept;
+  HoldTest& operator=(HoldTest&&) noexcept;
 
+  /// @throws InvalidInput for joint positions that do not fit the hand.
   HoldVerdict test(const grasp::Grasp& grasp);
-  /// The smallest failing load by bisection to 2 % within [0, `largest`] N (N m · 0.1 for torques);
-  /// zero where the grasp is lost without load.
+
+  /// The smallest failing load by bisection: what is returned fails, 2 % less holds. Up to
+  /// `largest` [N] (torques: `largest` · 0.1 m); where even that holds, it is returned. Zero where
+  /// the grasp is rejected or lost without load. @throws InvalidInput for protocols that lift.
   HoldMargin margin(const grasp::Grasp& grasp, double largest = 100.0);
-  /// The same simulation as one direction of `test`, a frame every `interval` seconds.
+
+  /// The same simulation as one direction of `test`, a frame every `interval` seconds and one at
+  /// its end; empty for a rejected grasp. @throws InvalidInput for a direction that there is not.
   std::vector<HoldFrame> replay(const grasp::Grasp& grasp, int direction, double interval = 0.02);
 
  private:

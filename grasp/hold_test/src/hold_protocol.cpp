@@ -1,0 +1,155 @@
+#include "graspfit/hold_test/hold_protocol.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::hold_test {
+
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586;
+
+HoldProtocol dexgraspbench() {
+  HoldProtocol protocol;
+  protocol.name = "dexgraspbench-100g";
+  protocol.source =
+      "DexGraspBench (JYChen18/DexGraspBench, main; BODex, ICRA 2025): step, friction, contact "
+      "parameters of the hand, impratio, noslip, mass, 10 N/kg along six axes, times, checks, "
+      "penetration. Dexonomy (JYChen18/Dexonomy, op/eval.yaml): 5 cm and 15 degrees. Ours: base "
+      "fixed instead of welded to a mocap body, displacement from the squeezed pose in the palm's "
+      "frame, multi-point contacts, armature, integrator implicit (implicitfast there)";
+  return protocol;
+}
+
+HoldProtocol dexonomy_hard() {
+  HoldProtocol protocol = dexgraspbench();
+  protocol.name = "dexonomy-hard";
+  protocol.source =
+      "Dexonomy (JYChen18/Dexonomy, op/eval.yaml, hard: noslip 0, impratio 1, half the tangential "
+      "and a tenth of the torsional friction; 9.8 N/kg). The rest as dexgraspbench-100g";
+  protocol.sliding_friction = 0.3;
+  protocol.torsional_friction = 0.002;
+  protocol.impratio = 1.0;
+  protocol.noslip_iterations = 0;
+  protocol.force = 0.98;
+  return protocol;
+}
+
+HoldProtocol multidex() {
+  HoldProtocol protocol = dexgraspbench();
+  protocol.name = "multidex-0.05g";
+  protocol.source =
+      "MultiDex (tengyu-liu/GenDexGrasp, envs/tasks/grasp_test_force.yaml): 0.5 m/s2 along six "
+      "axes "
+      "(5000 N/m3 at 10000 kg/m3) for 50 steps of 1/60 s, 2 cm and any rotation, checked at the "
+      "end, "
+      "friction 10, object damping 10 and 100 1/s. Ours: MuJoCo instead of PhysX and its contact "
+      "parameters, 0.1 kg instead of the density, pre-grasp and squeeze, a reset before each force";
+  protocol.sliding_friction = 10.0;
+  protocol.object_linear_damping = 10.0;
+  protocol.object_angular_damping = 100.0;
+  protocol.force = 0.05;
+  protocol.hold_time = 50.0 / 60.0;
+  protocol.check_interval = 50.0 / 60.0;
+  protocol.largest_shift = 0.02;
+  protocol.largest_turn = kTwoPi;
+  return protocol;
+}
+
+HoldProtocol tabletop_lift() {
+  HoldProtocol protocol = dexgraspbench();
+  protocol.name = "tabletop-lift";
+  protocol.source =
+      "DexGraspBench (eval_func/tabletop_mocap.py): 10 N/kg from the start, 0.1 m up in 0.4 s, 5 "
+      "cm "
+      "and 15 degrees. Ours: the base on a slide instead of a mocap body, the table at the "
+      "object's "
+      "lowest point along z of O, 0.6 s held after lifting. The rest as dexgraspbench-100g";
+  protocol.load = HoldLoad::Lift;
+  protocol.gravity = 10.0;
+  protocol.hold_time = 1.0;
+  return protocol;
+}
+
+const std::vector<HoldProtocol>& protocols() {
+  static const std::vector<HoldProtocol> all = {dexgraspbench(), dexonomy_hard(), multidex(),
+                                                tabletop_lift()};
+  return all;
+}
+
+void require(bool is_met, std::string_view field, double value, std::string_view rule) {
+  if (is_met && std::isfinite(value)) return;
+  std::ostringstream message;
+  message.imbue(std::locale::classic());
+  message << "HoldProtocol: " << field << " is " << value << "; it must be " << rule;
+  throw geometry::InvalidInput(message.str());
+}
+
+}  // namespace
+
+void HoldProtocol::validate() const {
+  const auto positive = [](double value, std::string_view field) {
+    require(value > 0.0, field, value, "finite and > 0");
+  };
+  const auto not_negative = [](double value, std::string_view field) {
+    require(value >= 0.0, field, value, "finite and >= 0");
+  };
+  positive(step, "step");
+  not_negative(sliding_friction, "sliding_friction");
+  not_negative(torsional_friction, "torsional_friction");
+  positive(impratio, "impratio");
+  not_negative(noslip_iterations, "noslip_iterations");
+  for (const auto* solimp : {&hand_solimp, &object_solimp}) {
+    for (const double value : *solimp) {
+      require(value > 0.0 && value <= 1.0, "solimp", value, "in (0, 1]");
+    }
+  }
+  for (const auto* solref : {&hand_solref, &object_solref}) {
+    for (const double value : *solref) positive(value, "solref");
+  }
+  positive(object_mass, "object_mass");
+  not_negative(object_linear_damping, "object_linear_damping");
+  not_negative(object_angular_damping, "object_angular_damping");
+  positive(stiffness, "stiffness");
+  positive(slide_stiffness, "slide_stiffness");
+  not_negative(damping_time, "damping_time");
+  not_negative(armature, "armature");
+  not_negative(slide_armature, "slide_armature");
+  positive(link_density, "link_density");
+  not_negative(extrapolation, "extrapolation");
+  require(approach_time >= step, "approach_time", approach_time, "finite and >= step");
+  require(squeeze_time >= step, "squeeze_time", squeeze_time, "finite and >= step");
+  not_negative(force, "force");
+  not_negative(gravity, "gravity");
+  positive(lift_height, "lift_height");
+  require(lift_time >= step, "lift_time", lift_time, "finite and >= step");
+  require(hold_time >= (load == HoldLoad::Lift ? lift_time : step), "hold_time", hold_time,
+          "finite and >= step, of a protocol that lifts >= lift_time");
+  require(check_interval >= step, "check_interval", check_interval, "finite and >= step");
+  positive(largest_shift, "largest_shift");
+  positive(largest_turn, "largest_turn");
+  not_negative(largest_penetration, "largest_penetration");
+}
+
+const std::vector<std::string>& hold_protocol_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const HoldProtocol& protocol : protocols()) result.push_back(protocol.name);
+    return result;
+  }();
+  return names;
+}
+
+HoldProtocol hold_protocol(const std::string& name) {
+  std::string known;
+  for (const HoldProtocol& protocol : protocols()) {
+    if (protocol.name == name) return protocol;
+    known += (known.empty() ? "" : ", ") + protocol.name;
+  }
+  throw geometry::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " + known);
+}
+
+}  // namespace graspfit::hold_test
