@@ -9,9 +9,11 @@ namespace graspfit::geometry {
 /// How finely a solid is cut into convex pieces.
 struct ConvexDecompositionOptions {
   double largest_deviation =
-      0.001;              ///< Wanted: no piece reaches farther out of the solid [m], > 0.
-  int max_pieces = 64;    ///< ≥ 1; where it does not suffice, the worst places come first.
-  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+      0.001;                    ///< Wanted: no piece reaches farther out of the solid [m], > 0.
+  int max_pieces = 64;          ///< ≥ 1; where it does not suffice, the worst places come first.
+  int max_piece_vertices = 64;  ///< ≥ 32. Pieces of round solids lie inside them by as much as
+                                ///< their corners are apart; counted in inward_deviation.
+  void validate() const;        ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Convex pieces in place of a solid, for engines that know convex shapes only.

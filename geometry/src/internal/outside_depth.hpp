@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/voxel_grid.hpp"
+
+namespace graspfit::geometry::internal {
+
+/// How far points near a solid are outside of it, quickly: from the face nearest to the lattice
+/// point beside them. For choices among many, not for decisions.
+///
+/// Approximate: never less than the distance to that face's solid side allows, and too large by at
+/// most the spacing of the lattice, where another face is nearer.
+class OutsideDepth {
+ public:
+  /// `resolution` voxels along the longest extent. The mesh is closed and outward.
+  OutsideDepth(const MeshQuery& solid, int resolution);
+
+  /// Zero inside [m].
+  double operator()(const Eigen::Vector3d& point) const;
+
+ private:
+  const TriangleMesh* mesh_;
+  VoxelLattice lattice_;
+  std::vector<std::int32_t> nearest_faces_;                   // one per voxel center
+  std::vector<Eigen::Vector3d> face_normals_;                 // not unit
+  std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  // edge k from corner k on
+  std::vector<Eigen::Vector3d> vertex_normals_;
+};
+
+}  // namespace graspfit::geometry::internal
