@@ -197,6 +197,9 @@ po::options_description refinement_options() {
              "of the palm while contacts are refined");
   add_integer(refinement, "refine-iterations", static_cast<std::uint64_t>(limits.max_iterations),
               "at most");
+  add_integer(refinement, "slide-steps", static_cast<std::uint64_t>(limits.slide_steps),
+              "in which pads that touch are slid toward their targets: larger M, more work; 8 is a "
+              "good number, 0: not");
   add_option(refinement, "pre-grasps", "yes|no", defaults.pre_grasps ? "yes" : "no",
              "a grasp needs a pre-grasp, open and clear, from which the straight way is free");
   add_number(refinement, "pre-grasp-clearance-mm", defaults.pre_grasp.clearance * 1000.0,
@@ -313,6 +316,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   read_millimeters(flags, "largest-shift-mm", limits.largest_shift);
   read_angle(flags, "largest-turn-deg", limits.largest_turn);
   limits.max_iterations = flags.integer("refine-iterations");
+  limits.slide_steps = flags.integer("slide-steps");
   options.pre_grasps = flags.yes_or_no("pre-grasps");
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
   read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);

@@ -207,6 +207,9 @@ std::vector<Setting> fitting_settings() {
       integer(
           "refine-iterations", "of contact refinement",
           [](PlannerOptions & o) -> auto& { return o.refinement.max_iterations; }),
+      integer(
+          "slide-steps", "of touching pads toward their targets; 0: none",
+          [](PlannerOptions & o) -> auto& { return o.refinement.slide_steps; }),
       yes_or_no(
           "pre-grasps", "a grasp needs a pre-grasp with a free way in",
           [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),

@@ -34,6 +34,10 @@ constexpr double kTargetWeight = 0.1;
 constexpr double kTiltWeight = 0.5;
 constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
 
+// Sliding: gaps still come first, but the targets weigh as much as a length moved.
+constexpr double kSlideWeight = 1.0;
+constexpr double kShortestSlide = 1e-4;  // [m]; below it the rest is not worth the work
+
 constexpr double kLongestStep = 4e-3;   // of every entry of a motion [m]
 constexpr double kNearPerStep = 2.0;    // near is what is within so many times the step
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
@@ -122,8 +126,13 @@ class Refinement {
     if (result.stop == RefinementStop::Contact) {
       const HandConfiguration clear = configuration_;
       result.stop = approach(result.iterations);
+      if (result.stop == RefinementStop::Contact && options_.slide_steps > 0) {
+        const HandConfiguration touching = configuration_;
+        slide(result.iterations);
+        if (!is_clear()) go_to(touching);
+      }
       // Nearest points tell to rounding; what counts is exact.
-      if (!clearance_.is_clear_of_world(X_OL_) || !clearance_.is_clear_of_itself(X_OL_)) {
+      if (!is_clear()) {
         go_to(clear);
         result.stop = RefinementStop::GapLeft;
       }
@@ -231,6 +240,11 @@ class Refinement {
     return opened;
   }
 
+  /// Exact.
+  bool is_clear() {
+    return clearance_.is_clear_of_world(X_OL_) && clearance_.is_clear_of_itself(X_OL_);
+  }
+
   /// False if a pad is farther than twice the reach.
   bool measure_gaps() {
     for (Claim& claim : claims_) {
@@ -293,6 +307,44 @@ class Refinement {
     return RefinementStop::Contact;
   }
 
+  /// How far the pads are from their targets, and how far from lying flat there [m²].
+  double squared_miss() const {
+    double sum = 0.0;
+    for (const Claim& claim : claims_) {
+      if (!claim.target) continue;
+      const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
+      const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
+      sum += (claim.target->point_O - middle).squaredNorm() +
+             (kTiltLever * (pad_normal + claim.target->outward_normal_O)).squaredNorm();
+    }
+    return sum;
+  }
+
+  /// Moves touching pads over the surface toward their targets; the nearest place where all touch
+  /// stays.
+  void slide(int& iterations) {
+    if (std::none_of(claims_.begin(), claims_.end(), [](const Claim& c) { return c.target; })) {
+      return;
+    }
+    target_weight_ = tilt_weight_ = kSlideWeight;
+    HandConfiguration best = configuration_;
+    double best_miss = squared_miss();
+    double trust = kLongestStep;
+    for (int i = 0; i < options_.slide_steps && trust > kShortestSlide; ++i) {
+      ++iterations;
+      near_ = clearance_.find(X_OL_, kNearPerStep * trust);
+      const double share = step(trust);
+      trust = share == 1.0 ? std::min(2.0 * trust, kLongestStep) : trust * std::max(share, 0.3);
+      if (share > 0.0) measure_gaps();
+      const double miss = squared_miss();
+      if (miss >= best_miss || !all_touch()) continue;
+      best = configuration_;
+      best_miss = miss;
+    }
+    go_to(best);
+    measure_gaps();
+  }
+
   /// Takes one step, shortened until clear; returns the share of it taken, 0 for none.
   double step(double trust) {
     const VectorXd motion = wanted_motion(trust);
@@ -347,9 +399,9 @@ class Refinement {
     const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
     const Vector3d turn = pad_normal.cross(-outward);
     for (int axis = 0; axis < 3; ++axis) {
-      rows.want(motion_.row(claim.link, middle, Vector3d::Unit(axis)), way[axis], kTargetWeight);
+      rows.want(motion_.row(claim.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
       rows.want(kTiltLever * motion_.turn_row(claim.link, Vector3d::Unit(axis)),
-                std::clamp(kTiltLever * turn[axis], -trust, trust), kTiltWeight);
+                std::clamp(kTiltLever * turn[axis], -trust, trust), tilt_weight_);
     }
   }
 
@@ -387,6 +439,8 @@ class Refinement {
   HandConfiguration configuration_;
   LinkPoses X_OL_;
   std::vector<NearPoints> near_;
+  double target_weight_ = kTargetWeight;
+  double tilt_weight_ = kTiltWeight;
 };
 
 }  // namespace
@@ -402,6 +456,8 @@ void RefinementOptions::validate() const {
                  least_distance, "above 0 m and at most wanted_gap");
   internal::require(max_iterations >= 1, "RefinementOptions", "max_iterations", max_iterations,
                     "at least 1");
+  internal::require(slide_steps >= 0, "RefinementOptions", "slide_steps", slide_steps,
+                    "at least 0");
   require_length(reach > 0.0, "reach", reach, "finite and above 0 m");
   require_length(largest_shift >= 0.0, "largest_shift", largest_shift, "finite and at least 0 m");
   require_length(largest_turn >= 0.0, "largest_turn", largest_turn, "finite and at least 0 rad");

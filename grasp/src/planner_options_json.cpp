@@ -168,6 +168,7 @@ constexpr auto refinement_fields = [](auto& at, auto& refinement) {
   at("largest_gap_m", refinement.largest_gap);
   at("least_distance_m", refinement.least_distance);
   at("max_iterations", refinement.max_iterations);
+  at("slide_steps", refinement.slide_steps);
   at("reach_m", refinement.reach);
   at("largest_shift_m", refinement.largest_shift);
   at("largest_turn_rad", refinement.largest_turn);

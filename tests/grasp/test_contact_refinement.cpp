@@ -199,6 +199,42 @@ TEST_CASE("A gripper whose palm must stay leaves the gap that its one joint cann
   CHECK(result.largest_gap <= 2 * aside + 4e-4);
 }
 
+TEST_CASE("Pads that touch slide along a box to their targets, and stay without sliding",
+          "[grasp][contact_refinement]") {
+  const Scene scene(hands::find_hand("parallel_gripper"), geometry::box({0.03, 0.03, 0.03}));
+  const std::vector<int> pads = scene.tip_pads();
+  const HandConfiguration start = around_box(scene.hand, 0.0, 0.004);
+  const auto X_OL = hands::forward_kinematics(scene.hand, start);
+  const auto tip = [&](int i, const std::vector<RigidTransform>& poses) {
+    return hands::pad_contact_point(scene.hand, pads[static_cast<std::size_t>(i)], poses);
+  };
+  const Vector3d across = (tip(1, X_OL) - tip(0, X_OL)).normalized();
+  const Vector3d aside = 0.006 * across.cross(start.X_OH.linear() * scene.hand.palm.direction_H);
+  grasp::TargetContacts targets;
+  for (const int i : {0, 1}) {
+    const Vector3d outward = i == 0 ? Vector3d(-across) : across;
+    targets.contacts.push_back({.point_O = 0.015 * outward + aside,
+                                .outward_normal_O = outward,
+                                .patch = 0,
+                                .score = 1.0,
+                                .finger = i});
+  }
+  const auto farthest = [&](const RefinementOptions& options) {
+    const RefinementResult result =
+        grasp::refine_contacts(scene.fitting_hand, scene.object, scene.surroundings, pads, &targets,
+                               start, scene.contact_options, options);
+    REQUIRE(result.stop == RefinementStop::Contact);
+    check_promises(scene, start, pads, options, result);
+    const auto poses = hands::forward_kinematics(scene.hand, result.configuration);
+    return std::max((tip(0, poses) - targets.contacts[0].point_O).norm(),
+                    (tip(1, poses) - targets.contacts[1].point_O).norm());
+  };
+  RefinementOptions sliding;
+  sliding.slide_steps = 20;
+  CHECK(farthest({}) > 0.004);
+  CHECK(farthest(sliding) < 0.0005);
+}
+
 TEST_CASE("A three-fingered hand comes to touch a ball with every fingertip pad",
           "[grasp][contact_refinement]") {
   const Scene scene(hands::find_hand("barrett"), geometry::ball(0.04, 3));

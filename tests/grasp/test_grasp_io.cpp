@@ -79,6 +79,7 @@ grasp::PlannerOptions unusual_options() {
   options.refinement.largest_gap = 3e-4;
   options.refinement.least_distance = 2e-6;
   options.refinement.max_iterations = 61;
+  options.refinement.slide_steps = 3;
   options.refinement.reach = 0.04;
   options.refinement.largest_shift = 0.01;
   options.refinement.largest_turn = 0.25;

@@ -18,6 +18,9 @@ struct RefinementOptions {
   double largest_gap = 1e-4;     ///< A claimed pad within this has contact [m], > 0.
   double least_distance = 1e-6;  ///< Kept between all that must not touch [m], > 0.
   int max_iterations = 60;       ///< ≥ 1.
+  /// Steps in which pads that touch are then slid toward their targets, ≥ 0; 0: they stay where they
+  /// first touch. Larger M, more work.
+  int slide_steps = 0;
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.
   double largest_turn = 0.5;    ///< Of the palm from where it started [rad], ≥ 0.
@@ -57,7 +60,8 @@ struct RefinementResult {
 /// clear is decided exactly on the true meshes; an end that is not counts as GapLeft, at the start.
 /// A start that cuts something is first opened, straightened and withdrawn until clear. Where
 /// `targets` are given, pads are also drawn, weakly, toward their targets and to lie flat on the
-/// surface there.
+/// surface there; with `slide_steps`, strongly once they touch, and of the places where all claimed
+/// pads touch the one nearest to the targets is kept.
 ///
 /// Gap: as `Contact::gap`, the distance between the pad's part of the link's mesh and the object.
 /// Deterministic.
