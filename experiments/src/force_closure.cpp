@@ -1,12 +1,13 @@
 // Question: how many of the planner's valid grasps, in the order in which it finds them, are force
 // closed at a friction at which other planners are judged (0.4), and how large is their epsilon
 // (GraspIt!'s convention)? What does it cost to have force-closed ones only? And does it help to
-// look for targets with the friction cone of that friction, instead of the paper's 45 degrees?
+// look for targets with the friction cone of that friction, instead of the paper's 45 degrees, to
+// have the palm touch too, and to slide touching pads toward their targets?
 //
-// Answered by one row per cone half-angle: the first `sample` valid grasps as they come, and beside
-// them the first `sample` of those with an epsilon of at least `least_epsilon` ("selected"), each
-// with the attempts and the processor time that they took. At least 0.6 in `closed_share` with a
-// median epsilon above 0.05, unselected, is what is aimed at.
+// Answered by one row per kind of grasp and cone half-angle: the first `sample` valid grasps as
+// they come, and beside them the first `sample` of those with an epsilon of at least
+// `least_epsilon` ("selected"), each with the attempts and the processor time that they took. At
+// least 0.6 in `closed_share` with a median epsilon above 0.05, unselected, is what is aimed at.
 #include <algorithm>
 
 #include "graspfit/experiments/planning_settings.hpp"
