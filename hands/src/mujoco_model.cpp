@@ -2,6 +2,7 @@
 
 #include <array>
 #include <clocale>
+#include <cstring>
 #include <locale>
 #include <mutex>
 
@@ -32,6 +33,8 @@ std::string one_line(const std::string& text) {
 
 /// Where this thread's warnings go; the handlers are the same for all threads.
 thread_local std::vector<std::string>* warnings_of_this_thread = nullptr;
+std::mutex handlers_mutex;
+int num_handlers_wanted = 0;
 Handler others_warning_handler = nullptr;
 Handler others_error_handler = nullptr;
 
@@ -48,27 +51,8 @@ void take_error(const char* message) {
   if (warnings_of_this_thread == nullptr && others_error_handler != nullptr) {
     others_error_handler(message);
   }
-  throw IoError(one_line(message));
+  throw MujocoError(one_line(message));
 }
-
-/// Our handlers, while it lives.
-class Handlers {
- public:
-  explicit Handlers(std::vector<std::string>& warnings) {
-    others_warning_handler = mju_user_warning;
-    others_error_handler = mju_user_error;
-    warnings_of_this_thread = &warnings;
-    mju_user_warning = take_warning;
-    mju_user_error = take_error;
-  }
-  ~Handlers() {
-    mju_user_warning = others_warning_handler;
-    mju_user_error = others_error_handler;
-    warnings_of_this_thread = nullptr;
-  }
-  Handlers(const Handlers&) = delete;
-  Handlers& operator=(const Handlers&) = delete;
-};
 
 /// Decimal points in new streams, while it lives. MuJoCo reads numbers through streams of C++'s
 /// global locale; for C's functions it takes care itself. Does nothing in the usual program, whose
@@ -99,25 +83,64 @@ class ClassicNumbers {
 
 std::mutex mutex;
 
-}  // namespace
-
-MujocoModel load_mujoco_model(const std::filesystem::path& file) {
+MujocoModel load(const std::string& file, const mjVFS* files) {
   const std::lock_guard lock(mutex);
   MujocoModel result;
-  const Handlers handlers(result.warnings);
+  const MujocoMessages messages;
   const ClassicNumbers numbers;
   std::array<char, 1000> message{};
   try {
-    result.model.reset(mj_loadXML(file.string().c_str(), nullptr, message.data(),
-                                  static_cast<int>(message.size())));
+    result.model.reset(
+        mj_loadXML(file.c_str(), files, message.data(), static_cast<int>(message.size())));
   } catch (const std::exception& error) {  // MuJoCo's own are all caught by it
-    throw IoError(file.string() + ": MuJoCo: " + error.what());
+    throw IoError(file + ": MuJoCo: " + error.what());
   }
   mj_freeLastXML();
-  if (!result.model) throw IoError(file.string() + ": MuJoCo: " + one_line(message.data()));
+  if (!result.model) throw IoError(file + ": MuJoCo: " + one_line(message.data()));
+  result.warnings = messages.warnings();
   // A warning of the model's compiler.
   if (message.front() != '\0') result.warnings.push_back(one_line(message.data()));
   return result;
+}
+
+}  // namespace
+
+MujocoMessages::MujocoMessages() {
+  const std::lock_guard lock(handlers_mutex);
+  if (num_handlers_wanted++ == 0) {
+    others_warning_handler = mju_user_warning;
+    others_error_handler = mju_user_error;
+    mju_user_warning = take_warning;
+    mju_user_error = take_error;
+  }
+  warnings_of_this_thread = &warnings_;
+}
+
+MujocoMessages::~MujocoMessages() {
+  const std::lock_guard lock(handlers_mutex);
+  warnings_of_this_thread = nullptr;
+  if (--num_handlers_wanted == 0) {
+    mju_user_warning = others_warning_handler;
+    mju_user_error = others_error_handler;
+  }
+}
+
+MujocoModel load_mujoco_model(const std::filesystem::path& file) {
+  return load(file.string(), nullptr);
+}
+
+MujocoModel load_mujoco_text(const std::string& name, const std::string& text) {
+  const auto free_files = [](mjVFS* files) {
+    mj_deleteVFS(files);
+    delete files;
+  };
+  const std::unique_ptr<mjVFS, decltype(free_files)> files(new mjVFS, free_files);
+  mj_defaultVFS(files.get());
+  if (mj_makeEmptyFileVFS(files.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
+    throw IoError(name + ": MuJoCo takes no text of " + std::to_string(text.size()) + " bytes");
+  }
+  std::memcpy(files->filedata[0], text.data(), text.size());
+  return load(name, files.get());
 }
 
 }  // namespace graspfit::hands::internal

@@ -51,8 +51,8 @@ struct HoldProtocol {
   double damping_time = 0.02;       ///< Damping of a joint over its stiffness [s]: 0.1 N m s/rad at
                                     ///< kp 5, the Allegro hand's of MuJoCo Menagerie.
   double armature = 1e-4;           ///< Rotor inertia of revolute joints [kg m²].
-  double slide_armature = 0.01;     ///< Of slides [kg].
-  double link_density = 800.0;      ///< Of links whose description says no mass [kg/m³].
+  double slide_armature = 0.1;  ///< Of slides [kg]: at 4 ms, lighter jaws shake flat things loose.
+  double link_density = 800.0;  ///< Of links whose description says no mass [kg/m³].
 
   double extrapolation = 1.0;  ///< See SqueezeRule.
   double approach_time = 0.4;  ///< Pre-grasp to grasp, linear [s].

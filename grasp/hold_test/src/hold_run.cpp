@@ -1,0 +1,172 @@
+#include "internal/hold_run.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+
+namespace graspfit::hold_test::internal {
+
+using geometry::RigidTransform;
+using hands::HandConfiguration;
+
+namespace {
+
+/// A follower this near to where its leader puts it follows it [rad or m]: rounding of positions
+/// that were written as text, as for the squeeze.
+constexpr double kFollowingSlack = 1e-9;
+
+std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::VectorXd& q) {
+  std::vector<bool> follows(hand.joints.size(), false);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    const auto& coupling = hand.joints[j].coupling;
+    if (!coupling) continue;
+    const double led = coupling->ratio * q[coupling->leader] + coupling->offset;
+    follows[j] =
+        !coupling->breakaway || std::abs(q[static_cast<Eigen::Index>(j)] - led) <= kFollowingSlack;
+  }
+  return follows;
+}
+
+std::string millimeters(double length) {
+  std::array<char, 32> text{};
+  // Tenths of a millimeter as integers: the decimal point of the C library follows the locale.
+  const long tenths = std::lround(length * 1e4);
+  std::snprintf(text.data(), text.size(), "%ld.%ld mm", tenths / 10, tenths % 10);
+  return text.data();
+}
+
+void require_size(const hands::HandModel& hand, const HandConfiguration& configuration,
+                  const char* what) {
+  if (configuration.q.size() == static_cast<Eigen::Index>(hand.joints.size()) &&
+      configuration.q.allFinite() && configuration.X_OH.matrix().allFinite()) {
+    return;
+  }
+  throw geometry::InvalidInput(
+      std::string("HoldTest: the ") + what + " has " + std::to_string(configuration.q.size()) +
+      " joint positions or numbers that are not finite; hand " + hand.name + " has " +
+      std::to_string(hand.joints.size()) + " joints");
+}
+
+}  // namespace
+
+int HoldRun::num_steps(double duration) const {
+  return std::max(1, static_cast<int>(std::lround(duration / protocol_.step)));
+}
+
+RigidTransform HoldRun::X_HB() const { return physics_.hand().X_OH.inverse() * physics_.X_OB(); }
+
+HoldRun::Motion HoldRun::motion(const RigidTransform& before, const RigidTransform& now) const {
+  const Eigen::Vector3d& center = object_.center_of_mass_O;
+  const Eigen::Quaterniond turn(before.linear().transpose() * now.linear());
+  return {(now * center - before * center).norm(),
+          2.0 * std::acos(std::min(1.0, std::abs(turn.w())))};
+}
+
+bool HoldRun::is_lost(const Motion& motion) const {
+  return motion.shift >= protocol_.largest_shift || motion.turn >= protocol_.largest_turn;
+}
+
+bool HoldRun::step(const Watch& watch) {
+  failure_ = physics_.step();
+  if (!failure_.empty()) return false;
+  if (watch) watch();
+  return true;
+}
+
+HandConfiguration HoldRun::squeezed(const grasp::Grasp& grasp) const {
+  HandConfiguration result = grasp.configuration;
+  if (protocol_.squeeze == SqueezeRule::Forces) result.q = grasp.squeeze->configuration.q;
+  if (protocol_.squeeze == SqueezeRule::Extrapolation) {
+    result.q +=
+        protocol_.extrapolation * (grasp.configuration.q - grasp.pre_grasp->configuration.q);
+    hands::clamp_to_limits(hand_, result.q);
+  }
+  return result;
+}
+
+std::string HoldRun::rejection(const grasp::Grasp& grasp) {
+  require_size(hand_, grasp.configuration, "grasp");
+  if (!grasp.pre_grasp) return "no pre-grasp";
+  require_size(hand_, grasp.pre_grasp->configuration, "pre-grasp");
+  if (protocol_.squeeze == SqueezeRule::Forces) {
+    if (!grasp.squeeze) return "no squeeze";
+    require_size(hand_, grasp.squeeze->configuration, "squeeze");
+  }
+  physics_.reset(grasp.pre_grasp->configuration, following_joints(hand_, grasp.configuration.q));
+  const Physics::Overlap overlap = physics_.deepest_overlap();
+  if (overlap.depth <= protocol_.largest_penetration) return {};
+  const auto name = [&](int link) { return hand_.links[static_cast<std::size_t>(link)].name; };
+  return "at the pre-grasp " + name(overlap.link_a) + " is " + millimeters(overlap.depth) +
+         " deep in " + (overlap.link_b < 0 ? "the object or table" : name(overlap.link_b));
+}
+
+bool HoldRun::move(const HandConfiguration& from, const HandConfiguration& to, double duration,
+                   HoldVerdict& verdict, const Watch& watch) {
+  const int last = num_steps(duration);
+  const int between_checks = num_steps(protocol_.check_interval);
+  for (int i = 1; i <= last; ++i) {
+    physics_.command(grasp::interpolated(from, to, static_cast<double>(i) / last));
+    if (!step(watch)) return false;
+    if (i % between_checks != 0 && i != last) continue;
+    const Motion moved = motion(RigidTransform::Identity(), physics_.X_OB());
+    verdict.approach_shift = std::max(verdict.approach_shift, moved.shift);
+    verdict.approach_turn = std::max(verdict.approach_turn, moved.turn);
+    if (is_lost(moved)) return false;
+  }
+  return true;
+}
+
+void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch) {
+  failure_.clear();
+  verdict.stage = HoldStage::Rejected;
+  verdict.reason = rejection(grasp);
+  if (!verdict.reason.empty()) return;
+  if (watch) watch();
+  verdict.stage = HoldStage::Approach;
+  if (protocol_.load == HoldLoad::Lift) {
+    physics_.set_load({0.0, 0.0, -protocol_.gravity * protocol_.object_mass},
+                      Eigen::Vector3d::Zero());
+  }
+  const HandConfiguration& start = grasp.pre_grasp->configuration;
+  const HandConfiguration end = squeezed(grasp);
+  const bool is_there = move(start, grasp.configuration, protocol_.approach_time, verdict, watch) &&
+                        move(grasp.configuration, end, protocol_.squeeze_time, verdict, watch);
+  verdict.reason = failure_;
+  if (!is_there) return;
+  verdict.stage = HoldStage::Held;
+  verdict.squeeze_force = physics_.squeeze_force();
+  squeezed_state_ = physics_.state();
+  X_HB_squeezed_ = X_HB();
+}
+
+DirectionVerdict HoldRun::load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
+                               const Eigen::Vector3d& torque_O, const Watch& watch) {
+  failure_.clear();
+  physics_.restore(squeezed_state_);
+  physics_.set_load(force_O, torque_O);
+  DirectionVerdict verdict;
+  verdict.direction_O = direction_O;
+  const int last = num_steps(protocol_.hold_time);
+  const int between_checks = num_steps(protocol_.check_interval);
+  const int lifted = protocol_.load == HoldLoad::Lift ? num_steps(protocol_.lift_time) : 0;
+  for (int i = 1; i <= last; ++i) {
+    if (i <= lifted) physics_.command_lift(protocol_.lift_height * i / lifted);
+    const bool is_sound = step(watch);
+    if (is_sound && i % between_checks != 0 && i != last) continue;
+    const Motion moved = is_sound ? motion(X_HB_squeezed_, X_HB()) : Motion{};
+    verdict.largest_shift = std::max(verdict.largest_shift, moved.shift);
+    verdict.largest_turn = std::max(verdict.largest_turn, moved.turn);
+    if (is_sound && !is_lost(moved)) continue;
+    verdict.stage = HoldStage::Load;
+    verdict.failed_at = i * protocol_.step;
+    break;
+  }
+  return verdict;
+}
+
+}  // namespace graspfit::hold_test::internal

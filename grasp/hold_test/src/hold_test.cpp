@@ -1,0 +1,199 @@
+#include "graspfit/hold_test/hold_test.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "graspfit/geometry/errors.hpp"
+#include "internal/hold_run.hpp"
+#include "internal/physics.hpp"
+
+namespace graspfit::hold_test {
+
+namespace {
+
+using Eigen::Vector3d;
+using internal::HoldRun;
+
+/// +x −x +y −y +z −z of O.
+const std::array<Vector3d, 6>& six_directions() {
+  static const std::array<Vector3d, 6> directions = {Vector3d::UnitX(), -Vector3d::UnitX(),
+                                                     Vector3d::UnitY(), -Vector3d::UnitY(),
+                                                     Vector3d::UnitZ(), -Vector3d::UnitZ()};
+  return directions;
+}
+
+/// A load is found to this share of itself, and below `kLeastLoad` of the largest it counts as
+/// zero.
+constexpr double kLoadTolerance = 0.02;
+constexpr double kLeastLoad = 1e-4;
+
+/// Lever that makes the largest force of a margin its largest torque [m].
+constexpr double kTorqueLever = 0.1;
+
+/// Where the search for a failing load begins, over the largest.
+constexpr double kFirstLoad = 0.02;
+
+/// The smallest load in (0, `most`] at which `holds` is false, to `kLoadTolerance`: the returned
+/// one fails, unless it is `most`. Assumes that a grasp which holds a load holds smaller ones.
+template <class Holds>
+double smallest_failing(double first, double most, double least, const Holds& holds) {
+  double held = 0.0;
+  double failed = std::numeric_limits<double>::infinity();
+  double load = std::min(first, most);
+  while (true) {
+    (holds(load) ? held : failed) = load;
+    if (held >= most) return most;
+    if (failed <= least) return 0.0;
+    if (failed * (1.0 - kLoadTolerance) <= held) return failed;
+    if (std::isinf(failed)) {
+      load = std::min(2.0 * held, most);
+    } else {
+      load = held == 0.0 ? failed / 2.0 : std::sqrt(held * failed);
+    }
+  }
+}
+
+/// The least over six directions. `holds(direction, load)`; a direction that holds what the weakest
+/// so far nearly holds is not looked into further.
+template <class Holds>
+std::pair<double, Vector3d> weakest(double most, const Holds& holds) {
+  std::pair<double, Vector3d> result = {most, Vector3d::Zero()};
+  for (const Vector3d& direction : six_directions()) {
+    const bool is_first = &direction == six_directions().data();
+    const double first = is_first ? kFirstLoad * most : result.first * (1.0 - kLoadTolerance);
+    if (first <= 0.0) break;
+    const auto at = [&](double load) { return holds(direction, load); };
+    if (!is_first && at(first)) continue;
+    const double failing = smallest_failing(is_first ? first : first / 2.0, is_first ? most : first,
+                                            kLeastLoad * most, at);
+    if (failing < most) result = {failing, direction};
+  }
+  return result;
+}
+
+}  // namespace
+
+struct HoldTest::Impl {
+  Impl(HoldHand hand_, HoldObject object_, HoldProtocol protocol_)
+      : hand(std::move(hand_)),
+        object(std::move(object_)),
+        protocol(std::move(protocol_)),
+        physics(hand, object, protocol),
+        run(physics, hand, object, protocol) {}
+
+  int num_directions() const {
+    return protocol.load == HoldLoad::Lift ? 1 : static_cast<int>(six_directions().size());
+  }
+  Vector3d direction(int index) const {
+    return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ()
+                                           : six_directions()[static_cast<std::size_t>(index)];
+  }
+  DirectionVerdict load(int index, const HoldRun::Watch& watch = {}) {
+    const Vector3d force = protocol.load == HoldLoad::Lift
+                               ? Vector3d(0.0, 0.0, -protocol.gravity * protocol.object_mass)
+                               : Vector3d(protocol.force * direction(index));
+    return run.load(direction(index), force, Vector3d::Zero(), watch);
+  }
+
+  HoldHand hand;
+  HoldObject object;
+  HoldProtocol protocol;
+  internal::Physics physics;
+  HoldRun run;
+};
+
+bool is_available() { return true; }
+
+HoldTest::HoldTest(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol) {
+  protocol.validate();
+  if (hand.links.size() != hand.model.links.size()) {
+    throw geometry::InvalidInput("HoldTest: " + std::to_string(hand.links.size()) +
+                                 " links in pieces; hand " + hand.model.name + " has " +
+                                 std::to_string(hand.model.links.size()));
+  }
+  impl_ = std::make_unique<Impl>(hand, object, protocol);
+}
+HoldTest::~HoldTest() = default;
+HoldTest::HoldTest(HoldTest&&) noexcept = default;
+HoldTest& HoldTest::operator=(HoldTest&&) noexcept = default;
+
+HoldVerdict HoldTest::test(const grasp::Grasp& grasp) {
+  HoldVerdict verdict;
+  impl_->run.approach(grasp, verdict);
+  if (verdict.stage == HoldStage::Rejected) return verdict;
+  for (int i = 0; i < impl_->num_directions(); ++i) {
+    if (verdict.stage == HoldStage::Approach) {
+      verdict.directions.push_back({impl_->direction(i), HoldStage::Approach, {}, 0.0, 0.0});
+      continue;
+    }
+    verdict.directions.push_back(impl_->load(i));
+    if (verdict.reason.empty()) verdict.reason = impl_->run.failure();
+  }
+  for (const DirectionVerdict& direction : verdict.directions) {
+    verdict.stage = std::min(verdict.stage, direction.stage);
+  }
+  return verdict;
+}
+
+HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {
+  if (impl_->protocol.load != HoldLoad::SixForces) {
+    throw geometry::InvalidInput("HoldTest::margin: protocol " + impl_->protocol.name +
+                                 " lifts; a margin needs one that loads along six directions");
+  }
+  if (!(largest > 0.0) || !std::isfinite(largest)) {
+    throw geometry::InvalidInput("HoldTest::margin: largest must be finite and > 0 N");
+  }
+  HoldVerdict approach;
+  impl_->run.approach(grasp, approach);
+  HoldMargin margin;
+  if (approach.stage != HoldStage::Held) return margin;
+  const auto is_held = [](const DirectionVerdict& verdict) {
+    return verdict.stage == HoldStage::Held;
+  };
+  if (!is_held(impl_->run.load(Vector3d::UnitX(), Vector3d::Zero(), Vector3d::Zero()))) {
+    return margin;
+  }
+  std::tie(margin.force, margin.force_direction_O) =
+      weakest(largest, [&](const Vector3d& direction, double load) {
+        return is_held(impl_->run.load(direction, load * direction, Vector3d::Zero()));
+      });
+  std::tie(margin.torque, margin.torque_axis_O) =
+      weakest(largest * kTorqueLever, [&](const Vector3d& axis, double load) {
+        return is_held(impl_->run.load(axis, Vector3d::Zero(), load * axis));
+      });
+  return margin;
+}
+
+std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp& grasp, int direction, double interval) {
+  if (direction < 0 || direction >= impl_->num_directions()) {
+    throw geometry::InvalidInput("HoldTest::replay: direction " + std::to_string(direction) +
+                                 "; protocol " + impl_->protocol.name + " has " +
+                                 std::to_string(impl_->num_directions()));
+  }
+  if (!(interval > 0.0) || !std::isfinite(interval)) {
+    throw geometry::InvalidInput("HoldTest::replay: interval must be finite and > 0 s");
+  }
+  std::vector<HoldFrame> frames;
+  const double step = impl_->protocol.step;
+  const int every = std::max(1, static_cast<int>(std::lround(interval / step)));
+  int num_steps = -1;
+  const auto frame = [&] {
+    return HoldFrame{impl_->physics.time(), impl_->physics.X_OB(), impl_->physics.hand()};
+  };
+  const auto watch = [&] {
+    if (++num_steps % every == 0) frames.push_back(frame());
+  };
+  HoldVerdict verdict;
+  impl_->run.approach(grasp, verdict, watch);
+  if (verdict.stage == HoldStage::Rejected) return frames;
+  if (verdict.stage == HoldStage::Held) impl_->load(direction, watch);
+  if (num_steps % every != 0) frames.push_back(frame());
+  return frames;
+}
+
+}  // namespace graspfit::hold_test

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/hold_test/hold_test.hpp"
+
+namespace graspfit::hold_test::internal {
+
+/// The simulated scene: hand, object and what acts on them. Only this knows the engine.
+///
+class Physics {
+ public:
+  /// @throws InvalidInput if the engine refuses the scene.
+  Physics(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol);
+  ~Physics();
+
+  /// All at rest: the object as planned, the hand at `start`, commanded to stay there, no load.
+  /// `follows` says for each joint whether it follows its leader; a follower that does not is
+  /// driven by its own actuator.
+  void reset(const hands::HandConfiguration& start, const std::vector<bool>& follows);
+
+  /// Puts the palm where `to` has it (not moved by forces) and commands the joints.
+  void command(const hands::HandConfiguration& to);
+  /// Commands the lifting slide of HoldLoad::Lift [m].
+  void command_lift(double height);
+  /// From now on acting on the object at its center of mass [N, N m].
+  void set_load(const Eigen::Vector3d& force_O, const Eigen::Vector3d& torque_O);
+  /// One step of time. Why its result is not to be trusted; empty: it is. Only `reset` and
+  /// `restore` make that good again.
+  std::string step();
+
+  double time() const;                    ///< Since the reset [s].
+  geometry::RigidTransform X_OB() const;  ///< Of the object; identity as planned.
+  hands::HandConfiguration hand() const;  ///< As it stands.
+  double squeeze_force() const;           ///< Normal forces of the hand on the object [N].
+
+  /// Deepest overlap of hand and object, or hand and hand, by the engine's pieces.
+  struct Overlap {
+    double depth = 0.0;  ///< [m]
+    int link_a = -1;
+    int link_b = -1;  ///< −1: the object (or the table).
+  };
+  Overlap deepest_overlap() const;
+
+  /// All that the future depends on, besides commands.
+  struct State {
+    double time = 0.0;
+    std::vector<double> positions, velocities, controls, warm_start;
+  };
+  State state() const;
+  void restore(const State& state);
+
+ private:
+  struct Engine;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace graspfit::hold_test::internal

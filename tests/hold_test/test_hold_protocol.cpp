@@ -1,0 +1,71 @@
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hold_test/hold_protocol.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace graspfit::hold_test;
+using graspfit::geometry::InvalidInput;
+
+TEST_CASE("Every shipped protocol has its name, says where its numbers come from, and is valid",
+          "[hold_test]") {
+  REQUIRE(hold_protocol_names().size() == 4);
+  CHECK(hold_protocol_names().front() == "dexgraspbench-100g");
+  for (const std::string& name : hold_protocol_names()) {
+    CAPTURE(name);
+    const HoldProtocol protocol = hold_protocol(name);
+    CHECK(protocol.name == name);
+    CHECK(protocol.source.size() > 40);
+    CHECK_NOTHROW(protocol.validate());
+  }
+}
+
+TEST_CASE("A protocol that there is not is refused with the names there are", "[hold_test]") {
+  CHECK_THROWS_WITH(hold_protocol("gravity"), Catch::Contains("\"gravity\"") &&
+                                                  Catch::Contains("dexonomy-hard") &&
+                                                  Catch::Contains("tabletop-lift"));
+}
+
+TEST_CASE("Published numbers stand in the protocols", "[hold_test]") {
+  // DexGraspBench: 100 g, 10 N/kg, 4 ms, friction 0.6 and 0.02; Dexonomy: 5 cm, 15 degrees.
+  const HoldProtocol bench = hold_protocol("dexgraspbench-100g");
+  CHECK(bench.force == Approx(10.0 * bench.object_mass));
+  CHECK(bench.step == 0.004);
+  CHECK(bench.largest_turn == Approx(15.0 * 3.14159265358979 / 180.0));
+  // Dexonomy, hard: half the friction, a tenth of the torsional, noslip 0, impratio 1, 9.8 N/kg.
+  const HoldProtocol hard = hold_protocol("dexonomy-hard");
+  CHECK(hard.sliding_friction == Approx(bench.sliding_friction / 2));
+  CHECK(hard.torsional_friction == Approx(bench.torsional_friction / 10));
+  CHECK(hard.noslip_iterations == 0);
+  CHECK(hard.impratio == 1.0);
+  CHECK(hard.force == Approx(9.8 * hard.object_mass));
+  // MultiDex: 0.5 m/s2, 2 cm.
+  const HoldProtocol weak = hold_protocol("multidex-0.05g");
+  CHECK(weak.force == Approx(0.5 * weak.object_mass));
+  CHECK(weak.largest_shift == 0.02);
+}
+
+TEST_CASE("A bad knob is refused by name", "[hold_test]") {
+  struct Case {
+    const char* field;
+    void (*set)(HoldProtocol&);
+  };
+  const Case cases[] = {
+      {"step", [](HoldProtocol& p) { p.step = 0.0; }},
+      {"sliding_friction", [](HoldProtocol& p) { p.sliding_friction = -0.1; }},
+      {"object_mass", [](HoldProtocol& p) { p.object_mass = 0.0; }},
+      {"solimp", [](HoldProtocol& p) { p.hand_solimp[1] = 1.5; }},
+      {"stiffness", [](HoldProtocol& p) { p.stiffness = -5.0; }},
+      {"check_interval", [](HoldProtocol& p) { p.check_interval = p.step / 2; }},
+      {"largest_shift", [](HoldProtocol& p) { p.largest_shift = 0.0; }},
+      {"force", [](HoldProtocol& p) { p.force = 1.0 / 0.0; }},
+  };
+  for (const Case& bad : cases) {
+    HoldProtocol protocol = hold_protocol("dexgraspbench-100g");
+    bad.set(protocol);
+    CHECK_THROWS_WITH(protocol.validate(), Catch::Contains(bad.field));
+    CHECK_THROWS_AS(protocol.validate(), InvalidInput);
+  }
+}
+
+}  // namespace
