@@ -10,14 +10,14 @@
 namespace graspfit::testing {
 
 /// A hand of a palm and two jaws, boxes of 20 mm that slide along x towards each other: at q the
-/// inner faces are at x = ∓(0.06 − q). Palm 0.1 m above.
+/// inner faces are at x = ∓(0.06 − q). Palm 0.5 m above.
 inline hands::HandModel two_jaws() {
   hands::HandModel hand;
   hand.name = "two jaws";
   hands::Link palm;
   palm.name = "palm";
   palm.mesh_L = geometry::transformed(geometry::box({0.1, 0.02, 0.02}),
-                                      hands::RigidTransform(Eigen::Translation3d(0, 0, 0.1)));
+                                      hands::RigidTransform(Eigen::Translation3d(0, 0, 0.5)));
   hand.links.push_back(palm);
   for (const double side : {-1.0, 1.0}) {
     const int index = static_cast<int>(hand.joints.size());
