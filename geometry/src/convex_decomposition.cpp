@@ -32,10 +32,16 @@ constexpr double kOnPlaneRel = 1e-9;     // corners this near to a cut are on it
 constexpr double kLeastWidthRel = 1e-5;  // thinner pieces are left out: engines refuse them
 // Relative to the wanted deviation.
 constexpr double kAimedRel = 0.9;  // sampled depths miss some of the true one
-constexpr double kHullToleranceRel = 0.02;
-constexpr double kMeasuredRel = 0.05;  // of the outward deviation's bound
+constexpr double kHullToleranceRel = 0.05;
+constexpr double kLeastMeasuredRel = 0.5;  // outward deviations below cost too many cubes
+constexpr double kMeasuredRel = 0.05;      // of the outward deviation's bound
+// Of volumes: pieces that cover the solid and are no larger together are the solid, cut.
+constexpr double kSameVolumeRel = 1e-12;
 constexpr int kDepthResolution = 128;
 constexpr int kVolumeLines = 128;
+
+// More parts than pieces: cuts that were right at first part what later may be united.
+constexpr std::size_t kPartsPerPiece = 3;
 
 struct Piece {
   std::vector<Vector3d> points;  ///< Their hull holds all parts of the piece.
@@ -79,12 +85,12 @@ class Decomposer {
         extent_(solid.box().sizes().maxCoeff()),
         depth_(solid, kDepthResolution) {}
 
-  void split_all() {
+  /// At most so many pieces, none deeper than wanted if these suffice.
+  std::vector<Piece> parts(std::size_t most) {
     add(internal::whole_solid(solid_));
-    const auto most = static_cast<std::size_t>(options_.max_pieces);
     while (pieces_.size() < most) {
       std::size_t worst = pieces_.size();
-      double depth = aimed();
+      double depth = options_.largest_deviation;
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
         if (can_split_[i] && pieces_[i].depth > depth) {
           worst = i;
@@ -94,9 +100,17 @@ class Decomposer {
       if (worst == pieces_.size()) break;
       split(worst);
     }
+    return std::move(pieces_);
   }
 
-  std::vector<Piece>& pieces() { return pieces_; }
+  double largest_deviation() const { return options_.largest_deviation; }
+  /// Pieces farther apart are no neighbors [m].
+  double reach() const { return options_.largest_deviation; }
+
+  double depth_between(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b,
+                       double limit) const {
+    return internal::deepest_segment(a, b, depth_, a.size() + b.size(), limit);
+  }
 
   double aimed() const { return kAimedRel * options_.largest_deviation; }
 
@@ -111,12 +125,19 @@ class Decomposer {
     return Piece{std::move(points), *hull, depth};
   }
 
-  void merge_all();
+  /// What sampling found shallow is looked at closely.
+  void verify(Piece& piece) const {
+    if (piece.depth > aimed()) return;
+    piece.depth = internal::outward_deviation(
+        {&piece.hull, 1}, solid_,
+        {.tolerance = kMeasuredRel * options_.largest_deviation, .floor = aimed()});
+  }
 
  private:
   void add(SolidPart part) {
     std::optional<Piece> piece = piece_of(part.hull_points());
     if (!piece) return;
+    verify(*piece);
     pieces_.push_back(*std::move(piece));
     parts_.push_back(std::move(part));
     can_split_.push_back(true);
@@ -145,9 +166,11 @@ class Decomposer {
       std::swap(lower, upper);
       std::swap(below, above);
     }
+    verify(*lower);
     pieces_[index] = *std::move(lower);
     parts_[index] = std::move(below);
     if (!upper) return;
+    verify(*upper);
     pieces_.push_back(*std::move(upper));
     parts_.push_back(std::move(above));
     can_split_.push_back(true);
@@ -162,63 +185,103 @@ class Decomposer {
   std::vector<bool> can_split_;
 };
 
-/// Merges the two pieces whose common hull is the least deep, as long as it is shallow enough.
-void Decomposer::merge_all() {
-  struct Candidate {
+/// Unites the two pieces whose common hull is the least deep, as long as it is shallow enough or
+/// there are too many pieces.
+class Merger {
+ public:
+  Merger(const Decomposer& decomposer, std::vector<Piece> pieces)
+      : decomposer_(decomposer), pieces_(std::move(pieces)), is_alive_(pieces_.size(), true) {
+    for (const Piece& piece : pieces_) boxes_.push_back(bounding_box(piece.hull.mesh));
+  }
+
+  std::vector<Piece> merged(std::size_t most_pieces) {
+    constexpr double kRaise = 1.25;  // of the depth that is allowed while there are too many
+    double limit = decomposer_.aimed();
+    std::size_t count = pieces_.size();
+    for (std::size_t a = 0; a < pieces_.size(); ++a) {
+      for (std::size_t b = a + 1; b < pieces_.size(); ++b) add_pair(a, b);
+    }
+    while (!pairs_.empty()) {
+      for (Pair& pair : pairs_) look_at(pair, limit);
+      const auto best =
+          std::min_element(pairs_.begin(), pairs_.end(),
+                           [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
+      if (best->depth <= limit) {
+        const Pair pair = *best;
+        pairs_.erase(best);
+        if (unite(pair)) --count;
+        if (limit > decomposer_.aimed() && count <= most_pieces) break;
+      } else if (count > most_pieces) {
+        limit = std::max(kRaise * limit, best->depth);
+      } else {
+        break;
+      }
+    }
+    std::vector<Piece> left;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (is_alive_[i]) left.push_back(std::move(pieces_[i]));
+    }
+    return left;
+  }
+
+ private:
+  struct Pair {
     std::size_t a = 0;
     std::size_t b = 0;
-    double depth = 0.0;
+    double depth = 0.0;     ///< Of the common hull, or less [m].
+    bool is_known = false;  ///< Not less.
   };
-  std::vector<Eigen::AlignedBox3d> boxes;
-  for (const Piece& piece : pieces_) boxes.push_back(bounding_box(piece.hull.mesh));
-  const double reach = options_.largest_deviation;
-  const auto are_near = [&](std::size_t a, std::size_t b) {
-    return boxes[a].exteriorDistance(boxes[b]) <= reach;
-  };
-  const auto merged_depth = [&](std::size_t a, std::size_t b) {
-    const std::vector<Vector3d>& points_a = pieces_[a].hull.mesh.vertices;
-    const std::vector<Vector3d>& points_b = pieces_[b].hull.mesh.vertices;
-    const double on_segments = internal::deepest_segment(
-        points_a, points_b, depth_, points_a.size() + points_b.size(), aimed());
-    if (on_segments > aimed()) return on_segments;
+
+  void add_pair(std::size_t a, std::size_t b) {
+    if (boxes_[a].exteriorDistance(boxes_[b]) <= decomposer_.reach()) pairs_.push_back({a, b});
+  }
+
+  void look_at(Pair& pair, double limit) const {
+    if (pair.is_known || pair.depth > limit) return;
+    const std::vector<Vector3d>& points_a = pieces_[pair.a].hull.mesh.vertices;
+    const std::vector<Vector3d>& points_b = pieces_[pair.b].hull.mesh.vertices;
+    const double on_segments = decomposer_.depth_between(points_a, points_b, limit);
+    pair.depth = std::max(pair.depth, on_segments);
+    if (pair.depth > limit) return;
     std::vector<Vector3d> points = points_a;
     points.insert(points.end(), points_b.begin(), points_b.end());
-    const auto merged = piece_of(std::move(points), aimed());
-    return merged ? merged->depth : 0.0;
-  };
-  std::vector<Candidate> candidates;
-  const auto add_candidate = [&](std::size_t a, std::size_t b) {
-    if (!are_near(a, b)) return;
-    const double depth = merged_depth(a, b);
-    if (depth <= aimed()) candidates.push_back({a, b, depth});
-  };
-  for (std::size_t a = 0; a < pieces_.size(); ++a) {
-    for (std::size_t b = a + 1; b < pieces_.size(); ++b) add_candidate(a, b);
+    const std::optional<Piece> merged = decomposer_.piece_of(std::move(points), limit);
+    if (merged) pair.depth = std::max(pair.depth, merged->depth);
+    pair.is_known = pair.depth <= limit;
   }
-  std::vector<bool> is_alive(pieces_.size(), true);
-  while (!candidates.empty()) {
-    const auto best =
-        std::min_element(candidates.begin(), candidates.end(),
-                         [](const Candidate& a, const Candidate& b) { return a.depth < b.depth; });
-    const auto [a, b, depth] = *best;
-    std::vector<Vector3d> points = std::move(pieces_[a].points);
-    points.insert(points.end(), pieces_[b].points.begin(), pieces_[b].points.end());
-    pieces_[a] = *piece_of(std::move(points));
-    boxes[a] = bounding_box(pieces_[a].hull.mesh);
-    is_alive[b] = false;
-    std::erase_if(candidates, [a = a, b = b](const Candidate& c) {
-      return c.a == a || c.a == b || c.b == a || c.b == b;
+
+  bool unite(const Pair& pair) {
+    std::vector<Vector3d> points = pieces_[pair.a].points;
+    points.insert(points.end(), pieces_[pair.b].points.begin(), pieces_[pair.b].points.end());
+    std::optional<Piece> merged = decomposer_.piece_of(std::move(points));
+    if (!merged) return false;
+    if (pair.depth <= decomposer_.aimed()) {
+      decomposer_.verify(*merged);
+      if (merged->depth > decomposer_.largest_deviation()) {
+        pairs_.push_back({pair.a, pair.b, merged->depth, true});
+        return false;
+      }
+    }
+    pieces_[pair.a] = *std::move(merged);
+    boxes_[pair.a] = bounding_box(pieces_[pair.a].hull.mesh);
+    is_alive_[pair.b] = false;
+    std::erase_if(pairs_, [&](const Pair& other) {
+      return other.a == pair.a || other.a == pair.b || other.b == pair.a || other.b == pair.b;
     });
     for (std::size_t other = 0; other < pieces_.size(); ++other) {
-      if (other != a && is_alive[other]) add_candidate(std::min(a, other), std::max(a, other));
+      if (other != pair.a && is_alive_[other]) {
+        add_pair(std::min(pair.a, other), std::max(pair.a, other));
+      }
     }
+    return true;
   }
-  std::vector<Piece> left;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    if (is_alive[i]) left.push_back(std::move(pieces_[i]));
-  }
-  pieces_ = std::move(left);
-}
+
+  const Decomposer& decomposer_;
+  std::vector<Piece> pieces_;
+  std::vector<bool> is_alive_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+  std::vector<Pair> pairs_;
+};
 
 }  // namespace
 
@@ -245,17 +308,27 @@ ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,
   const double volume = mass_properties(mesh).volume;
   const MeshQuery solid(used_part(solid_boundary(mesh)));
   Decomposer decomposer(solid, options);
-  decomposer.split_all();
-  decomposer.merge_all();
+  std::vector<Piece> pieces =
+      Merger(decomposer,
+             decomposer.parts(kPartsPerPiece * static_cast<std::size_t>(options.max_pieces)))
+          .merged(static_cast<std::size_t>(options.max_pieces));
   ConvexDecomposition result;
   std::vector<PieceHull> hulls;
-  for (Piece& piece : decomposer.pieces()) {
+  for (Piece& piece : pieces) {
     result.inward_deviation = std::max(result.inward_deviation, piece.hull.left_out);
     result.pieces.push_back(piece.hull.mesh);
     hulls.push_back(std::move(piece.hull));
   }
-  result.outward_deviation =
-      internal::outward_deviation(hulls, solid, kMeasuredRel * options.largest_deviation);
+  double sum = 0.0;
+  for (const TriangleMesh& piece : result.pieces) sum += signed_volume(piece);
+  const bool is_exact =
+      result.inward_deviation == 0.0 && std::abs(sum - volume) <= kSameVolumeRel * volume;
+  if (!is_exact) {
+    result.outward_deviation =
+        internal::outward_deviation(hulls, solid,
+                                    {.tolerance = kMeasuredRel * options.largest_deviation,
+                                     .floor = kLeastMeasuredRel * options.largest_deviation});
+  }
   result.volume_error = internal::volume_difference(hulls, solid, kVolumeLines) / volume;
   result.is_within_deviation = result.outward_deviation <= options.largest_deviation;
   return result;

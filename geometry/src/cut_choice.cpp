@@ -23,6 +23,9 @@ constexpr int kNumDirections = 32;             // spread evenly, beside the axes
 constexpr std::size_t kNumFacePlanes = 24;     // planes of faces
 constexpr double kFacePlanePreference = 0.97;  // share of the best score that is good enough
 
+constexpr double kNumBoundarySamples = 600.0;  // of a hull, about
+constexpr int kMostPerSide = 24;               // of a face: what is long and thin gets no more
+
 struct Sample {
   Vector3d point;
   std::int32_t face = -1;
@@ -86,6 +89,26 @@ void scale_weights(std::vector<Obstacle>& obstacles, std::size_t first) {
   for (std::size_t i = first; i < obstacles.size(); ++i) obstacles[i].weight /= sum;
 }
 
+/// Spacing at which the boundary of a hull gets about `kNumBoundarySamples` [m].
+double sample_spacing(const PieceHull& hull) {
+  return std::sqrt(2.0 * surface_area(hull.mesh) / kNumBoundarySamples);
+}
+
+double deepest_on(const std::array<Vector3d, 3>& p, double spacing, const OutsideDepth& depth) {
+  const double longest =
+      std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+  const int n = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, kMostPerSide);
+  double deepest = 0.0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      const double u = (i + 1.0 / 3.0) / n;
+      const double v = (j + 1.0 / 3.0) / n;
+      deepest = std::max(deepest, depth(p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0])));
+    }
+  }
+  return deepest;
+}
+
 void add_segments(const std::vector<Sample>& samples, const OutsideDepth& depth, double allowed,
                   Random& random, Evidence& evidence) {
   const std::size_t first = evidence.obstacles.size();
@@ -116,12 +139,13 @@ void add_hull_faces(const PieceHull& hull, const OutsideDepth& depth, double all
                     Evidence& evidence) {
   const std::size_t first = evidence.obstacles.size();
   const auto base = static_cast<std::int32_t>(evidence.points.size());
+  const double spacing = sample_spacing(hull);
   evidence.points.insert(evidence.points.end(), hull.mesh.vertices.begin(),
                          hull.mesh.vertices.end());
   for (std::size_t f = 0; f < hull.mesh.faces.size(); ++f) {
     const std::array<Vector3d, 3> p = corners(hull.mesh, f);
     const Face& face = hull.mesh.faces[f];
-    const double deepest = depth((p[0] + p[1] + p[2]) / 3.0);
+    const double deepest = deepest_on(p, spacing, depth);
     const double weight = excess(deepest, allowed) * vector_area(hull.mesh, f).norm();
     if (!(weight > 0.0)) continue;
     evidence.obstacles.push_back({{base + face[0], base + face[1], base + face[2]}, weight});
@@ -249,23 +273,11 @@ double deepest_segment(std::span<const Vector3d> starts, std::span<const Vector3
 }
 
 double sampled_depth(const PieceHull& hull, const OutsideDepth& depth, double limit) {
-  constexpr double kNumBoundarySamples = 600.0;
-  constexpr int kMostPerSide = 24;
   const std::vector<Vector3d>& vertices = hull.mesh.vertices;
   double deepest = deepest_segment(vertices, vertices, depth, 4 * vertices.size(), limit);
-  const double spacing = std::sqrt(2.0 * surface_area(hull.mesh) / kNumBoundarySamples);
+  const double spacing = sample_spacing(hull);
   for (std::size_t f = 0; f < hull.mesh.faces.size() && deepest <= limit; ++f) {
-    const std::array<Vector3d, 3> p = corners(hull.mesh, f);
-    const double longest =
-        std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
-    const int n = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, kMostPerSide);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; i + j < n; ++j) {
-        const double u = (i + 1.0 / 3.0) / n;
-        const double v = (j + 1.0 / 3.0) / n;
-        deepest = std::max(deepest, depth(p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0])));
-      }
-    }
+    deepest = std::max(deepest, deepest_on(corners(hull.mesh, f), spacing, depth));
   }
   return deepest;
 }

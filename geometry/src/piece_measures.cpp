@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "graspfit/geometry/mesh_query.hpp"
@@ -12,9 +13,18 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kToleranceRel = 0.05;  // of a bound, for what is deeper than the tolerance
+
 struct Cube {
   Vector3d center;
   double half = 0.0;  ///< Half an edge.
+};
+
+struct Candidate {
+  double most = 0.0;  ///< No place in the cube is farther out [m].
+  std::size_t piece = 0;
+  Cube cube;
+  bool operator<(const Candidate& other) const { return most < other.most; }
 };
 
 /// Whether a cube may meet the hull: false only if a face's plane separates them.
@@ -76,37 +86,38 @@ double length_inside(const MeshQuery& solid, const Vector3d& origin) {
 
 }  // namespace
 
-double outward_deviation(const std::vector<PieceHull>& pieces, const MeshQuery& solid,
-                         double tolerance) {
+double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
+                         const OutwardOptions& options) {
   const double to_corner = std::sqrt(3.0);
-  double known = 0.0;  // reached by a point of a piece
-  double bound = 0.0;  // by what was too small to look at further
-  for (const PieceHull& piece : pieces) {
-    std::vector<Cube> todo = {cube_around(piece)};
-    while (!todo.empty()) {
-      const Cube cube = todo.back();
-      todo.pop_back();
-      if (!may_meet(piece, cube)) continue;
-      const double radius = to_corner * cube.half;
-      const double distance = std::sqrt(solid.closest_point(cube.center).squared_distance);
-      if (distance + radius <= std::max(known, bound)) continue;
-      // Within the cube no place is farther out than this.
-      const bool is_outside = solid.containment(cube.center) == Containment::Outside;
-      const double most = is_outside ? distance + radius : radius - distance;
-      if (most <= std::max(known, bound)) continue;
-      if (is_outside && piece.height(cube.center) <= 0.0) known = std::max(known, distance);
-      if (2.0 * radius <= tolerance) {
-        bound = std::max(bound, most);
-        continue;
-      }
-      for (int corner = 0; corner < 8; ++corner) {
-        const Vector3d step(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
-                            corner & 4 ? 0.5 : -0.5);
-        todo.push_back({cube.center + cube.half * step, 0.5 * cube.half});
-      }
+  std::vector<Candidate> todo;   // a heap, the one that may reach farthest on top
+  double known = options.floor;  // or reached by a point of a piece
+  const auto add = [&](std::size_t p, const Cube& cube) {
+    if (!may_meet(pieces[p], cube)) return;
+    const double radius = to_corner * cube.half;
+    const double distance = std::sqrt(solid.closest_point(cube.center).squared_distance);
+    if (distance + radius <= std::max(known, options.tolerance)) return;
+    const bool is_outside = solid.containment(cube.center) == Containment::Outside;
+    if (is_outside && pieces[p].height(cube.center) <= 0.0) known = std::max(known, distance);
+    todo.push_back({is_outside ? distance + radius : radius - distance, p, cube});
+    std::push_heap(todo.begin(), todo.end());
+  };
+  for (std::size_t p = 0; p < pieces.size(); ++p) add(p, cube_around(pieces[p]));
+  while (!todo.empty()) {
+    const Candidate top = todo.front();
+    // A deep hollow may be as deep over a whole sheet of places, too many for a small tolerance.
+    if (top.most <= known + std::max(options.tolerance, kToleranceRel * known)) {
+      return std::max(known, top.most);
+    }
+    std::pop_heap(todo.begin(), todo.end());
+    todo.pop_back();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d step(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
+                          corner & 4 ? 0.5 : -0.5);
+      add(top.piece, {top.cube.center + top.cube.half * step, 0.5 * top.cube.half});
     }
   }
-  return std::max(known, bound);
+  // What was left out cannot reach farther than this.
+  return std::max(known, pieces.empty() ? 0.0 : options.tolerance);
 }
 
 double volume_difference(const std::vector<PieceHull>& pieces, const MeshQuery& solid,

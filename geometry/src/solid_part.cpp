@@ -96,7 +96,10 @@ ConvexCell half_cell(const ConvexCell& cell, const CutPlane& plane, double sign,
   return half;
 }
 
-std::vector<Vector3d> corners_inside(const ConvexCell& cell, const MeshQuery& solid) {
+/// Corners deeper inside than `on_plane`: where a cut ran along a face, corners lie on that face,
+/// and rounding must not count them as inside.
+std::vector<Vector3d> corners_inside(const ConvexCell& cell, double on_plane,
+                                     const MeshQuery& solid) {
   std::vector<Vector3d> all;
   for (const std::vector<Vector3d>& polygon : cell) {
     all.insert(all.end(), polygon.begin(), polygon.end());
@@ -106,8 +109,7 @@ std::vector<Vector3d> corners_inside(const ConvexCell& cell, const MeshQuery& so
   };
   std::sort(all.begin(), all.end(), less);
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::erase_if(all,
-                [&](const Vector3d& p) { return solid.containment(p) != Containment::Inside; });
+  std::erase_if(all, [&](const Vector3d& p) { return !(solid.signed_distance(p) < -on_plane); });
   return all;
 }
 
@@ -196,8 +198,8 @@ std::pair<SolidPart, SolidPart> cut(const SolidPart& part, const CutPlane& plane
   }
   below.part.cell = half_cell(part.cell, plane, -1.0, on_plane);
   above.part.cell = half_cell(part.cell, plane, 1.0, on_plane);
-  below.part.inner_corners = corners_inside(below.part.cell, solid);
-  above.part.inner_corners = corners_inside(above.part.cell, solid);
+  below.part.inner_corners = corners_inside(below.part.cell, on_plane, solid);
+  above.part.inner_corners = corners_inside(above.part.cell, on_plane, solid);
   return {std::move(below.part), std::move(above.part)};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "graspfit/geometry/mesh_query.hpp"
@@ -7,14 +8,19 @@
 
 namespace graspfit::geometry::internal {
 
+/// How far `outward_deviation` looks.
+struct OutwardOptions {
+  double tolerance = 0.0;  ///< Of the bound [m], > 0.
+  double floor = 0.0;      ///< What is less does not matter: the answer is at least this [m].
+};
+
 /// A proven upper bound of how far any of the pieces reaches out of the solid, at most `tolerance`
-/// above the truth, unless the truth is below `tolerance` [m].
+/// or 5 % above the truth or the floor [m].
 ///
-/// Boxes are quartered (in space: into eight) as long as what is in them might reach farther than
-/// what is known, by the distance of their center from the surface, which changes no faster than
-/// the center moves.
-double outward_deviation(const std::vector<PieceHull>& pieces, const MeshQuery& solid,
-                         double tolerance);
+/// Cubes are cut into eight, the one that may reach farthest first: no point of a cube is farther
+/// out than its center by more than half its diagonal.
+double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
+                         const OutwardOptions& options);
 
 /// Volume of the union of pieces minus that of the solid [m³], along `num_lines`² parallel lines:
 /// approximate, exact along each line, so that places where both agree add nothing.
