@@ -153,7 +153,7 @@ bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
   return true;
 }
 
-Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) {
+Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const {
   Blocked result;
   for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
     const auto& solid = hand_.collision().link_solid(link);

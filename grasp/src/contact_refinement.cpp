@@ -45,8 +45,12 @@ constexpr double kRoomPerGap = 0.1;     // kept to everything, per largest gap t
 constexpr double kMostRoom = 3e-4;      // [m]
 constexpr double kPartingShare = 0.3;   // of a step that bodies too near may be asked to part by
 constexpr int kMostHalvings = 5;
-constexpr int kPatience = 8;             // steps within which the gaps must shrink
-constexpr double kLeastProgress = 0.85;  // to this share
+constexpr double kTrustGrowth = 2.0;      // of the longest step, after one that was taken whole
+constexpr double kLeastTrust = 0.1;       // of the longest step, after one that was not taken
+constexpr double kLeastSlideTrust = 0.3;  // the same while sliding
+constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 are rounded so far
+constexpr int kPatience = 8;              // steps within which the gaps must shrink
+constexpr double kLeastProgress = 0.85;   // to this share
 
 // The way out of a start that cuts something: steps that grow, 3 cm in all.
 constexpr int kMostOpenings = 14;
@@ -191,7 +195,7 @@ class Refinement {
   bool is_within_limits(const HandConfiguration& configuration) const {
     constexpr double kRounding = 1e-12;  // a palm that stays is turned by rounding only
     return shift(configuration).norm() <= options_.largest_shift + kRounding &&
-           turn(configuration).norm() <= options_.largest_turn + 1e-7;
+           turn(configuration).norm() <= options_.largest_turn + kTurnRounding;
   }
 
   /// Opens and withdraws until clear; `Contact` means that it is.
@@ -287,6 +291,7 @@ class Refinement {
     std::vector<double> sums = {sum_of_gaps()};
     bool has_moved = true;
     while (!all_touch()) {
+      if (is_stuck(sums) || trust < kShortestStep) return RefinementStop::GapLeft;
       if (iterations == options_.max_iterations) return RefinementStop::IterationLimit;
       ++iterations;
       if (has_moved) {
@@ -297,12 +302,10 @@ class Refinement {
       }
       const double share = step(trust);
       has_moved = share > 0.0;
-      trust = share == 1.0 ? std::min(2.0 * trust, kLongestStep) : trust * std::max(share, 0.1);
+      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
+                           : trust * std::max(share, kLeastTrust);
       if (has_moved) measure_gaps();
       sums.push_back(sum_of_gaps());
-      const bool is_stuck = static_cast<int>(sums.size()) > kPatience &&
-                            sums.back() > kLeastProgress * sums[sums.size() - 1 - kPatience];
-      if (is_stuck || trust < kShortestStep) return RefinementStop::GapLeft;
     }
     return RefinementStop::Contact;
   }
@@ -334,7 +337,8 @@ class Refinement {
       ++iterations;
       near_ = clearance_.find(X_OL_, kNearPerStep * trust);
       const double share = step(trust);
-      trust = share == 1.0 ? std::min(2.0 * trust, kLongestStep) : trust * std::max(share, 0.3);
+      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
+                           : trust * std::max(share, kLeastSlideTrust);
       if (share > 0.0) measure_gaps();
       const double miss = squared_miss();
       if (miss >= best_miss || !all_touch()) continue;
@@ -343,6 +347,12 @@ class Refinement {
     }
     go_to(best);
     measure_gaps();
+  }
+
+  /// Whether the last steps have hardly shrunk the gaps, given their sums after each step.
+  static bool is_stuck(const std::vector<double>& sums) {
+    return static_cast<int>(sums.size()) > kPatience &&
+           sums.back() > kLeastProgress * sums[sums.size() - 1 - kPatience];
   }
 
   /// Takes one step, shortened until clear; returns the share of it taken, 0 for none.

@@ -45,7 +45,7 @@ class Clearance {
     std::vector<int> by_own_hand;  ///< By another link.
     bool is_empty() const { return links.empty() && by_own_hand.empty(); }
   };
-  Blocked blocked(const LinkPoses& X_OL, double least);
+  Blocked blocked(const LinkPoses& X_OL, double least) const;
 
   /// Exact: no link shares a point with the object, the surroundings or another link.
   bool is_clear_of_world(const LinkPoses& X_OL) const;

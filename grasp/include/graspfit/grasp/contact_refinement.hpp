@@ -18,8 +18,8 @@ struct RefinementOptions {
   double largest_gap = 1e-4;     ///< A claimed pad within this has contact [m], > 0.
   double least_distance = 1e-6;  ///< Kept between all that must not touch [m], > 0.
   int max_iterations = 60;       ///< ≥ 1.
-  /// Steps in which pads that touch are then slid toward their targets, ≥ 0; 0: they stay where they
-  /// first touch. Larger M, more work.
+  /// Steps in which pads that touch are then slid toward their targets, ≥ 0; 0: they stay where
+  /// they first touch. Larger M, more work.
   int slide_steps = 0;
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.
@@ -44,7 +44,7 @@ struct RefinementResult {
                                            ///< decided exactly, unless `stop` is Intersecting
                                            ///< or SelfCollision.
   std::vector<Contact> contacts;  ///< Of all pads, in pad order; is_target set for claimed ones.
-  double largest_gap = 0.0;       ///< Of the claimed pads [m].
+  double largest_gap = 0.0;       ///< Of the claimed pads [m]; twice `reach` means: or more.
   int worst_pad = -1;             ///< The pad with that gap.
   int iterations = 0;
 };
