@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -6,15 +7,13 @@
 #include "graspfit/grasp/option_names.hpp"
 #include "internal/json_node.hpp"
 #include "internal/planner_options_json.hpp"
+#include "internal/record_json.hpp"
 #include "internal/recorded_hand.hpp"
 
 namespace graspfit::grasp {
 namespace {
 
 using internal::JsonNode;
-
-/// The only version of the format that is written and read.
-constexpr std::int64_t kVersion = 2;
 
 std::optional<double> number_or_none(const JsonNode& node) {
   return node.is_null() ? std::nullopt : std::optional(node.number());
@@ -301,16 +300,16 @@ PlannerStatistics read_statistics(const JsonNode& node) {
   statistics.fitting_iterations = node.at("fitting_iterations").integer();
   statistics.refinement_iterations = node.at("refinement_iterations").integer();
   statistics.duplicates = node.at("duplicates").integer();
+  // Every outcome is there, also those that a file leaves out. PoorShape is the last of them.
+  for (int i = 0; i <= static_cast<int>(AttemptOutcome::PoorShape); ++i) {
+    statistics.outcomes[static_cast<AttemptOutcome>(i)] = 0;
+  }
   for (const auto& [name, count] : node.at("outcomes").members()) {
-    bool is_known = false;
-    // PoorShape is the last of the enumeration.
-    for (int i = 0; i <= static_cast<int>(AttemptOutcome::PoorShape); ++i) {
-      const auto outcome = static_cast<AttemptOutcome>(i);
-      if (name != outcome_name(outcome)) continue;
-      statistics.outcomes[outcome] = count.integer();
-      is_known = true;
-    }
-    if (!is_known) count.fail("is not an outcome of this version");
+    const auto known = std::find_if(
+        statistics.outcomes.begin(), statistics.outcomes.end(),
+        [&name = name](const auto& outcome) { return name == outcome_name(outcome.first); });
+    if (known == statistics.outcomes.end()) count.fail("is not an outcome of this version");
+    known->second = count.integer();
   }
   for (const auto& [reason, count] : node.at("target_failures").members()) {
     statistics.target_failures[reason] = count.integer();
@@ -344,9 +343,10 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
-  if (const std::int64_t version = root.at("version").integer(); version != kVersion) {
+  if (const std::int64_t version = root.at("version").integer();
+      version != internal::kGraspFileVersion) {
     root.at("version").fail("is " + std::to_string(version) + "; this program reads version " +
-                            std::to_string(kVersion) + ": plan again");
+                            std::to_string(internal::kGraspFileVersion) + ": plan again");
   }
 
   GraspFile file;

@@ -306,7 +306,7 @@ std::string to_json(const GraspFile& file) {
   const auto used_mesh_file =
       file.used_meshes ? std::optional(file.used_meshes->object) : std::nullopt;
   return internal::json_text({{"format", "graspfit-grasps"},
-                              {"version", 2},
+                              {"version", internal::kGraspFileVersion},
                               {"conventions", conventions()},
                               {"object", internal::object_json(file.object, used_mesh_file)},
                               {"surroundings", internal::surroundings_json(file)},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,9 @@
 namespace graspfit::grasp::internal {
 
 using Json = nlohmann::ordered_json;
+
+/// The only version of grasp files that is written and read.
+inline constexpr std::int64_t kGraspFileVersion = 2;
 
 inline Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
