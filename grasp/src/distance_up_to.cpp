@@ -10,10 +10,6 @@ using geometry::RigidTransform;
 
 namespace {
 
-/// Room for the rounding of a box seen from another frame [m]: of coordinates of a hand and its
-/// object, below 1e-14.
-constexpr double kBoxSlack = 1e-9;
-
 /// Lower bound of the distance of two boxes, from the axes of the first.
 double box_gap(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B,
                const RigidTransform& X_AB) {

@@ -120,14 +120,15 @@ class Run {
     is_over_ = true;
   }
 
+  bool is_unlike(const Grasp& grasp, const std::vector<Grasp>& others) const {
+    return std::all_of(others.begin(), others.end(), [&](const Grasp& other) {
+      return are_distinct(hand_, grasp.configuration, other.configuration, options_.distinct);
+    });
+  }
+
   /// In the search for the first grasps, only those that differ from all before them.
   void keep(Grasp grasp) {
-    const bool is_new =
-        options_.search == SearchRule::Best ||
-        std::all_of(result_.grasps.begin(), result_.grasps.end(), [&](const Grasp& other) {
-          return are_distinct(hand_, grasp.configuration, other.configuration, options_.distinct);
-        });
-    if (is_new) {
+    if (options_.search == SearchRule::Best || is_unlike(grasp, result_.grasps)) {
       result_.grasps.push_back(std::move(grasp));
     } else {
       ++result_.statistics.duplicates;
@@ -141,10 +142,7 @@ class Run {
     if (options_.search == SearchRule::First) return;
     std::vector<Grasp> selected;
     for (Grasp& grasp : result_.grasps) {
-      const bool is_new = std::all_of(selected.begin(), selected.end(), [&](const Grasp& other) {
-        return are_distinct(hand_, grasp.configuration, other.configuration, options_.distinct);
-      });
-      if (!is_new) {
+      if (!is_unlike(grasp, selected)) {
         ++result_.statistics.duplicates;
       } else if (static_cast<int>(selected.size()) < options_.count) {
         selected.push_back(std::move(grasp));

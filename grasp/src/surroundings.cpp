@@ -22,10 +22,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Room for the rounding of a box seen from another frame [m]: of coordinates of a hand and its
-/// object, below 1e-14.
-constexpr double kBoxSlack = 1e-9;
-
 /// Corners of the convex hull of what the faces of a mesh use, exact.
 std::vector<Vector3d> hull_corners(const geometry::TriangleMesh& mesh) {
   std::vector<bool> is_used(mesh.vertices.size(), false);
@@ -90,7 +86,7 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
   const double box_height = (X_OL * box.center()).z() -
                             X_OL.linear().row(2).cwiseAbs().dot(0.5 * box.sizes().transpose()) -
                             table;
-  if (box_height > enough + kBoxSlack) return lowest;
+  if (box_height > enough + internal::kBoxSlack) return lowest;
   double least_z = kInfinity;  // compared with the table itself: differences can round to zero
   for (const Vector3d& corner : corners) {
     const Vector3d corner_O = X_OL * corner;

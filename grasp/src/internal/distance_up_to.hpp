@@ -6,6 +6,10 @@
 
 namespace graspfit::grasp::internal {
 
+/// Room for the rounding of a box seen from another frame [m]: of coordinates of a hand and its
+/// object, below 1e-14.
+inline constexpr double kBoxSlack = 1e-9;
+
 /// `geometry::distance` where it is at most `enough` [m]; infinite, without points, where it is
 /// more. Bodies whose boxes are farther apart cost next to nothing.
 geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geometry::MeshQuery& b,

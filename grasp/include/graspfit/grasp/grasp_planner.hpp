@@ -117,7 +117,7 @@ const char* outcome_name(AttemptOutcome outcome);
 struct PlannerStatistics {
   std::int64_t attempts = 0;
   std::map<AttemptOutcome, std::int64_t> outcomes;  ///< Every outcome is present, zeros included.
-  std::map<std::string, std::int64_t> target_failures;  ///< "no seed", "no second", "no further".
+  std::map<std::string, std::int64_t> target_failures;  ///< "no seed", "no second", …, "no palm".
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
   std::int64_t refinement_iterations = 0;
