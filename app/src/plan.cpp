@@ -161,6 +161,53 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
   out.commit("grasps.json");
 }
 
+/// What the hand cannot do is said before any work.
+void require_possible(const Flags& flags, const hands::HandModel& hand,
+                      const grasp::PlannerOptions& options) {
+  const bool has_palm = options.palm.value_or(options.style == grasp::GraspStyle::Power);
+  if (has_palm && hand.palm.pad < 0) {
+    throw geometry::InvalidInput("hand " + hand.name + " has no pad on its palm to touch with" +
+                                 (flags.has("palm") ? "" : "; --no-palm asks for none"));
+  }
+  grasp::requested_parts(hand, options);
+}
+
+int num_threads_of(const Flags& flags) {
+  const int num_threads = flags.integer("threads");
+  if (num_threads < 0) {
+    throw UsageError("--threads " + flags.text("threads") + " is not a number from 0");
+  }
+  return num_threads;
+}
+
+void require_means_of_output(const Flags& flags) {
+  if (!flags.has("out") && (flags.has("pictures") || flags.has("page"))) {
+    throw UsageError("--pictures and --page need --out DIR");
+  }
+  if (flags.has("pictures")) require_pictures("--pictures");
+}
+
+/// Shows how far the planner is: attempts, or, where it stops at the first grasps, these.
+grasp::PlannerProgress shown_by(ProgressBar& bar, const grasp::PlannerOptions& options) {
+  return [&bar, &options](std::int64_t attempts, std::int64_t grasps) {
+    const std::string attempt =
+        "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
+    const std::string found = std::to_string(grasps) + " grasps";
+    if (options.search == grasp::SearchRule::Best) {
+      bar.show(attempts, options.max_attempts, attempt + ", " + found);
+    } else {
+      bar.show(grasps, options.count,
+               found + " of " + std::to_string(options.count) + ", " + attempt);
+    }
+  };
+}
+
+/// "in 50 attempts (all attempts made): valid 12, missed contact 38".
+std::string attempts_text(const grasp::PlannerResult& result) {
+  return "in " + std::to_string(result.statistics.attempts) + " attempts (" +
+         stop_text(result.stop) + "): " + outcomes_text(result.statistics);
+}
+
 }  // namespace
 
 ExitCode run_plan(const std::vector<std::string>& arguments) {
@@ -176,22 +223,11 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
   }
-  // What the hand cannot do is said before any work.
-  if (grasp::requested_parts(hand, options).palm && hand.palm.pad < 0) {
-    throw geometry::InvalidInput("hand " + hand.name + " has no pad on its palm to touch with" +
-                                 (flags.has("palm") ? "" : "; --no-palm asks for none"));
-  }
-  const int num_threads = flags.integer("threads");
-  if (num_threads < 0) {
-    throw UsageError("--threads " + flags.text("threads") + " is not a number from 0");
-  }
+  require_possible(flags, hand, options);
+  const int num_threads = num_threads_of(flags);
   std::optional<OutputFolder> out;
-  if (flags.has("out")) {
-    out.emplace(flags.text("out"), is_plan_file);
-  } else if (flags.has("pictures") || flags.has("page")) {
-    throw UsageError("--pictures and --page need --out DIR");
-  }
-  if (flags.has("pictures")) require_pictures("--pictures");
+  if (flags.has("out")) out.emplace(flags.text("out"), is_plan_file);
+  require_means_of_output(flags);
   warn_of_findings("plan", reading);
 
   ProgressBar progress(!flags.has("quiet"));
@@ -203,29 +239,16 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
-  const bool uses_all_attempts = options.search == grasp::SearchRule::Best;
-  grasp::PlannerResult result = grasp::plan_grasps(
-      object, hand, options, around.surroundings, num_threads,
-      [&](std::int64_t attempts, std::int64_t grasps) {
-        const std::string attempt =
-            "attempt " + std::to_string(attempts) + " of " + std::to_string(options.max_attempts);
-        const std::string found = std::to_string(grasps) + " grasps";
-        if (uses_all_attempts) {
-          progress.show(attempts, options.max_attempts, attempt + ", " + found);
-        } else {
-          progress.show(grasps, options.count,
-                        found + " of " + std::to_string(options.count) + ", " + attempt);
-        }
-      });
+  grasp::PlannerResult result = grasp::plan_grasps(object, hand, options, around.surroundings,
+                                                   num_threads, shown_by(progress, options));
   result.timings.object = object_timings;
   progress.clear();
 
   if (result.grasps.empty()) {
     const std::string accepted(grasp::name_of(options.acceptance));
-    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s in %lld attempts (%s): %s\n",
+    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s\n",
                  flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
-                 static_cast<long long>(result.statistics.attempts), stop_text(result.stop),
-                 outcomes_text(result.statistics).c_str());
+                 attempts_text(result).c_str());
     return kNoGrasp;
   }
   grasp::GraspFile file =
@@ -233,10 +256,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (out) write_files(file, object, around.surroundings, flags, *out, progress);
   progress.clear();
   if (!flags.has("quiet")) {
-    std::printf("%s%zu of %d grasps in %lld attempts (%s): %s\n", table_of(file.grasps).c_str(),
-                file.grasps.size(), options.count,
-                static_cast<long long>(result.statistics.attempts), stop_text(result.stop),
-                outcomes_text(result.statistics).c_str());
+    std::printf("%s%zu of %d grasps %s\n", table_of(file.grasps).c_str(), file.grasps.size(),
+                options.count, attempts_text(result).c_str());
     if (out) std::printf("written to %s\n", out->target().c_str());
   }
   return kSuccess;

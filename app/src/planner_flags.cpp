@@ -163,7 +163,7 @@ po::options_description target_options() {
   add_choice(target, "guard", defaults.fitting.guard,
              "what a motion must not enter: full voxels [P], or also, near the surface, the true "
              "meshes [R]");
-  add_option(target, "settle", "yes|no", "yes",
+  add_option(target, "settle", "yes|no", defaults.fitting.settle ? "yes" : "no",
              "after the clip test, close fingers on until they touch [R]; no: the paper's contact");
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
              "of clip volumes; without it max(0.5 voxel, 1 mm) [R, A33]");
@@ -328,12 +328,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   options.distinct.joints = flags.number("distinct-joints");
 }
 
-}  // namespace
-
-PlannerOptions read_planner_flags(const Flags& flags) {
-  PlannerOptions options;
-  read_score_map_flags(flags, options);
-
+void read_request_flags(const Flags& flags, PlannerOptions& options) {
   options.style = flags.choice<grasp::GraspStyle>("style");
   options.num_contacts = flags.integer("contacts");
   if (flags.has("fingers")) {
@@ -351,18 +346,20 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   if (flags.has("palm")) options.palm = true;
   if (flags.has("no-palm")) options.palm = false;
   read_approach_flags(flags, options);
+}
 
+void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.count = flags.integer("count");
   options.seed = flags.unsigned_integer("seed");
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
   options.max_placements = flags.integer("max-placements");
-  options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
-  options.fitting.settle = flags.yes_or_no("settle");
   options.max_attempts = flags.integer("max-attempts");
   options.wall_clock_limit_s = flags.optional_number("wall-clock-limit-s");
+}
 
+void read_target_flags(const Flags& flags, PlannerOptions& options) {
   const double theta_max_deg = flags.number("theta-max-deg");
   if (!(theta_max_deg > 0.0 && theta_max_deg < 90.0)) {
     throw UsageError("--theta-max-deg " + flags.text("theta-max-deg") +
@@ -378,17 +375,18 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   options.targets.centroid_limit_rel = flags.number("centroid-limit");
   options.targets.pool_fraction = flags.number("pool-fraction");
   options.targets.max_seeds = flags.integer("max-seeds");
+  options.targets.search = flags.choice<grasp::TargetSearch>("target-search");
+  options.targets.ideal_m_bias = flags.number("ideal-m-bias");
+  read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
+  options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
+  options.fitting.settle = flags.yes_or_no("settle");
   options.fitting.clearance = flags.number("clearance-mm") / 1000.0;
   if (const auto thickness_mm = flags.optional_number("clip-thickness-mm")) {
     options.clip_thickness = *thickness_mm / 1000.0;
   }
+}
 
-  options.targets.search = flags.choice<grasp::TargetSearch>("target-search");
-  options.targets.ideal_m_bias = flags.number("ideal-m-bias");
-  read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
-  read_weak_flags(flags, options);
-  read_contact_flags(flags, options);
-
+void read_measure_flags(const Flags& flags, PlannerOptions& options) {
   options.quality.alpha = flags.number("alpha");
   options.quality.beta = flags.number("beta");
   options.quality.w1 = flags.number("w1");
@@ -397,6 +395,19 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   options.quality.units = flags.choice<grasp::MeasureUnits>("measure-units");
   options.quality.regularity = flags.choice<grasp::Regularity>("regularity");
   options.quality.centroid = flags.choice<grasp::HullCentroid>("centroid");
+}
+
+}  // namespace
+
+PlannerOptions read_planner_flags(const Flags& flags) {
+  PlannerOptions options;
+  read_score_map_flags(flags, options);
+  read_request_flags(flags, options);
+  read_search_flags(flags, options);
+  read_target_flags(flags, options);
+  read_weak_flags(flags, options);
+  read_contact_flags(flags, options);
+  read_measure_flags(flags, options);
   options.validate();
   return options;
 }

@@ -128,8 +128,9 @@ class BadFlags(program.ProgramTest):
         data["pads"] = [pad for pad in data["pads"] if pad["finger"] != "palm"]
         data["palm"]["pad"] = None
         sidecar.write_text(json.dumps(data))
-        for flags in (("--palm",), ("--style", "power")):
-            self.refuse("--hand", hand / "barrett.urdf", *flags, says=["barrett", "palm"])
+        self.refuse("--hand", hand / "barrett.urdf", "--palm", says=["barrett", "palm"])
+        self.refuse("--hand", hand / "barrett.urdf", "--style", "power",
+                    says=["barrett", "palm", "--no-palm asks for none"])
 
     def test_surroundings(self):
         self.refuse("--table", "0.5", says=["--table", "highest z"])
