@@ -1,6 +1,7 @@
 #include "internal/planner_attempts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,8 @@ namespace {
 // Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
 // sets are drawn.
 constexpr int kSidesPerDraw = 2;
+// More than refinement may exceed its largest turn by [rad].
+constexpr double kAngleSlack = 1e-6;
 
 /// `options` with what the planner's rules set where they leave it open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
@@ -126,6 +129,8 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
   check_object_size(object.mesh(), hand, parts_.fingers, widest_opening(distances_, parts_));
   if (options_.targets.search == TargetSearch::Ranked) {
     ranked_.emplace(object, distances_, parts_, options_.targets);
+  } else {
+    selector_.emplace(object, distances_, parts_, options_.targets);
   }
 }
 
@@ -157,7 +162,7 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
 std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t number,
                                                                  AttemptResult& result) const {
   const Stopwatch watch(result.timings.targets_s);
-  const auto by_tilt = [](const Start& a, const Start& b) { return a.tilt < b.tilt; };
+  const auto by_misfit = [](const Start& a, const Start& b) { return a.misfit < b.misfit; };
   if (ranked_) {
     const std::optional<TargetContacts> targets = ranked_targets(number);
     if (!targets) {
@@ -167,18 +172,22 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t nu
     }
     std::vector<Start> starts = starts_of(*targets);
     if (starts.empty()) result.target_failure = TargetFailure::NoFurther;
-    std::stable_sort(starts.begin(), starts.end(), by_tilt);
+    std::stable_sort(starts.begin(), starts.end(), by_misfit);
     return starts;
   }
   geometry::Random random =
       geometry::Random::stream(options_.seed, static_cast<std::uint64_t>(number));
   std::vector<Start> best;
   TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
-  double best_tilt = std::numeric_limits<double>::infinity();
+  double best_misfit = std::numeric_limits<double>::infinity();
   int num_judged = 0;
-  for (int draw = 0; draw < num_draws() && num_judged < kSidesPerDraw * num_draws(); ++draw) {
-    const TargetSelection selection =
-        select_target_contacts(object_, distances_, parts_, options_.targets, random);
+  // Where sets are rare, the seeds of one search are the budget of all draws together.
+  const auto may_draw = [&](int draw) {
+    return draw < num_draws() && num_judged < kSidesPerDraw * num_draws() &&
+           (best.empty() || result.seeds_tried < options_.targets.max_seeds);
+  };
+  for (int draw = 0; may_draw(draw); ++draw) {
+    const TargetSelection selection = selector_->select(random);
     result.seeds_tried += selection.seeds_tried;
     if (!selection.targets) {
       failure = selection.failure;
@@ -188,10 +197,10 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t nu
     if (starts.empty()) continue;
     num_judged += static_cast<int>(starts.size());
     if (options_.target_draws == 1) return starts;
-    const double tilt = std::min_element(starts.begin(), starts.end(), by_tilt)->tilt;
-    if (tilt >= best_tilt) continue;
-    best_tilt = tilt;
-    std::stable_sort(starts.begin(), starts.end(), by_tilt);
+    const double misfit = std::min_element(starts.begin(), starts.end(), by_misfit)->misfit;
+    if (misfit >= best_misfit) continue;
+    best_misfit = misfit;
+    std::stable_sort(starts.begin(), starts.end(), by_misfit);
     best = std::move(starts);
   }
   if (best.empty()) result.target_failure = failure;
@@ -211,7 +220,7 @@ std::vector<PlannerAttempts::Start> PlannerAttempts::starts_of(
        palm_placements(object_, targets, options_.approach_O, options_.approach_angle)) {
     Start start{assign_fingers(hand_, targets, parts_, placement), placement};
     if (options_.target_draws > 1 || ranked_) {
-      start.tilt = pad_tilt(hand_, start.targets, placement);
+      start.misfit = reach_misfit(hand_, start.targets, placement);
     }
     starts.push_back(std::move(start));
   }
@@ -263,8 +272,11 @@ AttemptResult PlannerAttempts::try_start(const Start& start, std::int64_t number
     result.outcome = AttemptOutcome::NoWayIn;
     return result;
   }
-  result.outcome = grasp.is_valid() ? AttemptOutcome::Valid : AttemptOutcome::UsableOnly;
-  result.is_accepted = is_accepted(grasp);
+  // A start that cut something may have been turned before refinement.
+  const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle;
+  const bool is_valid = is_as_asked && grasp.is_valid();
+  result.outcome = is_valid ? AttemptOutcome::Valid : AttemptOutcome::UsableOnly;
+  result.is_accepted = is_as_asked && is_accepted(grasp);
   result.grasp = std::move(grasp);
   return result;
 }
@@ -300,9 +312,14 @@ std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targ
                                                       hands::HandConfiguration& configuration,
                                                       AttemptResult& result) const {
   const Stopwatch watch(result.timings.refinement_s);
+  RefinementOptions refinement = options_.refinement;
+  if (options_.approach_O) {
+    const double left = options_.approach_angle - angle_from_approach(configuration) - kAngleSlack;
+    refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
+  }
   const RefinementResult refined =
       refine_contacts(fitting_hand_, object_, surroundings_, claimed_pads_, &targets, configuration,
-                      scene_.contact_options, options_.refinement);
+                      scene_.contact_options, refinement);
   result.refinement_iterations += refined.iterations;
   configuration = refined.configuration;
   switch (refined.stop) {
@@ -345,6 +362,14 @@ double PlannerAttempts::ideal_m(const TargetContacts& targets) const {
   return ideal_quality(contacts, scene_.quality_context, kIdealBoundaryDistance, kIdealArea,
                        options_.quality)
       .m;
+}
+
+/// Between the palm's direction and the one asked for [rad]; 0 if none is.
+double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& configuration) const {
+  if (!options_.approach_O) return 0.0;
+  const Eigen::Vector3d palm = configuration.X_OH.linear() * hand_.palm.direction_H;
+  const Eigen::Vector3d& wanted = *options_.approach_O;
+  return std::atan2(palm.cross(wanted).norm(), palm.dot(wanted));
 }
 
 bool PlannerAttempts::is_accepted(const Grasp& grasp) const {

@@ -35,12 +35,8 @@ double ideal_m(const ObjectModel& object, const TargetContacts& targets, double 
 /// The search of one target set: all state of the paper's section 6.
 class GreedySearch {
  public:
-  GreedySearch(const ObjectModel& object, const PartDistances& distances,
-               const RequestedParts& parts, const TargetOptions& options, geometry::Random& random)
-      : object_(object),
-        rules_(object, distances, parts, options),
-        options_(options),
-        random_(random) {}
+  GreedySearch(const ObjectModel& object, const TargetRules& rules, geometry::Random& random)
+      : object_(object), rules_(rules), options_(rules.options()), random_(random) {}
 
   TargetSelection run() {
     TargetSelection result;
@@ -212,7 +208,7 @@ class GreedySearch {
   }
 
   const ObjectModel& object_;
-  TargetRules rules_;
+  const TargetRules& rules_;
   const TargetOptions& options_;
   geometry::Random& random_;
   std::vector<std::int32_t> chosen_;    ///< The set so far, seed first.
@@ -227,10 +223,25 @@ class GreedySearch {
 
 }  // namespace
 
+struct TargetSelector::Impl {
+  const ObjectModel& object;
+  const TargetRules rules;
+};
+
+TargetSelector::TargetSelector(const ObjectModel& object, const PartDistances& distances,
+                               const RequestedParts& parts, const TargetOptions& options)
+    : impl_(new Impl{object, TargetRules(object, distances, parts, options)}) {}
+TargetSelector::~TargetSelector() = default;
+TargetSelector::TargetSelector(TargetSelector&&) noexcept = default;
+
+TargetSelection TargetSelector::select(geometry::Random& random) const {
+  return GreedySearch(impl_->object, impl_->rules, random).run();
+}
+
 TargetSelection select_target_contacts(const ObjectModel& object, const PartDistances& distances,
                                        const RequestedParts& parts, const TargetOptions& options,
                                        geometry::Random& random) {
-  return GreedySearch(object, distances, parts, options, random).run();
+  return TargetSelector(object, distances, parts, options).select(random);
 }
 
 }  // namespace graspfit::grasp

@@ -21,10 +21,6 @@ using geometry::InvalidInput;
 
 // Cosines this far from that of theta_max are beyond doubt: rounding is a millionth of it.
 constexpr double kCosineDoubt = 1e-9;
-// Turns of the hand around the palm's direction that are tried: 5 degrees apart, some 10 mm at a
-// fingertip's distance.
-constexpr int kTurns = 72;
-
 void check_parts(const PartDistances& distances, const RequestedParts& parts,
                  const TargetOptions& options) {
   const auto refuse = [](const std::string& what) {
@@ -114,6 +110,19 @@ std::array<std::int32_t, kMostParts> ascending(Places places) {
   return sorted;
 }
 
+/// Turns at which each target may be reached by the finger that some order gives it to.
+Turns turns_of_any(const std::vector<FingerOrder>& orders,
+                   const std::array<std::array<Turns, kMostParts>, kMostParts>& reachable,
+                   std::size_t num_targets) {
+  Turns any;
+  for (const FingerOrder& order : orders) {
+    Turns all = reachable[0][0];
+    for (std::size_t t = 1; t < num_targets; ++t) all &= reachable[t][order[t]];
+    any |= all;
+  }
+  return any;
+}
+
 }  // namespace
 
 TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distances,
@@ -127,7 +136,13 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
   check_parts(distances, parts, options);
   pool_ = pool_of(object, options);
   if (!parts.palm) return;
-  room_.assign(pool_.size(), -1);
+  room_ = std::vector<std::atomic<signed char>>(pool_.size());
+  for (auto& known : room_) known = -1;
+  palm_axes_.emplace(*distances.palm);
+  for (const auto& tip : distances.palm->tips) {
+    reachable_turns_.emplace_back();
+    if (tip) reachable_turns_.back().emplace(*palm_axes_, *tip, options.palm_reach_tolerance);
+  }
   for (int turn = 0; turn < kTurns; ++turn) {
     const double angle = 2.0 * std::numbers::pi * turn / kTurns;
     turns_H_.push_back(
@@ -249,22 +264,21 @@ double TargetRules::rank(Places places, std::optional<double> palm_misfit) const
   return rank;
 }
 
-bool TargetRules::has_room(std::int32_t palm) {
-  signed char& known = room_[palm];
+bool TargetRules::has_room(std::int32_t palm) const {
+  const signed char known = room_[palm].load(std::memory_order_relaxed);
   if (known >= 0) return known == 1;
-  known = 1;
   const Place& place = pool_[palm];
   const double squared_radius = distances_.palm->pad_radius * distances_.palm->pad_radius;
-  for (const geometry::SurfacePatch& patch : object_.patches) {
-    const Vector3d offset = patch.centroid - place.point_O;
-    const double height = -offset.dot(place.inward_normal_O);
-    if (height <= object_.grid.lattice.voxel_size) continue;
-    if (offset.squaredNorm() - height * height < squared_radius) {
-      known = 0;
-      break;
-    }
-  }
-  return known == 1;
+  const bool is_free = std::none_of(
+      object_.patches.begin(), object_.patches.end(), [&](const geometry::SurfacePatch& patch) {
+        const Vector3d offset = patch.centroid - place.point_O;
+        const double height = -offset.dot(place.inward_normal_O);
+        return height > object_.grid.lattice.voxel_size &&
+               offset.squaredNorm() - height * height < squared_radius;
+      });
+  // Whichever thread finds it finds the same.
+  room_[palm].store(is_free ? 1 : 0, std::memory_order_relaxed);
+  return is_free;
 }
 
 std::optional<double> TargetRules::tip_misfit(Places fingers,
@@ -276,25 +290,37 @@ std::optional<double> TargetRules::tip_misfit(Places fingers,
   const Matrix3d R_HO = Eigen::Quaterniond::FromTwoVectors(palm.inward_normal_O, reach.direction_H)
                             .toRotationMatrix();
   std::array<Vector3d, kMostParts> from_palm, pad_normal;
+  std::array<std::array<Turns, kMostParts>, kMostParts> reachable;  // [target][finger]
   for (std::size_t t = 0; t < fingers.size(); ++t) {
     pad_normal[t] = R_HO * pool_[fingers[t]].inward_normal_O;
     from_palm[t] = R_HO * (pool_[fingers[t]].point_O - palm.point_O);
+    const PlaceFromPalm place = palm_axes_->place(from_palm[t]);
+    for (std::size_t f = 0; f < fingers.size(); ++f) {
+      const auto& turns = reachable_turns_[parts_.fingers[f]];
+      if (turns) reachable[t][f] = turns->at(place);
+    }
   }
-  const auto distance_to_reach = [&](std::size_t target, int finger, const Matrix3d& turn) {
-    const auto& tip = reach.tips[parts_.fingers[finger]];
-    return tip ? tip->distance(reach.center_H + turn * from_palm[target], turn * pad_normal[target])
-               : std::numeric_limits<double>::infinity();
-  };
+  const Turns worth_trying = turns_of_any(orders, reachable, fingers.size());
   std::optional<double> best;
-  for (const Matrix3d& turn : turns_H_) {
-    const double of_seed = distance_to_reach(0, 0, turn);
-    if (of_seed > options_.palm_reach_tolerance) continue;
+  for (int k = 0; k < kTurns && worth_trying.any(); ++k) {
+    if (!worth_trying[k]) continue;
+    const Matrix3d& turn = turns_H_[k];
+    const auto distance_to_reach = [&](std::size_t target, int finger) {
+      if (!reachable[target][finger][k]) return std::numeric_limits<double>::infinity();
+      return reach.tips[parts_.fingers[finger]]->distance(reach.center_H + turn * from_palm[target],
+                                                          turn * pad_normal[target]);
+    };
+    const double of_seed = distance_to_reach(0, 0);
+    bool is_reached = of_seed <= options_.palm_reach_tolerance;
     std::array<std::array<double, kMostParts>, kMostParts> off{};
-    for (std::size_t t = 1; t < fingers.size(); ++t) {
+    for (std::size_t t = 1; t < fingers.size() && is_reached; ++t) {
+      is_reached = false;
       for (std::size_t f = 1; f < fingers.size(); ++f) {
-        off[t][f] = distance_to_reach(t, static_cast<int>(f), turn);
+        off[t][f] = distance_to_reach(t, static_cast<int>(f));
+        is_reached = is_reached || off[t][f] <= options_.palm_reach_tolerance;
       }
     }
+    if (!is_reached) continue;
     for (const FingerOrder& order : orders) {
       double sum = of_seed;
       double largest = of_seed;
@@ -312,7 +338,7 @@ std::optional<double> TargetRules::tip_misfit(Places fingers,
 
 std::optional<double> TargetRules::palm_misfit(Places fingers,
                                                const std::vector<FingerOrder>& orders,
-                                               std::int32_t palm) {
+                                               std::int32_t palm) const {
   const Place& place = pool_[palm];
   std::array<double, kMostParts> distances{};
   for (std::size_t t = 0; t < fingers.size(); ++t) {

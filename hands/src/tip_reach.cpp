@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -15,6 +16,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kCell = 0.006;  // [m] finer than any fingertip is wide
+// Around the visited cells [cells]: places that a finger all but reaches are looked up, not
+// bounded.
+constexpr int kRoom = 4;
 constexpr int kMostSamples = 1 << 14;
 constexpr int kMostPerJoint = 128;
 // A pad looks along a direction if its normal is within 50 degrees of it.
@@ -33,6 +37,19 @@ std::vector<Vector3d> looking_directions() {
     }
   }
   return directions;
+}
+
+/// The nearest of `looking_directions`: the face of the largest component, or the corner of the
+/// signs. Equally near: any.
+std::size_t nearest_direction(const Vector3d& normal) {
+  Eigen::Index axis = 0;
+  const double to_face = normal.cwiseAbs().maxCoeff(&axis);
+  const double to_corner = normal.lpNorm<1>() / std::numbers::sqrt3;
+  if (to_face >= to_corner) {
+    return 2 * static_cast<std::size_t>(axis) + (normal[axis] > 0.0 ? 1 : 0);
+  }
+  const auto bit = [&](int i) { return normal[i] > 0.0 ? std::size_t{1} : std::size_t{0}; };
+  return 6 + 4 * bit(0) + 2 * bit(1) + bit(2);
 }
 
 /// The independent joints that move a finger, ascending.
@@ -77,17 +94,23 @@ std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
 
 }  // namespace
 
-TipReach::TipReach(const std::vector<TipPose>& poses, double cell) {
+TipReach::TipReach(const std::vector<TipPose>& poses, double cell) : cell_(cell) {
   if (poses.empty() || !(cell > 0.0)) {
     throw geometry::InvalidInput("TipReach: needs poses and a cell > 0 m");
   }
   Eigen::AlignedBox3d box;
   for (const TipPose& pose : poses) box.extend(pose.point_H);
   geometry::VoxelGrid grid;
-  // One cell of room on every side, so that no point is on the lattice's border.
-  grid.lattice.origin = box.min() - Vector3d::Constant(cell);
+  grid.lattice.origin = box.min() - Vector3d::Constant((kRoom + 0.5) * cell);
   grid.lattice.voxel_size = cell;
-  grid.lattice.counts = ((box.sizes() / cell).array().ceil().cast<int>() + 3).matrix();
+  grid.lattice.counts = ((box.sizes() / cell).array().ceil().cast<int>() + 2 * kRoom + 2).matrix();
+  std::vector<bool> is_known(static_cast<std::size_t>(grid.lattice.num_voxels()), false);
+  for (const TipPose& pose : poses) {
+    const Eigen::Vector3i voxel = grid.lattice.voxel_at(pose.point_H);
+    const auto index = static_cast<std::size_t>(grid.lattice.index(voxel));
+    if (!is_known[index]) visited_H_.push_back(grid.lattice.center(voxel));
+    is_known[index] = true;
+  }
   for (const Vector3d& direction : looking_directions()) {
     grid.classes.assign(static_cast<std::size_t>(grid.lattice.num_voxels()),
                         geometry::VoxelClass::Empty);
@@ -104,12 +127,7 @@ TipReach::TipReach(const std::vector<TipPose>& poses, double cell) {
 }
 
 double TipReach::distance(const Vector3d& point_H, const Vector3d& normal_H) const {
-  static const std::vector<Vector3d> directions = looking_directions();
-  std::size_t nearest = 0;
-  for (std::size_t k = 1; k < directions.size(); ++k) {
-    if (normal_H.dot(directions[k]) > normal_H.dot(directions[nearest])) nearest = k;
-  }
-  const auto& map_H = maps_H_[nearest];
+  const auto& map_H = maps_H_[nearest_direction(normal_H)];
   if (!map_H) return std::numeric_limits<double>::infinity();
   return map_H->at(point_H) * map_H->lattice.voxel_size;
 }

@@ -40,7 +40,7 @@ class PlannerAttempts {
   struct Start {
     TargetContacts targets;
     PalmPlacement placement;
-    double tilt = 0.0;
+    double misfit = 0.0;
   };
 
   std::vector<Start> draw_starts(std::int64_t number, AttemptResult& result) const;
@@ -55,6 +55,7 @@ class PlannerAttempts {
                                        AttemptResult& result) const;
   void complete(Grasp& grasp, AttemptResult& result) const;
   double ideal_m(const TargetContacts& targets) const;
+  double angle_from_approach(const hands::HandConfiguration& configuration) const;
   bool is_accepted(const Grasp& grasp) const;
 
   const ObjectModel& object_;
@@ -66,6 +67,7 @@ class PlannerAttempts {
   const SurroundingsCollision surroundings_;
   const MeasuringScene scene_;
   std::vector<int> claimed_pads_;
+  std::optional<TargetSelector> selector_;  ///< Of the random search.
   mutable std::mutex ranked_lock_;
   mutable std::optional<RankedTargets> ranked_;
   mutable std::vector<TargetContacts> ranked_sets_;  ///< Those that `ranked_` gave so far.

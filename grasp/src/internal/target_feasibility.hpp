@@ -2,12 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "graspfit/grasp/target_contacts.hpp"
+#include "internal/reachable_turns.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -26,7 +28,7 @@ using FingerOrder = std::array<std::int8_t, kMostParts>;
 using Places = std::span<const std::int32_t>;
 
 /// What may be a target, and which targets go together (paper section 6): the same for every way of
-/// searching.
+/// searching. Several threads may ask at once.
 class TargetRules {
  public:
   /// Refers to the object and the distances. @throws InvalidInput as `select_target_contacts`.
@@ -74,7 +76,7 @@ class TargetRules {
   /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
   /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
   std::optional<double> palm_misfit(Places fingers, const std::vector<FingerOrder>& orders,
-                                    std::int32_t palm);
+                                    std::int32_t palm) const;
 
   TargetContacts as_targets(Places places, std::optional<double> palm_misfit,
                             int seeds_tried) const;
@@ -83,7 +85,7 @@ class TargetRules {
   bool reaches(int order_a, int order_b, double distance) const;
   bool can_take(const FingerOrder& order, std::size_t size, int finger,
                 std::span<const double> distances) const;
-  bool has_room(std::int32_t palm);
+  bool has_room(std::int32_t palm) const;
   std::optional<double> tip_misfit(Places fingers, const std::vector<FingerOrder>& orders,
                                    const Place& palm) const;
 
@@ -93,8 +95,11 @@ class TargetRules {
   const TargetOptions options_;
   const double cos_theta_max_;
   std::vector<Place> pool_;
-  std::vector<signed char> room_;         ///< Per place: for the palm, or −1 while unknown.
+  /// Per place: whether there is room for the palm, or −1 while unknown.
+  mutable std::vector<std::atomic<signed char>> room_;
   std::vector<Eigen::Matrix3d> turns_H_;  ///< About the palm's direction.
+  std::optional<PalmAxes> palm_axes_;
+  std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.
 };
 
 }  // namespace graspfit::grasp::internal

@@ -51,7 +51,8 @@ struct PlannerOptions {
   SearchRule search = SearchRule::Best;
   int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
   Acceptance acceptance = Acceptance::Valid;
-  std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero.
+  std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
+                                              ///< by targets' sides and by every grasp accepted.
   double approach_angle =
       1.57079632679489662;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
   std::optional<double>
@@ -98,7 +99,8 @@ enum class PlannerStop {
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
 enum class AttemptOutcome {
   Valid,
-  UsableOnly,  ///< Usable but penetrating, without a requested contact, or without a way in.
+  UsableOnly,  ///< Usable but penetrating, without a requested contact, without a way in, or with
+               ///< the palm out of the cone of approach.
   NoTargets,   ///< No seed, no pair or no further contact.
   InitialCollision,
   BlockedFinger,

@@ -115,6 +115,17 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
 double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
                 const PalmPlacement& placement);
 
+/// By what the planner chooses among target sets, smaller is better: `pad_tilt` and, where the palm
+/// has no target (against which fingers press), twice the
+/// mean angle by which pairs of fingertips miss looking at each other in that posture [rad]. The
+/// pairs are those of the seed's finger with every other one, as in selection (A17); a pair's angle
+/// is the larger one between a pad's normal and the line to the other pad's contact point. Where
+/// pads lie flat their normals are those of the contacts, so that a set with small angles leaves
+/// stable pairs even if the fingertips land beside their targets: "the ideal grasp scores high on
+/// M" (paper section 1) read through the hand's kinematics [R].
+double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
+                    const PalmPlacement& placement);
+
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
 /// of five steps (section 8) under the penetration guard (section 9).
 ///

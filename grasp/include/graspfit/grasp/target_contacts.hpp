@@ -61,7 +61,8 @@ struct TargetOptions {
   double pool_fraction =
       0.2;               ///< Share of the ranked candidates drawn from, in (0, 1] (A19, A20) [R].
   int pool_minimum = 5;  ///< Candidates drawn from at least, if there are so many (A20) [R].
-  int max_seeds = 200;   ///< Seeds tried per set, ≥ 1 (A20) [R].
+  int max_seeds = 200;  ///< Seeds tried per set, ≥ 1 (A20) [R]; an attempt that has a set draws no
+                        ///< more once its draws together have tried as many.
   int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
                                ///< (A19) [R]. The ranked search never relaxes them.
   double min_separation =
@@ -171,6 +172,25 @@ PartDistances part_distances(const hands::HandModel& hand, const RequestedParts&
 TargetSelection select_target_contacts(const ObjectModel& object, const PartDistances& distances,
                                        const RequestedParts& parts, const TargetOptions& options,
                                        geometry::Random& random);
+
+/// `select_target_contacts` for many sets: what does not depend on the random numbers is computed
+/// once. The same random numbers give the same set.
+class TargetSelector {
+ public:
+  /// Object and distances are referred to, not copied: they have to outlive the selector.
+  /// @throws InvalidInput as `select_target_contacts`.
+  TargetSelector(const ObjectModel& object, const PartDistances& distances,
+                 const RequestedParts& parts, const TargetOptions& options);
+  ~TargetSelector();
+  TargetSelector(TargetSelector&&) noexcept;
+
+  /// One set. Several threads may ask at once, each with its own random numbers.
+  TargetSelection select(geometry::Random& random) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// All feasible target sets, best first (`TargetSearch::Ranked`) [R]: complete, so that an end
 /// without any set proves that the pool has none within the unrelaxed limits, and `failure` says at

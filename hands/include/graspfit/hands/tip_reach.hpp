@@ -33,7 +33,14 @@ class TipReach {
   /// at most 36° away.
   double distance(const Eigen::Vector3d& point_H, const Eigen::Vector3d& normal_H) const;
 
+  /// Centers of all cells visited, whichever way the pad looks there, each once; and their width
+  /// [m].
+  const std::vector<Eigen::Vector3d>& visited_H() const { return visited_H_; }
+  double cell() const { return cell_; }
+
  private:
+  double cell_ = 0.0;
+  std::vector<Eigen::Vector3d> visited_H_;
   std::vector<std::optional<geometry::SignedDistanceMap>> maps_H_;  ///< One per direction.
 };
 

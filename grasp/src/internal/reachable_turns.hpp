@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <bitset>
+#include <vector>
+
+#include "graspfit/grasp/target_contacts.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// Turns of the hand around the palm's direction that are tried: 5 degrees apart, some 10 mm at a
+/// fingertip's distance.
+inline constexpr int kTurns = 72;
+
+/// A set of those turns.
+using Turns = std::bitset<kTurns>;
+
+/// A place as seen from the palm's center: ahead along its direction, aside of it, and which turn's
+/// width its azimuth falls into.
+struct PlaceFromPalm {
+  double ahead = 0.0;  ///< [m]
+  double aside = 0.0;  ///< [m], ≥ 0
+  int azimuth = 0;     ///< In [0, kTurns).
+};
+
+/// The palm's center and direction with two directions that make a right-handed frame of it, from
+/// which azimuths are counted.
+class PalmAxes {
+ public:
+  explicit PalmAxes(const PalmReach& palm);
+  PlaceFromPalm place(const Eigen::Vector3d& from_center_H) const;
+  const Eigen::Vector3d& center_H() const { return center_H_; }
+  double ahead(const Eigen::Vector3d& v) const { return v.dot(ahead_H_); }
+  double aside(const Eigen::Vector3d& v) const;
+  double azimuth(const Eigen::Vector3d& v) const;  ///< [rad]
+
+ private:
+  Eigen::Vector3d center_H_, ahead_H_, right_H_, up_H_;
+};
+
+/// The turns at which a fingertip gets near a place, looked up by the place: never too few, some
+/// too many. Which way the pad looks there is left out.
+class ReachableTurns {
+ public:
+  /// @param tolerance how near [m].
+  ReachableTurns(const PalmAxes& palm, const hands::TipReach& tip, double tolerance);
+
+  /// Every turn k at which `hands::TipReach` has a visited cell within the tolerance of the cell
+  /// that holds the place turned by k · 2π/kTurns, and others.
+  Turns at(const PlaceFromPalm& place) const;
+
+ private:
+  /// Adds the azimuths near a visited cell to the table's cells near it.
+  void add(double ahead, double aside, double azimuth, double reach);
+
+  double first_ahead_ = 0.0;  ///< Of the table [m].
+  int num_ahead_ = 0;
+  int num_aside_ = 0;
+  std::vector<Turns> azimuths_;  ///< Per cell, aside fastest.
+};
+
+}  // namespace graspfit::grasp::internal
