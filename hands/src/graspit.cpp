@@ -244,7 +244,10 @@ class Reader : private XmlSource {
       if (error != std::errc() || !std::isfinite(into)) complain("is not d#*ratio+offset");
       at = rest;
     };
-    if (at != end && *at == '*') number((++at, result.ratio));
+    if (at != end && *at == '*') {
+      ++at;
+      number(result.ratio);
+    }
     if (at != end && (*at == '+' || *at == '-')) {
       if (*at == '+') ++at;
       number(result.offset);

@@ -137,17 +137,27 @@ class TreeBuilder {
     }
   }
 
-  /// Movable joints on a link and on those that are fixed to it.
+  /// Movable joints on a link and on those that are fixed to it, depth first. No recursion, as in
+  /// `add_tree`.
   std::vector<const DescribedJoint*> joints_on(const std::string& link) const {
     std::vector<const DescribedJoint*> result;
-    for (const DescribedJoint& joint : description_.joints) {
-      if (joint.parent != link) continue;
-      if (joint.type != DescribedJoint::Type::Fixed) {
-        result.push_back(&joint);
-        continue;
+    std::vector<const DescribedJoint*> waiting;
+    const auto wait_for_joints_on = [&](const std::string& name) {
+      const auto first = static_cast<std::ptrdiff_t>(waiting.size());
+      for (const DescribedJoint& joint : description_.joints) {
+        if (joint.parent == name) waiting.push_back(&joint);
       }
-      const auto further = joints_on(joint.child);
-      result.insert(result.end(), further.begin(), further.end());
+      std::reverse(waiting.begin() + first, waiting.end());
+    };
+    wait_for_joints_on(link);
+    while (!waiting.empty()) {
+      const DescribedJoint& joint = *waiting.back();
+      waiting.pop_back();
+      if (joint.type == DescribedJoint::Type::Fixed) {
+        wait_for_joints_on(joint.child);
+      } else {
+        result.push_back(&joint);
+      }
     }
     return result;
   }
