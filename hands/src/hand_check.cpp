@@ -3,21 +3,20 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <numbers>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
+#include "internal/coupling_check.hpp"
+#include "internal/finding_text.hpp"
 #include "internal/findings.hpp"
 #include "internal/hand_assembly.hpp"
+#include "internal/joint_tree.hpp"
 
 namespace graspfit::hands {
 
@@ -25,80 +24,9 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::Findings;
-
-/// For people: three digits.
-std::string rounded(double value) {
-  char text[32];
-  const auto [end, error] =
-      std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3);
-  return {text, end};
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-/// How the joints of a tree follow each other, whatever links fixed joints join.
-class JointTree {
- public:
-  explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size(), -1) {
-    for (std::size_t i = 1; i < tree_.links.size(); ++i) {
-      const Link& link = tree_.links[i];
-      above_[i] = link.parent_joint >= 0 ? link.parent_joint
-                                         : above_[static_cast<std::size_t>(link.parent_link)];
-    }
-    const HandConfiguration zero{
-        .X_OH = RigidTransform::Identity(),
-        .q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree_.joints.size()))};
-    X_HL_ = forward_kinematics(tree_, zero);
-  }
-
-  const HandModel& tree() const { return tree_; }
-  const Joint& joint(int j) const { return tree_.joints[static_cast<std::size_t>(j)]; }
-  int num_joints() const { return static_cast<int>(tree_.joints.size()); }
-
-  /// The joint that moves a link; −1 for what the root carries.
-  int above_link(std::size_t link) const { return above_[link]; }
-  /// The joint before a joint; −1 if there is none.
-  int above(int j) const { return above_[static_cast<std::size_t>(joint(j).parent_link)]; }
-  /// The joints next after a joint; −1: those on the root.
-  std::vector<int> next(int j) const {
-    std::vector<int> result;
-    for (int k = 0; k < num_joints(); ++k) {
-      if (above(k) == j) result.push_back(k);
-    }
-    return result;
-  }
-
-  /// At zero of all joints, in the root link's frame.
-  Vector3d point(int j) const { return X_HJ(j).translation(); }
-  Vector3d axis(int j) const { return X_HJ(j).linear() * joint(j).axis_J; }
-  bool are_parallel(int a, int b) const {
-    constexpr double kParallel = 0.02;  // [rad]; axes of one plane of flexion, measured on CAD
-    return axis(a).cross(axis(b)).norm() < kParallel;
-  }
-
-  double range(int j) const { return joint(j).upper - joint(j).lower; }
-  /// Follows no joint, and none follows it.
-  bool is_free(int j) const {
-    return !joint(j).coupling &&
-           std::none_of(tree_.joints.begin(), tree_.joints.end(), [&](const Joint& other) {
-             return other.coupling && other.coupling->leader == j;
-           });
-  }
-  bool is_revolute(int j) const { return joint(j).type == JointType::Revolute; }
-
- private:
-  RigidTransform X_HJ(int j) const {
-    return X_HL_[static_cast<std::size_t>(joint(j).parent_link)] * joint(j).X_PJ;
-  }
-
-  const HandModel& tree_;
-  std::vector<int> above_;
-  std::vector<RigidTransform> X_HL_;
-};
+using internal::JointTree;
+using internal::listed;
+using internal::rounded;
 
 // ---- Links
 // ----------------------------------------------------------------------------------------
@@ -172,136 +100,6 @@ void look_at_masses(const HandModel& tree, Findings& findings) {
   if (without.empty()) return;
   findings.note("", std::to_string(without.size()) + " of " + std::to_string(num_bodies) +
                         " links with a mesh have no mass: " + listed(without));
-}
-
-// ---- Couplings
-// ------------------------------------------------------------------------------------
-
-std::string advice(const Joint& follower, const Joint& leader, double ratio) {
-  return "; if it does, add {\"joint\": \"" + follower.name + "\", \"leader\": \"" + leader.name +
-         "\", \"ratio\": " + rounded(ratio) + "} to the sidecar's couplings, if not, an empty list";
-}
-
-/// The end of a finger and the joint before it, if both are free and flex in one plane.
-std::vector<std::pair<int, int>> free_end_pairs(const JointTree& joints) {
-  std::vector<std::pair<int, int>> pairs;
-  for (int j = 0; j < joints.num_joints(); ++j) {
-    const int before = joints.above(j);
-    if (before < 0 || !joints.next(j).empty() || !joints.is_free(j) || !joints.is_free(before) ||
-        !joints.is_revolute(j) || !joints.is_revolute(before) || !joints.are_parallel(j, before)) {
-      continue;
-    }
-    pairs.emplace_back(before, j);
-  }
-  return pairs;
-}
-
-/// Joints from `j` on, as long as they do not branch.
-std::vector<int> chain_from(const JointTree& joints, int j) {
-  std::vector<int> chain = {j};
-  for (auto next = joints.next(j); next.size() == 1; next = joints.next(next[0])) {
-    chain.push_back(next[0]);
-  }
-  return chain;
-}
-
-/// Whether the plane halfway between the parallel axes of two joints mirrors the joints after the
-/// one onto those after the other, at zero.
-bool are_mirrored(const JointTree& joints, int a, int b) {
-  constexpr double kSamePlace = 2e-3;  // [m]; CAD of twin fingers differs by tenths of a mm
-  const std::vector<int> of_a = chain_from(joints, a);
-  const std::vector<int> of_b = chain_from(joints, b);
-  if (of_a.size() != of_b.size() || of_a.size() < 2) return false;
-  const Vector3d axis = joints.axis(a);
-  Vector3d between = joints.point(b) - joints.point(a);
-  between -= between.dot(axis) * axis;
-  if (between.norm() < kSamePlace) return false;
-  const Vector3d normal = between.normalized();
-  const Vector3d middle = 0.5 * (joints.point(a) + joints.point(b));
-  for (std::size_t k = 0; k < of_a.size(); ++k) {
-    constexpr double kSameDirection = 0.02;  // [rad]
-    const Vector3d direction_a = joints.axis(of_a[k]);
-    const Vector3d mirrored = direction_a - 2.0 * normal.dot(direction_a) * normal;
-    const Vector3d direction_b = joints.axis(of_b[k]);
-    if (mirrored.cross(direction_b).norm() > kSameDirection) return false;
-    const Vector3d point_a = joints.point(of_a[k]);
-    const Vector3d image = point_a - 2.0 * normal.dot(point_a - middle) * normal;
-    if ((image - joints.point(of_b[k])).cross(direction_b).norm() > kSamePlace) return false;
-  }
-  return true;
-}
-
-void look_for_lost_couplings(const JointTree& joints, Findings& findings) {
-  constexpr double kShortRange = 0.5;                    // of the joint before
-  constexpr double kWideSwing = 0.5 * std::numbers::pi;  // [rad]
-  constexpr double kSameAngle = 0.02;                    // [rad]; limits with two digits
-  constexpr double kSameStroke = 1e-4;                   // [m]
-  constexpr int kMostDrives = 20;
-  bool is_suspicious = false;
-  const auto suspicious = [&](const Joint& joint, const std::string& what) {
-    findings.suspicious("joint " + joint.name, what);
-    is_suspicious = true;
-  };
-  const std::vector<std::pair<int, int>> ends = free_end_pairs(joints);
-  for (const auto& [before, end] : ends) {
-    const double ratio = joints.range(end) / joints.range(before);
-    if (!(ratio > 0.0 && ratio < kShortRange)) continue;
-    suspicious(joints.joint(end),
-               "has " + rounded(ratio) + " of the range of joint " + joints.joint(before).name +
-                   " before it, about a parallel axis, and is independent: it looks like a geared "
-                   "end joint that should follow" +
-                   advice(joints.joint(end), joints.joint(before), ratio));
-  }
-  const std::vector<int> on_root = joints.next(-1);
-  for (std::size_t i = 0; i < on_root.size(); ++i) {
-    for (std::size_t k = i + 1; k < on_root.size(); ++k) {
-      const int a = on_root[i];
-      const int b = on_root[k];
-      if (!joints.is_free(a) || !joints.is_free(b) || !joints.are_parallel(a, b)) continue;
-      const double difference = std::abs(joints.range(a) - joints.range(b));
-      // A mirror image turns the other way about an axis in the mirror, and slides the other way
-      // along an axis across it.
-      const double mirrored_ratio = joints.axis(a).dot(joints.axis(b)) > 0.0 ? -1.0 : 1.0;
-      if (joints.is_revolute(a) && joints.is_revolute(b)) {
-        const std::vector<int> after = joints.next(a);
-        const bool is_swing = after.size() == 1 && !joints.are_parallel(a, after[0]);
-        if (!is_swing || difference > kSameAngle || joints.range(a) < kWideSwing - kSameAngle ||
-            !are_mirrored(joints, a, b)) {
-          continue;
-        }
-        suspicious(joints.joint(b), "swings a mirror image of the finger of joint " +
-                                        joints.joint(a).name + " by " + rounded(joints.range(a)) +
-                                        " rad, and both are independent: it looks like one spread "
-                                        "that both should share" +
-                                        advice(joints.joint(b), joints.joint(a), mirrored_ratio));
-      } else if (!joints.is_revolute(a) && !joints.is_revolute(b) && difference < kSameStroke &&
-                 joints.next(a).empty() && joints.next(b).empty()) {
-        suspicious(joints.joint(b),
-                   "slides as far as joint " + joints.joint(a).name +
-                       ", parallel to it, and both are independent: they look like the two jaws of "
-                       "a gripper with one drive" +
-                       advice(joints.joint(b), joints.joint(a), mirrored_ratio));
-      }
-    }
-  }
-  const bool has_coupling =
-      std::any_of(joints.tree().joints.begin(), joints.tree().joints.end(),
-                  [](const Joint& joint) { return joint.coupling.has_value(); });
-  if (has_coupling || is_suspicious || ends.empty()) return;
-  std::vector<std::string> pairs;
-  for (const auto& [before, end] : ends) {
-    pairs.push_back(joints.joint(end).name + " after " + joints.joint(before).name);
-  }
-  const std::string what =
-      "no joint follows another; where end joints of this hand follow the "
-      "joints before them (" +
-      listed(pairs) + "), add couplings to the sidecar, else an empty list";
-  if (joints.num_joints() > kMostDrives) {
-    findings.suspicious("", std::to_string(joints.num_joints()) +
-                                " independent joints are more than any built hand drives: " + what);
-  } else {
-    findings.note("", what);
-  }
 }
 
 // ---- Closing
@@ -496,7 +294,7 @@ HandCheck check_hand(const std::filesystem::path& description_file) {
     }
     look_for_missing_meshes(joints, has_geometry, findings);
     look_at_masses(*sources.tree, findings);
-    if (!sources.sidecar.couplings) look_for_lost_couplings(joints, findings);
+    if (!sources.sidecar.couplings) internal::look_for_lost_couplings(joints, findings);
   }
   if (check.model) {
     findings.attempt([&] { look_at_whole(*check.model, findings); });

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
+
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::hands::internal {
+
+using Eigen::Vector3d;
+
+/// How the joints of a tree follow each other, whatever links fixed joints join.
+class JointTree {
+ public:
+  explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size(), -1) {
+    for (std::size_t i = 1; i < tree_.links.size(); ++i) {
+      const Link& link = tree_.links[i];
+      above_[i] = link.parent_joint >= 0 ? link.parent_joint
+                                         : above_[static_cast<std::size_t>(link.parent_link)];
+    }
+    const HandConfiguration zero{
+        .X_OH = RigidTransform::Identity(),
+        .q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree_.joints.size()))};
+    X_HL_ = forward_kinematics(tree_, zero);
+  }
+
+  const HandModel& tree() const { return tree_; }
+  const Joint& joint(int j) const { return tree_.joints[static_cast<std::size_t>(j)]; }
+  int num_joints() const { return static_cast<int>(tree_.joints.size()); }
+
+  /// The joint that moves a link; −1 for what the root carries.
+  int above_link(std::size_t link) const { return above_[link]; }
+  /// The joint before a joint; −1 if there is none.
+  int above(int j) const { return above_[static_cast<std::size_t>(joint(j).parent_link)]; }
+  /// The joints next after a joint; −1: those on the root.
+  std::vector<int> next(int j) const {
+    std::vector<int> result;
+    for (int k = 0; k < num_joints(); ++k) {
+      if (above(k) == j) result.push_back(k);
+    }
+    return result;
+  }
+
+  /// At zero of all joints, in the root link's frame.
+  Vector3d point(int j) const { return X_HJ(j).translation(); }
+  Vector3d axis(int j) const { return X_HJ(j).linear() * joint(j).axis_J; }
+  bool are_parallel(int a, int b) const {
+    constexpr double kParallel = 0.02;  // [rad]; axes of one plane of flexion, measured on CAD
+    return axis(a).cross(axis(b)).norm() < kParallel;
+  }
+
+  double range(int j) const { return joint(j).upper - joint(j).lower; }
+  /// Follows no joint, and none follows it.
+  bool is_free(int j) const {
+    return !joint(j).coupling &&
+           std::none_of(tree_.joints.begin(), tree_.joints.end(), [&](const Joint& other) {
+             return other.coupling && other.coupling->leader == j;
+           });
+  }
+  bool is_revolute(int j) const { return joint(j).type == JointType::Revolute; }
+
+ private:
+  RigidTransform X_HJ(int j) const {
+    return X_HL_[static_cast<std::size_t>(joint(j).parent_link)] * joint(j).X_PJ;
+  }
+
+  const HandModel& tree_;
+  std::vector<int> above_;
+  std::vector<RigidTransform> X_HL_;
+};
+
+}  // namespace graspfit::hands::internal
