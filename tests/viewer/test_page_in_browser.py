@@ -118,15 +118,17 @@ class PageInBrowser(unittest.TestCase):
             self.settle()
             self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
         self.show_text_on_scene(False)
-        self.settle()
         image = Image.open(io.BytesIO(self.element("scene").screenshot_as_png)).convert("RGB")
         self.show_text_on_scene(True)
         return image
 
     def show_text_on_scene(self, is_shown):
-        self.browser.execute_script(
+        """Hidden when this returns, and what was asked for before drawn; one call, for calls take most of the time."""
+        self.browser.execute_async_script(
+            "const [is_shown, done] = arguments;"
             "for (const element of document.querySelectorAll('#stage > :not(canvas):not(#message)'))"
-            "  element.style.visibility = arguments[0] ? '' : 'hidden';",
+            "  element.style.visibility = is_shown ? '' : 'hidden';"
+            "if (is_shown) done(); else requestAnimationFrame(() => requestAnimationFrame(done));",
             is_shown,
         )
 
