@@ -2,13 +2,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "recorded_files.hpp"
 #include "text_table.hpp"
 
 namespace graspfit::app {
@@ -21,8 +20,6 @@ using geometry::shortest_decimal;
 /// quaternions, which moves them by about 1e-16 m; the measures follow within about 1e-12.
 constexpr double kTolerance = 1e-9;
 
-constexpr const char* kObjectFile = "the object's file";
-
 Command evaluate_command() {
   Command command{
       "evaluate", "GRASPS.json",
@@ -34,8 +31,7 @@ Command evaluate_command() {
       "The same: M, epsilon and the largest gap of a requested contact within 1e-9, and equal "
       "answers to\nwhether every requested contact is there and whether the hand meets object, "
       "itself or surroundings.\n"};
-  add_option(command.options, "object", "FILE", std::nullopt,
-             "the object's file, if it is no longer where the grasp file says");
+  add_object_flag(command.options);
   add_switch(command.options, "json", "print JSON instead of a table");
   return command;
 }
@@ -102,28 +98,6 @@ Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   return comparison;
 }
 
-/// A recorded mesh file: where the record says, or beside the grasp file.
-std::filesystem::path find_mesh(const Flags& flags, const grasp::ObjectRecord& record,
-                                const std::string& what) {
-  const std::filesystem::path file = record.file;
-  const std::filesystem::path beside =
-      std::filesystem::path(flags.positional()).parent_path() / file.filename();
-  std::error_code error;
-  for (const std::filesystem::path& candidate : {file, beside}) {
-    if (std::filesystem::exists(candidate, error)) return candidate;
-  }
-  throw geometry::IoError(what + " " + record.file + " is not there, nor beside the grasp file" +
-                          (what == kObjectFile ? "; --object FILE says where it is" : ""));
-}
-
-grasp::Surroundings find_surroundings(const Flags& flags, const grasp::GraspFile& file) {
-  std::vector<std::filesystem::path> files;
-  for (const grasp::ObjectRecord& obstacle : file.surroundings.obstacles) {
-    files.push_back(find_mesh(flags, obstacle, "the obstacle"));
-  }
-  return grasp::read_surroundings(file.surroundings, files);
-}
-
 std::string table_of(const std::vector<Comparison>& comparisons) {
   std::vector<std::vector<std::string>> rows = {{"rank", "M stored", "M", "M1", "M2", "M3",
                                                  "epsilon stored", "epsilon", "contacts", "gap_mm",
@@ -183,10 +157,8 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const grasp::GraspFile file = grasp::read_grasps(flags.positional());
-  const geometry::TriangleMesh mesh = grasp::read_object(
-      file.object, flags.has("object") ? std::filesystem::path(flags.text("object"))
-                                       : find_mesh(flags, file.object, kObjectFile));
-  const grasp::RecordedScene scene(file, mesh, find_surroundings(flags, file));
+  const geometry::TriangleMesh mesh = load_recorded_object(flags, file);
+  const grasp::RecordedScene scene(file, mesh, load_recorded_surroundings(flags, file));
 
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;

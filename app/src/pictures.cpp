@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGraspScript = "render_grasps.py";
 constexpr const char* kHandScript = "render_hand.py";
+constexpr const char* kHoldScript = "render_hold.py";
 
 /// A picture script: beside an installed program wherever it was moved, else in the sources of the
 /// build, else where it was installed.
@@ -83,6 +84,15 @@ void run_script(const std::string& flag, const std::vector<std::string>& argumen
   }
 }
 
+/// Draws a scene, JSON of the viewer, by a script that takes its file and the picture's.
+void draw_scene(const std::string& flag, const char* script, const std::string& scene_json,
+                const fs::path& picture) {
+  const TemporaryFolder folder;
+  const fs::path scene = folder.path() / "scene.json";
+  geometry::write_file_atomically(scene, scene_json);
+  run_script(flag, {find_script(flag, script).string(), scene.string(), picture.string()});
+}
+
 }  // namespace
 
 void require_pictures(const std::string& flag) {
@@ -101,12 +111,20 @@ void draw_pictures(const fs::path& folder) {
   run_script("--pictures", {find_script("--pictures", kGraspScript).string(), folder.string()});
 }
 
+void require_animations(const std::string& flag) {
+  require_pictures(flag);
+  find_script(flag, kHoldScript);
+  if (run_program({GRASPFIT_PYTHON, "-c", "import PIL"}).code != 0) {
+    throw geometry::IoError(flag + ": needs Pillow for " GRASPFIT_PYTHON "; install python3-pil");
+  }
+}
+
 void draw_hand_picture(const std::string& scene_json, const fs::path& picture) {
-  const TemporaryFolder folder;
-  const fs::path scene = folder.path() / "hand.json";
-  geometry::write_file_atomically(scene, scene_json);
-  run_script("--png",
-             {find_script("--png", kHandScript).string(), scene.string(), picture.string()});
+  draw_scene("--png", kHandScript, scene_json, picture);
+}
+
+void draw_replay_picture(const std::string& scene_json, const fs::path& picture) {
+  draw_scene("--gif", kHoldScript, scene_json, picture);
 }
 
 }  // namespace graspfit::app

@@ -17,4 +17,11 @@ void draw_pictures(const std::filesystem::path& folder);
 /// left behind if that fails. @throws IoError with the script's own words if it fails.
 void draw_hand_picture(const std::string& scene_json, const std::filesystem::path& picture);
 
+/// Throws IoError if what animated pictures need besides is not there (python3-pil).
+void require_animations(const std::string& flag);
+
+/// Draws a hold test into the file `picture`, an animated GIF, from a scene of
+/// viewer::replay_scene_json. @throws IoError with the script's own words if it fails.
+void draw_replay_picture(const std::string& scene_json, const std::filesystem::path& picture);
+
 }  // namespace graspfit::app

@@ -4,6 +4,7 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "command_line.hpp"
 #include "commands.hpp"
@@ -14,6 +15,8 @@
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/viewer/page.hpp"
 #include "hand_loading.hpp"
+#include "hold_filter.hpp"
+#include "hold_flags.hpp"
 #include "object_loading.hpp"
 #include "output_folder.hpp"
 #include "pictures.hpp"
@@ -38,6 +41,13 @@ Command plan_command() {
   add_switch(output, "page", "also grasps.html, a page that any browser opens from disk");
   add_switch(output, "quiet", "no progress bar and no table");
 
+  po::options_description hold = option_group("Physics");
+  add_option(
+      hold, "hold", "PROTOCOL", std::nullopt,
+      "leave out grasps that do not hold in a physics test under this protocol (see hold "
+      "--help) and order the others by the smallest force that fails; failures are counted by "
+      "stage");
+
   Command command{
       "plan", "OBJECT",
       "Plans grasps of OBJECT (OFF, OBJ, PLY, STL, glTF or GLB) with a hand.\n"
@@ -52,6 +62,7 @@ Command plan_command() {
       .add(surroundings_options())
       .add(planner_options())
       .add(score_map_options())
+      .add(hold)
       .add(output);
   return command;
 }
@@ -76,10 +87,10 @@ std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
   return text;
 }
 
-std::string table_of(const std::vector<grasp::Grasp>& grasps) {
+std::string table_of(const grasp::GraspFile& file) {
   std::vector<std::vector<std::string>> rows = {
       {"rank", "M", "M1", "M2", "M3", "epsilon", "contacts", "gap_mm", "penetration_mm", "valid"}};
-  for (const grasp::Grasp& grasp : grasps) {
+  for (const grasp::Grasp& grasp : file.grasps) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
                     fixed_decimal(grasp.quality.m3, 4), fixed_decimal(grasp.wrench.epsilon, 4),
@@ -87,6 +98,12 @@ std::string table_of(const std::vector<grasp::Grasp>& grasps) {
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});
+  }
+  if (file.hold && !file.hold->margins.empty()) {
+    rows[0].push_back("margin_N");
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      rows[i].push_back(fixed_decimal(file.hold->margins[i - 1], 2));
+    }
   }
   return text_table(rows);
 }
@@ -228,6 +245,11 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   std::optional<OutputFolder> out;
   if (flags.has("out")) out.emplace(flags.text("out"), is_plan_file);
   require_means_of_output(flags);
+  std::optional<hold_test::HoldProtocol> protocol;
+  if (flags.has("hold")) {
+    protocol = hold_test::hold_protocol(flags.text("hold"));
+    require_physics("--hold");
+  }
   warn_of_findings("plan", reading);
 
   ProgressBar progress(!flags.has("quiet"));
@@ -251,13 +273,28 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
                  attempts_text(result).c_str());
     return kNoGrasp;
   }
+  std::optional<grasp::HoldRecord> hold;
+  if (protocol) {
+    HeldGrasps held = held_grasps(object.mesh(), hand, *protocol, num_threads,
+                                  std::move(result.grasps), progress);
+    progress.clear();
+    if (held.grasps.empty()) {
+      std::fprintf(stderr, "graspfit plan: %s: no grasp by hand %s holds: %s\n",
+                   flags.positional().c_str(), hand.name.c_str(), hold_text(held.record).c_str());
+      return kNoGrasp;
+    }
+    result.grasps = std::move(held.grasps);
+    hold = std::move(held.record);
+  }
   grasp::GraspFile file =
       grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
+  file.hold = std::move(hold);
   if (out) write_files(file, object, around.surroundings, flags, *out, progress);
   progress.clear();
   if (!flags.has("quiet")) {
-    std::printf("%s%zu of %d grasps %s\n", table_of(file.grasps).c_str(), file.grasps.size(),
+    std::printf("%s%zu of %d grasps %s\n", table_of(file).c_str(), file.grasps.size(),
                 options.count, attempts_text(result).c_str());
+    if (file.hold) std::printf("%s\n", hold_text(*file.hold).c_str());
     if (out) std::printf("written to %s\n", out->target().c_str());
   }
   return kSuccess;

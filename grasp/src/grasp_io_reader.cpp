@@ -317,6 +317,22 @@ PlannerStatistics read_statistics(const JsonNode& node) {
   return statistics;
 }
 
+HoldRecord read_hold(const JsonNode& node, std::size_t num_grasps) {
+  HoldRecord hold;
+  hold.protocol = node.at("protocol").text();
+  for (const auto& [stage, count] : node.at("stages").members()) {
+    hold.stages[stage] = count.integer();
+  }
+  const JsonNode margins = node.at("margins_N");
+  if (margins.is_null()) return hold;
+  for (const JsonNode& margin : margins.items()) hold.margins.push_back(margin.number());
+  if (hold.margins.size() != num_grasps) {
+    margins.fail("has " + std::to_string(hold.margins.size()) + " margins for " +
+                 std::to_string(num_grasps) + " grasps");
+  }
+  return hold;
+}
+
 PlannerTimings read_timings(const JsonNode& node) {
   PlannerTimings timings;
   const JsonNode object = node.at("object");
@@ -382,6 +398,9 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   const GraspReader reader(file.hand);
   for (const JsonNode& grasp : results.at("grasps").items()) {
     file.grasps.push_back(reader.read(grasp));
+  }
+  for (const auto& [key, node] : results.members()) {
+    if (key == "hold") file.hold = read_hold(node, file.grasps.size());
   }
   file.timings = read_timings(root.at("timings"));
   return file;

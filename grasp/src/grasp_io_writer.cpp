@@ -80,6 +80,10 @@ Json conventions() {
       {"squeeze",
        "commanded joints beyond the surface, by contact forces that balance one another; forces: "
        "per contact, on the object; residual: what stays unbalanced over the sum of normal forces"},
+      {"hold",
+       "only where planned grasps were tested in physics: those that did not hold under the "
+       "protocol are left out and counted by the stage they came to, the others are ordered by "
+       "margins_N, the smallest force that fails for each"},
       {"usable", "m > 0"},
       {"valid",
        "usable, no link shares a point with the object, the surroundings or another link that is "
@@ -258,6 +262,14 @@ Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t ra
   return json;
 }
 
+Json hold_json(const HoldRecord& hold) {
+  Json stages = Json::object();
+  for (const auto& [stage, count] : hold.stages) stages[stage] = count;
+  return {{"protocol", hold.protocol},
+          {"stages", stages},
+          {"margins_N", hold.margins.empty() ? Json(nullptr) : Json(hold.margins)}};
+}
+
 Json results_json(const GraspFile& file) {
   Json grasps = Json::array();
   for (const Grasp& grasp : file.grasps) {
@@ -271,16 +283,18 @@ Json results_json(const GraspFile& file) {
   for (const auto& [reason, count] : file.statistics.target_failures) {
     target_failures[reason] = count;
   }
-  return {{"stop", choice(file.stop)},
-          {"statistics",
-           {{"attempts", file.statistics.attempts},
-            {"outcomes", outcomes},
-            {"target_failures", target_failures},
-            {"seeds_tried", file.statistics.seeds_tried},
-            {"fitting_iterations", file.statistics.fitting_iterations},
-            {"refinement_iterations", file.statistics.refinement_iterations},
-            {"duplicates", file.statistics.duplicates}}},
-          {"grasps", grasps}};
+  Json json = {{"stop", choice(file.stop)},
+               {"statistics",
+                {{"attempts", file.statistics.attempts},
+                 {"outcomes", outcomes},
+                 {"target_failures", target_failures},
+                 {"seeds_tried", file.statistics.seeds_tried},
+                 {"fitting_iterations", file.statistics.fitting_iterations},
+                 {"refinement_iterations", file.statistics.refinement_iterations},
+                 {"duplicates", file.statistics.duplicates}}}};
+  if (file.hold) json["hold"] = hold_json(*file.hold);
+  json["grasps"] = grasps;
+  return json;
 }
 
 Json timings_json(const PlannerTimings& timings) {

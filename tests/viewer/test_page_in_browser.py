@@ -27,6 +27,7 @@ try:
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.ui import WebDriverWait
 except ImportError as error:
     print(f"SKIPPED: {error}; {PACKAGES}")
     sys.exit(0)
@@ -429,6 +430,107 @@ class HandInBrowser(PageInBrowser):
             before = self.picture()
             self.browser.find_element(By.CSS_SELECTOR, f'[data-view="{view}"]').click()
             self.assert_differs(before, self.picture(f"hand_{view}"), view)
+
+
+class ReplayInBrowser(PageInBrowser):
+    """The page of a hold test: tests/viewer/sample_replay.cpp."""
+
+    def setUp(self):
+        self.open("replay.html")
+
+    def set_time(self, frame):
+        self.browser.execute_script(
+            "const slider = document.getElementById('time');"
+            "slider.value = arguments[0]; slider.dispatchEvent(new Event('input'));",
+            frame,
+        )
+
+    def test_starts_with_the_load_that_failed_and_says_why(self):
+        self.assertEqual(self.browser.title, "Ball <40 mm>, grasp 1")
+        self.assertIn("sample · 2 of 3 loads held", self.text("summary"))
+        selected = self.browser.find_elements(By.CSS_SELECTOR, '#list [aria-selected="true"]')
+        self.assertEqual([row.get_attribute("id") for row in selected], ["direction-2"])
+        badges = [row.text for row in self.browser.find_elements(By.CSS_SELECTOR, "#list .badge")]
+        self.assertEqual(badges, ["held", "held", "lost under load"])
+        self.assertIn("lost under load", self.text("verdict"))
+        self.assertIn("12.5 N", self.text("verdict"))
+        # 2.5 t² = 50 mm at 0.141 s; the next of the frames is 0.16 s after the load began.
+        story = self.text("story")
+        for part in ("along +y with 1.00 N", "check after 0.2 s", "100.0 mm", "passed 50 mm after 0.16 s"):
+            self.assertIn(part, story)
+        self.element("jump").click()
+        self.assertEqual(self.text("clock"), "0.56 s")
+        self.assertIn("64.0 mm", self.text("value-shift"))
+        self.assertIn("9.2 °", self.text("value-turn"))
+
+    def test_slider_moves_hand_and_object_and_back(self):
+        self.set_time(0)
+        self.assertIn("closing", self.text("phase"))
+        start = self.picture("replay_start")
+        self.set_time(20)
+        self.assertEqual(self.text("clock"), "0.40 s")
+        self.assertIn("squeezing", self.text("phase"))
+        squeezed = self.picture("replay_squeezed")
+        self.assert_differs(start, squeezed, "the hand closed")
+        arrow = lambda image: self.share_near(image, (0xD3, 0x30, 0x2A), 30)
+        self.set_time(27)
+        self.assertIn("under load", self.text("phase"))
+        loaded = self.picture("replay_loaded")
+        # Before the load only the x axis in the corner is red.
+        self.assertGreater(arrow(loaded), 1e-3 + 4 * arrow(squeezed), "the load's arrow")
+        self.assert_differs(squeezed, loaded, "the ball moved")
+        self.set_time(20)
+        self.assert_same(squeezed, self.picture(), "there and back")
+
+    def test_loads_are_chosen_by_click_and_keys(self):
+        body = self.browser.find_element(By.TAG_NAME, "body")
+        body.send_keys(Keys.ARROW_UP)
+        self.assertIn("Held: pulled along -x", self.text("story"))
+        self.assertFalse(self.element("jump").is_enabled())
+        body.send_keys(Keys.ARROW_RIGHT)
+        self.assertEqual(self.text("clock"), "0.42 s")
+        self.element("direction-0").click()
+        self.assertIn("Held: pulled along +x", self.text("story"))
+        self.assertIn("1.0 mm", self.text("story"))
+        self.assertEqual(self.text("clock"), "0.40 s")
+
+    def test_plays_to_the_end_and_pauses(self):
+        self.browser.execute_script(
+            "const speed = document.getElementById('speed');"
+            "speed.value = '1'; speed.dispatchEvent(new Event('change'));")
+        clock = lambda: float(self.text("clock").removesuffix(" s"))
+        self.element("play").click()
+        WebDriverWait(self.browser, 60).until(lambda _: self.text("play") == "Play")
+        end = int(self.element("time").get_attribute("max"))
+        self.assertEqual(int(self.element("time").get_property("value")), end)
+        # From the end it starts anew, and stands still when paused.
+        self.browser.execute_script(
+            "const play = document.getElementById('play'); play.click(); play.click();")
+        self.assertEqual(self.text("play"), "Play")
+        paused = clock()
+        self.assertLess(paused, 0.4)
+        self.settle()
+        self.assertEqual(clock(), paused)
+
+    def test_layers_and_views_change_the_picture(self):
+        self.set_time(25)
+        plain = self.picture("replay")
+        for layer in ("object", "hand", "load", "path", "pieces"):
+            with self.subTest(layer=layer):
+                box = self.element(f"show-{layer}")
+                box.click()
+                self.assert_differs(plain, self.picture(f"replay_{layer}"), f"{layer} toggled, the same picture")
+                box.click()
+        self.assert_same(plain, self.picture(), "all toggled twice, another picture")
+        for view in ("x", "y", "z", "side"):
+            before = self.picture()
+            self.browser.find_element(By.CSS_SELECTOR, f'[data-view="{view}"]').click()
+            self.assert_differs(before, self.picture(f"replay_view_{view}"), view)
+
+    def test_protocol_is_listed(self):
+        self.browser.find_element(By.CSS_SELECTOR, "#right summary").click()
+        self.assertIn("force_N 1", self.text("knobs"))
+        self.assertIn("check_interval_s 0.1", self.text("knobs"))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,8 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/viewer/hand_page.hpp"
 #include "graspfit/viewer/page.hpp"
+#include "graspfit/viewer/replay_page.hpp"
+#include "sample_replay.hpp"
 #include "sample_scene.hpp"
 
 int main(int argc, char** argv) {
@@ -42,6 +44,7 @@ int main(int argc, char** argv) {
     viewer::write_page(folder / "no_grasps.html", input);
 
     viewer::write_hand_page(folder / "hand.html", testing::sample_hand_scene());
+    viewer::write_replay_page(folder / "replay.html", testing::sample_replay());
   } catch (const geometry::Error& error) {
     std::cerr << "write_sample_pages: " << error.what() << '\n';
     return 1;

@@ -1,5 +1,5 @@
-// What both pages share: the scene's shapes, camera, drawing with WebGL 2 and input. Stands before
-// grasps.js or hand.js in one function; that script has
+// What all pages share: the scene's shapes, camera, drawing with WebGL 2 and input. Stands before
+// grasps.js, hand.js or replay.js in one function; that script has
 //   boundsOfScene()    {low, high} of what is to be in view
 //   sizeOfScene()      length to which marks and zoom are scaled
 //   linkPoses()        of the hand's links, or null if it is not shown

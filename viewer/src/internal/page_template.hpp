@@ -9,9 +9,10 @@ namespace graspfit::viewer {
 // places {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and what goes there.
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
-extern const std::string_view kStageJs;  // before either page's own script
+extern const std::string_view kStageJs;  // before a page's own script
 extern const std::string_view kGraspsJs;
 extern const std::string_view kHandJs;
+extern const std::string_view kReplayJs;
 
 // What tells one page from another.
 struct PageParts {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +35,15 @@ struct UsedMeshFiles {
   std::vector<std::string> obstacles;  ///< In O.
 };
 
+/// What a physics test (component hold_test) left of the planned grasps.
+struct HoldRecord {
+  std::string protocol;                        ///< Its name.
+  std::map<std::string, std::int64_t> stages;  ///< How many planned grasps came how far:
+                                               ///< "rejected", "approach", "load", "held".
+  std::vector<double> margins;  ///< Smallest failing force of each grasp of the file [N]; empty:
+                                ///< not measured.
+};
+
 /// A grasp file (`grasps.json`): everything needed to recompute every number without this program.
 /// Its schema is grasp/grasps.schema.json.
 struct GraspFile {
@@ -49,7 +60,8 @@ struct GraspFile {
   double voxel_size = 0.0;                  ///< [m]
   double clip_thickness = 0.0;              ///< Used where a pad states none [m].
   double merge_distance = 0.0;              ///< Used by the measure [m].
-  std::vector<Grasp> grasps;                ///< Best M first.
+  std::vector<Grasp> grasps;                ///< Best M first; with `hold`, largest margin first.
+  std::optional<HoldRecord> hold;           ///< Empty: not tested while planning.
   PlannerStatistics statistics;
   PlannerStop stop = PlannerStop::Attempts;
   PlannerTimings timings;

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+
+#include "command_line.hpp"
+#include "graspfit/hold_test/hold_protocol.hpp"
+
+namespace graspfit::app {
+
+/// The flags that choose a hold protocol and change its knobs.
+boost::program_options::options_description hold_protocol_options();
+
+/// What those flags say, validated. @throws UsageError, InvalidInput.
+hold_test::HoldProtocol read_hold_protocol(const Flags& flags);
+
+/// Throws InvalidInput unless this build can test grasps in physics; `flag_or_command` starts the
+/// message.
+void require_physics(const std::string& flag_or_command);
+
+}  // namespace graspfit::app

@@ -1,0 +1,193 @@
+#include "graspfit/hold_test/hold_knobs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <system_error>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::hold_test {
+namespace {
+
+using geometry::InvalidInput;
+
+constexpr std::array kSqueezeRules = {SqueezeRule::Forces, SqueezeRule::Extrapolation,
+                                      SqueezeRule::None};
+constexpr std::array kLoads = {HoldLoad::SixForces, HoldLoad::Lift};
+
+using Member =
+    std::variant<double HoldProtocol::*, int HoldProtocol::*, bool HoldProtocol::*,
+                 std::array<double, 2> HoldProtocol::*, std::array<double, 3> HoldProtocol::*,
+                 SqueezeRule HoldProtocol::*, HoldLoad HoldProtocol::*>;
+
+struct Knob {
+  const char* name;
+  Member member;
+};
+
+/// The one table: files and command lines know no other knobs.
+const std::vector<Knob>& knobs() {
+  using P = HoldProtocol;
+  static const std::vector<Knob> table = {
+      {"load", &P::load},
+      {"squeeze", &P::squeeze},
+      {"step_s", &P::step},
+      {"sliding_friction", &P::sliding_friction},
+      {"torsional_friction_m", &P::torsional_friction},
+      {"impratio", &P::impratio},
+      {"noslip_iterations", &P::noslip_iterations},
+      {"hand_solimp", &P::hand_solimp},
+      {"hand_solref", &P::hand_solref},
+      {"object_solimp", &P::object_solimp},
+      {"object_solref", &P::object_solref},
+      {"multi_point_contacts", &P::multi_point_contacts},
+      {"object_mass_kg", &P::object_mass},
+      {"object_linear_damping_per_s", &P::object_linear_damping},
+      {"object_angular_damping_per_s", &P::object_angular_damping},
+      {"stiffness_Nm_per_rad", &P::stiffness},
+      {"slide_stiffness_N_per_m", &P::slide_stiffness},
+      {"damping_time_s", &P::damping_time},
+      {"armature_kg_m2", &P::armature},
+      {"slide_armature_kg", &P::slide_armature},
+      {"link_density_kg_per_m3", &P::link_density},
+      {"extrapolation", &P::extrapolation},
+      {"approach_time_s", &P::approach_time},
+      {"squeeze_time_s", &P::squeeze_time},
+      {"force_N", &P::force},
+      {"gravity_m_per_s2", &P::gravity},
+      {"lift_height_m", &P::lift_height},
+      {"lift_time_s", &P::lift_time},
+      {"hold_time_s", &P::hold_time},
+      {"check_interval_s", &P::check_interval},
+      {"largest_shift_m", &P::largest_shift},
+      {"largest_turn_rad", &P::largest_turn},
+      {"largest_penetration_m", &P::largest_penetration},
+  };
+  return table;
+}
+
+/// Does not compile when a protocol gets a field: then the table above needs it too.
+[[maybe_unused]] void require_all_fields(const HoldProtocol& protocol) {
+  [[maybe_unused]] const auto& [name, source, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12,
+                                k13, k14, k15, k16, k17, k18, k19, k20, k21, k22, k23, k24, k25,
+                                k26, k27, k28, k29, k30, k31, k32, k33] = protocol;
+}
+
+const Knob& knob_named(const std::string& name) {
+  const auto found = std::find_if(knobs().begin(), knobs().end(),
+                                  [&](const Knob& knob) { return name == knob.name; });
+  if (found != knobs().end()) return *found;
+  std::string names;
+  for (const Knob& knob : knobs()) names += (names.empty() ? "" : ", ") + std::string(knob.name);
+  throw InvalidInput("no knob \"" + name + "\" of a hold protocol; there are " + names);
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& why) {
+  throw InvalidInput("knob " + name + ": \"" + text + "\" " + why);
+}
+
+template <class Number>
+Number parsed(const std::string& name, const std::string& text, const char* kind) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() ||
+      !std::isfinite(static_cast<double>(number))) {
+    refuse(name, text, std::string("is not ") + kind);
+  }
+  return number;
+}
+
+template <std::size_t N>
+std::array<double, N> parsed_numbers(const std::string& name, const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    numbers.push_back(parsed<double>(name, part, "numbers separated by commas"));
+  }
+  if (numbers.size() != N) refuse(name, text, "is not " + std::to_string(N) + " numbers");
+  std::array<double, N> array{};
+  std::copy(numbers.begin(), numbers.end(), array.begin());
+  return array;
+}
+
+template <class Choices>
+auto parsed_choice(const std::string& name, const std::string& text, const Choices& choices) {
+  std::string names;
+  for (const auto choice : choices) {
+    if (text == name_of(choice)) return choice;
+    names += (names.empty() ? "" : "|") + std::string(name_of(choice));
+  }
+  refuse(name, text, "is not one of " + names);
+}
+
+KnobValue value_of(double value) { return value; }
+KnobValue value_of(int value) { return value; }
+KnobValue value_of(bool value) { return value; }
+template <std::size_t N>
+KnobValue value_of(const std::array<double, N>& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+template <class Choice>
+KnobValue value_of(Choice choice) {
+  return std::string(name_of(choice));
+}
+
+void set(double& value, const std::string& name, const std::string& text) {
+  value = parsed<double>(name, text, "a number");
+}
+void set(int& value, const std::string& name, const std::string& text) {
+  value = parsed<int>(name, text, "an integer");
+}
+void set(bool& value, const std::string& name, const std::string& text) {
+  if (text != "yes" && text != "no") refuse(name, text, "is neither yes nor no");
+  value = text == "yes";
+}
+template <std::size_t N>
+void set(std::array<double, N>& values, const std::string& name, const std::string& text) {
+  values = parsed_numbers<N>(name, text);
+}
+void set(SqueezeRule& rule, const std::string& name, const std::string& text) {
+  rule = parsed_choice(name, text, kSqueezeRules);
+}
+void set(HoldLoad& load, const std::string& name, const std::string& text) {
+  load = parsed_choice(name, text, kLoads);
+}
+
+}  // namespace
+
+const char* name_of(SqueezeRule rule) {
+  switch (rule) {
+    case SqueezeRule::Forces:
+      return "forces";
+    case SqueezeRule::Extrapolation:
+      return "extrapolation";
+    case SqueezeRule::None:
+      break;
+  }
+  return "none";
+}
+
+const char* name_of(HoldLoad load) { return load == HoldLoad::SixForces ? "six-forces" : "lift"; }
+
+const std::vector<std::string>& knob_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Knob& knob : knobs()) all.emplace_back(knob.name);
+    return all;
+  }();
+  return names;
+}
+
+KnobValue knob_value(const HoldProtocol& protocol, const std::string& name) {
+  return std::visit([&](auto member) { return value_of(protocol.*member); },
+                    knob_named(name).member);
+}
+
+void set_knob(HoldProtocol& protocol, const std::string& name, const std::string& text) {
+  std::visit([&](auto member) { set(protocol.*member, name, text); }, knob_named(name).member);
+}
+
+}  // namespace graspfit::hold_test

@@ -1,0 +1,325 @@
+#!/usr/bin/python3
+"""Animated picture of a hold test, from the scene that `graspfit hold --gif` writes.
+
+SCENE is JSON after viewer::replay_scene_json: meshes, and per load the poses of object and links in
+every frame, in meters, in the object frame O. FILE.gif shows one load (the one that says most, or
+--load NAME) at half speed: hand and object, the commanded load as an arrow once it pulls, the way of the
+center of mass, and below shift and turn over their limits as time goes on. A load that is lost ends
+shortly after it passed a limit. The picture is written under a temporary name and renamed.
+
+Uses Debian's python3-vtk9 and python3-pil, under xvfb-run where that is installed. Exit code 1 with one
+line on bad input or a missing program.
+"""
+
+import argparse
+import array
+import base64
+import io
+import json
+import math
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True  # the folder may be the sources' or root's
+from vtk_picture import (  # noqa: E402
+    COLORS,
+    SUPERSAMPLING,
+    BadInput,
+    Canvas,
+    along,
+    cross,
+    go_under_xvfb,
+    perpendicular,
+    pixels,
+    unit,
+    write_atomically,
+)
+
+CAPTION, CHART = 62, 92  # heights of the strips above and below the view [pixels]
+FRAME_TIME = 0.04  # of the test per frame of the picture [s]
+SLOWNESS = 2.0  # of the picture, over real time
+AFTERWARDS = 0.2  # shown after a limit was passed [s]
+LAST_FRAME = 2.0  # how long the last frame stays [s]
+ARROW = 0.55  # length of the load's arrow, over the object's diagonal
+
+
+def numbers(text, kind):
+    values = array.array(kind, base64.b64decode(text))
+    if sys.byteorder == "big":
+        values.byteswap()
+    return values
+
+
+def decode_mesh(mesh):
+    vertices, faces = numbers(mesh["vertices"], "f"), numbers(mesh["faces"], "I")
+    mesh["vertices"] = [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
+    mesh["faces"] = [faces[i : i + 3] for i in range(0, len(faces), 3)]
+
+
+def read_scene(path):
+    """The scene with decoded meshes and poses."""
+    try:
+        scene = json.loads(path.read_text(encoding="utf-8"))
+        decode_mesh(scene["object"])
+        links = scene["hand"]["links"]
+        for link in links:
+            decode_mesh(link["mesh"])
+        for load in scene["directions"]:
+            for key, bodies in (("object_poses", 1), ("link_poses", len(links))):
+                values = numbers(load[key], "f")
+                load[key] = [values[i : i + 7] for i in range(0, len(values), 7)]
+                if len(load[key]) != bodies * len(load["times"]) or not load["times"]:
+                    raise ValueError(f"{key} of load {load['name']} does not fit its times")
+        if not 0 <= scene["shown"] < len(scene["directions"]):
+            raise ValueError("no load to show")
+        return scene
+    except OSError as error:
+        raise BadInput(f"{path}: {error.strerror}") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise BadInput(f"{path}: not the scene of a hold test: {error!r}") from error
+
+
+# Poses are x, y, z and a unit quaternion w, x, y, z.
+
+
+def rotated(pose, v):
+    w, q = pose[3], pose[4:7]
+    t = [2.0 * x for x in cross(q, v)]
+    return [a + w * b + c for a, b, c in zip(v, t, cross(q, t))]
+
+
+def mapped(pose, p):
+    return [a + b for a, b in zip(rotated(pose, p), pose[:3])]
+
+
+def frames_to_show(scene, load):
+    """Indices of the load's frames: FRAME_TIME apart, not long after a limit is passed."""
+    protocol = scene["protocol"]
+    end = load["times"][-1]
+    for i, t in enumerate(load["times"]):
+        is_lost = (
+            load["shifts"][i] >= protocol["largest_shift"]
+            or load["turns"][i] >= protocol["largest_turn"]
+        )
+        if is_lost and load["stage"] != "held":
+            end = min(end, t + AFTERWARDS)
+            break
+    shown, wanted = [], 0.0
+    for i, t in enumerate(load["times"]):
+        if wanted - 1e-9 <= t <= end + 1e-9:
+            shown.append(i)
+            wanted = t + FRAME_TIME
+    return shown
+
+
+class Painter(Canvas):
+    """Draws one load, frame by frame, into one window."""
+
+    def __init__(self, width, height, scene, load):
+        super().__init__(width, height)
+        self.scale = SUPERSAMPLING * 0.9
+        self.scene, self.load = scene, load
+        self.num_links = len(scene["hand"]["links"])
+        vertices = scene["object"]["vertices"]
+        low, high = ([pick(v[k] for v in vertices) for k in range(3)] for pick in (min, max))
+        self.size = math.dist(low, high)
+        self.scene_window = self.window()
+        self.build()
+
+    def build(self):
+        """What stands in every frame; poses and marks are set anew for each."""
+        window = self.scene_window
+        self.body_actors = [
+            self.solid(mesh["vertices"], mesh["faces"], color, specular)
+            for mesh, color, specular in [(self.scene["object"], "object", 0.05)]
+            + [(link["mesh"], "hand", 0.18) for link in self.scene["hand"]["links"]]
+        ]
+        frame = (0.0, CHART / self.height, 1.0, 1.0 - CAPTION / self.height)
+        aspect = self.width / (self.height - CHART - CAPTION)
+        back = self.side()
+        up = [0.0, 0.0, 1.0] if abs(back[2]) < 0.97 else [0.0, 1.0, 0.0]
+        camera, _ = self.camera(back, up, self.points_in_view(), aspect)
+        solids = [
+            actor for actor in self.body_actors if actor.GetMapper().GetInputAlgorithm() is not None
+        ]
+        self.add_view(window, frame, camera, solids, list)
+        renderers = window.GetRenderers()
+        self.shaded, self.above = (renderers.GetItemAsObject(i) for i in (0, 1))
+        self.add_axes(window, (0.004, CHART / self.height), camera)
+        self.marks = []
+        self.add_caption(window)
+        self.strip = self.renderer(window, (0.0, 0.0, 1.0, CHART / self.height), 0)
+
+    def pose(self, frame, body):
+        """Of the object (body 0) or of a link."""
+        if body == 0:
+            return self.load["object_poses"][frame]
+        return self.load["link_poses"][frame * self.num_links + body - 1]
+
+    def side(self):
+        """Toward the eye: across palm direction and load, a little from the palm's front."""
+        palm = self.scene["hand"]["palm"]
+        direction = unit(rotated(self.pose(0, 1 + palm["link"]), palm["direction"]))
+        across = unit(cross(direction, self.load["direction"]))
+        if across is None or abs(sum(x * y for x, y in zip(direction, self.load["direction"]))) > 0.98:
+            across = perpendicular(direction)
+        return unit(along(across, direction, 0.25))
+
+    def points_in_view(self):
+        points = [list(v) for v in self.scene["object"]["vertices"]]
+        center = self.scene["center_of_mass"]
+        points += [along(center, self.load["direction"], s * self.size) for s in (ARROW, -0.2)]
+        times = self.load["times"]
+        grasped = next(
+            (i for i, t in enumerate(times) if t >= self.scene["protocol"]["approach_time"] - 1e-9), 0
+        )
+        for frame in (0, grasped):
+            for i, link in enumerate(self.scene["hand"]["links"]):
+                pose = self.pose(frame, 1 + i)
+                points += [mapped(pose, v) for v in link["mesh"]["vertices"][::7]]
+        return points
+
+    def paint(self, frame, shown):
+        """PNG file of one frame as bytes; `shown`: the frames of the whole picture."""
+        for body, actor in enumerate(self.body_actors):
+            pose = self.pose(frame, body)
+            matrix = self.vtk.vtkMatrix4x4()
+            for column in range(3):
+                axis = rotated(pose, [float(k == column) for k in range(3)])
+                for row in range(3):
+                    matrix.SetElement(row, column, axis[row])
+            for row in range(3):
+                matrix.SetElement(row, 3, pose[row])
+            actor.SetUserMatrix(matrix)
+        for renderer, mark in self.marks:
+            renderer.RemoveActor(mark)
+        self.marks = []
+        for opacity, renderer in ((1.0, self.shaded), (0.6, self.above)):
+            for mark in self.frame_marks(frame, shown):
+                mark.GetProperty().SetOpacity(opacity)
+                renderer.AddActor(mark)
+                self.marks.append((renderer, mark))
+        self.shaded.ResetCameraClippingRange()
+        self.draw_chart(frame, shown)
+        return self.png(self.scene_window)
+
+    def frame_marks(self, frame, shown):
+        """Center of mass, its way so far, and the load once it pulls."""
+        protocol, s = self.scene["protocol"], self.size
+        ways = [mapped(self.pose(i, 0), self.scene["center_of_mass"]) for i in shown if i <= frame]
+        marks = [self.ball(ways[-1], 0.014 * s, COLORS["center"])]
+        segments = [(a, b) for a, b in zip(ways, ways[1:]) if math.dist(a, b) > 1e-6]
+        if segments:
+            marks.append(self.tubes(segments, 0.004 * s, COLORS["edge"]))
+        if protocol["is_lift"] or self.load["times"][frame] > protocol["load_start"] + 1e-9:
+            marks += self.arrow(
+                ways[-1], self.load["direction"], ARROW * s, 0.009 * s, COLORS["contact"]
+            )
+        return marks
+
+    def add_caption(self, window):
+        s = self.scale
+        top = self.renderer(window, (0.0, 1.0 - CAPTION / self.height, 1.0, 1.0), 0)
+        protocol, load = self.scene["protocol"], self.load
+        self.text(top, self.scene["title"], 16 * s, 36 * s, 17, COLORS["ink"], bold=True)
+        pull = "lifted" if protocol["is_lift"] else f"{protocol['force']:g} N along {load['name']}"
+        ends = {"held": "held", "load": "lost under load", "approach": "lost before the load"}
+        words = f"{protocol['name']}, {pull}: {ends.get(load['stage'], load['stage'])}"
+        if load["stage"] == "load" and load["failed_at"] is not None:
+            words += f" at the check after {load['failed_at']:g} s"
+        color = COLORS["stable" if load["stage"] == "held" else "contact"]
+        self.text(top, words, 16 * s, 12 * s, 15, color)
+
+    def draw_chart(self, frame, shown):
+        """Shift and turn over their limits, up to now; the line is the limit."""
+        s = self.scale
+        self.strip.RemoveAllViewProps()
+        protocol, load = self.scene["protocol"], self.load
+        width = SUPERSAMPLING * self.width
+        left, right, bottom, top = 24 * s, width - 24 * s, 12 * s, 62 * s
+        end = load["times"][shown[-1]] or 1.0
+        most = 1.4  # limits; more is cut off
+
+        def place(t, share):
+            return left + (right - left) * t / end, bottom + (top - bottom) * min(share, most) / most
+
+        start = place(min(protocol["load_start"], end), 0.0)[0]
+        shade = [(start, bottom), (right, bottom), (right, top), (start, top)]
+        self.flat_shape(self.strip, shade, (0.95, 0.96, 0.97))
+        self.flat_shape(self.strip, [place(0.0, 0.0), place(end, 0.0)], COLORS["soft"], s)
+        self.flat_shape(self.strip, [place(0.0, 1.0), place(end, 1.0)], COLORS["contact"], s)
+        for key, color in (("shift", "hand"), ("turn", "palm")):
+            limit = protocol[f"largest_{key}"]
+            points = [place(load["times"][i], load[f"{key}s"][i] / limit) for i in shown if i <= frame]
+            if len(points) > 1:
+                self.flat_shape(self.strip, points, COLORS[color], 2.4 * s)
+        x, y = left, 70 * s
+        for words, color in (
+            (f"{load['times'][frame]:.2f} s", "ink"),
+            (
+                f"shift {1000 * load['shifts'][frame]:.1f} of {1000 * protocol['largest_shift']:g} mm",
+                "hand",
+            ),
+            (
+                f"turn {math.degrees(load['turns'][frame]):.1f} of "
+                f"{math.degrees(protocol['largest_turn']):.3g}°",
+                "palm",
+            ),
+            ("limit", "contact"),
+        ):
+            self.text(self.strip, words, x, y, 13, COLORS[color])
+            x += (70 if color == "ink" else 190) * s
+
+
+def animation(painter, shown):
+    """GIF file as bytes."""
+    try:
+        from PIL import Image
+    except ImportError as error:
+        raise BadInput(f"{error}: install python3-pil") from error
+    pictures = [Image.open(io.BytesIO(painter.paint(frame, shown))).convert("RGB") for frame in shown]
+    # One palette for all frames, so that colors do not flicker; of frames from start to end.
+    sample = pictures[:: max(1, len(pictures) // 4)]
+    sheet = Image.new("RGB", (painter.width, painter.height * len(sample)))
+    for i, picture in enumerate(sample):
+        sheet.paste(picture, (0, i * painter.height))
+    palette = sheet.quantize(256, dither=Image.Dither.NONE)
+    pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    delays = [round(1000 * FRAME_TIME * SLOWNESS)] * (len(pictures) - 1) + [round(1000 * LAST_FRAME)]
+    file = io.BytesIO()
+    pictures[0].save(
+        file, "GIF", save_all=True, append_images=pictures[1:], duration=delays, loop=0
+    )
+    return file.getvalue()
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="render_hold.py", description="Writes an animated picture of a hold test."
+    )
+    parser.add_argument("scene", metavar="SCENE", type=pathlib.Path, help="JSON of graspfit hold")
+    parser.add_argument("picture", metavar="FILE.gif", type=pathlib.Path)
+    parser.add_argument("--load", metavar="NAME", help="+x ... -z or lift (default: what says most)")
+    parser.add_argument("--width", type=pixels, default=640, help="pixels (default 640)")
+    parser.add_argument("--height", type=pixels, default=620, help="pixels (default 620)")
+    arguments = parser.parse_args()
+    try:
+        scene = read_scene(arguments.scene)
+        loads = {load["name"]: load for load in scene["directions"]}
+        name = arguments.load or scene["directions"][scene["shown"]]["name"]
+        if name not in loads:
+            raise BadInput(f"no load named {name}; there are {', '.join(loads)}")
+        go_under_xvfb()
+        load = loads[name]
+        painter = Painter(arguments.width, arguments.height, scene, load)
+        write_atomically(arguments.picture, animation(painter, frames_to_show(scene, load)))
+    except BadInput as error:
+        print(f"render_hold.py: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,209 @@
+#include "graspfit/viewer/replay_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_report.hpp"
+#include "graspfit/hold_test/hold_batch.hpp"
+#include "internal/hand_data.hpp"
+#include "internal/page_template.hpp"
+
+namespace graspfit::viewer {
+namespace {
+
+using geometry::RigidTransform;
+using geometry::TriangleMesh;
+using hold_test::HoldFrame;
+
+void validate(const ReplayInput& input) {
+  const auto refuse = [](const std::string& what) {
+    throw geometry::InvalidInput("replay_scene_json: " + what);
+  };
+  if (input.object_O.faces.empty()) refuse("the object has no faces");
+  if (input.verdict.directions.empty()) refuse("the verdict has no direction");
+  if (input.replays.size() != input.verdict.directions.size()) {
+    refuse(std::to_string(input.replays.size()) + " replays of " +
+           std::to_string(input.verdict.directions.size()) + " directions");
+  }
+  const std::size_t num_joints = input.hand.model.joints.size();
+  for (std::size_t d = 0; d < input.replays.size(); ++d) {
+    if (input.replays[d].empty()) refuse("replay " + std::to_string(d) + " has no frame");
+    for (const HoldFrame& frame : input.replays[d]) {
+      if (frame.hand.q.size() == static_cast<Eigen::Index>(num_joints)) continue;
+      refuse("a frame of replay " + std::to_string(d) + " has " +
+             std::to_string(frame.hand.q.size()) + " joint positions, " + input.hand.model.name +
+             " has " + std::to_string(num_joints) + " joints");
+    }
+  }
+}
+
+/// Pieces as one mesh: what is drawn in the place of their body.
+Json pieces_json(const geometry::ConvexDecomposition& shape) {
+  TriangleMesh all;
+  for (const TriangleMesh& piece : shape.pieces) {
+    const auto first = static_cast<std::int32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+    for (const geometry::Face& face : piece.faces) {
+      all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+    }
+  }
+  return to_json(all);
+}
+
+void append_pose(const RigidTransform& X, std::vector<float>& numbers) {
+  const Eigen::Quaterniond turn(X.linear());
+  for (const double x : {X.translation().x(), X.translation().y(), X.translation().z(), turn.w(),
+                         turn.x(), turn.y(), turn.z()}) {
+    numbers.push_back(static_cast<float>(x));
+  }
+}
+
+/// Shift of the object's center of mass [m] and turn [rad] between two frames, as the palm sees it.
+struct Motion {
+  double shift = 0.0;
+  double turn = 0.0;
+};
+
+Motion motion_since(const HoldFrame& from, const HoldFrame& to, const Eigen::Vector3d& center_O) {
+  const RigidTransform before = from.hand.X_OH.inverse() * from.X_OB;
+  const RigidTransform after = to.hand.X_OH.inverse() * to.X_OB;
+  const Eigen::Matrix3d turned = before.linear().transpose() * after.linear();
+  return {(after * center_O - before * center_O).norm(), Eigen::AngleAxisd(turned).angle()};
+}
+
+double load_start(const hold_test::HoldProtocol& protocol) {
+  return protocol.approach_time + protocol.squeeze_time;
+}
+
+/// Times are sums of steps, and may miss a wanted one by a rounding error [s].
+constexpr double kTimeRounding = 1e-9;
+
+Json direction_json(const ReplayInput& input, std::size_t d) {
+  const hold_test::DirectionVerdict& verdict = input.verdict.directions[d];
+  const std::vector<HoldFrame>& frames = input.replays[d];
+  const double start = load_start(input.protocol);
+  // Before the load, shift and turn are those from the planned pose: the object's at identity,
+  // seen by the palm as it stands at the grasp.
+  const HoldFrame* squeezed = &frames.front();
+  for (const HoldFrame& frame : frames) {
+    if (frame.time <= start + kTimeRounding) squeezed = &frame;
+  }
+  const double diagonal = geometry::bounding_box(input.object_O).diagonal().norm();
+  Json times = Json::array();
+  Json shifts = Json::array();
+  Json turns = Json::array();
+  std::vector<float> object_poses;
+  std::vector<float> link_poses;
+  for (const HoldFrame& frame : frames) {
+    const bool is_loaded = frame.time > start + kTimeRounding;
+    HoldFrame planned = frame;
+    planned.X_OB = RigidTransform::Identity();
+    const Motion motion =
+        motion_since(is_loaded ? *squeezed : planned, frame, input.object.center_of_mass_O);
+    times.push_back(frame.time);
+    shifts.push_back(motion.shift);
+    turns.push_back(motion.turn);
+    append_pose(frame.X_OB, object_poses);
+    for (const RigidTransform& X_OL : hands::forward_kinematics(input.hand.model, frame.hand)) {
+      append_pose(X_OL, link_poses);
+    }
+    constexpr double kFarAway = 2.0;  // diagonals of the object
+    if (motion.shift > kFarAway * diagonal) break;
+  }
+  const bool is_lift = input.protocol.load == hold_test::HoldLoad::Lift;
+  return {{"name", hold_test::load_names(input.protocol).at(d)},
+          {"direction",
+           to_json(is_lift ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ()) : verdict.direction_O)},
+          {"stage", hold_test::name_of(verdict.stage)},
+          {"failed_at", verdict.failed_at ? Json(*verdict.failed_at) : Json(nullptr)},
+          {"largest_shift", verdict.largest_shift},
+          {"largest_turn", verdict.largest_turn},
+          {"times", times},
+          {"shifts", shifts},
+          {"turns", turns},
+          {"object_poses", base64_of(object_poses)},
+          {"link_poses", base64_of(link_poses)}};
+}
+
+Json protocol_json(const hold_test::HoldProtocol& protocol) {
+  const bool is_lift = protocol.load == hold_test::HoldLoad::Lift;
+  Json knobs = Json::array();
+  for (const std::string& name : hold_test::knob_names()) {
+    const Json value = std::visit([](const auto& held) { return Json(held); },
+                                  hold_test::knob_value(protocol, name));
+    knobs.push_back({name, value});
+  }
+  return {{"name", protocol.name},
+          {"source", protocol.source},
+          {"is_lift", is_lift},
+          {"force", is_lift ? protocol.object_mass * protocol.gravity : protocol.force},
+          {"load_start", load_start(protocol)},
+          {"approach_time", protocol.approach_time},
+          {"largest_shift", protocol.largest_shift},
+          {"largest_turn", protocol.largest_turn},
+          {"knobs", knobs}};
+}
+
+}  // namespace
+
+std::size_t telling_direction(const hold_test::HoldVerdict& verdict,
+                              const hold_test::HoldProtocol& protocol) {
+  // Smaller says more: lost before the load, then by the time of failing, then by how near.
+  const auto rank = [&](const hold_test::DirectionVerdict& direction) {
+    if (direction.stage != hold_test::HoldStage::Load &&
+        direction.stage != hold_test::HoldStage::Held) {
+      return std::pair(0, 0.0);
+    }
+    if (direction.failed_at) return std::pair(1, *direction.failed_at);
+    return std::pair(2, -std::max(direction.largest_shift / protocol.largest_shift,
+                                  direction.largest_turn / protocol.largest_turn));
+  };
+  const auto& directions = verdict.directions;
+  return static_cast<std::size_t>(
+      std::min_element(directions.begin(), directions.end(),
+                       [&](const auto& a, const auto& b) { return rank(a) < rank(b); }) -
+      directions.begin());
+}
+
+std::string replay_scene_json(const ReplayInput& input) {
+  validate(input);
+  Json link_pieces = Json::array();
+  for (const geometry::ConvexDecomposition& link : input.hand.links) {
+    link_pieces.push_back(pieces_json(link));
+  }
+  Json directions = Json::array();
+  for (std::size_t d = 0; d < input.replays.size(); ++d) {
+    directions.push_back(direction_json(input, d));
+  }
+  const Json data = {{"title", input.title},
+                     {"object", to_json(input.object_O)},
+                     {"center_of_mass", to_json(input.object.center_of_mass_O)},
+                     {"hand", hand_data(input.hand.model, 0.0)},
+                     {"pieces",
+                      {{"object", pieces_json(input.object.shape)},
+                       {"num_object", input.object.shape.pieces.size()},
+                       {"links", link_pieces}}},
+                     {"protocol", protocol_json(input.protocol)},
+                     {"verdict",
+                      {{"stage", hold_test::name_of(input.verdict.stage)},
+                       {"reason", input.verdict.reason},
+                       {"squeeze_force", input.verdict.squeeze_force}}},
+                     {"shown", telling_direction(input.verdict, input.protocol)},
+                     {"directions", directions}};
+  return script_text(data);
+}
+
+std::string replay_page_html(const ReplayInput& input) {
+  return filled_page({input.title, kReplayJs, replay_scene_json(input)});
+}
+
+void write_replay_page(const std::filesystem::path& file, const ReplayInput& input) {
+  geometry::write_file_atomically(file, replay_page_html(input));
+}
+
+}  // namespace graspfit::viewer
