@@ -117,7 +117,7 @@ class Painter(Canvas):
 
     def __init__(self, width, height, scene, load):
         super().__init__(width, height)
-        self.scale = SUPERSAMPLING * 0.9
+        self.scale = SUPERSAMPLING * 0.9 * min(1.0, width / 640)
         self.scene, self.load = scene, load
         self.num_links = len(scene["hand"]["links"])
         vertices = scene["object"]["vertices"]

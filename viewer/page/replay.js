@@ -36,11 +36,10 @@ const object = meshOf(data.object);
 const objectBounds = boundsOf(object.vertices);
 const objectSize = length(subtract(objectBounds.high, objectBounds.low));
 
-// The first frame in which a limit is passed under load, and which; null if none is. The verdict is
-// the engine's, at its checks; this is for the eye.
+// The first frame in which a limit is passed, and which; null if none is. The verdict is the engine's,
+// at its checks; this is for the eye.
 function crossing(direction) {
   for (let at = 0; at < numFrames(direction); ++at) {
-    if (direction.times[at] <= protocol.load_start + 1e-9) continue;
     for (const key of ['shift', 'turn']) {
       if (direction[`${key}s`][at] >= limits[key]) return {at, key};
     }
@@ -273,15 +272,21 @@ function story() {
                                 : `pulled along ${direction.name} with ${fixed(protocol.force, 2)} N`;
   const most = `${millimeters(direction.largest_shift, 1)} mm and ${degrees(direction.largest_turn)}°`;
   if (direction.stage === 'held') return `Held: ${load}, the object moved by at most ${most} at any check.`;
-  if (direction.stage === 'approach') {
-    return 'The object was lost while the hand closed and squeezed, before any load.';
-  }
   const passed = crossing(direction);
-  const which = !passed ? '' : passed.key === 'turn'
-      ? ` It passed ${degrees(limits.turn)}° after ${fixed(direction.times[passed.at] - protocol.load_start, 2)} s.`
-      : ` It passed ${millimeters(limits.shift, 0)} mm after ${fixed(direction.times[passed.at] - protocol.load_start, 2)} s.`;
+  const which = passed ? ` It passed ${passedText(direction, passed)}.` : '';
+  if (direction.stage === 'approach') {
+    return `The object was lost while the hand closed and squeezed, before any load.${which}`;
+  }
   return `Lost: ${load}, the object was out of its limits at the check after ` +
       `${fixed(direction.failed_at, 1)} s (${most}).${which}`;
+}
+
+// "15.0° after 0.62 s" of the load, or "50 mm at 0.31 s" of the test, before it.
+function passedText(direction, {at, key}) {
+  const limit = key === 'turn' ? `${degrees(limits.turn)}°` : `${millimeters(limits.shift, 0)} mm`;
+  const since = direction.times[at] - protocol.load_start;
+  return since > 1e-9 ? `${limit} after ${fixed(since, 2)} s`
+                      : `${limit} at ${fixed(direction.times[at], 2)} s`;
 }
 
 function showVerdict() {

@@ -1,0 +1,85 @@
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_report.hpp"
+#include "support/catch.hpp"
+
+namespace graspfit {
+namespace {
+
+using Catch::Matchers::Contains;
+using geometry::shortest_decimal;
+using hold_test::HoldProtocol;
+using hold_test::knob_names;
+using hold_test::knob_value;
+using hold_test::KnobValue;
+using hold_test::set_knob;
+
+// As a command line has it; `change` makes another value of it.
+std::string text_of(const KnobValue& value, bool change) {
+  const double by = change ? 1.5 : 0.0;
+  if (const auto* number = std::get_if<double>(&value)) return shortest_decimal(*number + by);
+  if (const auto* count = std::get_if<int>(&value))
+    return std::to_string(*count + (change ? 1 : 0));
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag != change ? "yes" : "no";
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+    std::string text;
+    for (const double number : *numbers) {
+      text += (text.empty() ? "" : ",") + shortest_decimal(number + by);
+    }
+    return text;
+  }
+  const std::string& choice = std::get<std::string>(value);
+  if (!change) return choice;
+  if (choice == "lift" || choice == "six-forces") return choice == "lift" ? "six-forces" : "lift";
+  return choice == "none" ? "forces" : "none";
+}
+
+TEST_CASE("Setting one knob of a protocol from text changes that one and no other",
+          "[hold_test][hold_knobs]") {
+  for (const std::string& protocol_name : hold_test::hold_protocol_names()) {
+    const HoldProtocol shipped = hold_test::hold_protocol(protocol_name);
+    CHECK(hold_test::changed_knobs(shipped).empty());
+    for (const std::string& name : knob_names()) {
+      CAPTURE(protocol_name, name);
+      HoldProtocol protocol = shipped;
+      const KnobValue before = knob_value(protocol, name);
+      set_knob(protocol, name, text_of(before, true));
+      CHECK(hold_test::changed_knobs(protocol) == std::vector{name});
+      set_knob(protocol, name, text_of(before, false));
+      CHECK(knob_value(protocol, name) == before);
+    }
+  }
+}
+
+TEST_CASE("Knobs that there are not and texts that are no value are refused by name",
+          "[hold_test][hold_knobs]") {
+  HoldProtocol protocol;
+  CHECK_THROWS_WITH(set_knob(protocol, "mass", "1"),
+                    Contains("mass") && Contains("object_mass_kg"));
+  CHECK_THROWS_AS(knob_value(protocol, ""), geometry::InvalidInput);
+  for (const auto& [name, text] :
+       std::vector<std::pair<std::string, std::string>>{{"force_N", ""},
+                                                        {"force_N", "1,5"},
+                                                        {"force_N", "1x"},
+                                                        {"force_N", "inf"},
+                                                        {"force_N", "nan"},
+                                                        {"noslip_iterations", "1.5"},
+                                                        {"hand_solimp", "1,2"},
+                                                        {"hand_solimp", "1,2,3,4"},
+                                                        {"hand_solref", "1,,2"},
+                                                        {"multi_point_contacts", "true"},
+                                                        {"squeeze", "Forces"},
+                                                        {"load", "six"}}) {
+    CAPTURE(name, text);
+    CHECK_THROWS_WITH(set_knob(protocol, name, text), Contains(name) && Contains('"' + text + '"'));
+  }
+}
+
+}  // namespace
+}  // namespace graspfit
