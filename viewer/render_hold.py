@@ -226,7 +226,7 @@ class Painter(Canvas):
         ends = {"held": "held", "load": "lost under load", "approach": "lost before the load"}
         words = f"{protocol['name']}, {pull}: {ends.get(load['stage'], load['stage'])}"
         if load["stage"] == "load" and load["failed_at"] is not None:
-            words += f" at the check after {load['failed_at']:g} s"
+            words += f" within {load['failed_at']:.3g} s"
         color = COLORS["stable" if load["stage"] == "held" else "contact"]
         self.text(top, words, 16 * s, 12 * s, 15, color)
 
