@@ -7,9 +7,9 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hold_test/hold_batch.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
-#include "graspfit/hold_test/hold_batch.hpp"
 #include "internal/hand_data.hpp"
 #include "internal/page_template.hpp"
 

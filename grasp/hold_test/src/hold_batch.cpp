@@ -43,7 +43,8 @@ std::size_t num_workers(int num_threads, std::size_t num_grasps) {
 std::vector<TestedGrasp> test_grasps(const HoldHand& hand, const HoldObject& object,
                                      const HoldProtocol& protocol,
                                      std::span<const grasp::Grasp> grasps,
-                                     const HoldBatchOptions& options, const HoldProgress& progress) {
+                                     const HoldBatchOptions& options,
+                                     const HoldProgress& progress) {
   const std::vector<std::size_t> indices = wanted_indices(options, grasps.size());
   std::vector<TestedGrasp> tested(indices.size());
   // Which worker tests what is chance; what comes out is not, since a verdict depends on the grasp

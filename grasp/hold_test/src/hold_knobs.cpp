@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -89,15 +90,21 @@ const Knob& knob_named(const std::string& name) {
   throw InvalidInput("knob " + name + ": \"" + text + "\" " + why);
 }
 
+/// A finite number that is the whole text; nothing else.
 template <class Number>
-Number parsed(const std::string& name, const std::string& text, const char* kind) {
+std::optional<Number> number_of(const std::string& text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() ||
-      !std::isfinite(static_cast<double>(number))) {
-    refuse(name, text, std::string("is not ") + kind);
-  }
-  return number;
+  const bool is_read = error == std::errc() && end == text.data() + text.size();
+  return is_read && std::isfinite(static_cast<double>(number)) ? std::optional(number)
+                                                               : std::nullopt;
+}
+
+template <class Number>
+Number parsed(const std::string& name, const std::string& text, const char* kind) {
+  const std::optional<Number> number = number_of<Number>(text);
+  if (!number) refuse(name, text, std::string("is not ") + kind);
+  return *number;
 }
 
 template <std::size_t N>
@@ -105,9 +112,12 @@ std::array<double, N> parsed_numbers(const std::string& name, const std::string&
   std::vector<double> numbers;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, ',');) {
-    numbers.push_back(parsed<double>(name, part, "numbers separated by commas"));
+    if (const auto number = number_of<double>(part)) numbers.push_back(*number);
   }
-  if (numbers.size() != N) refuse(name, text, "is not " + std::to_string(N) + " numbers");
+  const auto num_parts = static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1;
+  if (numbers.size() != N || num_parts != N) {
+    refuse(name, text, "is not " + std::to_string(N) + " numbers separated by commas");
+  }
   std::array<double, N> array{};
   std::copy(numbers.begin(), numbers.end(), array.begin());
   return array;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "graspfit/geometry/convex_decomposition.hpp"
-#include "graspfit/hold_test/hold_protocol.hpp"
 #include "graspfit/hold_test/hold_batch.hpp"
+#include "graspfit/hold_test/hold_protocol.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
 
 namespace graspfit::hold_test {
