@@ -58,7 +58,7 @@ TEST_CASE("What no finger touches falls freely in every direction", "[hold_test]
     CHECK(direction.stage == HoldStage::Load);
     CHECK(direction.failed_at.value() == Approx(t));
     CHECK(direction.largest_shift == Approx(fall).epsilon(0.03));
-    CHECK(direction.largest_turn == Approx(0.0).margin(1e-9));
+    CHECK(direction.largest_turn == Approx(0.0).margin(1e-6));
   }
 }
 
@@ -67,6 +67,7 @@ TEST_CASE("A ball in a closed room is held without friction", "[hold_test]") {
   protocol.sliding_friction = 0.0;
   protocol.torsional_friction = 0.0;
   protocol.squeeze = SqueezeRule::None;
+  protocol.largest_turn = 7.0;  // Any: normals of a faceted ball do not all pass its center.
   const HoldHand room = testing::convex_hand(testing::closed_room(0.03));
   const HoldObject ball = testing::convex_object(geometry::ball(0.025, 3));
   grasp::Grasp inside;

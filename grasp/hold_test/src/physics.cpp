@@ -25,6 +25,11 @@ struct DataDeleter {
 constexpr std::array kFatalWarnings = {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL, mjWARN_BADQPOS,
                                        mjWARN_BADQVEL, mjWARN_BADQACC};
 
+/// A follower that broke away is held by a drive that does not give way, as a worm gear's
+/// (Barrett's) and as the squeeze assumes, which asks nothing of it: so many times stiffer and more
+/// damped than joints that press.
+constexpr double kLockedFactor = 50.0;
+
 Eigen::Quaterniond quaternion(const mjtNum* wxyz) {
   return Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
 }
@@ -71,8 +76,10 @@ struct Physics::Engine {
       const std::string name = joint_name(j);
       joints.push_back({model->jnt_qposadr[mj_name2id(model, mjOBJ_JOINT, name.c_str())],
                         mj_name2id(model, mjOBJ_ACTUATOR, name.c_str()),
-                        mj_name2id(model, mjOBJ_EQUALITY, name.c_str()), 0.0});
+                        mj_name2id(model, mjOBJ_EQUALITY, name.c_str()),
+                        model->jnt_dofadr[mj_name2id(model, mjOBJ_JOINT, name.c_str())], 0.0, 0.0});
       JointIds& ids = joints.back();
+      ids.damping = model->dof_damping[ids.dof];
       if (ids.actuator >= 0) ids.stiffness = model->actuator_gainprm[mjNGAIN * ids.actuator];
     }
     lift = mj_name2id(model, mjOBJ_ACTUATOR, "lift");
@@ -96,7 +103,9 @@ struct Physics::Engine {
     int position;  ///< In qpos.
     int actuator;  ///< −1: none.
     int equality;  ///< −1: none.
+    int dof;
     double stiffness;
+    double damping;
   };
 
   const hands::HandModel hand;
@@ -125,7 +134,9 @@ void Physics::reset(const hands::HandConfiguration& start, const std::vector<boo
     e.data->qpos[ids.position] = start.q[static_cast<Eigen::Index>(j)];
     if (ids.equality < 0) continue;
     e.model->eq_active[ids.equality] = follows[j] ? 1 : 0;
-    if (ids.actuator >= 0) e.set_stiffness(ids.actuator, follows[j] ? 0.0 : ids.stiffness);
+    if (ids.actuator < 0) continue;
+    e.set_stiffness(ids.actuator, follows[j] ? 0.0 : kLockedFactor * ids.stiffness);
+    e.model->dof_damping[ids.dof] = (follows[j] ? 1.0 : kLockedFactor) * ids.damping;
   }
   command(start);
   mj_forward(e.model, e.data.get());
