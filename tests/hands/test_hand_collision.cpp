@@ -1,13 +1,9 @@
 #include <Eigen/Geometry>
 #include <numbers>
-#include <utility>
 
-#include "graspfit/geometry/distance_map.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
-#include "graspfit/geometry/surface_patch.hpp"
-#include "graspfit/geometry/voxel_grid.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
@@ -124,81 +120,6 @@ TEST_CASE("A ball is hit exactly when it reaches the palm, and the depth is how 
   }
 }
 
-geometry::SignedDistanceMap distance_map_of(const geometry::MeshQuery& object, double margin) {
-  const geometry::VoxelLattice lattice =
-      geometry::lattice_around(object.box(), {.resolution = 30, .margin = margin});
-  return geometry::signed_distance_map(
-      geometry::voxelize(object, lattice, geometry::surface_patches(object.mesh(), lattice)));
-}
-
-TEST_CASE("What is surely clear of an object never intersects it, and most far enough away is",
-          "[hands][hand_collision]") {
-  struct Case {
-    geometry::TriangleMesh mesh;
-    double margin;  ///< Of the lattice: links leave it in the second case.
-  };
-  geometry::Random random(5);
-  int num_clear = 0, num_far = 0, num_touching = 0;
-  for (const Case& c : {Case{geometry::torus(0.05, 0.02, 48, 24), 0.15},
-                        Case{geometry::box({0.15, 0.04, 0.08}), 0.01}}) {
-    const geometry::MeshQuery object(c.mesh);
-    const geometry::SignedDistanceMap map = distance_map_of(object, c.margin);
-    const double voxel = map.lattice.voxel_size;
-    for (int i = 0; i < 360; ++i) {
-      const int link = i % static_cast<int>(barrett().links.size());
-      Eigen::Vector4d q;
-      for (double& x : q) x = random.uniform(-1.0, 1.0);
-      hands::RigidTransform X(Eigen::Quaterniond(q).normalized());
-      const Vector3d direction =
-          Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
-              .normalized();
-      const Vector3d middle = geometry::bounding_box(barrett().links[link].mesh_L).center();
-      const auto intersects = [&](double way) {
-        X.translation() = way * direction - X.linear() * middle;
-        const bool is_clear = collision().surely_clear(map, link, X);
-        const bool found = collision().link_intersects(object, link, X);
-        CHECK_FALSE((is_clear && found));
-        return found;
-      };
-      // Where it last touches on its way out, to the last bit; then off by more and more.
-      double inside = 0.0, outside = 0.4;
-      REQUIRE_FALSE(intersects(outside));
-      for (double way = 0.4; way > 0.0 && !intersects(way); way -= 0.005) inside = way - 0.005;
-      if (!intersects(inside)) continue;  // through the ring
-      for (int step = 0; step < 60; ++step) {
-        const double half = 0.5 * (inside + outside);
-        (intersects(half) ? inside : outside) = half;
-      }
-      ++num_touching;
-      for (const double off : {1e-9, 1e-6, 1e-4, 1e-3, 1e-2}) intersects(outside + off);
-      // Off along the way by six voxels and the length of the link.
-      const double length = geometry::bounding_box(barrett().links[link].mesh_L).diagonal().norm();
-      if (intersects(outside + 6 * voxel + length)) continue;
-      ++num_far;
-      num_clear += collision().surely_clear(map, link, X) ? 1 : 0;
-    }
-  }
-  CAPTURE(num_touching, num_far, num_clear);
-  CHECK(num_touching > 500);
-  CHECK(num_far > 500);
-  CHECK(num_clear > 0.95 * num_far);
-}
-
-TEST_CASE("Nothing inside a link, or around one, is told to be clear of it",
-          "[hands][hand_collision]") {
-  const int palm = 0;
-  const Vector3d middle = geometry::bounding_box(barrett().links[palm].mesh_L).center();
-  hands::RigidTransform X = hands::RigidTransform::Identity();
-  X.translation() = -middle;
-  for (const auto& [radius, margin] :  // inside the palm; the palm inside it
-       {std::pair{0.004, 0.01}, std::pair{0.3, 0.05}}) {
-    const geometry::MeshQuery ball(geometry::ball(radius, 3));
-    const geometry::SignedDistanceMap map = distance_map_of(ball, margin);
-    REQUIRE(collision().link_intersects(ball, palm, X));
-    CHECK_FALSE(collision().surely_clear(map, palm, X));
-  }
-}
-
 TEST_CASE("Links overlap by more than what their depth says, and by no less",
           "[hands][hand_collision]") {
   const auto X_OL = hands::forward_kinematics(barrett(), configuration(pi / 2, 2.0, 2.0, 0));
@@ -218,8 +139,6 @@ TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collisi
   const auto X_OL = hands::forward_kinematics(hand, configuration(pi / 2, 2.0, 2.0, 0));
   CHECK_FALSE(nothing.against_self(X_OL).intersects);
   CHECK_FALSE(nothing.against_object(geometry::MeshQuery(geometry::ball(1.0, 1)), X_OL).intersects);
-  const geometry::MeshQuery ball(geometry::ball(0.1, 1));
-  CHECK(nothing.surely_clear(distance_map_of(ball, 0.1), 0, X_OL[0]));
   CHECK_THROWS_AS(nothing.against_self({}), geometry::InvalidInput);
   CHECK_THROWS_AS(nothing.overlaps_self({}, 1e-3), geometry::InvalidInput);
 }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "graspfit/geometry/distance_map.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -32,16 +31,6 @@ class HandCollision {
     int link_b = -1;           ///< The other link for self-collision; −1 against the object.
   };
 
-  /// False: the link and the object may share a point, look exactly. True: they surely do not.
-  ///
-  /// `map` is the signed distance map of a closed object that lies in its lattice. A few balls that
-  /// cover the link's solid are held against lower bounds of the distance that the map gives, all
-  /// roundings allowed for. So nothing nearer than about two voxels and a ball's radius, half the
-  /// link's thickness, is told to be clear. Cost: one look into the map per ball, of which there
-  /// are at most 64 per link: a microsecond.
-  bool surely_clear(const geometry::SignedDistanceMap& map, int link,
-                    const RigidTransform& X_OL) const;
-
   /// Whether one link and the object share a point. Exact, as `geometry::do_intersect`; much
   /// cheaper than a depth.
   bool link_intersects(const geometry::MeshQuery& object, int link,
@@ -66,13 +55,6 @@ class HandCollision {
   HandModel model_;
   std::vector<std::optional<geometry::MeshQuery>> links_;  ///< Empty for links without faces.
   std::vector<Eigen::AlignedBox3d> boxes_;                 ///< Of the link meshes, in L.
-  /// Balls, in L, whose union holds the link's solid.
-  struct Ball {
-    Eigen::Vector3d center_L;
-    double radius;
-  };
-  static std::vector<Ball> covering_balls(const TriangleMesh& mesh);
-  std::vector<std::vector<Ball>> covers_;
 };
 
 }  // namespace graspfit::hands
