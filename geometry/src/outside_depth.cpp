@@ -5,7 +5,6 @@
 
 #include "internal/box_tree.hpp"
 #include "internal/mesh_edges.hpp"
-#include "internal/parallel_for.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -42,7 +41,8 @@ std::vector<std::array<Vector3d, 3>> edge_normals_of(const TriangleMesh& mesh) {
 }  // namespace
 
 OutsideDepth::OutsideDepth(const MeshQuery& solid, int resolution)
-    : mesh_(&solid.mesh()),
+    : solid_(solid),
+      mesh_(&solid.mesh()),
       lattice_(lattice_around(solid.box(), {.resolution = resolution})),
       nearest_faces_(static_cast<std::size_t>(lattice_.num_voxels()), -1),
       edge_normals_(edge_normals_of(solid.mesh())),
@@ -51,16 +51,13 @@ OutsideDepth::OutsideDepth(const MeshQuery& solid, int resolution)
   for (std::size_t f = 0; f < mesh_->faces.size(); ++f) {
     face_normals_.push_back(face_normal(*mesh_, f));
   }
-  parallel_for(nearest_faces_.size(), 0, [&](std::size_t i) {
-    const auto index = static_cast<std::int64_t>(i);
-    nearest_faces_[i] = solid.closest_point(lattice_.center(lattice_.voxel(index))).face;
-  });
 }
 
 double OutsideDepth::operator()(const Vector3d& point) const {
   const Eigen::Vector3i voxel =
       lattice_.voxel_at(point).cwiseMax(0).cwiseMin((lattice_.counts.array() - 1).matrix());
-  const std::int32_t face = nearest_faces_[lattice_.index(voxel)];
+  std::int32_t& face = nearest_faces_[lattice_.index(voxel)];
+  if (face < 0) face = solid_.closest_point(lattice_.center(voxel)).face;
   const TrianglePoint nearest = nearest_on_triangle(point, corners(*mesh_, face));
   const Vector3d away = point - nearest.point;
   int num_zero = 0;

@@ -24,6 +24,8 @@ struct Candidate {
   double most = 0.0;  ///< No place in the cube is farther out [m].
   std::size_t piece = 0;
   Cube cube;
+  double distance = 0.0;  ///< Of the cube's center from the surface [m].
+  bool is_outside = false;
   bool operator<(const Candidate& other) const { return most < other.most; }
 };
 
@@ -89,19 +91,25 @@ double length_inside(const MeshQuery& solid, const Vector3d& origin) {
 double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
                          const OutwardOptions& options) {
   const double to_corner = std::sqrt(3.0);
-  std::vector<Candidate> todo;   // a heap, the one that may reach farthest on top
-  double known = options.floor;  // or reached by a point of a piece
-  const auto add = [&](std::size_t p, const Cube& cube) {
+  constexpr double kSlack = 1.0 + 1e-9;  // more than rounding of distances
+  std::vector<Candidate> todo;           // a heap, the one that may reach farthest on top
+  double known = options.floor;          // or reached by a point of a piece
+  const auto add = [&](std::size_t p, const Cube& cube, const Candidate* parent) {
     if (!may_meet(pieces[p], cube)) return;
     const double radius = to_corner * cube.half;
     const double distance = std::sqrt(solid.closest_point(cube.center).squared_distance);
     if (distance + radius <= std::max(known, options.tolerance)) return;
-    const bool is_outside = solid.containment(cube.center) == Containment::Outside;
+    // The centers of a cube and of its eighths are as far apart as the eighth is large.
+    const bool is_outside = parent != nullptr && parent->distance > kSlack * radius
+                                ? parent->is_outside
+                                : solid.containment(cube.center) == Containment::Outside;
     if (is_outside && pieces[p].height(cube.center) <= 0.0) known = std::max(known, distance);
-    todo.push_back({is_outside ? distance + radius : radius - distance, p, cube});
+    const double most = is_outside ? distance + radius : radius - distance;
+    if (most <= std::max(known, options.tolerance)) return;
+    todo.push_back({most, p, cube, distance, is_outside});
     std::push_heap(todo.begin(), todo.end());
   };
-  for (std::size_t p = 0; p < pieces.size(); ++p) add(p, cube_around(pieces[p]));
+  for (std::size_t p = 0; p < pieces.size(); ++p) add(p, cube_around(pieces[p]), nullptr);
   while (!todo.empty()) {
     const Candidate top = todo.front();
     // A deep hollow may be as deep over a whole sheet of places, too many for a small tolerance.
@@ -113,7 +121,7 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3d step(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
                           corner & 4 ? 0.5 : -0.5);
-      add(top.piece, {top.cube.center + top.cube.half * step, 0.5 * top.cube.half});
+      add(top.piece, {top.cube.center + top.cube.half * step, 0.5 * top.cube.half}, &top);
     }
   }
   // What was left out cannot reach farther than this.

@@ -13,7 +13,8 @@ namespace graspfit::geometry::internal {
 /// point beside them. For choices among many, not for decisions.
 ///
 /// Approximate: never less than the distance to that face's solid side allows, and too large by at
-/// most the spacing of the lattice, where another face is nearer.
+/// most the spacing of the lattice, where another face is nearer. Faces are looked up when first
+/// asked for: for one thread at a time.
 class OutsideDepth {
  public:
   /// `resolution` voxels along the longest extent. The mesh is closed and outward.
@@ -23,9 +24,10 @@ class OutsideDepth {
   double operator()(const Eigen::Vector3d& point) const;
 
  private:
-  const TriangleMesh* mesh_;
+  MeshQuery solid_;
+  const TriangleMesh* mesh_;  // of solid_
   VoxelLattice lattice_;
-  std::vector<std::int32_t> nearest_faces_;                   // one per voxel center
+  mutable std::vector<std::int32_t> nearest_faces_;           // one per voxel center; −1: not yet
   std::vector<Eigen::Vector3d> face_normals_;                 // not unit
   std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  // edge k from corner k on
   std::vector<Eigen::Vector3d> vertex_normals_;
