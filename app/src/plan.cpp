@@ -260,7 +260,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   progress.show("voxels and contact scores");
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
-      grasp::prepare_object(object_file.mesh, hand, options, &object_timings);
+      grasp::prepare_object(object_file.mesh, hand, options, &object_timings, {.is_on = true});
   grasp::PlannerResult result = grasp::plan_grasps(object, hand, options, around.surroundings,
                                                    num_threads, shown_by(progress, options));
   result.timings.object = object_timings;

@@ -134,6 +134,8 @@ po::options_description target_options() {
   add_number(target, "ideal-m-bias", targets.ideal_m_bias,
              "random sets: how strongly those with a large M of their own are preferred; 0: not "
              "[R, A48]");
+  add_integer(target, "ideal-m-draws", static_cast<std::uint64_t>(targets.ideal_m_draws),
+              "with --ideal-m-bias: complete sets to draw one from, at least 1 [R, A48]");
   add_number(target, "theta-max-deg", quality.theta_max / kRadiansPerDegree,
              "half-angle of the friction cones of targets and measure, in degrees between 0 and 90 "
              "[P; one angle for both: R, A47]");
@@ -144,11 +146,16 @@ po::options_description target_options() {
   add_number(target, "centroid-limit", targets.centroid_limit_rel,
              "largest distance of the targets' centroid from the center of mass, over half the "
              "bounding box's diagonal [R, A19]");
+  add_number(target, "angle-weight", targets.angle_weight,
+             "weight of the angles between lines and normals of stable pairs in the rank of target "
+             "sets; 0: not ranked by angles [R, A19]");
   add_number(target, "pool-fraction", targets.pool_fraction,
              "share of the ranked candidates that is drawn from, above 0 to 1 [R, A20]");
   add_number(target, "pool-spacing-mm", targets.pool_spacing * 1000.0,
              "of all candidates in a cube of this size the best one stays; 0: all [P: sampling]; a "
              "pad's width makes ranked searches for four and more targets short");
+  add_number(target, "palm-reach-tolerance-mm", targets.palm_reach_tolerance * 1000.0,
+             "with the palm: how far a target may lie from where its fingertip gets [R]");
   add_integer(target, "max-placements", static_cast<std::uint64_t>(defaults.max_placements),
               "sides of one target set that are fitted, those that suit the fingertips best first "
               "[R, A23]");
@@ -374,6 +381,9 @@ void read_target_flags(const Flags& flags, PlannerOptions& options) {
   options.targets.edge_tolerance_rel = flags.number("edge-tolerance");
   options.targets.centroid_limit_rel = flags.number("centroid-limit");
   options.targets.pool_fraction = flags.number("pool-fraction");
+  options.targets.angle_weight = flags.number("angle-weight");
+  options.targets.ideal_m_draws = flags.integer("ideal-m-draws");
+  read_millimeters(flags, "palm-reach-tolerance-mm", options.targets.palm_reach_tolerance);
   options.targets.max_seeds = flags.integer("max-seeds");
   options.targets.search = flags.choice<grasp::TargetSearch>("target-search");
   options.targets.ideal_m_bias = flags.number("ideal-m-bias");

@@ -112,7 +112,8 @@ void CellJournal::append(std::size_t cell, const std::string& key, const CellRec
                         {"status", record.status},
                         {"reason", record.reason},
                         {"fields", record.fields},
-                        {"timings", record.timings}};
+                        {"timings", record.timings},
+                        {"details", record.details}};
   const std::lock_guard lock(mutex_);
   const std::int64_t offset = size_;
   write_line(content.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -128,7 +129,8 @@ CellRecord CellJournal::read(std::size_t cell) const {
   if (!content) fail("was changed while it was in use");
   return {content->at("status").get<std::string>(), content->at("reason").get<std::string>(),
           content->at("fields").get<std::vector<std::string>>(),
-          content->at("timings").get<std::vector<std::string>>()};
+          content->at("timings").get<std::vector<std::string>>(),
+          content->at("details").get<std::vector<std::vector<std::string>>>()};
 }
 
 }  // namespace graspfit::experiments::internal

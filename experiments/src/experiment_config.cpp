@@ -76,7 +76,68 @@ AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
   return value;
 }
 
-PlacedAxis read_axis(const std::string& name, const ConfigNode& node) {
+/// The value of an axis with that label, or −1.
+std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
+  const auto found = std::find_if(axis.values.begin(), axis.values.end(),
+                                  [&](const AxisValue& value) { return value.label == label; });
+  return found == axis.values.end() ? -1 : found - axis.values.begin();
+}
+
+/// Keeps the values with these labels, in their old order.
+void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
+  std::set<std::ptrdiff_t> kept;
+  for (const ConfigNode& label : labels.items()) {
+    const std::string name = label.json().is_primitive() ? plain_label(Json(label.json())) : "";
+    const std::ptrdiff_t index = find_value(placed.axis, name);
+    if (index < 0) {
+      label.fail("is no value of axis " + placed.axis.name + "; there are " +
+                 labels_text(placed.axis));
+    }
+    kept.insert(index);
+  }
+  PlacedAxis remaining;
+  remaining.axis.name = placed.axis.name;
+  for (const std::ptrdiff_t index : kept) {
+    remaining.axis.values.push_back(placed.axis.values[static_cast<std::size_t>(index)]);
+    remaining.places.push_back(placed.places[static_cast<std::size_t>(index)]);
+  }
+  placed = std::move(remaining);
+}
+
+ConfigNode::Json parse(const std::string& file, const std::string& text) {
+  try {
+    return ConfigNode::Json::parse(text);
+  } catch (const ConfigNode::Json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 1, ...": the part in brackets is noise.
+    std::string what = error.what();
+    if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
+    throw geometry::IoError(file + ": is not JSON: " + what);
+  }
+}
+
+/// {"values_of": SLUG, "only": [labels]}: the values of the axis `name` in the configuration of
+/// another experiment in `folder`.
+std::vector<AxisValue> values_of(const ConfigNode& item, const std::string& name,
+                                 const fs::path& folder) {
+  item.require_members({"values_of"}, {"only"});
+  const ConfigNode slug = item.at("values_of");
+  if (!is_label(slug.text())) slug.fail("is not the name of an experiment");
+  const fs::path file = folder / (slug.text() + ".json");
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) slug.fail("has no configuration beside this one");
+  const ConfigNode::Json json = parse(file.string(), geometry::read_file(file));
+  PlacedAxis other;
+  other.axis.name = name;
+  for (const ConfigNode& value : ConfigNode(file.string(), json).at("axes").at(name).items()) {
+    other.axis.values.push_back(read_axis_value(name, value));
+    other.places.push_back(value.place());
+  }
+  if (item.has("only")) keep_values(item.at("only"), other);
+  return other.axis.values;
+}
+
+/// `folder` is that of the configuration.
+PlacedAxis read_axis(const std::string& name, const ConfigNode& node, const fs::path& folder) {
   if (!is_label(name) || name == "seed") {
     node.fail("no axis can be named \"" + name + "\"; \"seeds\" makes the axis seed");
   }
@@ -84,10 +145,18 @@ PlacedAxis read_axis(const std::string& name, const ConfigNode& node) {
   placed.axis.name = name;
   std::set<std::string> labels;
   for (const ConfigNode& item : node.items()) {
-    placed.axis.values.push_back(read_axis_value(name, item));
-    placed.places.push_back(item.place());
-    if (!labels.insert(placed.axis.values.back().label).second) {
-      item.fail("is the second value named " + placed.axis.values.back().label);
+    std::vector<AxisValue> values;
+    if (item.json().is_object() && item.has("values_of")) {
+      values = values_of(item, name, folder);
+    } else {
+      values = {read_axis_value(name, item)};
+    }
+    for (AxisValue& value : values) {
+      if (!labels.insert(value.label).second) {
+        item.fail("is the second value named " + value.label);
+      }
+      placed.axis.values.push_back(std::move(value));
+      placed.places.push_back(item.place());
     }
   }
   return placed;
@@ -120,34 +189,6 @@ PlacedAxis* find_axis(Draft& draft, const std::string& name) {
   const auto found = std::find_if(draft.axes.begin(), draft.axes.end(),
                                   [&](const PlacedAxis& axis) { return axis.axis.name == name; });
   return found == draft.axes.end() ? nullptr : &*found;
-}
-
-/// The value of an axis with that label, or −1.
-std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
-  const auto found = std::find_if(axis.values.begin(), axis.values.end(),
-                                  [&](const AxisValue& value) { return value.label == label; });
-  return found == axis.values.end() ? -1 : found - axis.values.begin();
-}
-
-/// Keeps the values with these labels, in their old order.
-void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
-  std::set<std::ptrdiff_t> kept;
-  for (const ConfigNode& label : labels.items()) {
-    const std::string name = label.json().is_primitive() ? plain_label(Json(label.json())) : "";
-    const std::ptrdiff_t index = find_value(placed.axis, name);
-    if (index < 0) {
-      label.fail("is no value of axis " + placed.axis.name + "; there are " +
-                 labels_text(placed.axis));
-    }
-    kept.insert(index);
-  }
-  PlacedAxis remaining;
-  remaining.axis.name = placed.axis.name;
-  for (const std::ptrdiff_t index : kept) {
-    remaining.axis.values.push_back(placed.axis.values[static_cast<std::size_t>(index)]);
-    remaining.places.push_back(placed.places[static_cast<std::size_t>(index)]);
-  }
-  placed = std::move(remaining);
 }
 
 void apply_quick(const ConfigNode& quick, Draft& draft) {
@@ -299,17 +340,6 @@ ParameterSweep sweep_of(const Draft& draft, const std::string& slug, std::uint64
   return sweep;
 }
 
-ConfigNode::Json parse(const std::string& file, const std::string& text) {
-  try {
-    return ConfigNode::Json::parse(text);
-  } catch (const ConfigNode::Json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, ...": the part in brackets is noise.
-    std::string what = error.what();
-    if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    throw geometry::IoError(file + ": is not JSON: " + what);
-  }
-}
-
 }  // namespace
 
 AxisChange parse_axis_change(const std::string& text) {
@@ -364,7 +394,7 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
   draft.file = config.file;
   if (root.has("settings")) read_settings(root.at("settings"), draft);
   for (const auto& [name, values] : root.at("axes").members()) {
-    draft.axes.push_back(read_axis(name, values));
+    draft.axes.push_back(read_axis(name, values, file.parent_path()));
   }
   if (draft.axes.empty()) root.at("axes").fail("is empty; a sweep has at least one axis");
   if (root.has("seeds")) draft.axes.push_back(seed_axis(root.at("seeds")));

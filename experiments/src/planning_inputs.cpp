@@ -1,6 +1,3 @@
-#include <list>
-#include <mutex>
-
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
@@ -8,52 +5,30 @@
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "internal/data_files.hpp"
+#include "internal/last_used.hpp"
 
 namespace graspfit::experiments {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The last few values made, by key. Two threads that want the same new value may both make it.
-template <class Value>
-class LastUsed {
- public:
-  template <class Make>
-  std::shared_ptr<const Value> value(const std::string& key, const Make& make) {
-    if (std::shared_ptr<const Value> kept = find(key)) return kept;
-    auto made = std::make_shared<const Value>(make());
-    const std::lock_guard lock(mutex_);
-    values_.emplace_front(key, made);
-    constexpr std::size_t kMost = 4;  // A few meshes; one per thread that works is enough.
-    if (values_.size() > kMost) values_.pop_back();
-    return made;
-  }
-
- private:
-  std::shared_ptr<const Value> find(const std::string& key) {
-    const std::lock_guard lock(mutex_);
-    for (auto entry = values_.begin(); entry != values_.end(); ++entry) {
-      if (entry->first != key) continue;
-      values_.splice(values_.begin(), values_, entry);
-      return values_.front().second;
-    }
-    return nullptr;
-  }
-
-  std::mutex mutex_;
-  std::list<std::pair<std::string, std::shared_ptr<const Value>>> values_;
-};
-
 /// What lengths are multiplied by so that the mesh has the size that is wanted.
 double scale_of(const ObjectSettings& settings, const geometry::TriangleMesh& mesh) {
-  if (!settings.size) return 1.0;
   const Eigen::Vector3d extents = geometry::bounding_box(mesh).sizes();
-  const double extent = settings.size_axis ? extents[*settings.size_axis] : extents.maxCoeff();
-  if (!(extent > 0.0)) {
-    throw geometry::DegenerateGeometry(settings.file + settings.shape +
-                                       ": has no extent along its size_axis");
+  double scale = 1.0;
+  if (settings.size) {
+    const double extent = settings.size_axis ? extents[*settings.size_axis] : extents.maxCoeff();
+    if (!(extent > 0.0)) {
+      throw geometry::DegenerateGeometry(settings.file + settings.shape +
+                                         ": has no extent along its size_axis");
+    }
+    scale = *settings.size / extent;
   }
-  return *settings.size / extent;
+  const double thickness = scale * extents.minCoeff();
+  if (settings.largest_thickness && thickness > *settings.largest_thickness) {
+    scale *= *settings.largest_thickness / thickness;
+  }
+  return scale;
 }
 
 /// A shape of our own as if it had been read from a file; nothing to repair.
@@ -70,7 +45,7 @@ grasp::ObjectFile shape_object(const ObjectSettings& settings) {
 grasp::ObjectFile file_object(const ObjectSettings& settings) {
   const fs::path file = internal::data_file(settings.file);
   grasp::ObjectReadOptions options;
-  if (settings.size) {
+  if (settings.size || settings.largest_thickness) {
     options.meters_per_file_unit = scale_of(settings, geometry::read_mesh(file).mesh);
   }
   return grasp::read_object_file(file, options);
@@ -83,17 +58,23 @@ fs::path hand_file(const std::string& hand) {
 
 }  // namespace
 
+std::string ObjectSettings::key() const {
+  const auto text = [](const std::optional<double>& length) {
+    return length ? geometry::shortest_decimal(*length) : "";
+  };
+  return file + '\n' + shape + '\n' + text(size) + '\n' +
+         (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness);
+}
+
 std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings) {
-  static LastUsed<grasp::ObjectFile> objects;
-  const std::string key = settings.file + '\n' + settings.shape + '\n' +
-                          (settings.size ? geometry::shortest_decimal(*settings.size) : "") + '\n' +
-                          (settings.size_axis ? std::to_string(*settings.size_axis) : "longest");
-  return objects.value(
-      key, [&] { return settings.shape.empty() ? file_object(settings) : shape_object(settings); });
+  static internal::LastUsed<grasp::ObjectFile> objects;
+  return objects.value(settings.key(), [&] {
+    return settings.shape.empty() ? file_object(settings) : shape_object(settings);
+  });
 }
 
 std::shared_ptr<const hands::HandModel> load_hand(const std::string& hand) {
-  static LastUsed<hands::HandModel> models;
+  static internal::LastUsed<hands::HandModel> models;
   return models.value(hand, [&] { return hands::read_hand_model(hand_file(hand)); });
 }
 

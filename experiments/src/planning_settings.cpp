@@ -56,18 +56,23 @@ Setting choice(const char* name, const char* meaning, Field field) {
 }
 
 std::vector<Setting> object_and_hand_settings() {
-  return {{{"file", "", "the object's mesh in the data folder"},
-           [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
-          {{"shape", "", "instead of file: a shape of graspfit shape"},
-           [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
-          {{"size_m", "m", "length of the object's bounding box along size_axis"},
-           [](PlanningSettings& s, const SettingValue& v) { s.object.size = v.positive_number(); }},
-          {{"size_axis", "", "x, y, z or longest, which it is if not given"},
-           [](PlanningSettings& s, const SettingValue& v) {
-             if (v.text() != "longest") s.object.size_axis = v.axis();
-           }},
-          {{"hand", "", "a shipped hand, or a description in the data folder"},
-           [](PlanningSettings& s, const SettingValue& v) { s.hand = v.text(); }}};
+  return {
+      {{"file", "", "the object's mesh in the data folder"},
+       [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
+      {{"shape", "", "instead of file: a shape of graspfit shape"},
+       [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
+      {{"size_m", "m", "length of the object's bounding box along size_axis"},
+       [](PlanningSettings& s, const SettingValue& v) { s.object.size = v.positive_number(); }},
+      {{"size_axis", "", "x, y, z or longest, which it is if not given"},
+       [](PlanningSettings& s, const SettingValue& v) {
+         if (v.text() != "longest") s.object.size_axis = v.axis();
+       }},
+      {{"largest_thickness_m", "m", "scaled down where the bounding box's shortest edge is longer"},
+       [](PlanningSettings& s, const SettingValue& v) {
+         s.object.largest_thickness = v.positive_number();
+       }},
+      {{"hand", "", "a shipped hand, or a description in the data folder"},
+       [](PlanningSettings& s, const SettingValue& v) { s.hand = v.text(); }}};
 }
 
 std::vector<Setting> request_settings() {
@@ -93,6 +98,9 @@ std::vector<Setting> request_settings() {
           integer(
               "max-attempts", "target sets fitted",
               [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
+          {{"table", "m",
+            "a table: everything at or below this z of the object's frame is solid; none without"},
+           [](PlanningSettings& s, const SettingValue& v) { s.table_z_O = v.number(); }},
           choice<grasp::Acceptance>(
               "accept", "which grasps are collected",
               [](PlannerOptions & o) -> auto& { return o.acceptance; }),
@@ -158,6 +166,19 @@ std::vector<Setting> target_settings() {
       number(
           "ideal-m-bias", "1", "how strongly sets with a large ideal M are preferred",
           [](PlannerOptions & o) -> auto& { return o.targets.ideal_m_bias; }),
+      integer(
+          "ideal-m-draws", "with ideal-m-bias: complete sets to draw one from",
+          [](PlannerOptions & o) -> auto& { return o.targets.ideal_m_draws; }),
+      number(
+          "angle-weight", "1", "weight of stable pairs' angles in the rank of target sets",
+          [](PlannerOptions & o) -> auto& { return o.targets.angle_weight; }),
+      number(
+          "palm-reach-tolerance-mm", "mm", "how far a target may lie from where its tip gets",
+          [](PlannerOptions & o) -> auto& { return o.targets.palm_reach_tolerance; },
+          kMetersPerMillimeter),
+      integer(
+          "max-placements", "sides of one target set that are fitted",
+          [](PlannerOptions & o) -> auto& { return o.max_placements; }),
       number(
           "edge-tolerance", "1", "largest difference of target distances over the first one",
           [](PlannerOptions & o) -> auto& { return o.targets.edge_tolerance_rel; }),
@@ -204,6 +225,17 @@ std::vector<Setting> fitting_settings() {
           "wanted-gap-mm", "mm", "to which claimed pads are brought",
           [](PlannerOptions & o) -> auto& { return o.refinement.wanted_gap; },
           kMetersPerMillimeter),
+      number(
+          "least-distance-mm", "mm", "kept between all that must not touch",
+          [](PlannerOptions & o) -> auto& { return o.refinement.least_distance; },
+          kMetersPerMillimeter),
+      number(
+          "largest-shift-mm", "mm", "of the palm while contacts are refined",
+          [](PlannerOptions & o) -> auto& { return o.refinement.largest_shift; },
+          kMetersPerMillimeter),
+      number(
+          "largest-turn-deg", "deg", "of the palm while contacts are refined",
+          [](PlannerOptions & o) -> auto& { return o.refinement.largest_turn; }, kRadiansPerDegree),
       integer(
           "refine-iterations", "of contact refinement",
           [](PlannerOptions & o) -> auto& { return o.refinement.max_iterations; }),

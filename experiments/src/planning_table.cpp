@@ -6,6 +6,7 @@
 #include <numeric>
 #include <system_error>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "internal/thread_clock.hpp"
 
@@ -78,6 +79,14 @@ std::optional<double> largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
+void require_over_table(const geometry::TriangleMesh& mesh_O, std::optional<double> table_z_O) {
+  const double top = geometry::bounding_box(mesh_O).max().z();
+  if (!table_z_O || top > *table_z_O) return;
+  throw geometry::InvalidInput("table " + geometry::shortest_decimal(*table_z_O) +
+                               " is above the whole object, whose highest z is " +
+                               geometry::shortest_decimal(top) + " m");
+}
+
 }  // namespace
 
 Planned plan(const PlanningSettings& settings) {
@@ -85,10 +94,12 @@ Planned plan(const PlanningSettings& settings) {
   std::shared_ptr<const grasp::ObjectFile> file = load_object(settings.object);
   std::shared_ptr<const hands::HandModel> hand = load_hand(settings.hand);
   grasp::requested_parts(*hand, settings.options);  // What the hand cannot do is said first.
+  require_over_table(file->mesh, settings.table_z_O);
   const double load_s = seconds_since(start);
   const Clock::time_point prepare_start = Clock::now();
   grasp::ObjectModelTimings timings;
-  grasp::ObjectModel object = grasp::prepare_object(file->mesh, *hand, settings.options, &timings);
+  grasp::ObjectModel object =
+      grasp::prepare_object(file->mesh, *hand, settings.options, &timings, {.is_on = true});
   const double prepare_s = seconds_since(prepare_start);
 
   Planned planned{
@@ -96,7 +107,8 @@ Planned plan(const PlanningSettings& settings) {
       {}};
   const Clock::time_point plan_start = Clock::now();
   const double cpu_start = thread_cpu_s();
-  planned.result = grasp::plan_grasps(planned.object, *planned.hand, settings.options, {}, 1,
+  planned.result = grasp::plan_grasps(planned.object, *planned.hand, settings.options,
+                                      {.table_z_O = settings.table_z_O, .obstacles = {}}, 1,
                                       [&](std::int64_t, std::int64_t grasps) {
                                         planned.attempt_cpu_s.push_back(thread_cpu_s() - cpu_start);
                                         if (grasps > 0 && !planned.first_s)
@@ -187,7 +199,7 @@ void fill_planning_columns(const Planned& planned, ResultRow& row) {
 
 std::vector<Column> planning_timings() {
   return {{"load_s", "s", "reading object and hand, or nothing where the last cells had the same"},
-          {"prepare_s", "s", "building the object's model; weak regions may come from the cache"},
+          {"prepare_s", "s", "building the object's model; what the cache has of it is read"},
           {"plan_s", "s", "the planner by the clock"},
           {"first_grasp_s", "s", "from its start to the first accepted grasp"},
           {"per_grasp_s", "s", "the planner's time over the valid grasps, failures included"},
@@ -244,9 +256,11 @@ void write_best_grasps(const std::filesystem::path& folder, const Planned& plann
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw geometry::IoError(folder.string() + ": " + error.message());
-  grasp::write_grasps(folder / "grasps.json",
-                      grasp::make_grasp_file(planned.object_file->record, *planned.hand,
-                                             planned.settings.options, planned.object, best));
+  grasp::write_grasps(
+      folder / "grasps.json",
+      grasp::make_grasp_file(planned.object_file->record, *planned.hand, planned.settings.options,
+                             planned.object, best,
+                             {.table_z_O = planned.settings.table_z_O, .obstacles = {}}));
 }
 
 }  // namespace graspfit::experiments::internal

@@ -146,7 +146,10 @@ void publish(const Experiment& experiment, const ExperimentConfig& config, const
   std::error_code error;
   fs::create_directories(published, error);
   if (error) throw geometry::IoError(published.string() + ": " + error.message());
-  for (const char* const ending : {".csv", ".timing.csv", ".manifest.json"}) {
+  std::vector<std::string> endings = {".csv", ".timing.csv", ".manifest.json"};
+  if (!experiment.details.empty()) endings.push_back(".details.csv");
+  if (!experiment.summary.empty()) endings.push_back(".summary.csv");
+  for (const std::string& ending : endings) {
     const std::string name = experiment.slug + ending;
     geometry::write_file_atomically(published / name, geometry::read_file(folder / name));
   }

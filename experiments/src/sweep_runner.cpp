@@ -32,15 +32,20 @@ struct CellOutcome {
 
 CellOutcome without_results(const Experiment& experiment, const char* status, const char* reason,
                             bool is_final) {
-  return {{status, csv_field(std::string(reason)), ResultRow(experiment.columns).csv_fields(),
-           ResultRow(experiment.timings).csv_fields()},
+  return {{status,
+           csv_field(std::string(reason)),
+           ResultRow(experiment.columns).csv_fields(),
+           ResultRow(experiment.timings).csv_fields(),
+           {}},
           is_final};
 }
 
 CellOutcome run_cell(const Experiment& experiment, const Cell& cell, const fs::path& folder) {
   try {
     const CellResult result = experiment.run(cell, cell_folder(folder, cell));
-    return {{"ok", "", result.row.csv_fields(), result.timings.csv_fields()}, true};
+    CellOutcome outcome{{"ok", "", result.row.csv_fields(), result.timings.csv_fields(), {}}, true};
+    for (const ResultRow& row : result.details) outcome.record.details.push_back(row.csv_fields());
+    return outcome;
   } catch (const MissingData& error) {
     return without_results(experiment, "skipped", error.what(), false);
   } catch (const std::bad_alloc&) {
@@ -141,6 +146,31 @@ std::vector<std::string> header(const ParameterSweep& sweep, std::vector<std::st
   return names;
 }
 
+/// The tables beside the cells' rows: `details`, and `summary` made of them.
+void write_further_tables(const Experiment& experiment, const ParameterSweep& sweep, const Run& run,
+                          const fs::path& folder) {
+  if (experiment.details.empty()) return;
+  std::string details = csv_line(header(sweep, {}, experiment.details));
+  std::vector<FinishedCell> cells;
+  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
+    CellRecord record = run.record(i);
+    if (record.status != "ok") continue;
+    cells.push_back({sweep.cell(i).labels, std::move(record.details)});
+    for (const std::vector<std::string>& detail : cells.back().details) {
+      std::vector<std::string> row = cells.back().labels;
+      row.insert(row.end(), detail.begin(), detail.end());
+      details += csv_line(row);
+    }
+  }
+  geometry::write_file_atomically(folder / (experiment.slug + ".details.csv"), details);
+  if (experiment.summary.empty()) return;
+  std::string summary = csv_line(header({}, {}, experiment.summary));
+  for (const ResultRow& row : experiment.summarize(sweep, cells)) {
+    summary += csv_line(row.csv_fields());
+  }
+  geometry::write_file_atomically(folder / (experiment.slug + ".summary.csv"), summary);
+}
+
 void write_tables(const Experiment& experiment, const ParameterSweep& sweep, const Run& run,
                   const fs::path& folder) {
   std::string results =
@@ -201,6 +231,7 @@ RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& conf
   Run run(experiment, config, manifest, options, progress);
   const RunProgress done = run.work();
   write_tables(experiment, config.sweep, run, options.folder);
+  write_further_tables(experiment, config.sweep, run, options.folder);
   manifest.inputs = input_hashes(experiment, config.sweep);
   const nlohmann::ordered_json counts = {{"total", done.num_cells},
                                          {"finished", done.num_done},

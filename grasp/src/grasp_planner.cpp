@@ -178,7 +178,8 @@ PlannerTimings& PlannerTimings::operator+=(const PlannerTimings& other) {
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                           const PlannerOptions& options, ObjectModelTimings* timings) {
+                           const PlannerOptions& options, ObjectModelTimings* timings,
+                           const geometry::ContentCache& cache) {
   options.validate();
   internal::check_object_size(mesh, hand, requested_parts(hand, options).fingers,
                               2.0 * hands::largest_reach(hand));
@@ -187,7 +188,7 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
   object_options.averaging = options.averaging;
   object_options.score = options.score;
   object_options.weak = options.weak;
-  return build_object_model(mesh, object_options, timings);
+  return cached_object_model(mesh, object_options, cache, timings);
 }
 
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,

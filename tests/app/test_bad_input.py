@@ -158,6 +158,7 @@ class BadFlags(program.ProgramTest):
                 ("clearance-mm", "-1"), ("mean-filter-radius", "-1"),
                 ("score-length-voxels", "0"), ("threads", "-1"), ("friction", "-0.1"),
                 ("squeeze-force", "0"), ("squeeze-stiffness", "0"), ("ideal-m-bias", "-1"),
+                ("ideal-m-draws", "0"), ("angle-weight", "-1"), ("palm-reach-tolerance-mm", "-1"),
                 ("weak-thickness-mm", "0"), ("largest-gap-mm", "0"), ("wanted-gap-mm", "0", "0.2"),
                 ("least-distance-mm", "0"), ("largest-shift-mm", "-1"), ("largest-turn-deg", "-1"),
                 ("refine-iterations", "0"), ("pre-grasp-clearance-mm", "0"),

@@ -125,6 +125,38 @@ TEST_CASE("Configuration errors name file, key and what is allowed", "[experimen
         {"--set colour: is no setting; there are amount, step, base"});
 }
 
+TEST_CASE("An axis can have the values of another configuration's", "[experiments][config]") {
+  const TemporaryFolder folder;
+  folder.write("other.json", R"({"axes": {"letter": [{"name": "d", "amount": 4},
+                                                      {"name": "e", "amount": 5}]}})");
+  const auto sweep_with = [&](const std::string& first) {
+    return read_config(
+               counting_experiment(),
+               folder.write("counting.json",
+                            with(R"({"name": "a", "amount": 1, "note": "the first"})", first)))
+        .sweep;
+  };
+  const ParameterSweep sweep = sweep_with(R"({"values_of": "other"})");
+  REQUIRE(sweep.axes[0].values.size() == 4);
+  CHECK(sweep.cell(0).key == "letter=d step=0 seed=1");
+  CHECK(nlohmann::json::parse(sweep.cell(8).settings).at("amount") == 5);
+  CHECK(sweep.cell(16).key == "letter=b step=0 seed=1");
+  const ParameterSweep some = sweep_with(R"({"values_of": "other", "only": ["e"]})");
+  CHECK(some.axes[0].values.size() == 3);
+  CHECK(some.cell(0).key == "letter=e step=0 seed=1");
+  for (const auto& [value, expected] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"values_of": "none"})",
+            "counting.json: /axes/letter/0/values_of: has no configuration"},
+           {R"({"values_of": "other", "only": ["f"]})",
+            "/axes/letter/0/only/0: is no value of axis letter; there are d, e"},
+           {R"({"values_of": "../other"})", "is not the name of an experiment"},
+           {R"({"values_of": "other", "amount": 3})", "/axes/letter/0/amount: "},
+           {R"({"values_of": "other"}, {"name": "e", "amount": 1})",
+            "/axes/letter/1: is the second value named e"}}) {
+    CHECK_THROWS_WITH(sweep_with(value), Catch::Contains(expected));
+  }
+}
+
 TEST_CASE("Changes of axes are taken apart to the last character", "[experiments][config]") {
   CHECK(parse_axis_change("a=1,b").values == std::vector<std::string>{"1", "b"});
   for (const char* const text : {"a", "=1", "a=", "a=1,", "a=,1", "a=1,,2"}) {

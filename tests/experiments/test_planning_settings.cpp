@@ -27,7 +27,10 @@ TEST_CASE("Settings reach the option that they name", "[experiments][planning_se
     "size_m": 0.08, "size_axis": "y", "style": "power", "fingers": ["thumb", "finger_1"],
     "palm": false, "approach": [0, 0, -1], "approach-angle-deg": 45, "resolution": 20,
     "theta-max-deg": 30, "score-threshold": 0.5, "target-search": "ranked", "refine": false,
-    "weak-thickness-mm": 4, "clearance-mm": 10, "search": "first", "w3": 0.25, "friction": 0.7)");
+    "weak-thickness-mm": 4, "clearance-mm": 10, "search": "first", "w3": 0.25, "friction": 0.7,
+    "table": -0.04, "angle-weight": 1, "ideal-m-draws": 3, "palm-reach-tolerance-mm": 20,
+    "max-placements": 2, "least-distance-mm": 0.01, "largest-shift-mm": 8,
+    "largest-turn-deg": 9, "largest_thickness_m": 0.05)");
   const grasp::PlannerOptions& options = settings.options;
   CHECK(settings.object.size == 0.08);
   CHECK(settings.object.size_axis == 1);
@@ -48,6 +51,15 @@ TEST_CASE("Settings reach the option that they name", "[experiments][planning_se
   CHECK(options.search == grasp::SearchRule::First);
   CHECK(options.quality.w3 == 0.25);
   CHECK(options.friction == 0.7);
+  CHECK_FALSE(plain.table_z_O.has_value());
+  CHECK(settings.table_z_O == -0.04);
+  CHECK(options.targets.angle_weight == 1.0);
+  CHECK(options.targets.ideal_m_draws == 3);
+  CHECK(options.targets.palm_reach_tolerance == Approx(0.02));
+  CHECK(options.max_placements == 2);
+  CHECK(options.refinement.least_distance == Approx(0.00001));
+  CHECK(options.refinement.largest_shift == Approx(0.008));
+  CHECK(options.refinement.largest_turn == Approx(std::numbers::pi / 20));
   CHECK_FALSE(settings_with(R"(, "weak-thickness-mm": 0)").options.weak.has_value());
 }
 
@@ -100,6 +112,14 @@ TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings
   const auto object = load_object(torus);
   CHECK(graspfit::geometry::bounding_box(object->mesh).sizes().x() == Approx(0.16));
   CHECK(load_object(torus) == object);  // not built again
+
+  // Too thick for the hand: scaled down; its bounding box's shortest edge is along z.
+  torus.largest_thickness = 0.02;
+  const Eigen::Vector3d sizes = graspfit::geometry::bounding_box(load_object(torus)->mesh).sizes();
+  CHECK(sizes.minCoeff() == Approx(0.02));
+  CHECK(sizes.x() < 0.16);
+  torus.largest_thickness = 0.2;
+  CHECK(graspfit::geometry::bounding_box(load_object(torus)->mesh).sizes().x() == Approx(0.16));
 
   ObjectSettings missing;
   missing.file = "meshes/no_such_object.off";

@@ -1,6 +1,12 @@
+#include <algorithm>
+
 #include "graspfit/grasp/grasp.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/planning_table.hpp"
 #include "support/catch.hpp"
+
+using namespace graspfit;
+using namespace graspfit::experiments;
 
 TEST_CASE("Closure that only rounding makes does not count", "[experiments][planning_table]") {
   using graspfit::experiments::internal::is_closed;
@@ -12,4 +18,34 @@ TEST_CASE("Closure that only rounding makes does not count", "[experiments][plan
   CHECK_FALSE(is_closed(grasp));
   grasp.wrench.epsilon = 1e-3;
   CHECK(is_closed(grasp));
+}
+
+TEST_CASE("A cell's hand keeps above its table", "[experiments][planning_table]") {
+  const auto planned_over = [](const std::string& table) {
+    return internal::plan(planning_settings(
+        R"({"shape": "torus", "size_m": 0.14, "hand": "barrett", "count": 3, "max-attempts": 3,
+            "resolution": 20, "weak-thickness-mm": 0)" +
+            table + "}",
+        1));
+  };
+  const auto lowest_hand = [](const internal::Planned& planned) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const grasp::Grasp& grasp : planned.result.grasps) {
+      const auto poses = hands::forward_kinematics(*planned.hand, grasp.configuration);
+      for (std::size_t l = 0; l < planned.hand->links.size(); ++l) {
+        for (const Eigen::Vector3d& vertex : planned.hand->links[l].mesh_L.vertices) {
+          lowest = std::min(lowest, (poses[l] * vertex).z());
+        }
+      }
+    }
+    return lowest;
+  };
+  const double table_z = -0.04;  // The torus reaches down to -0.016.
+  const internal::Planned free = planned_over(R"(, "approach": [0, 0, 1])");
+  const internal::Planned above = planned_over(R"(, "approach": [0, 0, -1], "table": -0.04)");
+  REQUIRE_FALSE(above.result.grasps.empty());
+  CHECK(lowest_hand(above) > table_z);
+  CHECK(lowest_hand(free) < table_z);
+  CHECK_THROWS_WITH(planned_over(R"(, "table": 0.05)"),
+                    Catch::Contains("table 0.05 is above the whole object"));
 }

@@ -119,6 +119,50 @@ TEST_CASE("One job and several write the same bytes", "[experiments][sweep_runne
   }
 }
 
+TEST_CASE("Details and summary are the same bytes for any number of jobs and any interruption",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  Experiment experiment = counting_experiment();
+  experiment.details = {{"part", "1", "of the sum"}, {"note", "", "with a comma"}};
+  experiment.summary = {{"cells", "1", "finished"}, {"parts", "1", "of all cells"}};
+  experiment.run = [run = experiment.run, details = experiment.details](const Cell& cell,
+                                                                        const fs::path& cells) {
+    if (cell.labels[0] == "b") throw MissingData("b.off is not there");
+    CellResult result = run(cell, cells);
+    for (std::int64_t part = 0; part < static_cast<std::int64_t>(cell.seed % 3); ++part) {
+      result.details.emplace_back(details);
+      result.details.back().set("part", part);
+      result.details.back().set("note", "a, b");
+    }
+    return result;
+  };
+  experiment.summarize = [columns = experiment.summary](const ParameterSweep&,
+                                                        const std::vector<FinishedCell>& cells) {
+    std::size_t parts = 0;
+    for (const FinishedCell& cell : cells) parts += cell.details.size();
+    std::vector<ResultRow> rows(1, ResultRow(columns));
+    rows[0].set("cells", static_cast<std::int64_t>(cells.size()));
+    rows[0].set("parts", static_cast<std::int64_t>(parts));
+    return rows;
+  };
+  const ExperimentConfig config = config_in(folder);
+  const auto tables_of = [&](int jobs, const std::string& name) {
+    const fs::path out = folder.path() / name;
+    run_sweep(experiment, config, {}, {out, jobs});
+    return read_file(out / "counting.details.csv") + read_file(out / "counting.summary.csv");
+  };
+  const std::string expected = tables_of(1, "one");
+  CHECK(tables_of(1, "one") == expected);  // all from disk
+  CHECK(tables_of(7, "seven") == expected);
+  const std::vector<std::string> rows = lines_of(folder.path() / "one/counting.details.csv");
+  REQUIRE(rows.size() > 2);
+  CHECK(rows[0] == "letter,step,seed,part,note");
+  CHECK_THAT(rows[1], Catch::EndsWith(",0,\"a, b\""));
+  // 24 cells, 8 of them skipped and 2 failed.
+  CHECK(lines_of(folder.path() / "one/counting.summary.csv") ==
+        std::vector<std::string>{"cells,parts", "14," + std::to_string(rows.size() - 1)});
+}
+
 TEST_CASE("A sweep killed again and again ends in the same bytes and repeats no finished cell",
           "[experiments][sweep_runner]") {
   const TemporaryFolder folder;

@@ -17,6 +17,7 @@ struct CellRecord {
   std::string reason;  ///< As a CSV field.
   std::vector<std::string> fields;
   std::vector<std::string> timings;
+  std::vector<std::vector<std::string>> details;
 };
 
 /// Finished cells on disk: a file to which one line per cell is appended and flushed before the

@@ -8,6 +8,8 @@
 namespace graspfit::experiments::internal {
 
 Experiment force_closure();
+Experiment hold_prediction();
+Experiment hold_rates();
 Experiment planner_everyday();
 Experiment planner_paper_objects();
 Experiment special_cases();

@@ -33,8 +33,15 @@ class MissingData : public geometry::IoError {
 
 /// What a cell came to.
 struct CellResult {
-  ResultRow row;      ///< Of `Experiment::columns`.
-  ResultRow timings;  ///< Of `Experiment::timings`.
+  ResultRow row;                        ///< Of `Experiment::columns`.
+  ResultRow timings;                    ///< Of `Experiment::timings`.
+  std::vector<ResultRow> details = {};  ///< Of `Experiment::details`.
+};
+
+/// What a table over all cells is made of: a finished cell's labels and details as CSV fields.
+struct FinishedCell {
+  std::vector<std::string> labels;  ///< One per axis.
+  std::vector<std::vector<std::string>> details;
 };
 
 /// An experiment: a question, the unit of work that answers a part of it, and the columns in which
@@ -44,6 +51,9 @@ struct Experiment {
   std::vector<Column> columns;   ///< Results: the same bytes for every run.
   std::vector<Column> timings;   ///< What may differ from run to run.
   std::vector<Column> settings;  ///< Settings of its own, beside `planning_setting_names`.
+  std::vector<Column> details;   ///< What a cell's row sums up, with any number of rows per cell
+                                 ///< (one per grasp); none: no such table.
+  std::vector<Column> summary;   ///< Of a table over all cells; none: no such table.
 
   /// Checks a cell's settings without doing its work. @throws SettingError.
   std::function<void(const Cell&)> check;
@@ -52,6 +62,10 @@ struct Experiment {
   /// into `folder`, which exists only from its first file on (`cell_folder`).
   /// @throws MissingData, or anything else: a row with that reason.
   std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
+
+  /// The rows of `summary` from the cells that are ok, in sweep order. It depends on nothing else.
+  std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
+      summarize;
 
   /// The files that a cell reads, for the manifest; those that are not there are left out.
   std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;

@@ -46,7 +46,9 @@ struct ExperimentConfig {
 ///     seeds        optional; n adds a last axis "seed" with 1, ..., n
 ///     settings     optional; settings of all cells
 ///     axes         name -> values: plain values of the setting of that name, or objects with a
-///                  "name" (and perhaps a "note") and any settings
+///                  "name" (and perhaps a "note") and any settings; {"values_of": SLUG} stands
+///                  for all values of the axis of the same name in the file of that experiment,
+///                  with "only" for those with the labels in that array
 ///     quick        optional; axes: name -> labels that remain; settings; seeds
 ///
 /// A change picks values of an axis by their labels; on an axis of plain values it may bring

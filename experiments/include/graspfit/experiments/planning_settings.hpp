@@ -18,20 +18,27 @@ struct ObjectSettings {
   std::optional<double>
       size;  ///< Length of the bounding box along `size_axis` [m]; empty: as it is.
   std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
+  /// Scaled down further where its bounding box's shortest edge is longer than this [m]: what a
+  /// hand that spans so much can close around.
+  std::optional<double> largest_thickness;
+
+  std::string key() const;  ///< Differs between different objects.
 };
 
 /// What the planner is asked to do in a cell.
 struct PlanningSettings {
   ObjectSettings object;
   std::string hand;  ///< A shipped one, or a description in the data folder (has a '/').
+  std::optional<double> table_z_O;  ///< Everything at or below this z is solid [m].
   grasp::PlannerOptions options;
 };
 
 /// Names of all settings with their units and meanings:
 ///
-///     file or shape, size_m, size_axis (x|y|z|longest), hand
+///     file or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m, hand
 ///
-/// and the planner's options by the names that they have as flags of `graspfit plan`.
+/// and table (z in the object's frame) and the planner's options by the names that they have as
+/// flags of `graspfit plan`.
 const std::vector<Column>& planning_setting_names();
 
 /// The settings of a cell; its seed becomes the planner's. `others` are names that belong to the

@@ -31,6 +31,9 @@ struct RunOptions {
 ///     <slug>.csv             one row per cell in sweep order: axes, cell_seed, status, reason,
 ///                            columns; the same bytes for any `jobs` and any interruption
 ///     <slug>.timing.csv      axes, wall_s and cpu_s of the cell, timings
+///     <slug>.details.csv     axes and `Experiment::details`, where it has any: rows of finished
+///                            cells in sweep order
+///     <slug>.summary.csv     `Experiment::summary`, where it has any
 ///     <slug>.manifest.json   see RunManifest
 ///     <slug>.cells           finished cells, a checked line each, appended and flushed to disk
 ///                            one by one: a kill at any moment loses at most the running cells

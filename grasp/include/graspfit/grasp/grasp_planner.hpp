@@ -156,11 +156,13 @@ struct PlannerResult {
 using PlannerProgress = std::function<void(std::int64_t, std::int64_t)>;
 
 /// The object prepared as `options` ask for; the model is good for every hand, `hand` only decides
-/// whether the object is of a size that it can hold.
+/// whether the object is of a size that it can hold. With a cache as `cached_object_model`: the
+/// same model, sooner.
 /// @throws InvalidInput for an object that is smaller than a fingertip or thicker than the hand's
 /// span.
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                           const PlannerOptions& options, ObjectModelTimings* timings = nullptr);
+                           const PlannerOptions& options, ObjectModelTimings* timings = nullptr,
+                           const geometry::ContentCache& cache = {.is_on = false});
 
 /// Hand-object geometric fitting (paper section 11): target contacts, fitting, contacts, measure,
 /// until `count` grasps are accepted or the budget is used.

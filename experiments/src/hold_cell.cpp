@@ -1,0 +1,318 @@
+#include "internal/hold_cell.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "graspfit/hold_test/hold_protocol.hpp"
+#include "graspfit/hold_test/hold_test.hpp"
+#include "internal/last_used.hpp"
+#include "internal/planning_table.hpp"
+#include "internal/prediction_statistics.hpp"
+#include "internal/setting_value.hpp"
+
+namespace graspfit::experiments::internal {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using hold_test::HoldStage;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<Column> own_settings() {
+  return {{"margins", "1", "grasps of a cell whose margins are searched for, the first found"}};
+}
+
+int num_margins(const Cell& cell) {
+  const nlohmann::json json = nlohmann::json::parse(cell.settings);
+  if (!json.contains("margins")) throw SettingError("", "there is no setting margins");
+  const SettingValue value("margins", json.at("margins"));
+  if (value.integer() < 0) value.fail("must be >= 0");
+  return value.integer();
+}
+
+/// The planner's settings; those by which it would keep some grasps from the test are refused.
+PlanningSettings settings_of(const Cell& cell) {
+  PlanningSettings settings = planning_settings(cell, own_settings());
+  const grasp::PlannerOptions& options = settings.options;
+  if (options.count < options.max_attempts) {
+    throw SettingError("count", "must be at least max-attempts: no grasp is left out");
+  }
+  if (options.search != grasp::SearchRule::Best) {
+    throw SettingError("search", "must be best: all attempts are made");
+  }
+  if (options.acceptance != grasp::Acceptance::Valid) {
+    throw SettingError("accept", "must be valid: these are tested");
+  }
+  return settings;
+}
+
+// Tables.
+
+constexpr std::array<std::pair<HoldStage, const char*>, 4> kStages = {
+    {{HoldStage::Rejected, "rejected"},
+     {HoldStage::Approach, "approach"},
+     {HoldStage::Load, "load"},
+     {HoldStage::Held, kHeldStage}}};
+
+const char* stage_name(HoldStage stage) {
+  return std::find_if(kStages.begin(), kStages.end(),
+                      [&](const auto& entry) { return entry.first == stage; })
+      ->second;
+}
+
+std::vector<Column> protocol_columns(const TestedProtocol& protocol) {
+  const std::string prefix = protocol.prefix;
+  const std::string under = std::string(" under ") + protocol.name;
+  return {{prefix + "held", "1", "grasps held" + under},
+          {prefix + "held_per_attempt", "1", "of all attempts of the planner"},
+          {prefix + "held_per_grasp", "1", "of the grasps that it returned"},
+          {prefix + "rejected", "1",
+           "grasps not simulated: too deep at the pre-grasp, or without pre-grasp or squeeze"},
+          {prefix + "lost_before_load", "1", "grasps lost between pre-grasp and load"},
+          {prefix + "lost_under_load", "1", "grasps lost under load"}};
+}
+
+/// Names of the quartiles of a margin.
+constexpr std::array<std::pair<const char*, double>, 3> kQuartiles = {
+    {{"lower_quartile_", 0.25}, {"median_", 0.5}, {"upper_quartile_", 0.75}}};
+
+std::vector<Column> margin_columns() {
+  std::vector<Column> columns = {
+      {"margins", "1", "grasps, the first found, whose margins were searched for"}};
+  for (const char* const margin : kMarginColumns) {
+    const bool is_force = margin == kMarginColumns[0];
+    for (const auto& [name, share] : kQuartiles) {
+      columns.push_back({std::string(name) + margin, is_force ? "N" : "N m",
+                         std::string("of the smallest ") + (is_force ? "force" : "torque") +
+                             " that fails; 0 where the grasp is lost without load"});
+    }
+  }
+  return columns;
+}
+
+std::vector<Column> columns() {
+  std::vector<Column> all = {
+      {"object_pieces", "1", "convex pieces that stand for the object"},
+      {"object_outward_deviation_m", "m", "farthest that a piece reaches out of the object"},
+      {"object_inward_deviation_m", "m", "farthest point of the surface from the pieces"},
+      {"object_volume_error", "1", "volume of all pieces together over the object's, less 1"},
+      {"hand_pieces", "1", "convex pieces that stand for the hand"},
+      {"hand_outward_deviation_m", "m", "farthest that a piece reaches out of its link"}};
+  for (const TestedProtocol& protocol : kTestedProtocols) {
+    for (Column& column : protocol_columns(protocol)) all.push_back(std::move(column));
+  }
+  for (Column& column : margin_columns()) all.push_back(std::move(column));
+  for (Column& column : planning_columns()) all.push_back(std::move(column));
+  return all;
+}
+
+std::vector<Column> timings() {
+  std::vector<Column> all = {
+      {"pieces_s", "s", "cutting hand and object, or nothing where the last cells had the same"},
+      {"hold_test_s", "s", "testing all grasps under all protocols"},
+      {"margins_s", "s", "searching for margins"}};
+  for (Column& column : planning_timings()) all.push_back(std::move(column));
+  return all;
+}
+
+std::vector<Column> details() {
+  std::vector<Column> all = {
+      {"attempt", "1", "of the planner, from 0"},
+      {"m", "1", "the paper's measure M"},
+      {"m1", "1", "its sustainability"},
+      {"m2", "1", "its stability"},
+      {"m3", "1", "its form"},
+      {"epsilon", "1", "GraspIt!'s convention at the planner's friction; -1 without closure"},
+      {"volume", "1", "of the same wrench space"},
+      {"num_contacts", "1", "N'"},
+      {"squeeze_residual", "1", "unbalanced wrench of the squeeze over its normal forces"}};
+  for (const TestedProtocol& protocol : kTestedProtocols) {
+    all.push_back({std::string(protocol.prefix) + kStageColumn, "",
+                   std::string("how far it came under ") + protocol.name +
+                       ": rejected, approach, load (lost there) or held"});
+  }
+  all.push_back({"squeeze_force_n", "N", "sum of the normal forces on the object once squeezed"});
+  all.push_back({kMarginColumns[0], "N", "smallest force that fails; empty: not searched for"});
+  all.push_back({kMarginColumns[1], "N m", "smallest torque that fails"});
+  all.push_back({"reason", "", "of a rejection, or of a simulation that went wrong"});
+  return all;
+}
+
+// Work.
+
+std::shared_ptr<const hold_test::HoldHand> hold_hand(const Planned& planned) {
+  static LastUsed<hold_test::HoldHand> prepared;
+  return prepared.value(planned.settings.hand,
+                        [&] { return hold_test::prepare_hold_hand(*planned.hand); });
+}
+
+std::shared_ptr<const hold_test::HoldObject> hold_object(const Planned& planned) {
+  static LastUsed<hold_test::HoldObject> prepared;
+  return prepared.value(planned.settings.object.key(),
+                        [&] { return hold_test::prepare_hold_object(planned.object_file->mesh); });
+}
+
+void fill_pieces(const hold_test::HoldHand& hand, const hold_test::HoldObject& object,
+                 ResultRow& row) {
+  row.set("object_pieces", field(object.shape.pieces.size()));
+  row.set("object_outward_deviation_m", object.shape.outward_deviation);
+  row.set("object_inward_deviation_m", object.shape.inward_deviation);
+  row.set("object_volume_error", object.shape.volume_error);
+  std::size_t pieces = 0;
+  double deviation = 0.0;
+  for (const geometry::ConvexDecomposition& link : hand.links) {
+    pieces += link.pieces.size();
+    deviation = std::max(deviation, link.outward_deviation);
+  }
+  row.set("hand_pieces", field(pieces));
+  row.set("hand_outward_deviation_m", deviation);
+}
+
+/// What the simulator says of one grasp.
+struct TestedGrasp {
+  const grasp::Grasp* grasp = nullptr;
+  std::vector<hold_test::HoldVerdict> verdicts;  ///< Per tested protocol.
+  std::optional<hold_test::HoldMargin> margin;   ///< Under the first of them.
+};
+
+/// The returned grasps in the order in which they were found.
+std::vector<TestedGrasp> grasps_as_found(const Planned& planned) {
+  std::vector<TestedGrasp> tested;
+  for (const grasp::Grasp& grasp : planned.result.grasps) tested.push_back({&grasp, {}, {}});
+  std::sort(tested.begin(), tested.end(), [](const TestedGrasp& a, const TestedGrasp& b) {
+    return a.grasp->attempt < b.grasp->attempt;
+  });
+  return tested;
+}
+
+void test_all(const hold_test::HoldHand& hand, const hold_test::HoldObject& object, int num_margins,
+              std::vector<TestedGrasp>& grasps, ResultRow& timings) {
+  double test_s = 0.0;
+  double margins_s = 0.0;
+  for (const TestedProtocol& protocol : kTestedProtocols) {
+    if (grasps.empty()) break;
+    const Clock::time_point start = Clock::now();
+    hold_test::HoldTest test(hand, object, hold_test::hold_protocol(protocol.name));
+    for (TestedGrasp& tested : grasps) tested.verdicts.push_back(test.test(*tested.grasp));
+    test_s += seconds_since(start);
+    if (&protocol != &kTestedProtocols.front()) continue;
+    const Clock::time_point margins_start = Clock::now();
+    const auto count = std::min(grasps.size(), static_cast<std::size_t>(num_margins));
+    for (std::size_t i = 0; i < count; ++i) grasps[i].margin = test.margin(*grasps[i].grasp);
+    margins_s += seconds_since(margins_start);
+  }
+  timings.set("hold_test_s", test_s);
+  timings.set("margins_s", margins_s);
+}
+
+void fill_verdicts(const std::vector<TestedGrasp>& grasps, std::int64_t attempts, ResultRow& row) {
+  for (std::size_t p = 0; p < kTestedProtocols.size(); ++p) {
+    const std::string prefix = kTestedProtocols[p].prefix;
+    const auto count = [&](HoldStage stage) {
+      return static_cast<std::int64_t>(std::count_if(
+          grasps.begin(), grasps.end(),
+          [&](const TestedGrasp& tested) { return tested.verdicts[p].stage == stage; }));
+    };
+    const std::int64_t held = count(HoldStage::Held);
+    row.set(prefix + "held", held);
+    if (attempts > 0) {
+      row.set(prefix + "held_per_attempt",
+              static_cast<double>(held) / static_cast<double>(attempts));
+    }
+    if (!grasps.empty()) {
+      row.set(prefix + "held_per_grasp",
+              static_cast<double>(held) / static_cast<double>(grasps.size()));
+    }
+    row.set(prefix + "rejected", count(HoldStage::Rejected));
+    row.set(prefix + "lost_before_load", count(HoldStage::Approach));
+    row.set(prefix + "lost_under_load", count(HoldStage::Load));
+  }
+}
+
+void fill_margins(const std::vector<TestedGrasp>& grasps, ResultRow& row) {
+  std::array<std::vector<double>, kMarginColumns.size()> margins;
+  for (const TestedGrasp& tested : grasps) {
+    if (!tested.margin) continue;
+    margins[0].push_back(tested.margin->force);
+    margins[1].push_back(tested.margin->torque);
+  }
+  row.set("margins", field(margins[0].size()));
+  for (std::size_t i = 0; i < margins.size(); ++i) {
+    for (const auto& [name, share] : kQuartiles) {
+      row.set(std::string(name) + kMarginColumns[i], field(quantile(margins[i], share)));
+    }
+  }
+}
+
+ResultRow detail_of(const TestedGrasp& tested) {
+  const grasp::Grasp& grasp = *tested.grasp;
+  ResultRow row(details());
+  row.set("attempt", grasp.attempt);
+  row.set("m", grasp.quality.m);
+  row.set("m1", grasp.quality.m1);
+  row.set("m2", grasp.quality.m2);
+  row.set("m3", grasp.quality.m3);
+  row.set("epsilon", grasp.wrench.epsilon);
+  row.set("volume", grasp.wrench.volume);
+  row.set("num_contacts", field(grasp.contacts.size()));
+  if (grasp.squeeze) row.set("squeeze_residual", grasp.squeeze->residual);
+  std::string reason;
+  for (std::size_t p = 0; p < kTestedProtocols.size(); ++p) {
+    const hold_test::HoldVerdict& verdict = tested.verdicts[p];
+    row.set(std::string(kTestedProtocols[p].prefix) + kStageColumn, stage_name(verdict.stage));
+    if (reason.empty()) reason = verdict.reason;
+  }
+  row.set("reason", reason);
+  const hold_test::HoldVerdict& first = tested.verdicts.front();
+  if (first.stage != HoldStage::Rejected) row.set("squeeze_force_n", first.squeeze_force);
+  if (tested.margin) {
+    row.set(kMarginColumns[0], tested.margin->force);
+    row.set(kMarginColumns[1], tested.margin->torque);
+  }
+  return row;
+}
+
+CellResult run(const Cell& cell, const std::filesystem::path& folder) {
+  if (!hold_test::is_available()) {
+    throw MissingData("this build has no physics engine; build with MuJoCo");
+  }
+  const Planned planned = plan(settings_of(cell));
+  CellResult result{ResultRow(columns()), ResultRow(timings())};
+  const Clock::time_point start = Clock::now();
+  const std::shared_ptr<const hold_test::HoldHand> hand = hold_hand(planned);
+  const std::shared_ptr<const hold_test::HoldObject> object = hold_object(planned);
+  result.timings.set("pieces_s", seconds_since(start));
+
+  std::vector<TestedGrasp> grasps = grasps_as_found(planned);
+  test_all(*hand, *object, num_margins(cell), grasps, result.timings);
+  fill_pieces(*hand, *object, result.row);
+  fill_verdicts(grasps, planned.result.statistics.attempts, result.row);
+  fill_margins(grasps, result.row);
+  fill_planning_columns(planned, result.row);
+  fill_planning_timings(planned, result.timings);
+  for (const TestedGrasp& tested : grasps) result.details.push_back(detail_of(tested));
+  write_best_grasps(folder, planned, grasps.size());
+  return result;
+}
+
+}  // namespace
+
+Experiment hold_experiment(const std::string& slug) {
+  Experiment experiment;
+  experiment.slug = slug;
+  experiment.columns = columns();
+  experiment.timings = timings();
+  experiment.settings = own_settings();
+  experiment.details = details();
+  experiment.check = [](const Cell& cell) {
+    num_margins(cell);
+    settings_of(cell);
+  };
+  experiment.run = run;
+  experiment.inputs = [](const Cell& cell) { return planning_inputs(settings_of(cell)); };
+  return experiment;
+}
+
+}  // namespace graspfit::experiments::internal
