@@ -33,7 +33,8 @@ struct Draft {
 };
 
 bool is_label(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+  const bool is_dots = text.find_first_not_of('.') == std::string::npos;  // a folder's name too
+  return !is_dots && std::all_of(text.begin(), text.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '.' || c == '+' || c == '-';
   });

@@ -48,6 +48,8 @@ CellOutcome run_cell(const Experiment& experiment, const Cell& cell, const fs::p
     return outcome;
   } catch (const MissingData& error) {
     return without_results(experiment, "skipped", error.what(), false);
+  } catch (const geometry::IoError& error) {  // a full disk may have room tomorrow
+    return without_results(experiment, "failed", error.what(), false);
   } catch (const std::bad_alloc&) {
     return without_results(experiment, "failed", "out of memory", false);
   } catch (const std::exception& error) {
@@ -217,7 +219,8 @@ void RunOptions::validate() const {
 
 fs::path cell_folder(const fs::path& results, const Cell& cell) {
   std::string name;
-  for (const std::string& label : cell.labels) name += (name.empty() ? "" : "_") + label;
+  // No label holds a comma, so no two cells share a folder.
+  for (const std::string& label : cell.labels) name += (name.empty() ? "" : ",") + label;
   return results / "cells" / name;
 }
 
