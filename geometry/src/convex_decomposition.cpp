@@ -46,7 +46,8 @@ constexpr std::size_t kPartsPerPiece = 3;
 struct Piece {
   std::vector<Vector3d> points;  ///< Their hull holds all parts of the piece.
   PieceHull hull;
-  double depth = 0.0;  ///< Sampled [m].
+  double depth = 0.0;      ///< Sampled, or a proven bound [m].
+  bool is_proven = false;  ///< The latter.
 };
 
 bool is_closed(const TriangleMesh& mesh) {
@@ -122,12 +123,13 @@ class Decomposer {
                                       .least_width = kLeastWidthRel * extent_});
     if (!hull) return std::nullopt;
     const double depth = internal::sampled_depth(*hull, depth_, limit);
-    return Piece{std::move(points), *hull, depth};
+    return Piece{std::move(points), *hull, depth, false};
   }
 
   /// What sampling found shallow is looked at closely.
   void verify(Piece& piece) const {
-    if (piece.depth > aimed()) return;
+    if (piece.depth > options_.largest_deviation) return;
+    piece.is_proven = true;
     piece.depth = internal::outward_deviation(
         {&piece.hull, 1}, solid_,
         {.tolerance = kMeasuredRel * options_.largest_deviation, .floor = aimed()});
@@ -314,7 +316,10 @@ ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,
           .merged(static_cast<std::size_t>(options.max_pieces));
   ConvexDecomposition result;
   std::vector<PieceHull> hulls;
+  double proven = 0.0;
   for (Piece& piece : pieces) {
+    proven =
+        std::max(proven, piece.is_proven ? piece.depth : std::numeric_limits<double>::infinity());
     result.inward_deviation = std::max(result.inward_deviation, piece.hull.left_out);
     result.pieces.push_back(piece.hull.mesh);
     hulls.push_back(std::move(piece.hull));
@@ -324,10 +329,11 @@ ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,
   const bool is_exact =
       result.inward_deviation == 0.0 && std::abs(sum - volume) <= kSameVolumeRel * volume;
   if (!is_exact) {
-    result.outward_deviation =
+    const double measured =
         internal::outward_deviation(hulls, solid,
                                     {.tolerance = kMeasuredRel * options.largest_deviation,
                                      .floor = kLeastMeasuredRel * options.largest_deviation});
+    result.outward_deviation = std::min(measured, proven);
   }
   result.volume_error = internal::volume_difference(hulls, solid, kVolumeLines) / volume;
   result.is_within_deviation = result.outward_deviation <= options.largest_deviation;

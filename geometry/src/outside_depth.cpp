@@ -48,8 +48,10 @@ OutsideDepth::OutsideDepth(const MeshQuery& solid, int resolution)
       edge_normals_(edge_normals_of(solid.mesh())),
       vertex_normals_(vertex_normals_of(solid.mesh())) {
   face_normals_.reserve(mesh_->faces.size());
+  face_corners_.reserve(mesh_->faces.size());
   for (std::size_t f = 0; f < mesh_->faces.size(); ++f) {
     face_normals_.push_back(face_normal(*mesh_, f));
+    face_corners_.push_back(corners(*mesh_, f));
   }
 }
 
@@ -58,7 +60,7 @@ double OutsideDepth::operator()(const Vector3d& point) const {
       lattice_.voxel_at(point).cwiseMax(0).cwiseMin((lattice_.counts.array() - 1).matrix());
   std::int32_t& face = nearest_faces_[lattice_.index(voxel)];
   if (face < 0) face = solid_.closest_point(lattice_.center(voxel)).face;
-  const TrianglePoint nearest = nearest_on_triangle(point, corners(*mesh_, face));
+  const TrianglePoint nearest = nearest_on_triangle(point, face_corners_[face]);
   const Vector3d away = point - nearest.point;
   int num_zero = 0;
   int zero = -1;

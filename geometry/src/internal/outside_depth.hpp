@@ -27,7 +27,8 @@ class OutsideDepth {
   MeshQuery solid_;
   const TriangleMesh* mesh_;  // of solid_
   VoxelLattice lattice_;
-  mutable std::vector<std::int32_t> nearest_faces_;           // one per voxel center; −1: not yet
+  mutable std::vector<std::int32_t> nearest_faces_;  // one per voxel center; −1: not yet
+  std::vector<std::array<Eigen::Vector3d, 3>> face_corners_;
   std::vector<Eigen::Vector3d> face_normals_;                 // not unit
   std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  // edge k from corner k on
   std::vector<Eigen::Vector3d> vertex_normals_;
