@@ -6,7 +6,7 @@ namespace graspfit::hold_test {
 HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
                                const geometry::ConvexDecompositionOptions& options) {
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
-  return {geometry::convex_decomposition(mesh, options), mass.center_of_mass,
+  return {geometry::cached_convex_decomposition(mesh, options), mass.center_of_mass,
           mass.inertia / mass.volume};
 }
 
@@ -16,7 +16,8 @@ HoldHand prepare_hold_hand(const hands::HandModel& hand,
   for (const hands::Link& link : hand.links) {
     result.links.push_back(link.mesh_L.faces.empty()
                                ? geometry::ConvexDecomposition{}
-                               : geometry::convex_decomposition(link.mesh_L, options));
+
+                               : geometry::cached_convex_decomposition(link.mesh_L, options));
   }
   return result;
 }
