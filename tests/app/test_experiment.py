@@ -162,8 +162,8 @@ class Refusals(ProgramTest):
         experiment = ("experiment", "run")
         self.assert_refused("experiment", "walk", says="there are list, describe and run")
         self.assert_refused(*experiment, "nothing", says=["nothing", "planner_everyday"])
-        self.assert_refused(*experiment, "force_closure", "--set", "cone=30_deg",
-                            says=["--set cone", "there are 45_deg, atan_0.4"])
+        self.assert_refused(*experiment, "force_closure", "--set", "grip=pinch",
+                            says=["--set grip", "there are precision_45_deg, "])
         self.assert_refused(*experiment, "force_closure", "--set", "style=pinch",
                             says=["--set style", "precision|power"])
         self.assert_refused(*experiment, "force_closure", "--set", "colour=red",
