@@ -25,7 +25,7 @@ constexpr double kRestWeight = 0.04;  // per share of a joint's range off its st
                                       // targets leave open, and little else
 // Of pads that do not look at each other against pads that lean. Valid of 30 attempts by 0, 1, 2:
 // bunny 28, 29, 30; ball 28, 28, 30; horse 11, 11, 14.
-constexpr double kPairWeight = 2.0;
+constexpr double kPairWeight = 0.5;
 constexpr int kIterations = 20;
 constexpr double kSmallGain = 1e-3;  // of the squared error, at which the search ends
 

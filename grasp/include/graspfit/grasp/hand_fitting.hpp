@@ -116,7 +116,7 @@ double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
                 const PalmPlacement& placement);
 
 /// By what the planner chooses among target sets, smaller is better: `pad_tilt` and, where the palm
-/// has no target (against which fingers press), twice the
+/// has no target (against which fingers press), half the
 /// mean angle by which pairs of fingertips miss looking at each other in that posture [rad]. The
 /// pairs are those of the seed's finger with every other one, as in selection (A17); a pair's angle
 /// is the larger one between a pad's normal and the line to the other pad's contact point. Where
