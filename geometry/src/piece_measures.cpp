@@ -92,7 +92,7 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
                          const OutwardOptions& options) {
   const double to_corner = std::sqrt(3.0);
   constexpr double kSlack = 1.0 + 1e-9;  // more than rounding of distances
-  std::vector<Candidate> todo;           // a heap, the one that may reach farthest on top
+  std::vector<Candidate> pending;        // a heap, the one that may reach farthest on top
   double known = options.floor;          // or reached by a point of a piece
   const auto add = [&](std::size_t p, const Cube& cube, const Candidate* parent) {
     if (!may_meet(pieces[p], cube)) return;
@@ -106,18 +106,18 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
     if (is_outside && pieces[p].height(cube.center) <= 0.0) known = std::max(known, distance);
     const double most = is_outside ? distance + radius : radius - distance;
     if (most <= std::max(known, options.tolerance)) return;
-    todo.push_back({most, p, cube, distance, is_outside});
-    std::push_heap(todo.begin(), todo.end());
+    pending.push_back({most, p, cube, distance, is_outside});
+    std::push_heap(pending.begin(), pending.end());
   };
   for (std::size_t p = 0; p < pieces.size(); ++p) add(p, cube_around(pieces[p]), nullptr);
-  while (!todo.empty()) {
-    const Candidate top = todo.front();
+  while (!pending.empty()) {
+    const Candidate top = pending.front();
     // A deep hollow may be as deep over a whole sheet of places, too many for a small tolerance.
     if (top.most <= known + std::max(options.tolerance, kToleranceRel * known)) {
       return std::max(known, top.most);
     }
-    std::pop_heap(todo.begin(), todo.end());
-    todo.pop_back();
+    std::pop_heap(pending.begin(), pending.end());
+    pending.pop_back();
     for (int corner = 0; corner < 8; ++corner) {
       const Vector3d step(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5,
                           corner & 4 ? 0.5 : -0.5);
