@@ -1,0 +1,59 @@
+"""Figures that are panels of grasps: the best grasp of cells of one experiment."""
+
+from figure_data import BadData
+from figure_style import panels, show_picture
+from grasp_scene import Stage, grasp_panel
+
+
+def measures(grasp):
+    """The lines under a panel."""
+    parts = f"M1 {grasp['m1']:.2f}, M2 {grasp['m2']:.2f}, M3 {grasp['m3']:.2f}"
+    return f"M {grasp['m']:.2f}, N' {len(grasp['contacts'])}\n{parts}"
+
+
+def grasp_panels(source, experiment, rows, width=430, height=430, **marks):
+    """Panels [rows][columns] of (panel, grasp); None where the table says that no grasp was found."""
+    stage = Stage(width, height)
+    table = source.table(experiment, ("case", "grasps")).set_index("case")
+    made = []
+    for row in rows:
+        made.append([])
+        for cell in row:
+            if cell not in table.index:
+                raise BadData(f"{experiment}.csv: has no case {cell}")
+            if not table.loc[cell, "grasps"] > 0:  # empty where the planner refused the object
+                made[-1].append(None)
+                continue
+            record = source.grasp_file(experiment, cell)
+            made[-1].append((grasp_panel(stage, source, record, **marks), record["grasps"][0]))
+    return made
+
+
+def show_grasp(axes, made, words):
+    """One of `grasp_panels` with its title and measures."""
+    if made is None:
+        axes.set_axis_off()
+        axes.set_title(words, pad=3)
+        axes.text(0.5, 0.5, "no valid grasp found", ha="center", va="center", transform=axes.transAxes)
+        return
+    show_picture(axes, made[0], words, measures(made[1]))
+
+
+def grasp_figure(source, title, rows, words, note=None, experiment="paper_grasps", size=2.45, **marks):
+    """A figure of panels: `rows` of cells, `words` the titles in the same places."""
+    columns = max(len(row) for row in rows)
+    made = grasp_panels(source, experiment, rows, **marks)
+    explained = "Below: the measure M with its terms, and the number of contacts N'. Parallel projection.\n"
+    explained += "Red: contacts with inward normals; green: stable pairs; gray: other edges; black: center of mass."
+    figure, axes = panels(
+        title, len(rows), columns, columns * size, len(rows) * (size + 0.5) + 0.7,
+        explained + (f"\n{note}" if note else ""),
+        head=0.55, foot=0.2, hspace=0.34, wspace=0.03,
+    )  # fmt: skip
+    for i, row in enumerate(axes):
+        for j, ax in enumerate(row):
+            if j < len(rows[i]):
+                show_grasp(ax, made[i][j], words[i][j])
+            else:
+                ax.set_axis_off()
+    return figure
