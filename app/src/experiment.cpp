@@ -153,12 +153,6 @@ ExitCode run_describe(const std::vector<std::string>& arguments) {
   return kSuccess;
 }
 
-std::string command_text(const std::vector<std::string>& arguments) {
-  std::string text = "graspfit experiment run";
-  for (const std::string& argument : arguments) text += ' ' + argument;
-  return text;
-}
-
 /// "12 of 110 cells, 0.31 per s, 5 min left": the rate is of this run alone.
 std::string progress_text(const experiments::RunProgress& progress,
                           std::chrono::steady_clock::time_point start) {
@@ -190,7 +184,9 @@ ExitCode run_run(const std::vector<std::string>& arguments) {
                                     : fs::path("results") /
                                           (experiment.slug + (config.is_quick ? "_quick" : ""));
   experiments::RunManifest manifest;
-  manifest.command = command_text(arguments);
+  std::vector<std::string> words = {"graspfit", "experiment", "run"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  manifest.command = experiments::recorded_command(words);
   manifest.versions = version_rows();
 
   ProgressBar bar(!flags.has("quiet"));

@@ -36,11 +36,14 @@ Json machine() {
           {"num_processors", std::thread::hardware_concurrency()}};
 }
 
-/// A path as one word of the shell.
-std::string quoted(const fs::path& path) {
-  std::string text = "'";
-  for (const char c : path.string()) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
+/// A text as one word of the shell: quoted where it holds more than what means itself there.
+std::string shell_word(const std::string& text) {
+  constexpr const char* kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.,:/=+@%-";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
 }
 
 /// What git prints in a repository, and whether it ended well.
@@ -49,7 +52,8 @@ struct GitAnswer {
   std::string output;
 };
 GitAnswer git(const fs::path& repository, const std::string& arguments) {
-  const std::string command = "git -C " + quoted(repository) + ' ' + arguments + " 2>/dev/null";
+  const std::string command =
+      "git -C " + shell_word(repository.string()) + ' ' + arguments + " 2>/dev/null";
   std::FILE* const pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return {};
   GitAnswer answer;
@@ -65,11 +69,19 @@ GitAnswer git(const fs::path& repository, const std::string& arguments) {
   throw geometry::InvalidInput("results are not published: " + why);
 }
 
-/// Skipped cells of a finished run, from its manifest.
-std::size_t num_skipped(const fs::path& manifest) {
+/// Looks at the manifest of a finished run for what keeps it from being published.
+void require_publishable_manifest(const fs::path& manifest) {
   const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
-  if (json.is_discarded() || !json.contains("cells")) refuse(manifest.string() + " is damaged");
-  return json.at("cells").value("skipped", std::size_t{0});
+  if (json.is_discarded() || !json.contains("cells") || !json.contains("inputs_sha256")) {
+    refuse(manifest.string() + " is damaged");
+  }
+  if (const auto skipped = json.at("cells").value("skipped", std::size_t{0}); skipped > 0) {
+    refuse(std::to_string(skipped) + " cells were skipped for want of data");
+  }
+  for (const auto& [file, hash] : json.at("inputs_sha256").items()) {
+    if (!fs::path(file).is_absolute()) continue;
+    refuse("input " + file + " lies neither in the data folder nor among the sources");
+  }
 }
 
 }  // namespace
@@ -83,6 +95,18 @@ std::string program_sha256() {
     return error ? "" : geometry::sha256_hex(geometry::read_file(program));
   }();
   return hash;
+}
+
+std::string recorded_command(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--out") {
+      ++i;  // and the folder that follows
+    } else if (words[i].rfind("--out=", 0) != 0) {
+      text += (text.empty() ? "" : " ") + shell_word(words[i]);
+    }
+  }
+  return text;
 }
 
 std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
@@ -139,10 +163,7 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
 void publish(const Experiment& experiment, const ExperimentConfig& config, const fs::path& folder,
              const fs::path& sources, const fs::path& published) {
   require_publishable(config, sources);
-  const fs::path manifest = folder / (experiment.slug + ".manifest.json");
-  if (const std::size_t skipped = num_skipped(manifest); skipped > 0) {
-    refuse(std::to_string(skipped) + " cells were skipped for want of data");
-  }
+  require_publishable_manifest(folder / (experiment.slug + ".manifest.json"));
   std::error_code error;
   fs::create_directories(published, error);
   if (error) throw geometry::IoError(published.string() + ": " + error.message());

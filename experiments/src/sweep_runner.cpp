@@ -208,6 +208,17 @@ std::map<std::string, std::string> input_hashes(const Experiment& experiment,
   return hashes;
 }
 
+/// @throws IoError that names an input that is not what it was when its hash was taken.
+void require_unchanged(const std::map<std::string, std::string>& before,
+                       const std::map<std::string, std::string>& after) {
+  for (const auto& [file, hash] : before) {
+    const auto now = after.find(file);
+    if (now != after.end() && now->second == hash) continue;
+    throw geometry::IoError(file + ": was " + (now == after.end() ? "removed" : "changed") +
+                            " while the run was going; its tables are not written");
+  }
+}
+
 }  // namespace
 
 void RunOptions::validate() const {
@@ -231,11 +242,14 @@ RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& conf
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) throw geometry::IoError(options.folder.string() + ": " + error.message());
+  manifest.inputs = input_hashes(experiment, config.sweep);
   Run run(experiment, config, manifest, options, progress);
   const RunProgress done = run.work();
+  const std::map<std::string, std::string> inputs = input_hashes(experiment, config.sweep);
+  require_unchanged(manifest.inputs, inputs);
+  manifest.inputs = inputs;  // those that came to be there, too
   write_tables(experiment, config.sweep, run, options.folder);
   write_further_tables(experiment, config.sweep, run, options.folder);
-  manifest.inputs = input_hashes(experiment, config.sweep);
   const nlohmann::ordered_json counts = {{"total", done.num_cells},
                                          {"finished", done.num_done},
                                          {"failed", done.num_failed},

@@ -272,3 +272,41 @@ TEST_CASE("Neither quick nor modified results are published", "[experiments][swe
   CHECK_THROWS_WITH(require_publishable(config_in(folder), source_folder()),
                     Catch::Contains("is not one of"));
 }
+
+TEST_CASE("A recorded command is quoted for a shell and names no folder of results",
+          "[experiments][run_manifest]") {
+  CHECK(recorded_command({"graspfit", "experiment", "run", "counting"}) ==
+        "graspfit experiment run counting");
+  CHECK(recorded_command({"run", "--out", "/home/me", "--jobs", "2"}) == "run --jobs 2");
+  CHECK(recorded_command({"run", "--out=/home/me", "--jobs", "2", "--out"}) == "run --jobs 2");
+  CHECK(recorded_command({"--set", "a=1,0.5", "it's", "", "a b", "$HOME", "*"}) ==
+        "--set a=1,0.5 'it'\\''s' '' 'a b' '$HOME' '*'");
+}
+
+TEST_CASE("Inputs are hashed before the first cell and checked after the last",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const fs::path input = folder.write("mesh.off", "before");
+  const fs::path out = folder.path() / "results";
+  Experiment experiment = counting_experiment();
+  experiment.inputs = [input](const Cell&) { return std::vector{input}; };
+  run_sweep(experiment, config_in(folder), {}, {out, 1});
+  const auto manifest = nlohmann::json::parse(read_file(out / "counting.manifest.json"));
+  CHECK(manifest.at("inputs_sha256").at(input.string()) ==
+        graspfit::geometry::sha256_hex("before"));
+
+  for (const bool is_removed : {false, true}) {
+    const fs::path other = folder.path() / (is_removed ? "removed" : "changed");
+    folder.write("mesh.off", "before");
+    Experiment meddling = experiment;
+    meddling.run = [&, run = experiment.run](const Cell& cell, const fs::path& cells) {
+      if (is_removed) fs::remove(input);
+      if (!is_removed) folder.write("mesh.off", "after");
+      return run(cell, cells);
+    };
+    CHECK_THROWS_WITH(run_sweep(meddling, config_in(folder), {}, {other, 1}),
+                      Catch::Contains("mesh.off: was " + other.filename().string()));
+    CHECK_FALSE(fs::exists(other / "counting.csv"));
+    CHECK_FALSE(fs::exists(other / "counting.manifest.json"));
+  }
+}

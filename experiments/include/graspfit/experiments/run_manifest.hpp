@@ -20,14 +20,18 @@ BuildSource build_source();
 /// SHA-256 of the running program, empty where the system does not say which it is.
 std::string program_sha256();
 
+/// A command line as a manifest records it: words of a shell, quoted where need be, without
+/// `--out` and its folder, which are of one machine and change no result.
+std::string recorded_command(const std::vector<std::string>& words);
+
 /// Everything needed to run an experiment again. Written beside its results, never compared.
 struct RunManifest {
-  std::string command;                                        ///< As typed.
+  std::string command;                                        ///< See `recorded_command`.
   std::vector<std::pair<std::string, std::string>> versions;  ///< Of program, compiler, libraries.
   BuildSource source = build_source();
   std::string program = program_sha256();
-  std::map<std::string, std::string> inputs;  ///< SHA-256 by file, relative to the data folder for
-                                              ///< files in it.
+  /// SHA-256 by file: relative to the data folder or to the sources for files in them.
+  std::map<std::string, std::string> inputs;
 };
 
 /// The manifest's text: JSON with command, configuration, its hash, seed, commit, versions,
@@ -38,7 +42,8 @@ std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
 /// Copies the results of a finished run from `folder` into `published` (`notebooks-data`).
 ///
 /// @throws InvalidInput, saying which, for a quick or modified configuration, cells that were
-/// skipped, a program that was not built from a clean tree, and a tree at `sources` that is not,
+/// skipped, inputs outside the data folder and the sources (their names mean nothing elsewhere), a
+/// program that was not built from a clean tree, and a tree at `sources` that is not,
 /// `published` aside, the one that the program was built from.
 void publish(const Experiment& experiment, const ExperimentConfig& config,
              const std::filesystem::path& folder, const std::filesystem::path& sources,
