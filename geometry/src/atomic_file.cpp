@@ -1,22 +1,15 @@
 #include "graspfit/geometry/atomic_file.hpp"
 
-#include <fcntl.h>
 #include <openssl/evp.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <memory>
 #include <new>
-#include <vector>
 
+#include "graspfit/geometry/atomic_file_writer.hpp"
 #include "graspfit/geometry/errors.hpp"
 
 namespace graspfit::geometry {
@@ -24,69 +17,12 @@ namespace {
 
 std::string reason() { return std::strerror(errno); }
 
-// A temporary file that is closed and removed unless `release` is called.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::filesystem::path& beside) {
-    // Unlike mkstemp, open gives the file the mode of any new one without asking for the umask,
-    // which could only be read by changing it under other threads.
-    static std::atomic<std::uint64_t> next{0};
-    do {
-      name_ = beside.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(next++);
-      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && errno == EEXIST);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    const int error = errno;
-    close();
-    if (created() && !released_) ::unlink(name_.c_str());
-    errno = error;
-  }
-
-  bool created() const { return created_ || descriptor_ >= 0; }
-  const char* name() const { return name_.c_str(); }
-
-  bool write(std::string_view content) {
-    created_ = true;
-    while (!content.empty()) {
-      const ssize_t written = ::write(descriptor_, content.data(), content.size());
-      if (written < 0) {
-        if (errno == EINTR) continue;
-        return false;
-      }
-      content.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return ::fsync(descriptor_) == 0;
-  }
-  bool close() {
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    return descriptor < 0 || ::close(descriptor) == 0;
-  }
-  void release() { released_ = true; }
-
- private:
-  std::string name_;
-  int descriptor_ = -1;
-  bool created_ = false;
-  bool released_ = false;
-};
-
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& file, std::string_view content) {
-  const auto fail = [&](const std::string& what) {
-    throw IoError("cannot write " + file.string() + ": " + what);
-  };
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) fail("it is a folder");
-  TemporaryFile temporary(file);
-  if (!temporary.created()) fail(reason());
-  if (!temporary.write(content) || !temporary.close()) fail(reason());
-  if (::rename(temporary.name(), file.c_str()) != 0) fail(reason());
-  temporary.release();
+  AtomicFileWriter writer(file);
+  writer.write(content);
+  writer.commit();
 }
 
 std::string read_file(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/atomic_file_writer.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "support/catch.hpp"
 
@@ -29,6 +30,27 @@ TEST_CASE("What is written is read back byte for byte", "[geometry][atomic_file]
     CHECK(read_file(file) == content);
   }
   // Nothing but the file itself is there.
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE("A file written in pieces appears whole or not at all", "[geometry][atomic_file]") {
+  const ScratchFolder folder;
+  const fs::path file = folder.path / "table";
+  write_file_atomically(file, "old");
+  std::string expected;
+  {
+    AtomicFileWriter writer(file);
+    for (const std::size_t size : {1u, 65535u, 70000u, 3u, 200000u}) {
+      const std::string piece(size, static_cast<char>('a' + size % 26));
+      writer.write(piece);
+      expected += piece;
+    }
+    CHECK(read_file(file) == "old");
+    writer.commit();
+  }
+  CHECK(read_file(file) == expected);
+  { AtomicFileWriter(file).write("given up"); }
+  CHECK(read_file(file) == expected);
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }
 
