@@ -10,7 +10,8 @@ enum ExitCode : int {
   kInternalError = 1,  ///< Our mistake.
   kBadInput = 2,       ///< A file or a flag that cannot be used; one line says why.
   kNoGrasp = 3,        ///< `plan` found no grasp; the line says how the attempts ended.
-  kDiffers = 4,        ///< `evaluate` computed other measures than the file has.
+  kDiffers = 4,  ///< `evaluate` computed other measures than the file has; `experiment verify`
+                 ///< found other results than the published ones.
 };
 
 /// A command line that cannot be understood.

@@ -5,8 +5,9 @@ namespace graspfit::experiments {
 
 const std::vector<Experiment>& all_experiments() {
   static const std::vector<Experiment> experiments = {
-      internal::force_closure(),    internal::hold_prediction(),       internal::hold_rates(),
-      internal::planner_everyday(), internal::planner_paper_objects(), internal::special_cases(),
+      internal::force_closure(),    internal::hold_prediction(),  internal::hold_rates(),
+      internal::parameter_sweeps(), internal::planner_everyday(), internal::planner_paper_objects(),
+      internal::special_cases(),
   };
   return experiments;
 }

@@ -51,6 +51,18 @@ grasp::ObjectFile file_object(const ObjectSettings& settings) {
   return grasp::read_object_file(file, options);
 }
 
+/// As `rotation_xyz` says; untouched, to the bit, where it is zero.
+void turn(const ObjectSettings& settings, grasp::ObjectFile& object) {
+  if (settings.rotation_xyz.isZero(0.0)) return;
+  const Eigen::Vector3d& angles = settings.rotation_xyz;
+  geometry::RigidTransform X_TO = geometry::RigidTransform::Identity();
+  X_TO.linear() = (Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  object.mesh = geometry::transformed(object.mesh, X_TO);
+}
+
 fs::path hand_file(const std::string& hand) {
   const bool is_in_data_folder = hand.find('/') != std::string::npos;
   return is_in_data_folder ? internal::data_file(hand) : hands::find_hand_file(hand);
@@ -63,13 +75,18 @@ std::string ObjectSettings::key() const {
     return length ? geometry::shortest_decimal(*length) : "";
   };
   return file + '\n' + shape + '\n' + text(size) + '\n' +
-         (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness);
+         (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness) +
+         '\n' + text(rotation_xyz.x()) + ' ' + text(rotation_xyz.y()) + ' ' +
+         text(rotation_xyz.z());
 }
 
 std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings) {
   static internal::LastUsed<grasp::ObjectFile> objects;
   return objects.value(settings.key(), [&] {
-    return settings.shape.empty() ? file_object(settings) : shape_object(settings);
+    grasp::ObjectFile object =
+        settings.shape.empty() ? file_object(settings) : shape_object(settings);
+    turn(settings, object);
+    return object;
   });
 }
 

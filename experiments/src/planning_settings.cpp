@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "internal/planning_setting_schemas.hpp"
 #include "internal/setting_value.hpp"
 
 namespace graspfit::experiments {
@@ -16,16 +17,28 @@ using internal::SettingValue;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kMetersPerMillimeter = 1e-3;
 
+using Schema = nlohmann::ordered_json;
+
 /// A setting by name.
 struct Setting {
   Column name;
+  Schema schema;  ///< Of its values.
   std::function<void(PlanningSettings&, const SettingValue&)> apply;
 };
 
+Schema of_type(const char* type) { return {{"type", type}}; }
+Schema above_zero() { return {{"type", "number"}, {"exclusiveMinimum", 0}}; }
+Schema text() { return {{"type", "string"}, {"minLength", 1}}; }
+Schema three_numbers() {
+  return {{"type", "array"}, {"items", of_type("number")}, {"minItems", 3}, {"maxItems", 3}};
+}
+
 using Apply = std::function<void(PlannerOptions&, const SettingValue&)>;
 
-Setting option(const char* name, const char* unit, const char* meaning, Apply apply) {
+Setting option(const char* name, const char* unit, const char* meaning, Schema schema,
+               Apply apply) {
   return {{name, unit, meaning},
+          std::move(schema),
           [apply = std::move(apply)](PlanningSettings& settings, const SettingValue& value) {
             apply(settings.options, value);
           }};
@@ -35,43 +48,59 @@ Setting option(const char* name, const char* unit, const char* meaning, Apply ap
 template <class Field>
 Setting number(const char* name, const char* unit, const char* meaning, Field field,
                double factor = 1.0) {
-  return option(name, unit, meaning, [field, factor](PlannerOptions& o, const SettingValue& v) {
-    field(o) = v.number() * factor;
-  });
+  return option(name, unit, meaning, of_type("number"),
+                [field, factor](PlannerOptions& o, const SettingValue& v) {
+                  field(o) = v.number() * factor;
+                });
 }
 template <class Field>
 Setting integer(const char* name, const char* meaning, Field field) {
-  return option(name, "1", meaning,
+  return option(name, "1", meaning, of_type("integer"),
                 [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.integer(); });
 }
 template <class Field>
 Setting yes_or_no(const char* name, const char* meaning, Field field) {
-  return option(name, "", meaning,
+  return option(name, "", meaning, of_type("boolean"),
                 [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.yes_or_no(); });
 }
 template <class Enum, class Field>
 Setting choice(const char* name, const char* meaning, Field field) {
-  return option(name, "", meaning,
+  Schema names = Schema::array();
+  for (const auto& named : grasp::named_values<Enum>()) names.push_back(std::string(named.name));
+  return option(name, "", meaning, {{"enum", names}},
                 [field](PlannerOptions& o, const SettingValue& v) { field(o) = v.choice<Enum>(); });
 }
 
 std::vector<Setting> object_and_hand_settings() {
   return {
       {{"file", "", "the object's mesh in the data folder"},
+       text(),
        [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
       {{"shape", "", "instead of file: a shape of graspfit shape"},
+       text(),
        [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
       {{"size_m", "m", "length of the object's bounding box along size_axis"},
+       above_zero(),
        [](PlanningSettings& s, const SettingValue& v) { s.object.size = v.positive_number(); }},
       {{"size_axis", "", "x, y, z or longest, which it is if not given"},
+       {{"enum", {"x", "y", "z", "longest"}}},
        [](PlanningSettings& s, const SettingValue& v) {
          if (v.text() != "longest") s.object.size_axis = v.axis();
        }},
       {{"largest_thickness_m", "m", "scaled down where the bounding box's shortest edge is longer"},
+       above_zero(),
        [](PlanningSettings& s, const SettingValue& v) {
          s.object.largest_thickness = v.positive_number();
        }},
+      {{"rotation_deg", "deg",
+        "[x, y, z]: the object is turned before planning, about its frame's x, then y, then z "
+        "axis"},
+       three_numbers(),
+       [](PlanningSettings& s, const SettingValue& v) {
+         s.object.rotation_xyz = v.vector3() * kRadiansPerDegree;
+       }},
       {{"hand", "", "a shipped hand, or a description in the data folder"},
+       text(),
        [](PlanningSettings& s, const SettingValue& v) { s.hand = v.text(); }}};
 }
 
@@ -79,6 +108,7 @@ std::vector<Setting> request_settings() {
   return {choice<grasp::GraspStyle>(
               "style", "where targets go", [](PlannerOptions & o) -> auto& { return o.style; }),
           option("fingers", "", "array of the fingers that must touch, by the hand's names",
+                 {{"type", "array"}, {"items", text()}, {"minItems", 1}},
                  [](PlannerOptions& o, const SettingValue& v) {
                    o.fingers = v.texts();
                    o.num_contacts = static_cast<int>(o.fingers.size());
@@ -86,9 +116,10 @@ std::vector<Setting> request_settings() {
           integer(
               "contacts", "without fingers: how many of them must touch",
               [](PlannerOptions & o) -> auto& { return o.num_contacts; }),
-          option("palm", "", "true or false: whether the palm must touch",
+          option("palm", "", "true or false: whether the palm must touch", of_type("boolean"),
                  [](PlannerOptions& o, const SettingValue& v) { o.palm = v.yes_or_no(); }),
           option("approach", "", "[x, y, z]: wanted direction of the palm in the object's frame",
+                 three_numbers(),
                  [](PlannerOptions& o, const SettingValue& v) { o.approach_O = v.vector3(); }),
           number(
               "approach-angle-deg", "deg", "largest angle of the palm's direction from it",
@@ -100,6 +131,7 @@ std::vector<Setting> request_settings() {
               [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
           {{"table", "m",
             "a table: everything at or below this z of the object's frame is solid; none without"},
+           of_type("number"),
            [](PlanningSettings& s, const SettingValue& v) { s.table_z_O = v.number(); }},
           choice<grasp::Acceptance>(
               "accept", "which grasps are collected",
@@ -138,7 +170,7 @@ std::vector<Setting> score_settings() {
               "score-threshold", "1", "every target's score must exceed it",
               [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
           option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
-                 [](PlannerOptions& o, const SettingValue& v) {
+                 of_type("number"), [](PlannerOptions& o, const SettingValue& v) {
                    if (v.number() == 0.0) {
                      o.weak.reset();
                    } else {
@@ -151,6 +183,7 @@ std::vector<Setting> score_settings() {
 std::vector<Setting> target_settings() {
   return {
       option("theta-max-deg", "deg", "half-angle of the friction cones of targets and measure",
+             of_type("number"),
              [](PlannerOptions& o, const SettingValue& v) {
                o.quality.theta_max = o.targets.theta_max = v.number() * kRadiansPerDegree;
              }),
@@ -210,7 +243,7 @@ std::vector<Setting> fitting_settings() {
       yes_or_no(
           "settle", "fingers close on until they touch",
           [](PlannerOptions & o) -> auto& { return o.fitting.settle; }),
-      option("clip-thickness-mm", "mm", "of clip volumes",
+      option("clip-thickness-mm", "mm", "of clip volumes", above_zero(),
              [](PlannerOptions& o, const SettingValue& v) {
                o.clip_thickness = v.positive_number() * kMetersPerMillimeter;
              }),
@@ -328,6 +361,20 @@ const std::vector<Column>& planning_setting_names() {
     return columns;
   }();
   return names;
+}
+
+const Schema& internal::planning_setting_schemas() {
+  static const Schema schemas = [] {
+    Schema all;
+    for (const Setting& setting : all_settings()) {
+      all[setting.name.name] = setting.schema;
+      const std::string& unit = setting.name.unit;
+      all[setting.name.name]["description"] =
+          setting.name.meaning + (unit.empty() || unit == "1" ? "" : " [" + unit + ']');
+    }
+    return all;
+  }();
+  return schemas;
 }
 
 PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,

@@ -250,7 +250,10 @@ Value field(std::size_t count) { return static_cast<std::int64_t>(count); }
 
 void write_best_grasps(const std::filesystem::path& folder, const Planned& planned,
                        std::size_t count) {
-  if (planned.result.grasps.empty() || planned.settings.object.file.empty()) return;
+  // A grasp file says how its object comes from a file: a shape has none, a turned one no record.
+  const ObjectSettings& object = planned.settings.object;
+  if (planned.result.grasps.empty() || object.file.empty()) return;
+  if (!object.rotation_xyz.isZero(0.0)) return;
   grasp::PlannerResult best = planned.result;
   best.grasps.resize(std::min(count, best.grasps.size()));
   std::error_code error;

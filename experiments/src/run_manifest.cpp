@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "build_source.hpp"
+#include "graspfit/experiments/column_dictionary.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 
 namespace graspfit::experiments {
@@ -113,22 +114,27 @@ std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
                     const std::string& status_counts_json) {
   Json versions;
   for (const auto& [name, version] : manifest.versions) versions[name] = version;
-  const Json json = {{"experiment", config.sweep.experiment},
-                     {"command", manifest.command},
-                     {"cells", Json::parse(status_counts_json)},
-                     {"config",
-                      {{"file", fs::path(config.file).filename().string()},
-                       {"sha256", config.sha256},
-                       {"is_quick", config.is_quick},
-                       {"is_modified", config.is_modified},
-                       {"as_run", Json::parse(config.identity())}}},
-                     {"seed", config.sweep.base_seed},
-                     {"commit", manifest.source.commit},
-                     {"is_commit_clean", manifest.source.is_clean},
-                     {"program_sha256", manifest.program},
-                     {"versions", versions},
-                     {"machine", machine()},
-                     {"inputs_sha256", Json(manifest.inputs)}};
+  Json json = {{"experiment", config.sweep.experiment},
+               {"command", manifest.command},
+               {"cells", Json::parse(status_counts_json)},
+               {"config",
+                {{"file", fs::path(config.file).filename().string()},
+                 {"sha256", config.sha256},
+                 {"is_quick", config.is_quick},
+                 {"is_modified", config.is_modified},
+                 {"as_run", Json::parse(config.identity())}}},
+               {"seed", config.sweep.base_seed},
+               {"commit", manifest.source.commit},
+               {"is_commit_clean", manifest.source.is_clean},
+               {"program_sha256", manifest.program},
+               {"versions", versions},
+               {"machine", machine()},
+               {"inputs_sha256", Json(manifest.inputs)}};
+  for (const std::string& text : manifest.shards) {
+    const Json shard = Json::parse(text);
+    Json& part = json["shards"].emplace_back();
+    for (const char* const key : {"command", "cells", "machine"}) part[key] = shard.at(key);
+  }
   return json.dump(2) + '\n';
 }
 
@@ -174,6 +180,8 @@ void publish(const Experiment& experiment, const ExperimentConfig& config, const
     const std::string name = experiment.slug + ending;
     geometry::write_file_atomically(published / name, geometry::read_file(folder / name));
   }
+  geometry::write_file_atomically(published / (experiment.slug + ".columns.json"),
+                                  column_dictionary(experiment, config));
 }
 
 }  // namespace graspfit::experiments

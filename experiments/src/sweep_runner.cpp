@@ -1,12 +1,11 @@
 #include "graspfit/experiments/sweep_runner.hpp"
 
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -14,6 +13,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "internal/cell_journal.hpp"
 #include "internal/data_files.hpp"
+#include "internal/sweep_tables.hpp"
 #include "internal/thread_clock.hpp"
 
 namespace graspfit::experiments {
@@ -23,29 +23,24 @@ namespace fs = std::filesystem;
 using internal::CellJournal;
 using internal::CellRecord;
 
-/// What became of a cell, and whether that may be kept: a cell that lacks data or memory may do
-/// better next time.
-struct CellOutcome {
-  CellRecord record;
-  bool is_final = true;
-};
-
-CellOutcome without_results(const Experiment& experiment, const char* status, const char* reason,
-                            bool is_final) {
-  return {{status,
-           csv_field(std::string(reason)),
-           ResultRow(experiment.columns).csv_fields(),
-           ResultRow(experiment.timings).csv_fields(),
-           {}},
+/// A row without results. Where the cell lacks data or memory it is not final: the next run may do
+/// better.
+CellRecord without_results(const Experiment& experiment, const char* status, const char* reason,
+                           bool is_final) {
+  return {status,
+          csv_field(std::string(reason)),
+          ResultRow(experiment.columns).csv_fields(),
+          ResultRow(experiment.timings).csv_fields(),
+          {},
           is_final};
 }
 
-CellOutcome run_cell(const Experiment& experiment, const Cell& cell, const fs::path& folder) {
+CellRecord run_cell(const Experiment& experiment, const Cell& cell, const fs::path& folder) {
   try {
     const CellResult result = experiment.run(cell, cell_folder(folder, cell));
-    CellOutcome outcome{{"ok", "", result.row.csv_fields(), result.timings.csv_fields(), {}}, true};
-    for (const ResultRow& row : result.details) outcome.record.details.push_back(row.csv_fields());
-    return outcome;
+    CellRecord record{"ok", "", result.row.csv_fields(), result.timings.csv_fields(), {}, true};
+    for (const ResultRow& row : result.details) record.details.push_back(row.csv_fields());
+    return record;
   } catch (const MissingData& error) {
     return without_results(experiment, "skipped", error.what(), false);
   } catch (const geometry::IoError& error) {  // a full disk may have room tomorrow
@@ -60,44 +55,42 @@ CellOutcome run_cell(const Experiment& experiment, const Cell& cell, const fs::p
 /// A run in progress.
 class Run {
  public:
-  Run(const Experiment& experiment, const ExperimentConfig& config, const RunManifest& manifest,
-      const RunOptions& options, const std::function<void(const RunProgress&)>& progress)
+  Run(const Experiment& experiment, const ParameterSweep& sweep, const RunOptions& options,
+      const fs::path& folder, CellJournal& journal,
+      const std::function<void(const RunProgress&)>& progress)
       : experiment_(experiment),
-        sweep_(config.sweep),
-        options_(options),
+        sweep_(sweep),
+        jobs_(options.jobs),
+        shard_(options.shard.value_or(Shard{})),
+        folder_(folder),
         callback_(progress),
-        journal_(options.folder / (experiment.slug + ".cells"),
-                 {{"configuration", geometry::sha256_hex(config.identity())},
-                  {"build of the program", manifest.program}},
-                 config.sweep.num_cells()) {
-    progress_.num_cells = sweep_.num_cells();
+        journal_(journal) {
+    progress_.num_cells = shard_.num_cells(sweep_.num_cells());
     for (std::size_t i = 0; i < progress_.num_cells; ++i) {
-      if (!journal_.has(i)) continue;
+      if (!journal_.has(index_of(i))) continue;
       ++progress_.num_done;
       ++progress_.num_resumed;
-      if (journal_.read(i).status == "failed") ++progress_.num_failed;
+      if (journal_.is_failed(index_of(i))) ++progress_.num_failed;
     }
   }
 
   RunProgress work() {
     std::vector<std::thread> threads;
-    for (int i = 1; i < options_.jobs; ++i) threads.emplace_back([this] { work_until_done(); });
+    for (int i = 1; i < jobs_; ++i) threads.emplace_back([this] { work_until_done(); });
     work_until_done();
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
     return progress_;
   }
 
-  CellRecord record(std::size_t cell) const {
-    const auto open = open_cells_.find(cell);
-    return open == open_cells_.end() ? journal_.read(cell) : open->second;
-  }
-
  private:
+  /// In the sweep, of a cell of the shard.
+  std::size_t index_of(std::size_t cell) const { return shard_.index - 1 + cell * shard_.count; }
+
   void work_until_done() {
     try {
-      for (std::size_t i = next_++; i < sweep_.num_cells() && !is_stopped_; i = next_++) {
-        if (!journal_.has(i)) run_one(i);
+      for (std::size_t i = next_++; i < progress_.num_cells && !is_stopped_; i = next_++) {
+        if (!journal_.has(index_of(i))) run_one(index_of(i));
       }
     } catch (...) {
       const std::lock_guard lock(mutex_);
@@ -110,88 +103,33 @@ class Run {
     const Cell cell = sweep_.cell(index);
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = internal::thread_cpu_s();
-    CellOutcome outcome = run_cell(experiment_, cell, options_.folder);
+    CellRecord record = run_cell(experiment_, cell, folder_);
     const double cpu_s = internal::thread_cpu_s() - cpu_start;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    outcome.record.timings.insert(outcome.record.timings.begin(),
-                                  {csv_field(wall.count()), csv_field(cpu_s)});
-    if (outcome.is_final) journal_.append(index, cell.key, outcome.record);
+    record.timings.insert(record.timings.begin(), {csv_field(wall.count()), csv_field(cpu_s)});
+    journal_.append(index, cell.key, record);
 
     const std::lock_guard lock(mutex_);
-    const bool is_skipped = outcome.record.status == "skipped";
+    const bool is_skipped = record.status == "skipped";
     if (is_skipped) ++progress_.num_skipped;
     if (!is_skipped) ++progress_.num_done;
-    if (outcome.record.status == "failed") ++progress_.num_failed;
-    if (!outcome.is_final) open_cells_.emplace(index, std::move(outcome.record));
+    if (record.status == "failed") ++progress_.num_failed;
     if (callback_) callback_(progress_);
   }
 
   const Experiment& experiment_;
   const ParameterSweep& sweep_;
-  const RunOptions& options_;
+  const int jobs_;
+  const Shard shard_;
+  const fs::path& folder_;
   const std::function<void(const RunProgress&)>& callback_;
-  CellJournal journal_;
+  CellJournal& journal_;
   RunProgress progress_;
-  std::map<std::size_t, CellRecord> open_cells_;  ///< Not kept; by index.
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> is_stopped_{false};
   std::exception_ptr error_;
   std::mutex mutex_;
 };
-
-std::vector<std::string> header(const ParameterSweep& sweep, std::vector<std::string> own,
-                                const std::vector<Column>& columns) {
-  std::vector<std::string> names;
-  for (const Axis& axis : sweep.axes) names.push_back(axis.name);
-  names.insert(names.end(), own.begin(), own.end());
-  for (const Column& column : columns) names.push_back(column.name);
-  return names;
-}
-
-/// The tables beside the cells' rows: `details`, and `summary` made of them.
-void write_further_tables(const Experiment& experiment, const ParameterSweep& sweep, const Run& run,
-                          const fs::path& folder) {
-  if (experiment.details.empty()) return;
-  std::string details = csv_line(header(sweep, {}, experiment.details));
-  std::vector<FinishedCell> cells;
-  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
-    CellRecord record = run.record(i);
-    if (record.status != "ok") continue;
-    cells.push_back({sweep.cell(i).labels, std::move(record.details)});
-    for (const std::vector<std::string>& detail : cells.back().details) {
-      std::vector<std::string> row = cells.back().labels;
-      row.insert(row.end(), detail.begin(), detail.end());
-      details += csv_line(row);
-    }
-  }
-  geometry::write_file_atomically(folder / (experiment.slug + ".details.csv"), details);
-  if (experiment.summary.empty()) return;
-  std::string summary = csv_line(header({}, {}, experiment.summary));
-  for (const ResultRow& row : experiment.summarize(sweep, cells)) {
-    summary += csv_line(row.csv_fields());
-  }
-  geometry::write_file_atomically(folder / (experiment.slug + ".summary.csv"), summary);
-}
-
-void write_tables(const Experiment& experiment, const ParameterSweep& sweep, const Run& run,
-                  const fs::path& folder) {
-  std::string results =
-      csv_line(header(sweep, {"cell_seed", "status", "reason"}, experiment.columns));
-  std::string timings = csv_line(header(sweep, {"wall_s", "cpu_s"}, experiment.timings));
-  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
-    const Cell cell = sweep.cell(i);
-    const CellRecord record = run.record(i);
-    std::vector<std::string> row = cell.labels;
-    row.insert(row.end(), {std::to_string(cell.seed), record.status, record.reason});
-    row.insert(row.end(), record.fields.begin(), record.fields.end());
-    results += csv_line(row);
-    row = cell.labels;
-    row.insert(row.end(), record.timings.begin(), record.timings.end());
-    timings += csv_line(row);
-  }
-  geometry::write_file_atomically(folder / (experiment.slug + ".csv"), results);
-  geometry::write_file_atomically(folder / (experiment.slug + ".timing.csv"), timings);
-}
 
 std::map<std::string, std::string> input_hashes(const Experiment& experiment,
                                                 const ParameterSweep& sweep) {
@@ -226,6 +164,38 @@ void RunOptions::validate() const {
   if (jobs < 1) {
     throw geometry::InvalidInput("RunOptions: jobs = " + std::to_string(jobs) + ", must be >= 1");
   }
+  if (shard) shard->validate();
+}
+
+std::size_t Shard::num_cells(std::size_t of_sweep) const {
+  return (of_sweep + count - index) / count;
+}
+
+std::string Shard::name() const { return std::to_string(index) + "-of-" + std::to_string(count); }
+
+void Shard::validate() const {
+  constexpr std::size_t kMostShards = 100000;
+  if (count < 1 || count > kMostShards) {
+    throw geometry::InvalidInput("Shard: count = " + std::to_string(count) + ", must be in [1, " +
+                                 std::to_string(kMostShards) + "]");
+  }
+  if (index < 1 || index > count) {
+    throw geometry::InvalidInput("Shard: index = " + std::to_string(index) + ", must be in [1, " +
+                                 std::to_string(count) + "]");
+  }
+}
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  const char* const end = text.data() + text.size();
+  const auto index = std::from_chars(text.data(), end, shard.index);
+  const bool has_slash = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
+  const auto count = std::from_chars(has_slash ? index.ptr + 1 : end, end, shard.count);
+  if (!has_slash || count.ec != std::errc() || count.ptr != end) {
+    throw geometry::InvalidInput("--shard \"" + text + "\" is not I/N, such as 2/7");
+  }
+  shard.validate();
+  return shard;
 }
 
 fs::path cell_folder(const fs::path& results, const Cell& cell) {
@@ -235,27 +205,31 @@ fs::path cell_folder(const fs::path& results, const Cell& cell) {
   return results / "cells" / name;
 }
 
+fs::path shard_folder(const fs::path& results, const Shard& shard) {
+  return results / "shards" / shard.name();
+}
+
 RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& config,
                       RunManifest manifest, const RunOptions& options,
                       const std::function<void(const RunProgress&)>& progress) {
   options.validate();
-  std::error_code error;
-  fs::create_directories(options.folder, error);
-  if (error) throw geometry::IoError(options.folder.string() + ": " + error.message());
-  manifest.inputs = input_hashes(experiment, config.sweep);
-  Run run(experiment, config, manifest, options, progress);
-  const RunProgress done = run.work();
-  const std::map<std::string, std::string> inputs = input_hashes(experiment, config.sweep);
-  require_unchanged(manifest.inputs, inputs);
-  manifest.inputs = inputs;  // those that came to be there, too
-  write_tables(experiment, config.sweep, run, options.folder);
-  write_further_tables(experiment, config.sweep, run, options.folder);
-  const nlohmann::ordered_json counts = {{"total", done.num_cells},
-                                         {"finished", done.num_done},
-                                         {"failed", done.num_failed},
-                                         {"skipped", done.num_skipped}};
-  geometry::write_file_atomically(options.folder / (experiment.slug + ".manifest.json"),
-                                  to_json(manifest, config, counts.dump()));
+  const fs::path folder =
+      options.shard ? shard_folder(options.folder, *options.shard) : options.folder;
+  internal::make_folder(folder);
+  CellJournal journal(internal::journal_file(folder, experiment.slug),
+                      internal::journal_identity(config, manifest), config.sweep.num_cells());
+  const std::map<std::string, std::string> before = input_hashes(experiment, config.sweep);
+  journal.start_run(before);
+  const RunProgress done = Run(experiment, config.sweep, options, folder, journal, progress).work();
+  const std::map<std::string, std::string> after = input_hashes(experiment, config.sweep);
+  require_unchanged(before, after);
+  if (after.size() > before.size()) journal.start_run(after);  // files that came to be there
+  manifest.inputs = journal.inputs();
+  if (options.shard) {
+    internal::write_manifest(config, manifest, done, folder);
+  } else {
+    internal::write_tables(experiment, config, manifest, done, journal, folder);
+  }
   return done;
 }
 

@@ -1,4 +1,4 @@
-"""graspfit experiment: list, describe, run."""
+"""graspfit experiment: list, describe, run, status, merge, verify, columns, schema."""
 
 import csv
 import json
@@ -63,6 +63,177 @@ class Quick(ProgramTest):
         for row in rows_of(out / "special_cases.csv"):
             self.assertEqual(row["status"], "skipped")
             self.assertIn("set GRASPFIT_DATA", row["reason"])
+
+
+class Shards(ProgramTest):
+    """A sweep of a shape, which needs no data, in parts."""
+
+    SLUG = "parameter_sweeps"
+    CHANGES = ("--quick", "--set", "seed=1,2,3")  # 6 cells
+
+    def run_part(self, out, *arguments):
+        done = run("experiment", "run", self.SLUG, *self.CHANGES, "--out", out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_shards_merge_to_the_bytes_of_one_run(self):
+        one, two = self.folder / "one", self.folder / "two"
+        self.run_part(one)
+        self.assertIn("3 cells: 3 finished", self.run_part(two, "--shard", "2/2"))
+        merge = ("experiment", "merge", self.SLUG, *self.CHANGES, "--out", two)
+        done = run(*merge)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("3 of 6 cells are missing, object=shape_torus option=resolution_20 seed=1",
+                      done.stderr)
+        self.assertFalse((two / f"{self.SLUG}.csv").exists())
+        status = run("experiment", "status", self.SLUG, "--out", two).stdout.splitlines()
+        self.assertRegex(status[0], "^all +3 of 6 cells done, 0 of these failed, 3 left")
+        self.assertRegex(status[2], "^shard 2-of-2 +3 of 3 cells done, .* per s$")
+        self.run_part(two, "--shard", "1/2")
+        done = run(*merge)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in (f"{self.SLUG}.csv",):
+            self.assertEqual((one / name).read_bytes(), (two / name).read_bytes())
+        manifest = json.loads((two / f"{self.SLUG}.manifest.json").read_text())
+        self.assertEqual([part["command"][-11:] for part in manifest["shards"]],
+                         ["--shard 1/2", "--shard 2/2"])
+        self.assertNotIn(str(self.folder), json.dumps(manifest))
+        self.assertEqual(manifest["command"], "graspfit experiment merge parameter_sweeps --quick "
+                                              "--set seed=1,2,3")
+
+    def test_verify_names_cell_and_column(self):
+        out, other = self.folder / "out", self.folder / "other"
+        self.run_part(out)
+        self.run_part(other)
+        verify = ("experiment", "verify", self.SLUG, "--out", out, "--against", other)
+        done = run(*verify)
+        self.assertEqual((done.returncode, done.stdout),
+                         (0, f"{self.SLUG}.csv: 6 rows compared, the same bytes\n"))
+        table = other / f"{self.SLUG}.csv"
+        rows = rows_of(table)
+        value = float(rows[1]["mean_m"])
+
+        def write(mean_m):
+            rows[1]["mean_m"] = repr(mean_m)
+            with open(table, "w", newline="", encoding="utf-8") as stream:
+                writer = csv.DictWriter(stream, rows[0], lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(rows)
+
+        write(value * (1 + 5e-10))
+        done = run(*verify)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertIn("0 fields differ; the others by at most 5.0e-10", done.stdout)
+        write(value * (1 + 2e-9))
+        done = run(*verify)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("1 fields differ", done.stdout)
+        self.assertIn("object=shape_torus option=resolution_20 seed=2: mean_m is ", done.stdout)
+
+    def test_shards_that_cannot_be_are_refused(self):
+        part = ("experiment", "run", self.SLUG, "--out", "out", "--shard")
+        self.assert_refused(*part, "3/2", says="Shard: index = 3, must be in [1, 2]")
+        self.assert_refused(*part, "two", says="--shard \"two\" is not I/N")
+        self.assert_refused(*part, "1/2", "--publish", says="merge has it")
+        self.assert_refused("experiment", "merge", self.SLUG, "--out", self.folder / "none",
+                            says="has no shards of parameter_sweeps")
+        self.assert_refused("experiment", "status", self.SLUG, "--out", self.folder / "none",
+                            says="has no results of parameter_sweeps")
+
+
+class Schema(ProgramTest):
+    """experiments/config.schema.json, and the program's own checks beside it."""
+
+    def setUp(self):
+        super().setUp()
+        try:
+            import jsonschema
+        except ImportError as missing:
+            self.skipTest(f"{missing.name} is not installed")
+        self.schema = json.loads((SOURCE_DIR / "experiments/config.schema.json").read_text())
+        self.validator = jsonschema.Draft202012Validator(self.schema)
+
+    def test_the_committed_schema_is_the_program_s(self):
+        done = run("experiment", "schema")
+        self.assertEqual(done.stdout, (SOURCE_DIR / "experiments/config.schema.json").read_text(),
+                         "run: graspfit experiment schema > experiments/config.schema.json")
+
+    def test_every_configuration_is_valid(self):
+        for slug in SLUGS:
+            config = json.loads((SOURCE_DIR / f"experiments/configs/{slug}.json").read_text())
+            self.assertEqual([e.message for e in self.validator.iter_errors(config)], [], slug)
+
+    def test_schema_and_program_refuse_the_same(self):
+        """What the schema refuses the program refuses, too, naming file, key and what is allowed."""
+        folder = self.folder / "configs"
+        folder.mkdir()
+        text = (SOURCE_DIR / "experiments/configs/parameter_sweeps.json").read_text()
+        (folder / "planner_paper_objects.json").write_text(
+            (SOURCE_DIR / "experiments/configs/planner_paper_objects.json").read_text())
+
+        def changed(path, value):
+            config = json.loads(text)
+            *way, last = path
+            place = config
+            for key in way:
+                place = place[key]
+            if value is None:
+                del place[last]
+            else:
+                place[last] = value
+            return config
+
+        for path, value, says in [
+                (["seed"], -1, "/seed: is -1, not an integer from 0"),
+                (["seeds"], 0, "/seeds: is 0, must be in [1, 100000]"),
+                (["question"], None, "/question: is missing"),
+                (["colour"], "red", "/colour: is not a member that is known here; there are "),
+                (["settings", "accept"], "all", "/settings/accept: is \"all\", must be one of "),
+                (["settings", "accpet"], "all", "/settings/accpet: is no setting; there are "),
+                (["settings", "refine"], "on", "/settings/refine: is \"on\", must be true or"),
+                (["settings", "count"], 1.5, "/settings/count: is 1.5, must be an integer"),
+                (["settings", "approach"], [0, 1], "/settings/approach: is [0,1], must be three"),
+                (["settings", "size_m"], 0, "/settings/size_m: is 0, must be > 0"),
+                (["axes", "option"], [], "/axes/option: is not an array with at least one"),
+                (["axes", "option", 0, "name"], None, "/axes/option/0/name: is missing"),
+                (["axes", "option", 0, "name"], "a/b", "/axes/option/0: is named \"a/b\""),
+                (["axes", "refine"], [1], "/axes/refine/0: is 1, must be true or false"),
+                (["axes", "seed"], [1], "/axes/seed: no axis can be named \"seed\""),
+                (["quick", "cells"], 3, "/quick/cells: is not a member")]:
+            with self.subTest(says):
+                config = changed(path, value)
+                self.assertFalse(self.validator.is_valid(config))
+                (folder / "parameter_sweeps.json").write_text(json.dumps(config))
+                done = run("experiment", "describe", "parameter_sweeps", "--quick",
+                           env=dict(os.environ, GRASPFIT_EXPERIMENTS=str(folder)))
+                self.assertEqual(done.returncode, 2, done.stdout)
+                self.assertIn("parameter_sweeps.json: " + says, done.stderr)
+
+
+class Columns(ProgramTest):
+    def test_every_published_table_has_a_dictionary_of_its_columns(self):
+        tables = sorted((SOURCE_DIR / "notebooks-data").glob("*.csv"))
+        self.assertGreater(len(tables), 0)
+        for table in tables:
+            with self.subTest(table.name):
+                slug = table.name.split(".")[0]
+                dictionary = json.loads(table.with_name(f"{slug}.columns.json").read_text())
+                columns = dictionary["tables"][table.name]
+                with open(table, newline="", encoding="utf-8") as stream:
+                    self.assertEqual(next(csv.reader(stream)), [c["name"] for c in columns])
+                for column in columns:
+                    self.assertTrue(column["meaning"], column)
+
+    def test_columns_are_those_that_a_run_writes(self):
+        for slug in ("parameter_sweeps", "hold_prediction"):
+            done = run("experiment", "columns", slug)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            tables = json.loads(done.stdout)["tables"]
+            changes = ("--quick", "--set", "object=" + ("torus" if slug[0] == "h" else "shape_torus"))
+            run("experiment", "run", slug, *changes, "--out", self.folder / slug)
+            for name, columns in tables.items():
+                with open(self.folder / slug / name, newline="", encoding="utf-8") as stream:
+                    self.assertEqual(next(csv.reader(stream)), [c["name"] for c in columns])
 
 
 class Hold(ProgramTest):
@@ -160,7 +331,7 @@ class Describe(ProgramTest):
 class Refusals(ProgramTest):
     def test_one_line_says_what_and_what_is_allowed(self):
         experiment = ("experiment", "run")
-        self.assert_refused("experiment", "walk", says="there are list, describe and run")
+        self.assert_refused("experiment", "walk", says="there are list, describe, run, status")
         self.assert_refused(*experiment, "nothing", says=["nothing", "planner_everyday"])
         self.assert_refused(*experiment, "force_closure", "--set", "grip=pinch",
                             says=["--set grip", "there are precision_45_deg, "])

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::experiments;
@@ -126,4 +127,74 @@ TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings
   CHECK_THROWS_WITH(load_object(missing), Catch::Contains("GRASPFIT_DATA"));
   CHECK_THROWS_AS(load_object(missing), MissingData);
   CHECK_THROWS_AS(load_hand("hands/no_such_hand.urdf"), MissingData);
+}
+
+TEST_CASE("Every axis that sweeps are made of is a setting by name",
+          "[experiments][planning_settings]") {
+  const auto bytes_of = [](const std::string& member) {
+    const grasp::PlannerOptions o = settings_with(member).options;
+    return std::vector<double>{static_cast<double>(o.resolution),
+                               o.quality.alpha,
+                               o.quality.beta,
+                               o.quality.w1,
+                               o.quality.w2,
+                               o.quality.w3,
+                               o.targets.score_threshold,
+                               o.quality.theta_max,
+                               static_cast<double>(o.score.neighborhood),
+                               static_cast<double>(o.score.normalization),
+                               static_cast<double>(o.score.mean_filter_passes),
+                               static_cast<double>(o.quality.regularity),
+                               o.clip_thickness.value_or(-1.0),
+                               static_cast<double>(o.refine),
+                               static_cast<double>(o.num_contacts)};
+  };
+  const std::vector<double> defaults = bytes_of("");
+  const std::vector<std::string> changes = {R"(, "resolution": 10)",
+                                            R"(, "alpha": 1)",
+                                            R"(, "beta": 0)",
+                                            R"(, "w1": 2)",
+                                            R"(, "w2": 2)",
+                                            R"(, "w3": 1)",
+                                            R"(, "score-threshold": 0)",
+                                            R"(, "theta-max-deg": 60)",
+                                            R"(, "neighborhood": 3)",
+                                            R"(, "score-normalization": "raw")",
+                                            R"(, "mean-filter-passes": 3)",
+                                            R"(, "regularity": "angle-only")",
+                                            R"(, "clip-thickness-mm": 2)",
+                                            R"(, "refine": false)",
+                                            R"(, "contacts": 2)"};
+  REQUIRE(changes.size() == defaults.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    INFO(changes[i]);
+    const std::vector<double> changed = bytes_of(changes[i]);
+    for (std::size_t k = 0; k < changed.size(); ++k) CHECK((changed[k] != defaults[k]) == (k == i));
+  }
+  CHECK(settings_with(R"(, "resolution": 120)").options.resolution == 120);
+}
+
+TEST_CASE("An object is turned about x, then y, then z, after it is scaled",
+          "[experiments][planning_settings]") {
+  // A bottle stands along z; a quarter turn about x lays it along -y.
+  const auto box_of = [](const std::string& members) {
+    return graspfit::geometry::bounding_box(
+        load_object(
+            planning_settings(
+                R"({"shape": "bottle", "hand": "barrett", "size_m": 0.2)" + members + "}", 5)
+                .object)
+            ->mesh);
+  };
+  const Eigen::AlignedBox3d as_it_is = box_of("");
+  REQUIRE(as_it_is.sizes().z() == Approx(0.2));
+  const Eigen::AlignedBox3d lying = box_of(R"(, "rotation_deg": [90, 0, 0])");
+  CHECK(lying.sizes().y() == Approx(0.2));
+  CHECK(lying.min().y() == Approx(-as_it_is.max().z()));
+  CHECK(lying.max().z() == Approx(as_it_is.max().y()));
+  // About x first: z goes to -y, which a quarter turn about z takes to x. The other order leaves z.
+  const Eigen::AlignedBox3d along_x = box_of(R"(, "rotation_deg": [90, 0, 90])");
+  CHECK(along_x.sizes().x() == Approx(0.2));
+  CHECK(along_x.max().x() == Approx(as_it_is.max().z()));
+  CHECK_THROWS_WITH(settings_with(R"(, "rotation_deg": [90, 0])"),
+                    "is [90,0], must be three numbers [x, y, z]");
 }

@@ -10,6 +10,7 @@ namespace graspfit::experiments::internal {
 Experiment force_closure();
 Experiment hold_prediction();
 Experiment hold_rates();
+Experiment parameter_sweeps();
 Experiment planner_everyday();
 Experiment planner_paper_objects();
 Experiment special_cases();

@@ -57,6 +57,10 @@ struct ExperimentConfig {
 ExperimentConfig read_config(const Experiment& experiment, const std::filesystem::path& file,
                              const ConfigRequest& request = {});
 
+/// The JSON Schema of configurations, for editors and other programs: members, names and values of
+/// settings. What depends on several values at once only `read_config` checks.
+std::string config_schema();
+
 /// Folder of the shipped configurations: `$GRASPFIT_EXPERIMENTS`, beside an installed program, or
 /// the sources'. @throws InvalidInput if there is none.
 std::filesystem::path config_folder();

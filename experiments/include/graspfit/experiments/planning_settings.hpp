@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct ObjectSettings {
   /// Scaled down further where its bounding box's shortest edge is longer than this [m]: what a
   /// hand that spans so much can close around.
   std::optional<double> largest_thickness;
+  /// Angles by which the object, scaled, is turned about its frame's fixed x, then y, then z axis
+  /// [rad]: planning sees it in that pose.
+  Eigen::Vector3d rotation_xyz = Eigen::Vector3d::Zero();
 
   std::string key() const;  ///< Differs between different objects.
 };
@@ -35,7 +39,8 @@ struct PlanningSettings {
 
 /// Names of all settings with their units and meanings:
 ///
-///     file or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m, hand
+///     file or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
+///     rotation_deg, hand
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.

@@ -32,6 +32,7 @@ struct RunManifest {
   std::string program = program_sha256();
   /// SHA-256 by file: relative to the data folder or to the sources for files in them.
   std::map<std::string, std::string> inputs;
+  std::vector<std::string> shards = {};  ///< Texts of the manifests of shards that were merged.
 };
 
 /// The manifest's text: JSON with command, configuration, its hash, seed, commit, versions,
@@ -39,7 +40,8 @@ struct RunManifest {
 std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
                     const std::string& status_counts_json);
 
-/// Copies the results of a finished run from `folder` into `published` (`notebooks-data`).
+/// Copies the results of a finished run from `folder` into `published` (`notebooks-data`), and
+/// writes the dictionary of their columns beside them.
 ///
 /// @throws InvalidInput, saying which, for a quick or modified configuration, cells that were
 /// skipped, inputs outside the data folder and the sources (their names mean nothing elsewhere), a

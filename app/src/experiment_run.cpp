@@ -1,0 +1,281 @@
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "experiment_commands.hpp"
+#include "graspfit/experiments/run_manifest.hpp"
+#include "graspfit/experiments/sweep_runner.hpp"
+#include "graspfit/experiments/sweep_shards.hpp"
+#include "graspfit/experiments/table_comparison.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
+#include "progress_bar.hpp"
+#include "text_table.hpp"
+
+namespace graspfit::app {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using experiments::Experiment;
+using experiments::ExperimentConfig;
+
+void add_out(po::options_description& options) {
+  add_option(options, "out", "DIR", std::nullopt,
+             "folder of the results; without it results/SLUG, with --quick results/SLUG_quick");
+}
+
+Command run_command() {
+  po::options_description how = option_group("How");
+  add_option(how, "jobs", "J", "1", "cells at once; timings are honest with one");
+  add_option(how, "shard", "I/N", std::nullopt,
+             "only every N-th cell, from the I-th on, into DIR/shards/I-of-N; then merge");
+  add_out(how);
+  add_switch(how, "publish",
+             "afterwards copy the tables into notebooks-data; refused for --quick, --set, missing "
+             "data and sources that are not committed");
+  add_switch(how, "quiet", "no progress bar and no summary");
+  Command command{
+      "experiment run", "SLUG",
+      "Runs an experiment: SLUG.csv, SLUG.timing.csv and SLUG.manifest.json. Cells "
+      "that are finished are\nkept on disk at once; after an interruption the same "
+      "command does the rest. Results are\nthe same bytes for any --jobs and any shards.\n",
+      option_group(),
+      "Meshes and hands that are not part of the repository are looked for in "
+      "$GRASPFIT_DATA; cells\nthat lack theirs are skipped, and the rows say so.\n"};
+  command.options.add(config_change_options()).add(how);
+  return command;
+}
+
+Command status_command() {
+  po::options_description options = option_group("Options");
+  add_out(options);
+  add_switch(options, "quick", "of a quick run");
+  return {"experiment status", "SLUG",
+          "Says how many cells of a run and of its shards are done, failed and left, and how fast "
+          "those\nare that are running. Does not disturb them.\n",
+          options, ""};
+}
+
+Command merge_command() {
+  po::options_description how = option_group("How");
+  add_out(how);
+  add_switch(how, "publish", "afterwards copy the tables into notebooks-data; see run");
+  add_switch(how, "quiet", "no summary");
+  Command command{
+      "experiment merge", "SLUG",
+      "Takes the cells of all shards in DIR/shards over into DIR and writes the tables: "
+      "the same\nbytes as one run's. Refused while cells are missing or shards are "
+      "running.\n",
+      option_group(), ""};
+  command.options.add(config_change_options()).add(how);
+  return command;
+}
+
+Command verify_command() {
+  const experiments::ComparisonOptions defaults;
+  po::options_description options = option_group("Options");
+  add_out(options);
+  add_switch(options, "quick", "of a quick run");
+  add_option(options, "against", "DIR", std::nullopt,
+             "folder of the published tables; without it notebooks-data");
+  add_option(options, "relative", "NUMBER", geometry::shortest_decimal(defaults.relative),
+             "largest difference of two numbers over the larger magnitude");
+  add_option(options, "absolute", "NUMBER", geometry::shortest_decimal(defaults.absolute),
+             "numbers up to this magnitude are zeros but for rounding");
+  return {"experiment verify", "SLUG",
+          "Compares the tables of a run, perhaps with --set of fewer cells, with published ones, "
+          "perhaps\nof another machine: rows of the same labels, numbers within a tolerance, all "
+          "else exactly.\nTimings are not compared. Exit code 4 if fields differ; which, is "
+          "printed.\n",
+          options, ""};
+}
+
+fs::path results_folder(const Flags& flags) {
+  if (flags.has("out")) return flags.text("out");
+  return fs::path("results") / (flags.positional() + (flags.has("quick") ? "_quick" : ""));
+}
+
+fs::path published_folder() { return experiments::source_folder() / "notebooks-data"; }
+
+experiments::RunManifest manifest_of(const char* command,
+                                     const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"graspfit", "experiment", command};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  experiments::RunManifest manifest;
+  manifest.command = experiments::recorded_command(words);
+  manifest.versions = version_rows();
+  return manifest;
+}
+
+std::string minutes_text(std::size_t cells, double cells_per_s) {
+  constexpr double kSecondsPerMinute = 60.0;
+  return fixed_decimal(static_cast<double>(cells) / cells_per_s / kSecondsPerMinute, 1) +
+         " min left";
+}
+
+/// "12 of 110 cells, 0.31 per s, 5 min left": the rate is of this run alone.
+std::string progress_text(const experiments::RunProgress& progress,
+                          std::chrono::steady_clock::time_point start) {
+  const std::size_t reached = progress.num_done + progress.num_skipped;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const double rate = static_cast<double>(reached - progress.num_resumed) / elapsed.count();
+  return std::to_string(reached) + " of " + std::to_string(progress.num_cells) + " cells, " +
+         fixed_decimal(rate, 2) + " per s, " + minutes_text(progress.num_cells - reached, rate);
+}
+
+std::string status_text(const experiments::SweepStatus& status) {
+  std::string text = std::to_string(status.num_done) + " of " + std::to_string(status.num_cells) +
+                     " cells done, " + std::to_string(status.num_failed) + " of these failed, " +
+                     std::to_string(status.num_left()) + " left";
+  if (status.num_tried_again > 0) {
+    text += " (" + std::to_string(status.num_tried_again) + " tried in vain)";
+  }
+  if (status.is_running) text += ", running";
+  if (!status.cells_per_s) return text;
+  text += ", " + fixed_decimal(*status.cells_per_s, 2) + " per s";
+  if (status.is_running) text += ", " + minutes_text(status.num_left(), *status.cells_per_s);
+  return text;
+}
+
+/// Prints what a comparison found.
+void print_comparison(const experiments::PublishedComparison& table) {
+  constexpr std::size_t kMostShown = 20;
+  const experiments::TableComparison& found = table.comparison;
+  std::printf("%s: %zu rows compared", table.file.c_str(), found.num_rows);
+  if (found.num_not_ours > 0) std::printf(" (%zu published ones not)", found.num_not_ours);
+  if (found.are_same_bytes) {
+    std::printf(", the same bytes\n");
+    return;
+  }
+  std::printf(", %zu fields differ; the others by at most %.1e\n", found.differences.size(),
+              found.largest_relative);
+  for (std::size_t i = 0; i < found.differences.size() && i < kMostShown; ++i) {
+    const experiments::FieldDifference& field = found.differences[i];
+    std::printf("  %s: %s is \"%s\", published \"%s\"\n", field.row.c_str(), field.column.c_str(),
+                field.ours.c_str(), field.theirs.c_str());
+  }
+  if (found.differences.size() > kMostShown) {
+    std::printf("  and %zu more\n", found.differences.size() - kMostShown);
+  }
+}
+
+}  // namespace
+
+po::options_description config_change_options() {
+  po::options_description options = option_group("What of it");
+  add_switch(options, "quick", "a few cells only, in seconds");
+  add_repeatable_option(options, "set", "AXIS=A,B,...",
+                        "other values for an axis, by their names or, for a plain setting, any; "
+                        "the name of a setting makes a new axis; may be given several times");
+  return options;
+}
+
+ExperimentConfig load_experiment_config(const Experiment& experiment, const Flags& flags) {
+  experiments::ConfigRequest request;
+  request.is_quick = flags.has("quick");
+  for (const std::string& text : flags.texts("set")) {
+    request.changes.push_back(experiments::parse_axis_change(text));
+  }
+  const fs::path file = experiments::config_folder() / (experiment.slug + ".json");
+  return experiments::read_config(experiment, file, request);
+}
+
+bool is_help_printed(const Command& command, const Flags& flags) {
+  if (flags.wants_help()) std::fputs(help_text(command).c_str(), stdout);
+  return flags.wants_help();
+}
+
+ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
+  const Command command = run_command();
+  const Flags flags(command, arguments);
+  if (is_help_printed(command, flags)) return kSuccess;
+  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const ExperimentConfig config = load_experiment_config(experiment, flags);
+  const fs::path sources = experiments::source_folder();
+  if (flags.has("publish")) experiments::require_publishable(config, sources);
+
+  experiments::RunOptions options;
+  options.jobs = flags.integer("jobs");
+  options.folder = results_folder(flags);
+  if (flags.has("shard")) options.shard = experiments::parse_shard(flags.text("shard"));
+  if (flags.has("publish") && options.shard) {
+    throw UsageError("--publish means nothing with --shard; merge has it");
+  }
+  const experiments::RunManifest manifest = manifest_of("run", arguments);
+
+  ProgressBar bar(!flags.has("quiet"));
+  const auto start = std::chrono::steady_clock::now();
+  const experiments::RunProgress done = experiments::run_sweep(
+      experiment, config, manifest, options, [&](const experiments::RunProgress& progress) {
+        const std::size_t reached = progress.num_done + progress.num_skipped;
+        bar.show(static_cast<std::int64_t>(reached), static_cast<std::int64_t>(progress.num_cells),
+                 progress_text(progress, start));
+      });
+  bar.clear();
+  if (flags.has("publish")) {
+    experiments::publish(experiment, config, options.folder, sources, published_folder());
+  }
+  if (!flags.has("quiet")) {
+    std::printf("%zu cells: %zu finished (%zu earlier), %zu of these failed, %zu skipped\n",
+                done.num_cells, done.num_done, done.num_resumed, done.num_failed, done.num_skipped);
+    const fs::path folder =
+        options.shard ? experiments::shard_folder(options.folder, *options.shard) : options.folder;
+    std::printf("written to %s\n", folder.c_str());
+    if (flags.has("publish")) std::printf("published in %s\n", "notebooks-data");
+  }
+  return kSuccess;
+}
+
+ExitCode run_experiment_status(const std::vector<std::string>& arguments) {
+  const Command command = status_command();
+  const Flags flags(command, arguments);
+  if (is_help_printed(command, flags)) return kSuccess;
+  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  for (const auto& status : experiments::sweep_status(experiment.slug, results_folder(flags))) {
+    std::printf("%-16s %s\n", status.name.c_str(), status_text(status).c_str());
+  }
+  return kSuccess;
+}
+
+ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
+  const Command command = merge_command();
+  const Flags flags(command, arguments);
+  if (is_help_printed(command, flags)) return kSuccess;
+  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const ExperimentConfig config = load_experiment_config(experiment, flags);
+  const fs::path sources = experiments::source_folder();
+  if (flags.has("publish")) experiments::require_publishable(config, sources);
+  const fs::path folder = results_folder(flags);
+  const experiments::RunProgress done =
+      experiments::merge_shards(experiment, config, manifest_of("merge", arguments), folder);
+  if (flags.has("publish")) {
+    experiments::publish(experiment, config, folder, sources, published_folder());
+  }
+  if (!flags.has("quiet")) {
+    std::printf("%zu cells: %zu finished, %zu of these failed, %zu skipped\nwritten to %s\n",
+                done.num_cells, done.num_done, done.num_failed, done.num_skipped, folder.c_str());
+    if (flags.has("publish")) std::printf("published in notebooks-data\n");
+  }
+  return kSuccess;
+}
+
+ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
+  const Command command = verify_command();
+  const Flags flags(command, arguments);
+  if (is_help_printed(command, flags)) return kSuccess;
+  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const fs::path published =
+      flags.has("against") ? fs::path(flags.text("against")) : published_folder();
+  const experiments::ComparisonOptions options{flags.number("relative"), flags.number("absolute")};
+  bool is_equal = true;
+  for (const experiments::PublishedComparison& table :
+       experiments::compare_with_published(experiment, results_folder(flags), published, options)) {
+    print_comparison(table);
+    is_equal = is_equal && table.comparison.differences.empty();
+  }
+  return is_equal ? kSuccess : kDiffers;
+}
+
+}  // namespace graspfit::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "graspfit/experiments/experiment_config.hpp"
+#include "graspfit/experiments/run_manifest.hpp"
+#include "graspfit/experiments/sweep_runner.hpp"
+#include "internal/cell_journal.hpp"
+
+namespace graspfit::experiments::internal {
+
+/// The journal of an experiment's results in a folder, which is made if need be.
+std::filesystem::path journal_file(const std::filesystem::path& folder, const std::string& slug);
+
+/// What the cells of a journal must have in common.
+JournalIdentity journal_identity(const ExperimentConfig& config, const RunManifest& manifest);
+
+/// Makes a folder. @throws IoError.
+void make_folder(const std::filesystem::path& folder);
+
+/// The files of `run_sweep` from a journal that knows all cells: tables, then the manifest. Memory
+/// holds one row, but for details that a summary is made of.
+void write_tables(const Experiment& experiment, const ExperimentConfig& config,
+                  const RunManifest& manifest, const RunProgress& counts,
+                  const CellJournal& journal, const std::filesystem::path& folder);
+
+/// Only the manifest.
+void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,
+                    const RunProgress& counts, const std::filesystem::path& folder);
+
+}  // namespace graspfit::experiments::internal

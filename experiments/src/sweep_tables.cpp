@@ -1,0 +1,108 @@
+#include "internal/sweep_tables.hpp"
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/atomic_file_writer.hpp"
+
+namespace graspfit::experiments::internal {
+namespace {
+
+namespace fs = std::filesystem;
+using geometry::AtomicFileWriter;
+
+std::vector<std::string> header(const ParameterSweep& sweep, const std::vector<std::string>& own,
+                                const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Axis& axis : sweep.axes) names.push_back(axis.name);
+  names.insert(names.end(), own.begin(), own.end());
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+std::string joined(std::vector<std::string> labels, const std::vector<std::string>& fields) {
+  labels.insert(labels.end(), fields.begin(), fields.end());
+  return csv_line(labels);
+}
+
+/// The tables with rows of cells: results, timings, and details where the experiment has any.
+void write_cell_tables(const Experiment& experiment, const ParameterSweep& sweep,
+                       const CellJournal& journal, const fs::path& folder) {
+  AtomicFileWriter results(folder / (experiment.slug + ".csv"));
+  AtomicFileWriter timings(folder / (experiment.slug + ".timing.csv"));
+  std::optional<AtomicFileWriter> details;
+  results.write(csv_line(header(sweep, {"cell_seed", "status", "reason"}, experiment.columns)));
+  timings.write(csv_line(header(sweep, {"wall_s", "cpu_s"}, experiment.timings)));
+  if (!experiment.details.empty()) {
+    details.emplace(folder / (experiment.slug + ".details.csv"));
+    details->write(csv_line(header(sweep, {}, experiment.details)));
+  }
+  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
+    const Cell cell = sweep.cell(i);
+    const CellRecord record = journal.read(i);
+    std::vector<std::string> row = cell.labels;
+    row.insert(row.end(), {std::to_string(cell.seed), record.status, record.reason});
+    results.write(joined(row, record.fields));
+    timings.write(joined(cell.labels, record.timings));
+    if (!details || record.status != "ok") continue;
+    for (const std::vector<std::string>& detail : record.details) {
+      details->write(joined(cell.labels, detail));
+    }
+  }
+  results.commit();
+  timings.commit();
+  if (details) details->commit();
+}
+
+void write_summary(const Experiment& experiment, const ParameterSweep& sweep,
+                   const CellJournal& journal, const fs::path& folder) {
+  if (experiment.summary.empty()) return;
+  std::vector<FinishedCell> cells;
+  for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
+    CellRecord record = journal.read(i);
+    if (record.status == "ok") cells.push_back({sweep.cell(i).labels, std::move(record.details)});
+  }
+  std::string summary = csv_line(header({}, {}, experiment.summary));
+  for (const ResultRow& row : experiment.summarize(sweep, cells)) {
+    summary += csv_line(row.csv_fields());
+  }
+  geometry::write_file_atomically(folder / (experiment.slug + ".summary.csv"), summary);
+}
+
+}  // namespace
+
+fs::path journal_file(const fs::path& folder, const std::string& slug) {
+  return folder / (slug + ".cells");
+}
+
+JournalIdentity journal_identity(const ExperimentConfig& config, const RunManifest& manifest) {
+  return {{"configuration", geometry::sha256_hex(config.identity())},
+          {"build of the program", manifest.program}};
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw geometry::IoError(folder.string() + ": " + error.message());
+}
+
+void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,
+                    const RunProgress& counts, const fs::path& folder) {
+  const nlohmann::ordered_json json = {{"total", counts.num_cells},
+                                       {"finished", counts.num_done},
+                                       {"failed", counts.num_failed},
+                                       {"skipped", counts.num_skipped}};
+  geometry::write_file_atomically(folder / (config.sweep.experiment + ".manifest.json"),
+                                  to_json(manifest, config, json.dump()));
+}
+
+void write_tables(const Experiment& experiment, const ExperimentConfig& config,
+                  const RunManifest& manifest, const RunProgress& counts,
+                  const CellJournal& journal, const fs::path& folder) {
+  write_cell_tables(experiment, config.sweep, journal, folder);
+  write_summary(experiment, config.sweep, journal, folder);
+  write_manifest(config, manifest, counts, folder);
+}
+
+}  // namespace graspfit::experiments::internal

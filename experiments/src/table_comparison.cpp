@@ -1,0 +1,188 @@
+#include "graspfit/experiments/table_comparison.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <tuple>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::experiments {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw geometry::InvalidInput(what); }
+
+std::optional<double> number_of(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return value;
+}
+
+bool is_integer(const std::string& text) {
+  return text.find_first_not_of("-0123456789") == std::string::npos;
+}
+
+/// One line's fields; `at` moves behind its line break.
+std::vector<std::string> read_line(const std::string& text, std::size_t& at) {
+  std::vector<std::string> fields(1);
+  bool is_quoted = false;
+  for (; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      const bool is_literal = is_quoted && at + 1 < text.size() && text[at + 1] == '"';
+      if (is_literal) fields.back() += text[++at];
+      if (!is_literal) is_quoted = !is_quoted;
+    } else if (is_quoted || (c != ',' && c != '\n')) {
+      fields.back() += c;
+    } else if (c == ',') {
+      fields.emplace_back();
+    } else {
+      ++at;
+      break;
+    }
+  }
+  return fields;
+}
+
+/// "object=bunny hand=barrett" of every row; repeated labels get " row 2", " row 3", ..., rows
+/// without labels "row 1", "row 2", ...
+std::vector<std::string> row_names(const CsvTable& table, std::size_t num_labels) {
+  std::vector<std::string> names;
+  std::map<std::string, int> count;
+  for (const std::vector<std::string>& row : table.rows) {
+    std::string name;
+    for (std::size_t i = 0; i < num_labels; ++i) {
+      name += (i > 0 ? " " : "") + table.columns[i] + '=' + row[i];
+    }
+    const int repeat = ++count[name];
+    if (repeat > 1 || name.empty())
+      name += (name.empty() ? "row " : " row ") + std::to_string(repeat);
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// Of a run, from its manifest: as many of its tables' first columns are labels.
+std::size_t num_axes_of(const std::filesystem::path& manifest) {
+  const auto json = nlohmann::json::parse(geometry::read_file(manifest), nullptr, false);
+  const nlohmann::json::json_pointer axes("/config/as_run/axes");
+  if (json.is_discarded() || !json.contains(axes)) fail(manifest.string() + ": is damaged");
+  return json.at(axes).size();
+}
+
+class Comparer {
+ public:
+  Comparer(const ComparisonOptions& options, TableComparison& result)
+      : options_(options), result_(result) {}
+
+  void compare(const std::string& row, const std::string& column, const std::string& ours,
+               const std::string& theirs) {
+    if (ours == theirs) return;
+    result_.are_same_bytes = false;
+    if (!are_near(ours, theirs)) result_.differences.push_back({row, column, ours, theirs});
+  }
+
+ private:
+  bool are_near(const std::string& ours, const std::string& theirs) {
+    const std::optional<double> a = number_of(ours);
+    const std::optional<double> b = number_of(theirs);
+    if (!a || !b || (is_integer(ours) && is_integer(theirs))) return false;
+    const double magnitude = std::max(std::abs(*a), std::abs(*b));
+    if (magnitude <= options_.absolute) return true;
+    const double relative = std::abs(*a - *b) / magnitude;
+    if (!(relative <= options_.relative)) return false;
+    result_.largest_relative = std::max(result_.largest_relative, relative);
+    return true;
+  }
+
+  const ComparisonOptions& options_;
+  TableComparison& result_;
+};
+
+}  // namespace
+
+CsvTable parse_csv(const std::string& text, const std::string& name) {
+  CsvTable table;
+  std::size_t at = 0;
+  if (text.empty()) fail(name + ": is empty");
+  table.columns = read_line(text, at);
+  while (at < text.size()) {
+    table.rows.push_back(read_line(text, at));
+    if (table.rows.back().size() == table.columns.size()) continue;
+    fail(name + ": line " + std::to_string(table.rows.size() + 1) + " has " +
+         std::to_string(table.rows.back().size()) + " fields instead of " +
+         std::to_string(table.columns.size()));
+  }
+  return table;
+}
+
+void ComparisonOptions::validate() const {
+  const auto require_not_negative = [](const char* name, double value) {
+    if (value >= 0.0 && std::isfinite(value)) return;
+    fail(std::string("ComparisonOptions: ") + name + " = " + std::to_string(value) +
+         ", must be >= 0");
+  };
+  require_not_negative("relative", relative);
+  require_not_negative("absolute", absolute);
+}
+
+TableComparison compare_tables(const CsvTable& ours, const CsvTable& theirs, std::size_t num_labels,
+                               const ComparisonOptions& options) {
+  options.validate();
+  if (ours.columns != theirs.columns) {
+    for (const auto& [some, others, whose] :
+         {std::tuple(&ours, &theirs, "published"), std::tuple(&theirs, &ours, "run's")}) {
+      for (const std::string& column : some->columns) {
+        const auto& there = others->columns;
+        if (std::find(there.begin(), there.end(), column) != there.end()) continue;
+        fail(std::string("column ") + column + " is not in the " + whose + " table");
+      }
+    }
+    fail("the tables have the same columns in different orders");
+  }
+  const std::vector<std::string> names = row_names(theirs, num_labels);
+  std::map<std::string, std::size_t> row_of;
+  for (std::size_t i = 0; i < names.size(); ++i) row_of[names[i]] = i;
+
+  TableComparison result;
+  Comparer comparer(options, result);
+  const std::vector<std::string> our_names = row_names(ours, num_labels);
+  for (std::size_t i = 0; i < our_names.size(); ++i) {
+    const auto found = row_of.find(our_names[i]);
+    if (found == row_of.end()) fail("row " + our_names[i] + " is not in the published table");
+    for (std::size_t k = 0; k < ours.columns.size(); ++k) {
+      comparer.compare(our_names[i], ours.columns[k], ours.rows[i][k],
+                       theirs.rows[found->second][k]);
+    }
+    ++result.num_rows;
+  }
+  result.num_not_ours = theirs.rows.size() - result.num_rows;
+  return result;
+}
+
+std::vector<PublishedComparison> compare_with_published(const Experiment& experiment,
+                                                        const std::filesystem::path& folder,
+                                                        const std::filesystem::path& published,
+                                                        const ComparisonOptions& options) {
+  const auto compare = [&](const std::string& ending, std::size_t num_labels) {
+    const std::string file = experiment.slug + ending;
+    const CsvTable ours = parse_csv(geometry::read_file(folder / file), (folder / file).string());
+    const CsvTable theirs =
+        parse_csv(geometry::read_file(published / file), (published / file).string());
+    return PublishedComparison{file, compare_tables(ours, theirs, num_labels, options)};
+  };
+  const std::size_t num_axes = num_axes_of(folder / (experiment.slug + ".manifest.json"));
+  std::vector<PublishedComparison> tables = {compare(".csv", num_axes)};
+  const bool is_whole = tables.front().comparison.num_not_ours == 0;
+  if (!experiment.details.empty()) tables.push_back(compare(".details.csv", num_axes));
+  if (!experiment.summary.empty() && is_whole) tables.push_back(compare(".summary.csv", 0));
+  return tables;
+}
+
+}  // namespace graspfit::experiments
