@@ -55,7 +55,7 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
 
   Experiment slow = counting_experiment();
   slow.run = [run = slow.run](const Cell& cell, const fs::path& cells) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return run(cell, cells);
   };
   // Moments from the very beginning of a run to well within it; another seed is another test.
@@ -64,7 +64,7 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
   int num_killed = 0;
   for (int i = 0; num_killed < 20; ++i) {
     REQUIRE(i < 200);
-    const auto moment = std::chrono::microseconds(random() % 40000);
+    const auto moment = std::chrono::microseconds(random() % 80000);
     const int jobs = 1 + static_cast<int>(random() % 3);
     const pid_t child = start([&] { run_sweep(slow, config, {}, {out, jobs}); });
     std::this_thread::sleep_for(moment);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <map>
 
 #include "counting_experiment.hpp"
 #include "graspfit/experiments/sweep_shards.hpp"
