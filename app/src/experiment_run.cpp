@@ -191,6 +191,9 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   const Command command = run_command();
   const Flags flags(command, arguments);
   if (is_help_printed(command, flags)) return kSuccess;
+  if (flags.has("publish") && flags.has("shard")) {
+    throw UsageError("--publish means nothing with --shard; merge has it");
+  }
   const Experiment& experiment = experiments::find_experiment(flags.positional());
   const ExperimentConfig config = load_experiment_config(experiment, flags);
   const fs::path sources = experiments::source_folder();
@@ -200,9 +203,6 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   options.jobs = flags.integer("jobs");
   options.folder = results_folder(flags);
   if (flags.has("shard")) options.shard = experiments::parse_shard(flags.text("shard"));
-  if (flags.has("publish") && options.shard) {
-    throw UsageError("--publish means nothing with --shard; merge has it");
-  }
   const experiments::RunManifest manifest = manifest_of("run", arguments);
 
   ProgressBar bar(!flags.has("quiet"));

@@ -131,6 +131,11 @@ RunProgress merge_shards(const Experiment& experiment, const ExperimentConfig& c
   }
   const internal::JournalIdentity identity = internal::journal_identity(config, manifest);
   const std::size_t num_cells = config.sweep.num_cells();
+  // What does not belong together is refused before the folder's own journal is begun.
+  for (const Shard& shard : shards) {
+    const fs::path source = shard_folder(folder, shard);
+    const CellJournal part(internal::journal_file(source, experiment.slug), identity, num_cells);
+  }
   CellJournal journal(internal::journal_file(folder, experiment.slug), identity, num_cells);
   for (const Shard& shard : shards) {
     const fs::path source = shard_folder(folder, shard);
