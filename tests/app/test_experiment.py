@@ -23,9 +23,11 @@ class Quick(ProgramTest):
     """--quick of every experiment; cells whose meshes are not there are skipped rows."""
 
     def test_every_experiment_runs(self):
-        has_data = (data_folder() / "meshes/paper/torus.obj").is_file()
+        data_is_there = (data_folder() / "meshes/paper/torus.obj").is_file()
         for slug in SLUGS:
             with self.subTest(slug):
+                needs_data = slug != "parameter_sweeps"  # its quick part has a shape
+                has_data = data_is_there or not needs_data
                 out = self.folder / slug
                 done = run("experiment", "run", slug, "--quick", "--out", out)
                 self.assertEqual(done.returncode, 0, done.stderr)
@@ -38,7 +40,7 @@ class Quick(ProgramTest):
                 manifest = json.loads((out / f"{slug}.manifest.json").read_text())
                 self.assertTrue(manifest["config"]["is_quick"])
                 self.assertEqual(manifest["cells"]["total"], len(rows))
-                if has_data:
+                if needs_data and has_data:
                     self.assertRegex(json.dumps(manifest["inputs_sha256"]), "meshes/[a-z]+/[a-z_]+")
                     self.assertNotIn(str(data_folder()), json.dumps(manifest["inputs_sha256"]))
 
