@@ -80,7 +80,7 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
   CHECK(read_file(out / "counting.csv") == read_file(folder.path() / "undisturbed/counting.csv"));
 }
 
-TEST_CASE("Memory is flat over 10 000 cells", "[experiments][sweep_runner]") {
+TEST_CASE("Memory is flat over 10 000 cells", "[experiments][sweep_runner][full]") {
 #if defined(__SANITIZE_ADDRESS__)
   SUCCEED("a sanitizer keeps freed memory");
 #else
