@@ -146,6 +146,10 @@ ExitCode run_describe(const std::vector<std::string>& arguments) {
     std::printf("\nColumns of %s.%s:\n%s", experiment.slug.c_str(), table,
                 columns_text(*columns).c_str());
   }
+  for (const experiments::SummaryTable& summary : experiment.further_summaries) {
+    std::printf("\nColumns of %s.%s.csv:\n%s", experiment.slug.c_str(), summary.name.c_str(),
+                columns_text(summary.columns).c_str());
+  }
   std::vector<experiments::Column> settings = experiment.settings;
   const auto& common = experiments::planning_setting_names();
   settings.insert(settings.end(), common.begin(), common.end());

@@ -165,12 +165,15 @@ void write_further_tables(const Experiment& experiment, const ParameterSweep& sw
     }
   }
   geometry::write_file_atomically(folder / (experiment.slug + ".details.csv"), details);
-  if (experiment.summary.empty()) return;
-  std::string summary = csv_line(header({}, {}, experiment.summary));
-  for (const ResultRow& row : experiment.summarize(sweep, cells)) {
-    summary += csv_line(row.csv_fields());
+  std::vector<SummaryTable> summaries = experiment.further_summaries;
+  if (!experiment.summary.empty()) {
+    summaries.push_back({"summary", experiment.summary, experiment.summarize});
   }
-  geometry::write_file_atomically(folder / (experiment.slug + ".summary.csv"), summary);
+  for (const SummaryTable& summary : summaries) {
+    std::string text = csv_line(header({}, {}, summary.columns));
+    for (const ResultRow& row : summary.rows(sweep, cells)) text += csv_line(row.csv_fields());
+    geometry::write_file_atomically(folder / (experiment.slug + '.' + summary.name + ".csv"), text);
+  }
 }
 
 void write_tables(const Experiment& experiment, const ParameterSweep& sweep, const Run& run,

@@ -44,6 +44,15 @@ struct FinishedCell {
   std::vector<std::vector<std::string>> details;
 };
 
+/// A table over all cells.
+struct SummaryTable {
+  std::string name;  ///< Of its file, `<slug>.<name>.csv`.
+  std::vector<Column> columns;
+  /// Its rows from the cells that are ok, in sweep order. They depend on nothing else.
+  std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
+      rows;
+};
+
 /// An experiment: a question, the unit of work that answers a part of it, and the columns in which
 /// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
 struct Experiment {
@@ -66,6 +75,7 @@ struct Experiment {
   /// The rows of `summary` from the cells that are ok, in sweep order. It depends on nothing else.
   std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
       summarize;
+  std::vector<SummaryTable> further_summaries;  ///< Beside `summary`; need `details`.
 
   /// The files that a cell reads, for the manifest; those that are not there are left out.
   std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;

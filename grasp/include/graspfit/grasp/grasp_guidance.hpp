@@ -35,25 +35,25 @@ struct GuidanceScene {
 /// One hand about to close on the object.
 struct GuidedStart {
   TargetContacts targets = {};  ///< Assigned contacts to reach; empty where a method has none.
-  std::function<FittingResult()> close;  ///< Brings the hand to the object, by `fit_hand` or
-                                         ///< `close_hand` for example. Const and thread-safe.
+  std::function<FittingResult()> close = {};  ///< Brings the hand to the object, by `fit_hand` or
+                                              ///< `close_hand` for example. Const and thread-safe.
 };
 
 /// The starts of one attempt, the most promising first: they are tried in turn until one of them
 /// ends in a grasp that is accepted.
 struct GuidedStarts {
-  std::vector<GuidedStart> starts;     ///< Empty: the attempt fails with `failure`, or there was
-                                       ///< nothing left to try.
-  std::optional<std::string> failure;  ///< Why there is none, for statistics.
-  bool is_exhausted = false;           ///< There will be none for any later attempt either.
-  std::int64_t seeds_tried = 0;        ///< Work done, for statistics.
+  std::vector<GuidedStart> starts = {};  ///< Empty: the attempt fails with `failure`, or there was
+                                         ///< nothing left to try.
+  std::optional<std::string> failure = {};  ///< Why there is none, for statistics.
+  bool is_exhausted = false;                ///< There will be none for any later attempt either.
+  std::int64_t seeds_tried = 0;             ///< Work done, for statistics.
 };
 
 /// What a method looks at to guide a hand, as a table of points: its "intermediate model" (paper,
 /// Fig. 19).
 struct GuidanceModel {
-  std::vector<std::string> columns;       ///< x_m, y_m, z_m (in O), then whatever there is to say.
-  std::vector<std::vector<double>> rows;  ///< One value per column.
+  std::vector<std::string> columns;  ///< x_m, y_m, z_m (in O), then whatever there is to say.
+  std::vector<std::vector<double>> rows = {};  ///< One value per column.
 };
 
 /// A planning method at work on one object with one hand.
