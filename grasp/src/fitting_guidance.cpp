@@ -39,12 +39,12 @@ bool by_misfit(const Side& a, const Side& b) { return a.misfit < b.misfit; }
 
 class FittingGuidance : public GraspGuidance {
  public:
-  explicit FittingGuidance(const GuidanceScene& scene) : scene_(scene) {
-    const PartDistances distances = part_distances(scene.hand.model());
+  explicit FittingGuidance(const GuidanceScene& scene)
+      : scene_(scene), distances_(part_distances(scene.hand.model())) {
     if (scene.options.targets.search == TargetSearch::Ranked) {
-      ranked_.emplace(scene.object, distances, scene.parts, scene.options.targets);
+      ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
     } else {
-      selector_.emplace(scene.object, distances, scene.parts, scene.options.targets);
+      selector_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
     }
   }
 
@@ -180,6 +180,7 @@ class FittingGuidance : public GraspGuidance {
   }
 
   const GuidanceScene scene_;
+  const PartDistances distances_;           ///< Outlives the searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
   mutable std::mutex ranked_lock_;
   mutable std::optional<RankedTargets> ranked_;
