@@ -97,11 +97,13 @@ ExitCode run_describe(const std::vector<std::string>& arguments) {
               experiment.slug.c_str(), columns_text(experiment.columns).c_str());
   std::printf("\nColumns of %s.timing.csv after the axes, wall_s and cpu_s:\n%s",
               experiment.slug.c_str(), columns_text(experiment.timings).c_str());
-  for (const auto& [table, columns] : {std::pair("details.csv after the axes", &experiment.details),
-                                       std::pair("summary.csv", &experiment.summary)}) {
-    if (columns->empty()) continue;
-    std::printf("\nColumns of %s.%s:\n%s", experiment.slug.c_str(), table,
-                columns_text(*columns).c_str());
+  if (!experiment.details.empty()) {
+    std::printf("\nColumns of %s.details.csv after the axes:\n%s", experiment.slug.c_str(),
+                columns_text(experiment.details).c_str());
+  }
+  for (const experiments::SummaryTable& summary : experiment.summaries) {
+    std::printf("\nColumns of %s.%s.csv:\n%s", experiment.slug.c_str(), summary.name.c_str(),
+                columns_text(summary.columns).c_str());
   }
   std::vector<experiments::Column> settings = experiment.settings;
   const auto& common = experiments::planning_setting_names();

@@ -11,6 +11,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/viewer/page.hpp"
@@ -39,6 +40,9 @@ Command plan_command() {
       "the table is printed");
   add_switch(output, "pictures", "also grasp_NNN.png (needs python3-vtk9)");
   add_switch(output, "page", "also grasps.html, a page that any browser opens from disk");
+  add_switch(output, "export-guidance",
+             "also guidance.csv and guidance.ply: the points that guide the planner's method, with "
+             "all that it knows of them (fitting: score map; gs: samples; ma: medial balls)");
   add_switch(output, "quiet", "no progress bar and no table");
 
   po::options_description hold = option_group("Physics");
@@ -116,7 +120,7 @@ std::string grasp_name(std::size_t rank) {
 
 bool is_plan_file(const std::string& name) {
   static const std::regex pattern(
-      R"(grasps\.(json|csv|html)|grasp_\d{3,}\.(obj|ply|png))"
+      R"(grasps\.(json|csv|html)|grasp_\d{3,}\.(obj|ply|png)|guidance\.(csv|ply))"
       R"(|object\.ply|obstacle_\d+\.ply|link_\d{2,}_[A-Za-z0-9_-]*\.ply)");
   return std::regex_match(name, pattern);
 }
@@ -129,7 +133,7 @@ const char* stop_text(grasp::PlannerStop stop) {
     case grasp::PlannerStop::Attempts:
       return "all attempts made";
     case grasp::PlannerStop::Exhausted:
-      return "every set of targets tried";
+      return "every start tried";
     case grasp::PlannerStop::WallClock:
       return "stopped at the wall-clock limit";
   }
@@ -151,6 +155,12 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
         folder / (name + ".obj"), grasp::posed_scene_obj(object.mesh(), file.hand, configuration));
     geometry::write_mesh(folder / (name + ".ply"),
                          grasp::posed_scene(object.mesh(), file.hand, configuration));
+  }
+  if (flags.has("export-guidance")) {
+    const grasp::GuidanceModel model =
+        grasp::guidance_model(object, file.hand, file.options, surroundings);
+    geometry::write_file_atomically(folder / "guidance.csv", grasp::to_csv(model));
+    geometry::write_file_atomically(folder / "guidance.ply", grasp::to_ply(model));
   }
   if (flags.has("page")) {
     progress.show("writing page");
@@ -198,8 +208,9 @@ int num_threads_of(const Flags& flags) {
 }
 
 void require_means_of_output(const Flags& flags) {
-  if (!flags.has("out") && (flags.has("pictures") || flags.has("page"))) {
-    throw UsageError("--pictures and --page need --out DIR");
+  if (!flags.has("out") &&
+      (flags.has("pictures") || flags.has("page") || flags.has("export-guidance"))) {
+    throw UsageError("--pictures, --page and --export-guidance need --out DIR");
   }
   if (flags.has("pictures")) require_pictures("--pictures");
 }
@@ -219,10 +230,15 @@ grasp::PlannerProgress shown_by(ProgressBar& bar, const grasp::PlannerOptions& o
   };
 }
 
-/// "in 50 attempts (all attempts made): valid 12, missed contact 38".
+/// "in 50 attempts (all attempts made): valid 12, missed contact 38", with what the method found.
 std::string attempts_text(const grasp::PlannerResult& result) {
-  return "in " + std::to_string(result.statistics.attempts) + " attempts (" +
-         stop_text(result.stop) + "): " + outcomes_text(result.statistics);
+  std::string text = "in " + std::to_string(result.statistics.attempts) + " attempts (" +
+                     stop_text(result.stop) + "): " + outcomes_text(result.statistics);
+  std::string found;
+  for (const auto& [what, count] : result.statistics.guidance) {
+    if (count > 0) found += (found.empty() ? "" : ", ") + what + ' ' + std::to_string(count);
+  }
+  return found.empty() ? text : text + "; guided by " + found;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -89,6 +90,16 @@ po::options_description request_options() {
 po::options_description search_options() {
   const PlannerOptions defaults;
   po::options_description search = option_group("Search");
+  add_option(search, "planner", grasp::planning_method_names(), defaults.planner,
+             "the method that guides the hand: the paper's own, or one of those that its Table 1 "
+             "compares with, as far as they are known; all else is the same [R]");
+  add_choice(search, "gs-sampling", defaults.sampling.source,
+             "with --planner gs: points drawn on the surface, or hit by rays from a box around it "
+             "[R]");
+  add_integer(search, "gs-samples", static_cast<std::uint64_t>(defaults.sampling.count),
+              "with --planner gs: points drawn on the surface [R]");
+  add_integer(search, "ma-samples", static_cast<std::uint64_t>(defaults.medial_symmetry.samples),
+              "with --planner ma: points of the surface at which balls are looked for [R]");
   add_integer(search, "count", static_cast<std::uint64_t>(defaults.count),
               "grasps to find, at least 1");
   add_integer(search, "seed", defaults.seed, "of the random numbers; same seed, same grasps");
@@ -96,6 +107,9 @@ po::options_description search_options() {
       search, "accept", defaults.acceptance,
       "which grasps count: free of penetration and with every contact; M > 0 [P]; M at least "
       "half of the targets' own or 0.6 [R, A36]");
+  add_choice(search, "missing-contact", defaults.missing_contact,
+             "without refinement: whether an attempt fails where a part that was asked for does "
+             "not touch, or is measured by the contacts that there are [R, A31]");
   add_choice(search, "search", defaults.search,
              "best: use all attempts and return the best grasps; first: stop at the first ones "
              "[R, A36]");
@@ -359,11 +373,25 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.count = flags.integer("count");
   options.seed = flags.unsigned_integer("seed");
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
+  options.missing_contact = flags.choice<grasp::MissingContact>("missing-contact");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
   options.wall_clock_limit_s = flags.optional_number("wall-clock-limit-s");
+}
+
+/// Which method, and what it alone has.
+void read_method_flags(const Flags& flags, PlannerOptions& options) {
+  options.planner = flags.text("planner");
+  for (const auto& [flag, prefix] : {std::pair("gs-sampling", "gs"), std::pair("gs-samples", "gs"),
+                                     std::pair("ma-samples", "ma")}) {
+    if (flags.is_default(flag) || options.planner.starts_with(prefix)) continue;
+    throw UsageError("--" + std::string(flag) + " means nothing with --planner " + options.planner);
+  }
+  options.sampling.source = flags.choice<grasp::ApproachSource>("gs-sampling");
+  options.sampling.count = flags.integer("gs-samples");
+  options.medial_symmetry.samples = flags.integer("ma-samples");
 }
 
 void read_target_flags(const Flags& flags, PlannerOptions& options) {
@@ -414,6 +442,7 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   read_score_map_flags(flags, options);
   read_request_flags(flags, options);
   read_search_flags(flags, options);
+  read_method_flags(flags, options);
   read_target_flags(flags, options);
   read_weak_flags(flags, options);
   read_contact_flags(flags, options);

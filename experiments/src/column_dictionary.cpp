@@ -52,8 +52,8 @@ std::string column_dictionary(const Experiment& experiment, const ExperimentConf
   if (!experiment.details.empty()) {
     tables[experiment.slug + ".details.csv"] = table(axes, {}, experiment.details);
   }
-  if (!experiment.summary.empty()) {
-    tables[experiment.slug + ".summary.csv"] = table({}, {}, experiment.summary);
+  for (const SummaryTable& summary : experiment.summaries) {
+    tables[experiment.slug + '.' + summary.name + ".csv"] = table({}, {}, summary.columns);
   }
   const Json dictionary = {{"experiment", experiment.slug}, {"tables", tables}};
   return dictionary.dump(2) + '\n';

@@ -157,11 +157,12 @@ std::vector<ResultRow> summarize(const std::vector<Column>& details, const Param
 
 Experiment hold_prediction() {
   Experiment experiment = hold_experiment("hold_prediction");
-  experiment.summary = summary_columns();
-  experiment.summarize = [details = experiment.details](const ParameterSweep& sweep,
-                                                        const std::vector<FinishedCell>& cells) {
-    return summarize(details, sweep, cells);
-  };
+  experiment.summaries.push_back(
+      {"summary", summary_columns(),
+       [details = experiment.details](const ParameterSweep& sweep,
+                                      const std::vector<FinishedCell>& cells) {
+         return summarize(details, sweep, cells);
+       }});
   return experiment;
 }
 

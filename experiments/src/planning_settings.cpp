@@ -136,6 +136,20 @@ std::vector<Setting> request_settings() {
           choice<grasp::Acceptance>(
               "accept", "which grasps are collected",
               [](PlannerOptions & o) -> auto& { return o.acceptance; }),
+          option("planner", "", "the method that guides the hand",
+                 [](PlannerOptions& o, const SettingValue& v) { o.planner = v.text(); }),
+          choice<grasp::ApproachSource>(
+              "gs-sampling", "of planner gs: where its points come from",
+              [](PlannerOptions & o) -> auto& { return o.sampling.source; }),
+          integer(
+              "gs-samples", "of planner gs: points drawn on the surface",
+              [](PlannerOptions & o) -> auto& { return o.sampling.count; }),
+          integer(
+              "ma-samples", "of planner ma: points at which balls are looked for",
+              [](PlannerOptions & o) -> auto& { return o.medial_symmetry.samples; }),
+          choice<grasp::MissingContact>(
+              "missing-contact", "without refinement: what becomes of an attempt that lacks one",
+              [](PlannerOptions & o) -> auto& { return o.missing_contact; }),
           choice<grasp::SearchRule>(
               "search", "when the planner stops looking",
               [](PlannerOptions & o) -> auto& { return o.search; })};

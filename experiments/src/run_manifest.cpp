@@ -175,7 +175,9 @@ void publish(const Experiment& experiment, const ExperimentConfig& config, const
   if (error) throw geometry::IoError(published.string() + ": " + error.message());
   std::vector<std::string> endings = {".csv", ".timing.csv", ".manifest.json"};
   if (!experiment.details.empty()) endings.push_back(".details.csv");
-  if (!experiment.summary.empty()) endings.push_back(".summary.csv");
+  for (const SummaryTable& summary : experiment.summaries) {
+    endings.push_back('.' + summary.name + ".csv");
+  }
   for (const std::string& ending : endings) {
     const std::string name = experiment.slug + ending;
     geometry::write_file_atomically(published / name, geometry::read_file(folder / name));

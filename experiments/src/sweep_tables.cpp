@@ -55,19 +55,19 @@ void write_cell_tables(const Experiment& experiment, const ParameterSweep& sweep
   if (details) details->commit();
 }
 
-void write_summary(const Experiment& experiment, const ParameterSweep& sweep,
-                   const CellJournal& journal, const fs::path& folder) {
-  if (experiment.summary.empty()) return;
+void write_summaries(const Experiment& experiment, const ParameterSweep& sweep,
+                     const CellJournal& journal, const fs::path& folder) {
+  if (experiment.summaries.empty()) return;
   std::vector<FinishedCell> cells;
   for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
     CellRecord record = journal.read(i);
     if (record.status == "ok") cells.push_back({sweep.cell(i).labels, std::move(record.details)});
   }
-  std::string summary = csv_line(header({}, {}, experiment.summary));
-  for (const ResultRow& row : experiment.summarize(sweep, cells)) {
-    summary += csv_line(row.csv_fields());
+  for (const SummaryTable& summary : experiment.summaries) {
+    std::string text = csv_line(header({}, {}, summary.columns));
+    for (const ResultRow& row : summary.rows(sweep, cells)) text += csv_line(row.csv_fields());
+    geometry::write_file_atomically(folder / (experiment.slug + '.' + summary.name + ".csv"), text);
   }
-  geometry::write_file_atomically(folder / (experiment.slug + ".summary.csv"), summary);
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ void write_tables(const Experiment& experiment, const ExperimentConfig& config,
                   const RunManifest& manifest, const RunProgress& counts,
                   const CellJournal& journal, const fs::path& folder) {
   write_cell_tables(experiment, config.sweep, journal, folder);
-  write_summary(experiment, config.sweep, journal, folder);
+  write_summaries(experiment, config.sweep, journal, folder);
   write_manifest(config, manifest, counts, folder);
 }
 

@@ -181,7 +181,11 @@ std::vector<PublishedComparison> compare_with_published(const Experiment& experi
   std::vector<PublishedComparison> tables = {compare(".csv", num_axes)};
   const bool is_whole = tables.front().comparison.num_not_ours == 0;
   if (!experiment.details.empty()) tables.push_back(compare(".details.csv", num_axes));
-  if (!experiment.summary.empty() && is_whole) tables.push_back(compare(".summary.csv", 0));
+  if (is_whole) {
+    for (const SummaryTable& summary : experiment.summaries) {
+      tables.push_back(compare('.' + summary.name + ".csv", 0));
+    }
+  }
   return tables;
 }
 

@@ -17,26 +17,25 @@ using geometry::RigidTransform;
 
 FittingLoop::FittingLoop(const FittingHand& hand, const ObjectModel& object,
                          const SurroundingsCollision& surroundings, GraspStyle style,
-                         const TargetContacts& targets,
+                         const RequestedParts& requested,
                          const ContactEstimationOptions& contact_options,
                          const FittingOptions& options)
     : hand_(hand),
       model_(hand.model()),
       object_(object),
-      targets_(targets),
       contact_options_(contact_options),
       options_(options),
       voxel_size_(object.grid.lattice.voxel_size),
-      state_(hand, object, surroundings, options) {
+      state_(hand, object, surroundings, options),
+      style_(style),
+      has_palm_target_(requested.palm) {
   for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
     moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
   }
   std::vector<bool> has_target(model_.fingers.size(), false);
-  for (const TargetContact& target : targets.contacts) {
-    has_palm_target_ = has_palm_target_ || target.finger == kPalm;
-    if (target.finger == kPalm) continue;
-    has_target[target.finger] = true;
-    add_part(target.finger, true);
+  for (const int finger : requested.fingers) {
+    has_target[finger] = true;
+    add_part(finger, true);
   }
   if (style == GraspStyle::Power) {
     for (std::size_t finger = 0; finger < model_.fingers.size(); ++finger) {
@@ -49,29 +48,52 @@ FittingLoop::FittingLoop(const FittingHand& hand, const ObjectModel& object,
         std::count_if(parts_.begin(), parts_.end(), [&](const Part& other) {
           return !other.closing.empty() && other.closing.front() == part.closing.front();
         }) > 1;
-    part.is_toward_goal =
-        style == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
   }
 }
 
-FittingResult FittingLoop::run(const PalmPlacement& placement) {
-  goal_ = posture_for(model_, targets_, placement).configuration;
-  FittingResult result;
-  const bool is_clear = place();
-  result.initial = result.configuration = state_.configuration();
-  if (!is_clear) {
-    result.stop = FittingStop::InitialCollision;
-    result.smallest_distance = state_.smallest_distance();
-    result.distance_queries = state_.num_queries();
-    return result;
+FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacement& placement) {
+  goal_ = posture_for(model_, targets, placement).configuration;
+  for (Part& part : parts_) {
+    part.is_toward_goal =
+        style_ == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
   }
+  if (!place()) return failed_start();
   approach();
-  if (has_palm_target_) seat_palm();
+  const Vector3d palm = state_.configuration().X_OH * model_.palm.center_H;
+  const double way = (targets.contacts.back().point_O - palm).dot(palm_direction());
+  seat_palm(std::max(0.0, way));
+  return run();
+}
+
+FittingResult FittingLoop::close(const hands::HandConfiguration& start, const RetreatRule& rule) {
+  goal_ = start;
+  is_palm_done_ = true;
+  const double step = rule.step.value_or(voxel_size_);
+  // Past the object, whose normalizing radius is half its diagonal, and the hand's own length.
+  const double far = 2.0 * (object_.normalizing_radius + hands::largest_reach(model_));
+  const int most_steps = rule.most_steps.value_or(static_cast<int>(std::ceil(far / step)));
+  if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
+  seat_palm(0.0);
+  return run();
+}
+
+FittingResult FittingLoop::failed_start() const {
+  FittingResult result;
+  result.initial = result.configuration = initial_;
+  result.stop = FittingStop::InitialCollision;
+  result.smallest_distance = state_.smallest_distance();
+  result.distance_queries = state_.num_queries();
+  return result;
+}
+
+FittingResult FittingLoop::run() {
+  FittingResult result;
+  result.initial = initial_;
   bool is_hopeless_now = false;
   while (result.iterations < options_.max_iterations && num_free() > 0 && !is_hopeless_now) {
     ++result.iterations;
     for (Part& part : parts_) {
-      if (part.state == Part::State::Free) close(part);
+      if (part.state == Part::State::Free) close_part(part);
     }
     move_palm_to_goal();
     for (Part& part : parts_) {
@@ -140,13 +162,21 @@ bool FittingLoop::place() {
   }
   hands::apply_couplings(model_, start.q);
   start.X_OH.pretranslate(Vector3d(-(extent + options_.clearance) * direction));
-  const double limit = 2.0 * hands::largest_reach(model_);
-  for (double retreat = 0.0; retreat <= limit; retreat += voxel_size_) {
+  return retreat(start, voxel_size_,
+                 static_cast<int>(2.0 * hands::largest_reach(model_) / voxel_size_));
+}
+
+/// Puts the hand at the first clear place from `start` on against the palm direction. False if none
+/// is; the hand then stands at the last.
+bool FittingLoop::retreat(hands::HandConfiguration start, double step, int most_steps) {
+  const Vector3d back = -step * palm_direction();
+  for (int steps = 0;; ++steps) {
     state_.put(start);
+    initial_ = start;
     if (state_.is_clear()) return true;
-    start.X_OH.pretranslate(Vector3d(-voxel_size_ * direction));
+    if (steps == most_steps) return false;
+    start.X_OH.pretranslate(back);
   }
-  return false;
 }
 
 /// Moves the palm up to `distance` along n_palm in steps that the guard bounds; gives up where a
@@ -173,16 +203,16 @@ void FittingLoop::approach() {
   advance(wanted, options_.small_step * voxel_size_);
 }
 
-/// The palm onto its target (A39): on until its clip volume holds surface or the guard stops it.
-void FittingLoop::seat_palm() {
+/// The palm, if it is requested, onto the surface about `distance` before it (A39): on until its
+/// clip volume holds surface or the guard stops it.
+void FittingLoop::seat_palm(double distance) {
+  if (!has_palm_target_) return;
   is_palm_done_ = true;
   if (palm_touches()) return;
   // The goal weighs the palm's target against those of the fingers; and the surface at the target
   // may lie deeper than its patch by some voxels.
   constexpr double kSearch = 4.0;  // [voxels]
-  const Vector3d palm = state_.configuration().X_OH * model_.palm.center_H;
-  const double way = (targets_.contacts.back().point_O - palm).dot(palm_direction());
-  advance(std::max(0.0, way) + kSearch * voxel_size_, options_.small_step * voxel_size_ / 8.0);
+  advance(distance + kSearch * voxel_size_, options_.small_step * voxel_size_ / 8.0);
 }
 
 bool FittingLoop::palm_touches() {
@@ -264,7 +294,7 @@ bool FittingLoop::is_at_closing_limit(int joint) const {
 }
 
 /// Step 1: closes one finger, as far as the guard allows.
-void FittingLoop::close(Part& part) {
+void FittingLoop::close_part(Part& part) {
   if (part.is_toward_goal && close_toward_goal(part)) return;
   while (part.stage < part.closing.size() && is_at_closing_limit(part.closing[part.stage])) {
     ++part.stage;

@@ -311,6 +311,9 @@ PlannerStatistics read_statistics(const JsonNode& node) {
     if (known == statistics.outcomes.end()) count.fail("is not an outcome of this version");
     known->second = count.integer();
   }
+  for (const auto& [what, count] : node.at("guidance").members()) {
+    statistics.guidance[what] = count.integer();
+  }
   for (const auto& [reason, count] : node.at("target_failures").members()) {
     statistics.target_failures[reason] = count.integer();
   }
@@ -342,6 +345,7 @@ PlannerTimings read_timings(const JsonNode& node) {
   timings.object.distance_s = object.at("distance_s").number();
   timings.object.scores_s = object.at("scores_s").number();
   timings.object.weak_s = object.at("weak_s").number();
+  timings.guidance_s = node.at("guidance_s").number();
   timings.targets_s = node.at("targets_s").number();
   timings.fitting_s = node.at("fitting_s").number();
   timings.contact_tests_s = node.at("contact_tests_s").number();

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -96,7 +97,7 @@ Json planner_json(const GraspFile& file) {
   for (const auto& [point, reading] : internal::planner_readings(file.options)) {
     readings[point] = reading;
   }
-  return {{"name", "hand-object geometric fitting"},
+  return {{"name", std::string(find_planning_method(file.options.planner).title)},
           {"version", file.version},
           {"seed", file.options.seed},
           {"options", internal::planner_options_json(file.options)},
@@ -279,6 +280,8 @@ Json results_json(const GraspFile& file) {
   for (const auto& [outcome, count] : file.statistics.outcomes) {
     outcomes[outcome_name(outcome)] = count;
   }
+  Json guidance = Json::object();
+  for (const auto& [what, count] : file.statistics.guidance) guidance[what] = count;
   Json target_failures = Json::object();
   for (const auto& [reason, count] : file.statistics.target_failures) {
     target_failures[reason] = count;
@@ -288,6 +291,7 @@ Json results_json(const GraspFile& file) {
                 {{"attempts", file.statistics.attempts},
                  {"outcomes", outcomes},
                  {"target_failures", target_failures},
+                 {"guidance", guidance},
                  {"seeds_tried", file.statistics.seeds_tried},
                  {"fitting_iterations", file.statistics.fitting_iterations},
                  {"refinement_iterations", file.statistics.refinement_iterations},
@@ -305,6 +309,7 @@ Json timings_json(const PlannerTimings& timings) {
             {"distance_s", timings.object.distance_s},
             {"scores_s", timings.object.scores_s},
             {"weak_s", timings.object.weak_s}}},
+          {"guidance_s", timings.guidance_s},
           {"targets_s", timings.targets_s},
           {"fitting_s", timings.fitting_s},
           {"contact_tests_s", timings.contact_tests_s},

@@ -32,10 +32,11 @@ class Run {
     for (int outcome = 0; outcome <= static_cast<int>(AttemptOutcome::PoorShape); ++outcome) {
       result_.statistics.outcomes[static_cast<AttemptOutcome>(outcome)] = 0;
     }
-    for (const TargetFailure failure : {TargetFailure::NoSeed, TargetFailure::NoSecond,
-                                        TargetFailure::NoFurther, TargetFailure::NoPalm}) {
-      result_.statistics.target_failures[internal::failure_name(failure)] = 0;
+    for (const std::string& failure : attempts_.guidance().failures()) {
+      result_.statistics.target_failures[failure] = 0;
     }
+    result_.statistics.guidance = attempts_.guidance().counts();
+    result_.timings.guidance_s = attempts_.guidance_s();
   }
 
   PlannerResult operator()(int num_threads) {
@@ -89,7 +90,7 @@ class Run {
     PlannerStatistics& statistics = result_.statistics;
     result_.timings += made.timings;
     if (made.target_failure) {
-      ++statistics.target_failures[internal::failure_name(*made.target_failure)];
+      ++statistics.target_failures[*made.target_failure];
     }
     if (made.is_exhausted) {
       end(PlannerStop::Exhausted);

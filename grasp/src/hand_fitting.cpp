@@ -29,6 +29,11 @@ void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t 
   }
 }
 
+void require_tip_pad(const std::string& where, const hands::HandModel& hand, int finger) {
+  if (hand.fingers[finger].tip_pad >= 0) return;
+  throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
+}
+
 }  // namespace
 
 void FittingOptions::validate() const {
@@ -64,10 +69,12 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        " targets, a grasp needs at least two");
   }
   const hands::HandModel& model = hand.model();
+  RequestedParts requested;
   for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
     const int finger = targets.contacts[t].finger;
     if (finger == kPalm) {
       require_palm(model, t, targets.contacts.size());
+      requested.palm = true;
       continue;
     }
     if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
@@ -75,13 +82,44 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                          " of " + std::to_string(model.fingers.size()) +
                          "; call assign_fingers first");
     }
-    if (model.fingers[finger].tip_pad < 0) {
-      throw InvalidInput("fit_hand: finger " + model.fingers[finger].name +
-                         " has no fingertip pad");
-    }
+    require_tip_pad("fit_hand", model, finger);
+    requested.fingers.push_back(finger);
   }
-  return FittingLoop(hand, object, surroundings, style, targets, contact_options, options)
-      .run(placement);
+  return FittingLoop(hand, object, surroundings, style, requested, contact_options, options)
+      .fit(targets, placement);
+}
+
+FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,
+                         const SurroundingsCollision& surroundings, GraspStyle style,
+                         const RequestedParts& requested, const hands::HandConfiguration& start,
+                         const RetreatRule& retreat,
+                         const ContactEstimationOptions& contact_options,
+                         const FittingOptions& options) {
+  options.validate();
+  contact_options.validate();
+  const hands::HandModel& model = hand.model();
+  hands::validate(model, start);
+  if (requested.fingers.empty()) throw InvalidInput("close_hand: no finger is requested");
+  for (const int finger : requested.fingers) {
+    if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
+      throw InvalidInput("close_hand: finger " + std::to_string(finger) + " of " +
+                         std::to_string(model.fingers.size()));
+    }
+    require_tip_pad("close_hand", model, finger);
+  }
+  if (requested.palm && model.palm.pad < 0) {
+    throw InvalidInput("close_hand: the palm of hand " + model.name + " has no pad");
+  }
+  if (const double step = retreat.step.value_or(1.0); !(step > 0.0 && std::isfinite(step))) {
+    throw InvalidInput("close_hand: retreat step = " + shortest_decimal(step) +
+                       ", must be finite and > 0 m");
+  }
+  if (retreat.most_steps.value_or(0) < 0) {
+    throw InvalidInput("close_hand: retreat of at most " + std::to_string(*retreat.most_steps) +
+                       " steps, must be >= 0");
+  }
+  return FittingLoop(hand, object, surroundings, style, requested, contact_options, options)
+      .close(start, retreat);
 }
 
 }  // namespace graspfit::grasp

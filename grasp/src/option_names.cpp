@@ -26,6 +26,22 @@ std::span<const NamedValue<Acceptance>> named_values<Acceptance>() {
 }
 
 template <>
+std::span<const NamedValue<MissingContact>> named_values<MissingContact>() {
+  static constexpr std::array names = {
+      NamedValue<MissingContact>{MissingContact::Fails, "fails"},
+      NamedValue<MissingContact>{MissingContact::Measured, "measured"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ApproachSource>> named_values<ApproachSource>() {
+  static constexpr std::array names = {
+      NamedValue<ApproachSource>{ApproachSource::Surface, "surface"},
+      NamedValue<ApproachSource>{ApproachSource::BoxRays, "box-rays"}};
+  return names;
+}
+
+template <>
 std::span<const NamedValue<SearchRule>> named_values<SearchRule>() {
   static constexpr std::array names = {NamedValue<SearchRule>{SearchRule::Best, "best"},
                                        NamedValue<SearchRule>{SearchRule::First, "first"}};

@@ -13,9 +13,7 @@
 namespace graspfit::grasp::internal {
 namespace {
 
-// Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
-// sets are drawn.
-constexpr int kSidesPerDraw = 2;
+constexpr double kHighQuality = 0.6;  // of M (A36)
 // More than refinement may exceed its largest turn by [rad].
 constexpr double kAngleSlack = 1e-6;
 
@@ -30,6 +28,10 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
   // Refinement moves the palm too, and would undo what settling did.
   options.fitting.settle = options.fitting.settle && !options.refine;
+  // Where other contacts may do, fingers close however far one of them has stopped.
+  if (options.missing_contact == MissingContact::Measured && !options.refine) {
+    options.fitting.give_up_distance = std::numeric_limits<double>::max();
+  }
   return options;
 }
 
@@ -101,20 +103,6 @@ int stage_of(AttemptOutcome outcome) {
   return 0;
 }
 
-const char* failure_name(TargetFailure failure) {
-  switch (failure) {
-    case TargetFailure::NoSeed:
-      return "no seed";
-    case TargetFailure::NoSecond:
-      return "no second";
-    case TargetFailure::NoFurther:
-      return "no further";
-    case TargetFailure::NoPalm:
-      return "no palm";
-  }
-  return "";
-}
-
 PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandModel& hand,
                                  const PlannerOptions& options, const Surroundings& surroundings)
     : object_(object),
@@ -122,26 +110,33 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       options_(with_planner_rules(object, hand, options)),
       parts_(requested_parts(hand, options)),
       fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
-      distances_(part_distances(hand)),
       surroundings_(hand, surroundings),
       scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
       claimed_pads_(requested_pads(hand, parts_)) {
-  check_object_size(object.mesh(), hand, parts_.fingers, widest_opening(distances_, parts_));
-  if (options_.targets.search == TargetSearch::Ranked) {
-    ranked_.emplace(object, distances_, parts_, options_.targets);
-  } else {
-    selector_.emplace(object, distances_, parts_, options_.targets);
-  }
+  check_object_size(object.mesh(), hand, parts_.fingers,
+                    widest_opening(part_distances(hand), parts_));
+  const PlanningMethod& method = find_planning_method(options_.planner);
+  const Stopwatch watch(guidance_s_);
+  guidance_ = method.make({.object = object_,
+                           .hand = fitting_hand_,
+                           .surroundings = surroundings_,
+                           .parts = parts_,
+                           .options = options_,
+                           .contact_options = scene_.contact_options});
 }
 
 AttemptResult PlannerAttempts::make(std::int64_t number) const {
   AttemptResult work;  // counters and times of everything that this attempt tries
-  std::vector<Start> starts = draw_starts(number, work);
-  if (starts.size() > static_cast<std::size_t>(options_.max_placements)) {
-    starts.erase(starts.begin() + options_.max_placements, starts.end());
+  GuidedStarts guided;
+  {
+    const Stopwatch watch(work.timings.targets_s);
+    guided = guidance_->starts(number);
   }
+  work.target_failure = std::move(guided.failure);
+  work.is_exhausted = guided.is_exhausted;
+  work.seeds_tried = guided.seeds_tried;
   std::optional<AttemptResult> best;
-  for (const Start& start : starts) {
+  for (const GuidedStart& start : guided.starts) {
     AttemptResult tried = try_start(start, number);
     work.fitting_iterations += tried.fitting_iterations;
     work.refinement_iterations += tried.refinement_iterations;
@@ -157,95 +152,19 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
   return work;
 }
 
-/// Target sets and their sides, the better side first; of several random sets the one whose targets
-/// suit the fingertips best. Empty if there is none: the reason is in `result`.
-std::vector<PlannerAttempts::Start> PlannerAttempts::draw_starts(std::int64_t number,
-                                                                 AttemptResult& result) const {
-  const Stopwatch watch(result.timings.targets_s);
-  const auto by_misfit = [](const Start& a, const Start& b) { return a.misfit < b.misfit; };
-  if (ranked_) {
-    const std::optional<TargetContacts> targets = ranked_targets(number);
-    if (!targets) {
-      result.is_exhausted = true;
-      if (number == 0) result.target_failure = ranked_->failure();
-      return {};
-    }
-    std::vector<Start> starts = starts_of(*targets);
-    if (starts.empty()) result.target_failure = TargetFailure::NoFurther;
-    std::stable_sort(starts.begin(), starts.end(), by_misfit);
-    return starts;
-  }
-  geometry::Random random =
-      geometry::Random::stream(options_.seed, static_cast<std::uint64_t>(number));
-  std::vector<Start> best;
-  TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
-  double best_misfit = std::numeric_limits<double>::infinity();
-  int num_judged = 0;
-  // Where sets are rare, the seeds of one search are the budget of all draws together.
-  const auto may_draw = [&](int draw) {
-    return draw < num_draws() && num_judged < kSidesPerDraw * num_draws() &&
-           (best.empty() || result.seeds_tried < options_.targets.max_seeds);
-  };
-  for (int draw = 0; may_draw(draw); ++draw) {
-    const TargetSelection selection = selector_->select(random);
-    result.seeds_tried += selection.seeds_tried;
-    if (!selection.targets) {
-      failure = selection.failure;
-      break;  // the search gave up after many seeds of its own
-    }
-    std::vector<Start> starts = starts_of(*selection.targets);
-    if (starts.empty()) continue;
-    num_judged += static_cast<int>(starts.size());
-    if (options_.target_draws == 1) return starts;
-    const double misfit = std::min_element(starts.begin(), starts.end(), by_misfit)->misfit;
-    if (misfit >= best_misfit) continue;
-    best_misfit = misfit;
-    std::stable_sort(starts.begin(), starts.end(), by_misfit);
-    best = std::move(starts);
-  }
-  if (best.empty()) result.target_failure = failure;
-  return best;
-}
-
-/// Sets with a target for the palm are chosen by the fingers' reach already.
-int PlannerAttempts::num_draws() const {
-  return parts_.palm ? std::max(1, options_.target_draws / 4) : options_.target_draws;
-}
-
-/// The sides from which to reach for a set, in the order of their placements.
-std::vector<PlannerAttempts::Start> PlannerAttempts::starts_of(
-    const TargetContacts& targets) const {
-  std::vector<Start> starts;
-  for (const PalmPlacement& placement :
-       palm_placements(object_, targets, options_.approach_O, options_.approach_angle)) {
-    Start start{assign_fingers(hand_, targets, parts_, placement), placement};
-    if (options_.target_draws > 1 || ranked_) {
-      start.misfit = reach_misfit(hand_, start.targets, placement);
-    }
-    starts.push_back(std::move(start));
-  }
-  return starts;
-}
-
-std::optional<TargetContacts> PlannerAttempts::ranked_targets(std::int64_t number) const {
-  const std::lock_guard<std::mutex> lock(ranked_lock_);
-  while (static_cast<std::int64_t>(ranked_sets_.size()) <= number) {
-    std::optional<TargetContacts> next = ranked_->next();
-    if (!next) return std::nullopt;
-    ranked_sets_.push_back(std::move(*next));
-  }
-  return ranked_sets_[static_cast<std::size_t>(number)];
-}
-
-/// One hand fitted to one target set from one side.
-AttemptResult PlannerAttempts::try_start(const Start& start, std::int64_t number) const {
+/// One hand closed from one start.
+AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t number) const {
   AttemptResult result;
   hands::HandConfiguration configuration;
-  std::optional<AttemptOutcome> failure = fit(start, configuration, result);
+  std::optional<AttemptOutcome> failure = close(start, configuration, result);
   // Refinement also brings fingers home that stopped short of the surface.
   const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
   if (is_refinable) failure = refine(start.targets, configuration, result);
-  if (failure) {
+  const bool is_measured =
+      !failure ||
+      (!options_.refine && options_.missing_contact == MissingContact::Measured &&
+       (*failure == AttemptOutcome::BlockedFinger || *failure == AttemptOutcome::MissedContact));
+  if (!is_measured) {
     result.outcome = *failure;
     return result;
   }
@@ -254,13 +173,13 @@ AttemptResult PlannerAttempts::try_start(const Start& start, std::int64_t number
     const Stopwatch watch(result.timings.measure_s);
     grasp = measure_grasp(scene_, configuration, parts_);
     grasp.targets = start.targets;
-    grasp.ideal_m = ideal_m(start.targets);
+    if (!start.targets.contacts.empty()) grasp.ideal_m = ideal_m(start.targets);
     grasp.attempt = number;
     grasp.iterations = static_cast<int>(result.fitting_iterations);
     grasp.refinement_iterations = static_cast<int>(result.refinement_iterations);
   }
   if (!grasp.is_usable()) {
-    result.outcome = unusable_outcome(grasp);
+    result.outcome = failure.value_or(unusable_outcome(grasp));
     return result;
   }
   if (!options_.refine && grasp.penetration.self_depth > options_.self_overlap) {
@@ -281,14 +200,13 @@ AttemptResult PlannerAttempts::try_start(const Start& start, std::int64_t number
   return result;
 }
 
-/// The paper's loop. Why it failed, if it did; the configuration it ended at in any case.
-std::optional<AttemptOutcome> PlannerAttempts::fit(const Start& start,
-                                                   hands::HandConfiguration& configuration,
-                                                   AttemptResult& result) const {
+/// From the start to the object, at the level of voxels. Why it failed, if it did; the
+/// configuration it ended at in any case.
+std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
+                                                     hands::HandConfiguration& configuration,
+                                                     AttemptResult& result) const {
   const Stopwatch watch(result.timings.fitting_s);
-  const FittingResult fitted =
-      fit_hand(fitting_hand_, object_, surroundings_, options_.style, start.targets,
-               start.placement, scene_.contact_options, options_.fitting);
+  const FittingResult fitted = start.close();
   result.fitting_iterations += fitted.iterations;
   result.timings.contact_tests_s += fitted.contact_tests_s;
   configuration = fitted.configuration;
@@ -318,7 +236,8 @@ std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targ
     refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
   }
   const RefinementResult refined =
-      refine_contacts(fitting_hand_, object_, surroundings_, claimed_pads_, &targets, configuration,
+      refine_contacts(fitting_hand_, object_, surroundings_, claimed_pads_,
+                      targets.contacts.empty() ? nullptr : &targets, configuration,
                       scene_.contact_options, refinement);
   result.refinement_iterations += refined.iterations;
   configuration = refined.configuration;
@@ -379,9 +298,21 @@ bool PlannerAttempts::is_accepted(const Grasp& grasp) const {
     case Acceptance::Usable:
       return grasp.is_usable();
     case Acceptance::Quality:
-      return grasp.is_usable() && grasp.quality.m >= std::min(0.5 * grasp.ideal_m, 0.6);
+      return grasp.is_usable() &&
+             grasp.quality.m >= (grasp.targets.contacts.empty()
+                                     ? kHighQuality
+                                     : std::min(0.5 * grasp.ideal_m, kHighQuality));
   }
   return false;
 }
 
 }  // namespace graspfit::grasp::internal
+
+namespace graspfit::grasp {
+
+GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& hand,
+                             const PlannerOptions& options, const Surroundings& surroundings) {
+  return internal::PlannerAttempts(object, hand, options, surroundings).guidance().model();
+}
+
+}  // namespace graspfit::grasp

@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "internal/option_check.hpp"
 
@@ -18,6 +19,7 @@ void PlannerOptions::validate() const {
                           std::string_view rule) {
     internal::require(is_met, "PlannerOptions", field, value, rule);
   };
+  find_planning_method(planner);
   require(count >= 1, "count", count, ">= 1");
   require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
   const bool has_palm = palm.value_or(style == GraspStyle::Power);
@@ -51,6 +53,8 @@ void PlannerOptions::validate() const {
   if (weak) weak->validate();
   targets.validate();
   fitting.validate();
+  sampling.validate();
+  medial_symmetry.validate();
   refinement.validate();
   pre_grasp.validate();
   squeeze.validate();

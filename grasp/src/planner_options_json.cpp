@@ -86,6 +86,7 @@ class Reader {
   }
   static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
   static void read(const JsonNode& node, bool& value) { value = node.flag(); }
+  static void read(const JsonNode& node, std::string& value) { value = node.text(); }
   static void read(const JsonNode& node, std::vector<std::string>& value) { value = node.texts(); }
   static void read(const JsonNode& node, Eigen::Vector3d& value) { value = node.vector3(); }
   template <class Value>
@@ -163,6 +164,24 @@ constexpr auto fitting_fields = [](auto& at, auto& fitting) {
   at("give_up_distance_m", fitting.give_up_distance);
 };
 
+constexpr auto sampling_fields = [](auto& at, auto& sampling) {
+  at("source", sampling.source);
+  at("count", sampling.count);
+  at("box_margin_m", sampling.box_margin);
+  at("box_spacing_m", sampling.box_spacing);
+  at("largest_standoff_m", sampling.largest_standoff);
+};
+
+constexpr auto medial_symmetry_fields = [](auto& at, auto& medial) {
+  at("samples", medial.samples);
+  at("min_object_angle_deg", medial.min_object_angle_deg);
+  at("axis_ratio", medial.axis_ratio);
+  at("rim_ratio", medial.rim_ratio);
+  at("search_radius_m", medial.search_radius);
+  at("search_radius_rel", medial.search_radius_rel);
+  at("least_spread_rel", medial.least_spread_rel);
+};
+
 constexpr auto refinement_fields = [](auto& at, auto& refinement) {
   at("wanted_gap_m", refinement.wanted_gap);
   at("largest_gap_m", refinement.largest_gap);
@@ -210,6 +229,7 @@ constexpr auto quality_fields = [](auto& at, auto& quality) {
 };
 
 constexpr auto planner_fields = [](auto& at, auto& options) {
+  at("planner", options.planner);
   at("style", options.style);
   at("fingers", options.fingers);
   at("num_contacts", options.num_contacts);
@@ -217,6 +237,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("count", options.count);
   at("max_attempts", options.max_attempts);
   at("acceptance", options.acceptance);
+  at("missing_contact", options.missing_contact);
   at("search", options.search);
   at("target_draws", options.target_draws);
   at("max_placements", options.max_placements);
@@ -230,6 +251,8 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at.optional_group("weak", options.weak, weak_fields);
   at.group("targets", options.targets, target_fields);
   at.group("fitting", options.fitting, fitting_fields);
+  at.group("sampling", options.sampling, sampling_fields);
+  at.group("medial_symmetry", options.medial_symmetry, medial_symmetry_fields);
   at("refine", options.refine);
   at.group("refinement", options.refinement, refinement_fields);
   at("self_overlap_m", options.self_overlap);

@@ -1,5 +1,8 @@
 #include "internal/planner_readings.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/grasp/option_names.hpp"
 
@@ -7,6 +10,13 @@ namespace graspfit::grasp::internal {
 namespace {
 
 using geometry::shortest_decimal;
+
+/// Whether a reading is about scores, targets or the posture at them, which only fitting has.
+bool is_about_targets(std::string_view number) {
+  constexpr std::array about = {"A1",  "A2",  "A3",  "A4",  "A5",  "A17", "A18", "A19", "A20",
+                                "A21", "A22", "A23", "A24", "A25", "A26", "A28", "A47", "A48"};
+  return std::find(about.begin(), about.end(), number) != about.end();
+}
 
 std::string text(std::string_view name) { return std::string(name); }
 
@@ -20,7 +30,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
   const std::string averaging = text(name_of(options.averaging));
   const std::string units = text(name_of(quality.units));
 
-  return {
+  std::vector<std::pair<std::string, std::string>> readings = {
       {"A1", text(name_of(score.normalization))},
       {"A2", text(name_of(score.plane_distance))},
       {"A3", "L = " + shortest_decimal(score.length_voxels) + " voxels"},
@@ -67,7 +77,9 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
                   shortest_decimal(fitting.small_step)},
-      {"A31", "a part without contact fails the attempt"},
+      {"A31", options.missing_contact == MissingContact::Fails || options.refine
+                  ? text("a part without contact fails the attempt")
+                  : text("the contacts that there are count")},
       {"A32", std::string("small steps until contact or penetration; guard on ") +
                   std::string(name_of(fitting.guard)) +
                   (options.refine   ? ", contacts then refined"
@@ -100,6 +112,12 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   ? "complete sets drawn by (ideal M)^" + shortest_decimal(targets.ideal_m_bias)
                   : text("measure not used in target selection")},
   };
+  if (options.planner != "fitting") {
+    for (auto& [number, reading] : readings) {
+      if (is_about_targets(number)) reading = "not used by planner " + options.planner;
+    }
+  }
+  return readings;
 }
 
 }  // namespace graspfit::grasp::internal

@@ -314,6 +314,60 @@ class Hold(ProgramTest):
                     self.assertAlmostEqual(float(row["value"]), expected, places=12)
 
 
+class Methods(ProgramTest):
+    """Planning methods compared. SciPy computes both tables over all cells again."""
+
+    SLUG = "table1"
+
+    def run_quick(self, name, *arguments):
+        out = self.folder / name
+        done = run("experiment", "run", self.SLUG, "--quick", "--out", out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = rows_of(out / f"{self.SLUG}.csv")
+        if rows[0]["status"] == "skipped":
+            self.skipTest(rows[0]["reason"])
+        return out, rows
+
+    def test_a_second_run_writes_the_same_bytes(self):
+        one, _ = self.run_quick("one")
+        two, _ = self.run_quick("two", "--jobs", 2)
+        for ending in (".csv", ".details.csv", ".summary.csv", ".correlations.csv"):
+            self.assertEqual((one / (self.SLUG + ending)).read_bytes(),
+                             (two / (self.SLUG + ending)).read_bytes())
+
+    def test_scipy_agrees_with_both_tables(self):
+        try:
+            from scipy import stats
+        except ImportError as missing:
+            self.skipTest(f"{missing.name} is not installed")
+        out, rows = self.run_quick("one")
+        details = rows_of(out / f"{self.SLUG}.details.csv")
+        self.assertGreater(len(details), 4)
+        for row in rows:
+            own = [float(d["m"]) for d in details if d["planner"] == row["planner"]]
+            self.assertEqual(len(own), int(row["grasps"]))
+            self.assertTrue(all(m > 0 for m in own))
+            if len(own) > 1:
+                self.assertAlmostEqual(float(row["m_mean"]), stats.tmean(own), places=12)
+                self.assertAlmostEqual(float(row["m_sd"]), stats.tstd(own), places=12)
+        (summary,) = rows_of(out / f"{self.SLUG}.summary.csv")
+        for row in rows:
+            name = row["planner"].replace("-", "_")
+            self.assertEqual(summary[f"{name}_mean_m"], row["m_mean"])
+        for row in rows_of(out / f"{self.SLUG}.correlations.csv"):
+            if row["scope"] != "all":
+                continue
+            both = [(float(d[row["measure"]]), float(d[row["other"]])) for d in details
+                    if row["planner"] in ("all", d["planner"])
+                    and d[row["measure"]] and d[row["other"]]]
+            self.assertEqual(len(both), int(row["grasps"]))
+            if len(both) < 2 or any(len({pair[i] for pair in both}) < 2 for i in (0, 1)):
+                self.assertEqual(row["spearman"], "")
+            else:
+                self.assertAlmostEqual(float(row["spearman"]), stats.spearmanr(both).statistic,
+                                       places=12)
+
+
 class Describe(ProgramTest):
     def test_list_has_every_configuration(self):
         done = run("experiment", "list")

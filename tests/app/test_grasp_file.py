@@ -93,7 +93,7 @@ class Schema(program.ProgramTest):
                 for i, item in enumerate(value[:1]):
                     yield from objects(item, place + (i,))
 
-        open_maps = {"conventions", "outcomes", "target_failures", "joints", "X_OL"}
+        open_maps = {"conventions", "outcomes", "target_failures", "guidance", "joints", "X_OL"}
         for place in objects(data):
             changed = copy.deepcopy(data)
             target = changed

@@ -30,6 +30,32 @@ class Plan(program.ProgramTest):
         super().setUp()
         self.write_torus()
 
+    def test_every_planner_plans_and_is_recorded(self):
+        for planner, said in (("fitting", None), ("gs", "guided by samples"),
+                              ("ma", "balls"), ("ma-full-retreat", "candidates")):
+            with self.subTest(planner):
+                done = self.plan("--planner", planner, "--refine", "off", "--export-guidance",
+                                 "--max-attempts", "400", out=planner)
+                if said:
+                    self.assertIn(said, done.stdout)
+                file = json.loads((self.folder / planner / "grasps.json").read_text())
+                self.assertEqual(file["planner"]["options"]["planner"], planner)
+                self.assertTrue(file["planner"]["name"])
+                for grasp in file["results"]["grasps"]:
+                    self.assertEqual(bool(grasp["targets"]["contacts"]), planner == "fitting")
+                lines = (self.folder / planner / "guidance.csv").read_text().splitlines()
+                self.assertTrue(lines[0].startswith("x_m,y_m,z_m,"), lines[0])
+                self.assertGreater(len(lines), 100)
+                ply = (self.folder / planner / "guidance.ply").read_text()
+                self.assertIn(f"element vertex {len(lines) - 1}\n", ply)
+
+    def test_flags_of_another_planner_are_refused(self):
+        for flags in (("--gs-sampling", "box-rays"), ("--planner", "gs", "--ma-samples", "5"),
+                      ("--planner", "none"), ("--export-guidance",)):
+            done = program.run("plan", self.folder / "torus.off", *flags)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(flags[-1] if flags[-1].startswith("--") else flags[-2], done.stderr)
+
     def test_writes_file_table_and_posed_meshes(self):
         done = self.plan()
         self.assertEqual(done.stderr, "")  # no progress bar when piped

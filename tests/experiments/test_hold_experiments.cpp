@@ -66,7 +66,9 @@ TEST_CASE("Both experiments test the same hands on all objects of the planner's 
 TEST_CASE("Details and summary have columns of their own", "[experiments][hold]") {
   for (const char* const slug : {"hold_rates", "hold_prediction"}) {
     const Experiment& experiment = find_experiment(slug);
-    for (const auto* const table : {&experiment.details, &experiment.summary}) {
+    const std::vector<Column> summary =
+        experiment.summaries.empty() ? std::vector<Column>() : experiment.summaries[0].columns;
+    for (const auto* const table : {&experiment.details, &summary}) {
       std::set<std::string> names;
       for (const Column& described : *table) {
         CHECK(names.insert(described.name).second);
@@ -100,7 +102,7 @@ TEST_CASE("The summary says how well a measure predicts, per grip and for all",
       {{"ball", "strong"}, {detail(0.3, true, ""), detail(0.4, true, "")}},
       {{"mug", "weak"}, {detail(0.1, false, "0.1"), detail(0.3, true, "2")}},
       {{"mug", "strong"}, {}}};
-  const auto rows = experiment.summarize(sweep, cells);
+  const auto rows = experiment.summaries.at(0).rows(sweep, cells);
   // Groups (all and two grips) x targets x measures x scopes.
   CHECK(rows.size() == 3 * 5 * 6 * 2);
   const auto fields_of = [&](const std::vector<std::string>& wanted) {

@@ -124,7 +124,7 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
   const TemporaryFolder folder;
   Experiment experiment = counting_experiment();
   experiment.details = {{"part", "1", "of the sum"}, {"note", "", "with a comma"}};
-  experiment.summary = {{"cells", "1", "finished"}, {"parts", "1", "of all cells"}};
+  const std::vector<Column> summary = {{"cells", "1", "finished"}, {"parts", "1", "of all cells"}};
   experiment.run = [run = experiment.run, details = experiment.details](const Cell& cell,
                                                                         const fs::path& cells) {
     if (cell.labels[0] == "b") throw MissingData("b.off is not there");
@@ -136,15 +136,16 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
     }
     return result;
   };
-  experiment.summarize = [columns = experiment.summary](const ParameterSweep&,
-                                                        const std::vector<FinishedCell>& cells) {
+  const auto rows = [columns = summary](const ParameterSweep&,
+                                        const std::vector<FinishedCell>& cells) {
     std::size_t parts = 0;
     for (const FinishedCell& cell : cells) parts += cell.details.size();
-    std::vector<ResultRow> rows(1, ResultRow(columns));
-    rows[0].set("cells", static_cast<std::int64_t>(cells.size()));
-    rows[0].set("parts", static_cast<std::int64_t>(parts));
-    return rows;
+    std::vector<ResultRow> all(1, ResultRow(columns));
+    all[0].set("cells", static_cast<std::int64_t>(cells.size()));
+    all[0].set("parts", static_cast<std::int64_t>(parts));
+    return all;
   };
+  experiment.summaries.push_back({"summary", summary, rows});
   const ExperimentConfig config = config_in(folder);
   const auto tables_of = [&](int jobs, const std::string& name) {
     const fs::path out = folder.path() / name;

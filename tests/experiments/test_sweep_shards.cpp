@@ -25,7 +25,7 @@ namespace {
 Experiment experiment_with_all() {
   Experiment experiment = counting_experiment();
   experiment.details = {{"part", "1", "of the seed"}};
-  experiment.summary = {{"parts", "1", "of all cells"}};
+  const std::vector<Column> summary = {{"parts", "1", "of all cells"}};
   experiment.run = [run = experiment.run, columns = experiment.details](const Cell& cell,
                                                                         const fs::path& folder) {
     if (cell.labels[1] == "2") throw MissingData("step2.off is not there");
@@ -36,12 +36,13 @@ Experiment experiment_with_all() {
     std::ofstream(folder / "cell.txt") << cell.key;
     return result;
   };
-  experiment.summarize = [columns = experiment.summary](const ParameterSweep&,
-                                                        const std::vector<FinishedCell>& cells) {
-    std::vector<ResultRow> rows(1, ResultRow(columns));
-    rows[0].set("parts", static_cast<std::int64_t>(cells.size()));
-    return rows;
+  const auto rows = [columns = summary](const ParameterSweep&,
+                                        const std::vector<FinishedCell>& cells) {
+    std::vector<ResultRow> all(1, ResultRow(columns));
+    all[0].set("parts", static_cast<std::int64_t>(cells.size()));
+    return all;
   };
+  experiment.summaries.push_back({"summary", summary, rows});
   return experiment;
 }
 

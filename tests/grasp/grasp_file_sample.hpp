@@ -15,6 +15,20 @@ namespace graspfit::testing {
 /// Every field away from its default, so that one that is not written, or not read, shows.
 inline grasp::PlannerOptions unusual_options() {
   grasp::PlannerOptions options;
+  options.planner = "ma";
+  options.missing_contact = grasp::MissingContact::Measured;
+  options.sampling = {.source = grasp::ApproachSource::BoxRays,
+                      .count = 11,
+                      .box_margin = 0.02,
+                      .box_spacing = 0.03,
+                      .largest_standoff = 0.04};
+  options.medial_symmetry = {.samples = 12,
+                             .min_object_angle_deg = 110.0,
+                             .axis_ratio = 0.02,
+                             .rim_ratio = 0.5,
+                             .search_radius = 0.011,
+                             .search_radius_rel = 0.06,
+                             .least_spread_rel = 0.002};
   options.style = grasp::GraspStyle::Power;
   options.palm = false;
   options.seed = 18446744073709551615U;  // the largest there is
@@ -108,6 +122,7 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
     file.statistics.outcomes[static_cast<grasp::AttemptOutcome>(i)] = i;
   }
   file.statistics.target_failures["no seed"] = 3;
+  file.statistics.guidance["balls alone"] = 4;
   file.statistics.duplicates = 2;
   file.statistics.refinement_iterations = 123;
   file.timings.fitting_s = 0.25;

@@ -187,6 +187,8 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   const hands::HandModel& hand = run.hand;
   const double voxel_size = run.object.grid.lattice.voxel_size;
 
+  const bool has_targets = options.planner == "fitting";
+
   // Statistics.
   const grasp::PlannerStatistics& statistics = result.statistics;
   std::int64_t sum = 0;
@@ -211,7 +213,9 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   }
   std::int64_t target_failures = 0;
   for (const auto& [name, count] : statistics.target_failures) {
-    if (name != "no seed" && name != "no second" && name != "no further" && name != "no palm") {
+    const bool is_of_fitting =
+        name == "no seed" || name == "no second" || name == "no further" || name == "no palm";
+    if (has_targets ? !is_of_fitting : name != "no sample" && name != "no candidate") {
       report("failure ", name);
     }
     target_failures += count;
@@ -282,16 +286,20 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     if (options.acceptance == Acceptance::Quality && g.quality.m < std::min(0.5 * g.ideal_m, 0.6)) {
       wrong("M ", g.quality.m, " with ideal ", g.ideal_m);
     }
-    if (!(g.ideal_m > 0.0)) wrong("ideal M ", g.ideal_m);
+    if (has_targets ? !(g.ideal_m > 0.0) : g.ideal_m != 0.0) wrong("ideal M ", g.ideal_m);
 
     // Targets.
+    if (!has_targets && !g.targets.contacts.empty()) wrong("targets of a method without");
     for (const std::string& line :
-         testing::broken_requirements(run.object, distances, parts, target_options, g.targets)) {
+         has_targets
+             ? testing::broken_requirements(run.object, distances, parts, target_options, g.targets)
+             : kNothing) {
       wrong(line);
     }
     std::vector<int> assigned;
     for (const auto& target : g.targets.contacts) assigned.push_back(target.finger);
-    if (!std::is_permutation(assigned.begin(), assigned.end(), fingers.begin(), fingers.end())) {
+    if (has_targets &&
+        !std::is_permutation(assigned.begin(), assigned.end(), fingers.begin(), fingers.end())) {
       wrong("targets are not one for each finger");
     }
     if (!assigned.empty() && assigned.front() != fingers.front()) wrong("seed's finger");

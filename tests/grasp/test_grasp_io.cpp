@@ -86,6 +86,10 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
   CHECK(read.stop == written.stop);
   CHECK(read.statistics.outcomes == written.statistics.outcomes);
   CHECK(read.statistics.target_failures == written.statistics.target_failures);
+  CHECK(read.statistics.guidance == written.statistics.guidance);
+  CHECK(read.options.planner == written.options.planner);
+  CHECK(read.options.sampling.count == written.options.sampling.count);
+  CHECK(read.options.medial_symmetry.rim_ratio == written.options.medial_symmetry.rim_ratio);
   CHECK(read.timings.fitting_s == written.timings.fitting_s);
 
   REQUIRE(read.grasps.size() == written.grasps.size());

@@ -24,6 +24,8 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
   };
   check(grasp::GraspStyle{});
   check(grasp::Acceptance{});
+  check(grasp::MissingContact{});
+  check(grasp::ApproachSource{});
   check(geometry::PatchAveraging{});
   check(grasp::ScoreNormalization{});
   check(grasp::PlaneDistance{});

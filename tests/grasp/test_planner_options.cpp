@@ -53,7 +53,21 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
         "");
   CHECK(unsaid(message_after([](auto& o) { o.self_overlap = -0.125; }), "self_overlap", "-0.125") ==
         "");
+  CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "planner", "none") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "fitting|gs|ma",
+               "ma-full-retreat") == "");
   // Options inside options.
+  CHECK(unsaid(message_after([](auto& o) { o.sampling.count = 0; }), "count", "0") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.sampling.box_spacing = 0.0; }), "box_spacing", "0") ==
+        "");
+  CHECK(unsaid(message_after([=](auto& o) { o.sampling.largest_standoff = nan; }),
+               "largest_standoff", "nan") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.medial_symmetry.samples = 0; }), "samples", "0") ==
+        "");
+  CHECK(unsaid(message_after([](auto& o) { o.medial_symmetry.rim_ratio = 0.005; }), "rim_ratio",
+               "0.005") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.medial_symmetry.search_radius = -1.0; }),
+               "search_radius", "-1") == "");
   CHECK(unsaid(message_after([](auto& o) { o.score.neighborhood = 4; }), "neighborhood", "4") ==
         "");
   CHECK(unsaid(message_after([](auto& o) { o.targets.score_threshold = 1.5; }), "score_threshold",

@@ -14,5 +14,8 @@ Experiment parameter_sweeps();
 Experiment planner_everyday();
 Experiment planner_paper_objects();
 Experiment special_cases();
+Experiment table1();
+Experiment table1_all_objects();
+Experiment table1_refined();
 
 }  // namespace graspfit::experiments::internal

@@ -43,6 +43,8 @@ bool is_closed(const grasp::Grasp& grasp);
 std::optional<double> median(std::vector<double> values);
 /// The arithmetic mean; empty without any.
 std::optional<double> mean(const std::vector<double>& values);
+/// The root of the mean squared distance from the mean, with n − 1; empty for fewer than two.
+std::optional<double> standard_deviation(const std::vector<double>& values);
 
 /// A field that may be empty.
 Value field(const std::optional<double>& value);

@@ -14,10 +14,13 @@ class FittingLoop {
  public:
   FittingLoop(const FittingHand& hand, const ObjectModel& object,
               const SurroundingsCollision& surroundings, GraspStyle style,
-              const TargetContacts& targets, const ContactEstimationOptions& contact_options,
+              const RequestedParts& requested, const ContactEstimationOptions& contact_options,
               const FittingOptions& options);
 
-  FittingResult run(const PalmPlacement& placement);
+  /// To targets that are assigned to the requested parts.
+  FittingResult fit(const TargetContacts& targets, const PalmPlacement& placement);
+  /// From where the hand stands, without targets.
+  FittingResult close(const hands::HandConfiguration& start, const RetreatRule& retreat);
 
  private:
   /// A finger that closes, while the loop runs.
@@ -38,10 +41,13 @@ class FittingLoop {
 
   void add_part(int finger, bool has_target);
   bool place();
+  bool retreat(hands::HandConfiguration start, double step, int most_steps);
+  FittingResult failed_start() const;
   void approach();
-  void seat_palm();
+  void seat_palm(double distance);
+  FittingResult run();
   void advance(double distance, double tolerance);
-  void close(Part& part);
+  void close_part(Part& part);
   bool close_toward_goal(Part& part);
   bool try_closing(const Part& part, double step);
   bool next_stage(Part& part);
@@ -68,15 +74,16 @@ class FittingLoop {
   const FittingHand& hand_;
   const hands::HandModel& model_;
   const ObjectModel& object_;
-  const TargetContacts& targets_;
   const ContactEstimationOptions& contact_options_;
   const FittingOptions& options_;
   const double voxel_size_;
   GuardedHand state_;
   std::vector<std::vector<int>> moved_links_;  ///< Per joint.
   std::vector<Part> parts_;                    ///< Those with targets first, the seed's before all.
-  bool has_palm_target_ = false;
-  hands::HandConfiguration goal_;  ///< The posture at the targets.
+  const GraspStyle style_;
+  const bool has_palm_target_;
+  hands::HandConfiguration initial_;
+  hands::HandConfiguration goal_;  ///< The posture at the targets; without, where the hand started.
   bool is_palm_done_ = false;      ///< The palm is where it is wanted, or cannot get there.
   double contact_tests_s_ = 0.0;
 };

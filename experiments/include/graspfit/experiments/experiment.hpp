@@ -44,6 +44,15 @@ struct FinishedCell {
   std::vector<std::vector<std::string>> details;
 };
 
+/// A table over all cells.
+struct SummaryTable {
+  std::string name;  ///< Of its file, `<slug>.<name>.csv`.
+  std::vector<Column> columns;
+  /// Its rows from the cells that are ok, in sweep order. They depend on nothing else.
+  std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
+      rows;
+};
+
 /// An experiment: a question, the unit of work that answers a part of it, and the columns in which
 /// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
 struct Experiment {
@@ -53,7 +62,6 @@ struct Experiment {
   std::vector<Column> settings;  ///< Settings of its own, beside `planning_setting_names`.
   std::vector<Column> details;   ///< What a cell's row sums up, with any number of rows per cell
                                  ///< (one per grasp); none: no such table.
-  std::vector<Column> summary;   ///< Of a table over all cells; none: no such table.
 
   /// Checks a cell's settings without doing its work. @throws SettingError.
   std::function<void(const Cell&)> check;
@@ -63,9 +71,7 @@ struct Experiment {
   /// @throws MissingData, or anything else: a row with that reason.
   std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
 
-  /// The rows of `summary` from the cells that are ok, in sweep order. It depends on nothing else.
-  std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
-      summarize;
+  std::vector<SummaryTable> summaries;  ///< Tables over all cells, made of their details.
 
   /// The files that a cell reads, for the manifest; those that are not there are left out.
   std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;

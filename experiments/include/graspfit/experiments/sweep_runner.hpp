@@ -49,7 +49,7 @@ struct RunOptions {
 ///     <slug>.timing.csv      axes, wall_s and cpu_s of the cell, timings
 ///     <slug>.details.csv     axes and `Experiment::details`, where it has any: rows of finished
 ///                            cells in sweep order
-///     <slug>.summary.csv     `Experiment::summary`, where it has any
+///     <slug>.<name>.csv      `Experiment::summaries`, where it has any
 ///     <slug>.manifest.json   see RunManifest
 ///     <slug>.cells           finished cells, a checked line each, appended and flushed to disk
 ///                            one by one: a kill at any moment loses at most the running cells

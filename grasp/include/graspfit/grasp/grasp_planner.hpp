@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/grasp/approach_sampling.hpp"
 #include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
 #include "graspfit/grasp/contact_refinement.hpp"
 #include "graspfit/grasp/distinct_grasps.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/medial_symmetry.hpp"
 #include "graspfit/grasp/object_model.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/grasp/squeeze.hpp"
@@ -25,7 +27,8 @@ namespace graspfit::grasp {
 enum class Acceptance {
   Valid,    ///< Usable, free of penetration on the true meshes, every requested contact there.
   Usable,   ///< M > 0: the paper's meaning.
-  Quality,  ///< Usable and M ≥ min(0.5 · ideal M, 0.6): the paper's "high quality" (A36).
+  Quality,  ///< Usable and M ≥ min(0.5 · ideal M, 0.6): the paper's "high quality" (A36); of
+            ///< methods without targets M ≥ 0.6.
 };
 
 /// When the planner stops looking (notes A36).
@@ -36,8 +39,18 @@ enum class SearchRule {
           ///< grasps.
 };
 
+/// What becomes of a hand that has closed while a requested part does not touch (notes A31).
+enum class MissingContact {
+  Fails,     ///< The attempt has failed: a formed grasp needs them all [P: its stop condition].
+  Measured,  ///< The contacts that there are count; M > 0 makes it usable. Without refinement only:
+             ///< refined grasps have all their contacts. For tables over all attempts with M > 0.
+};
+
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
 struct PlannerOptions {
+  /// The method that guides hands to the object, by its name in `planning_methods`; "fitting" is
+  /// the paper's own. All else is the same for every method.
+  std::string planner = "fitting";
   GraspStyle style = GraspStyle::Precision;
   std::vector<std::string>
       fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
@@ -51,6 +64,7 @@ struct PlannerOptions {
   SearchRule search = SearchRule::Best;
   int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
   Acceptance acceptance = Acceptance::Valid;
+  MissingContact missing_contact = MissingContact::Fails;
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
                                               ///< by targets' sides and by every grasp accepted.
   double approach_angle =
@@ -72,6 +86,8 @@ struct PlannerOptions {
   int max_placements = 4;  ///< Sides of one target set that are fitted, the flattest first, ≥ 1
                            ///< (A23) [R]. Three and more targets have two, two have sixteen.
   FittingOptions fitting;
+  ApproachSamplingOptions sampling;       ///< Of the method gs.
+  MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.
   /// Whether claimed contacts are made real by exact queries after fitting [R]; without: the
   /// paper's voxel-level grasp.
   bool refine = true;
@@ -92,7 +108,7 @@ struct PlannerOptions {
 enum class PlannerStop {
   Count,      ///< As many grasps as were asked for.
   Attempts,   ///< All attempts made.
-  Exhausted,  ///< Ranked search: every feasible target set was tried.
+  Exhausted,  ///< Ranked search: every feasible target set was tried; ma: every candidate.
   WallClock,  ///< Opt-in limit.
 };
 
@@ -101,7 +117,7 @@ enum class AttemptOutcome {
   Valid,
   UsableOnly,  ///< Usable but penetrating, without a requested contact, without a way in, or with
                ///< the palm out of the cone of approach.
-  NoTargets,   ///< No seed, no pair or no further contact.
+  NoTargets,   ///< Nothing to start from: of fitting no seed, no pair or no further contact.
   InitialCollision,
   BlockedFinger,
   MissedContact,
@@ -120,6 +136,7 @@ struct PlannerStatistics {
   std::int64_t attempts = 0;
   std::map<AttemptOutcome, std::int64_t> outcomes;  ///< Every outcome is present, zeros included.
   std::map<std::string, std::int64_t> target_failures;  ///< "no seed", "no second", …, "no palm".
+  std::map<std::string, std::int64_t> guidance;  ///< What the method found in its preparation.
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
   std::int64_t refinement_iterations = 0;
@@ -132,7 +149,8 @@ struct PlannerStatistics {
 /// Seconds per stage; never part of results.
 struct PlannerTimings {
   ObjectModelTimings object;
-  double targets_s = 0.0;
+  double guidance_s = 0.0;       ///< The method's preparation, once per run: samples, medial balls.
+  double targets_s = 0.0;        ///< Starts of attempts: target contacts.
   double fitting_s = 0.0;        ///< The loop, its contact tests included.
   double contact_tests_s = 0.0;  ///< Contact estimation inside the loop; a part of `fitting_s`.
   double refinement_s = 0.0;     ///< Contacts made real.
@@ -140,7 +158,7 @@ struct PlannerTimings {
   double pre_grasp_s = 0.0;      ///< Ways in and squeezes.
   double total_s = 0.0;          ///< By the clock; the others add up over all threads.
 
-  /// Adds the stages of attempts; `object` and `total_s` stay.
+  /// Adds the stages of attempts; `object`, `guidance_s` and `total_s` stay.
   PlannerTimings& operator+=(const PlannerTimings& other);
 };
 
@@ -164,8 +182,9 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
                            const PlannerOptions& options, ObjectModelTimings* timings = nullptr,
                            const geometry::ContentCache& cache = {.is_on = false});
 
-/// Hand-object geometric fitting (paper section 11): target contacts, fitting, contacts, measure,
-/// until `count` grasps are accepted or the budget is used.
+/// Attempts by the method `options.planner`, until `count` grasps are accepted or the budget is
+/// used. Of hand-object geometric fitting (paper section 11): target contacts, fitting, contacts,
+/// measure.
 ///
 /// @throws InvalidInput for options that the hand cannot meet (unknown finger, more contacts than
 /// it allows) or an object of impossible size (says the extents): thicker in every direction than

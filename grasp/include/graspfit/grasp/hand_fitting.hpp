@@ -148,4 +148,28 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
                        const ContactEstimationOptions& contact_options,
                        const FittingOptions& options);
 
+/// How a hand that starts in collision backs off, against its palm direction.
+struct RetreatRule {
+  std::optional<double> step = {};  ///< [m], > 0; empty: a voxel.
+  std::optional<int> most_steps =
+      {};  ///< ≥ 0; empty: as many as take the hand out of any object's reach.
+  /// Whether the fingers close all the same where the hand is still not clear: links that are
+  /// inside the object stay where they are, and the result may have d_min < 0.
+  bool closes_in_collision = false;
+};
+
+/// Closes the fingers of a hand that stands somewhere, open: the methods without target contacts.
+/// The hand backs off until it is clear; the palm, if it is requested, moves on to the surface;
+/// then the requested fingers (of power grasps all) close joint by joint, proximal to distal,
+/// under the same guard, contact tests and budget as in `fit_hand`, until each touches, is stopped
+/// or is at its limits.
+///
+/// @throws InvalidInput for options out of range, no finger, or one without a fingertip pad.
+FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,
+                         const SurroundingsCollision& surroundings, GraspStyle style,
+                         const RequestedParts& requested, const hands::HandConfiguration& start,
+                         const RetreatRule& retreat,
+                         const ContactEstimationOptions& contact_options,
+                         const FittingOptions& options);
+
 }  // namespace graspfit::grasp

@@ -36,6 +36,10 @@ std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>();
 template <>
 std::span<const NamedValue<Acceptance>> named_values<Acceptance>();
 template <>
+std::span<const NamedValue<MissingContact>> named_values<MissingContact>();
+template <>
+std::span<const NamedValue<ApproachSource>> named_values<ApproachSource>();
+template <>
 std::span<const NamedValue<SearchRule>> named_values<SearchRule>();
 template <>
 std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>();

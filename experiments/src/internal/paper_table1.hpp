@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace graspfit::experiments::internal {
+
+/// What the paper's Table 1 says of a method on an object: Barrett hand, averages over 100 usable
+/// grasps, on a desktop computer of 2017 or so; object sizes are not given.
+struct PaperFigures {
+  double time_s;
+  double quality;
+};
+
+/// By the label of an object and of a method; both `bowling_pin` and `bowling_ball` have those of
+/// its BOWLING, `ma` and `ma-full-retreat` those of its MA. Empty for others.
+std::optional<PaperFigures> paper_table1(std::string_view object, std::string_view method);
+
+}  // namespace graspfit::experiments::internal

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graspfit/grasp/fitting_hand.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/hand_fitting.hpp"
+
+/// \file
+/// What one planning method does differently from another: where hands start and how they close.
+/// Hands, collision guard, refinement, contacts, measures, distinctness, budgets and threads are
+/// the planner's and the same for all. A method is one source file with a function that makes its
+/// `GraspGuidance`, and one line in grasp_guidance.cpp.
+
+namespace graspfit::grasp {
+
+/// What every method is given. All of it outlives the guidance.
+struct GuidanceScene {
+  const ObjectModel& object;
+  const FittingHand& hand;
+  const SurroundingsCollision& surroundings;
+  const RequestedParts& parts;
+  const PlannerOptions& options;  ///< With what the planner's rules set where they leave it open.
+  const ContactEstimationOptions& contact_options;
+};
+
+/// One hand about to close on the object.
+struct GuidedStart {
+  TargetContacts targets = {};  ///< Assigned contacts to reach; empty where a method has none.
+  std::function<FittingResult()> close = {};  ///< Brings the hand to the object, by `fit_hand` or
+                                              ///< `close_hand` for example. Const and thread-safe.
+};
+
+/// The starts of one attempt, the most promising first: they are tried in turn until one of them
+/// ends in a grasp that is accepted.
+struct GuidedStarts {
+  std::vector<GuidedStart> starts = {};  ///< Empty: the attempt fails with `failure`, or there was
+                                         ///< nothing left to try.
+  std::optional<std::string> failure = {};  ///< Why there is none, for statistics.
+  bool is_exhausted = false;                ///< There will be none for any later attempt either.
+  std::int64_t seeds_tried = 0;             ///< Work done, for statistics.
+};
+
+/// What a method looks at to guide a hand, as a table of points: its "intermediate model" (paper,
+/// Fig. 19).
+struct GuidanceModel {
+  std::vector<std::string> columns;  ///< x_m, y_m, z_m (in O), then whatever there is to say.
+  std::vector<std::vector<double>> rows = {};  ///< One value per column.
+};
+
+/// A planning method at work on one object with one hand.
+class GraspGuidance {
+ public:
+  virtual ~GraspGuidance() = default;
+
+  /// The starts of attempt `number`, ≥ 0. They depend on the number alone (random numbers are of
+  /// the stream (seed, number)), not on the order or the thread in which attempts are made.
+  virtual GuidedStarts starts(std::int64_t number) const = 0;
+
+  /// Its intermediate model, for pictures.
+  virtual GuidanceModel model() const = 0;
+
+  /// All that `GuidedStarts::failure` may say, for statistics with zeros. May be empty.
+  virtual std::vector<std::string> failures() const { return {}; }
+
+  /// What the preparation came to: "balls on an axis" 312, for example. May be empty.
+  virtual std::map<std::string, std::int64_t> counts() const { return {}; }
+};
+
+/// A method that can be asked for by name.
+struct PlanningMethod {
+  std::string_view name;   ///< On the command line and in files: "fitting".
+  std::string_view title;  ///< In words.
+  std::unique_ptr<GraspGuidance> (*make)(const GuidanceScene&);
+};
+
+/// All methods. This is the registry: one line each in grasp_guidance.cpp.
+std::span<const PlanningMethod> planning_methods();
+
+/// @throws InvalidInput that lists the methods, if there is none of that name.
+const PlanningMethod& find_planning_method(std::string_view name);
+
+/// Their names as "a|b|c".
+std::string planning_method_names();
+
+/// The intermediate model of the method that `options` name. @throws as `plan_grasps`.
+GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& hand,
+                             const PlannerOptions& options, const Surroundings& surroundings = {});
+
+/// A model as CSV with a header line, numbers in their shortest round-trip form.
+std::string to_csv(const GuidanceModel& model);
+
+/// A model as an ASCII PLY file of points, one property per column, for ParaView and MeshLab: x_m,
+/// y_m, z_m are called x, y, z there, other columns as they are (nx, ny, nz are normals).
+std::string to_ply(const GuidanceModel& model);
+
+}  // namespace graspfit::grasp

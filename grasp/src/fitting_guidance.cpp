@@ -1,0 +1,196 @@
+// Hand-object geometric fitting, the paper's method: contacts to reach are chosen on the object by
+// their scores and the hand's kinematics, and the hand is fitted to them.
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "internal/guidance_list.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+// Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
+// sets are drawn.
+constexpr int kSidesPerDraw = 2;
+
+const char* failure_name(TargetFailure failure) {
+  switch (failure) {
+    case TargetFailure::NoSeed:
+      return "no seed";
+    case TargetFailure::NoSecond:
+      return "no second";
+    case TargetFailure::NoFurther:
+      return "no further";
+    case TargetFailure::NoPalm:
+      return "no palm";
+  }
+  return "";
+}
+
+/// Assigned targets and the side from which to reach for them.
+struct Side {
+  TargetContacts targets;
+  PalmPlacement placement;
+  double misfit = 0.0;
+};
+
+bool by_misfit(const Side& a, const Side& b) { return a.misfit < b.misfit; }
+
+class FittingGuidance : public GraspGuidance {
+ public:
+  explicit FittingGuidance(const GuidanceScene& scene)
+      : scene_(scene), distances_(part_distances(scene.hand.model())) {
+    if (scene.options.targets.search == TargetSearch::Ranked) {
+      ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
+    } else {
+      selector_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
+    }
+  }
+
+  GuidedStarts starts(std::int64_t number) const override {
+    GuidedStarts result;
+    std::vector<Side> sides = ranked_ ? ranked_sides(number, result) : drawn_sides(number, result);
+    const auto most = static_cast<std::size_t>(scene_.options.max_placements);
+    if (sides.size() > most)
+      sides.erase(sides.begin() + scene_.options.max_placements, sides.end());
+    for (Side& side : sides) {
+      GuidedStart start;
+      start.close = [&scene = scene_, targets = side.targets, placement = side.placement] {
+        return fit_hand(scene.hand, scene.object, scene.surroundings, scene.options.style, targets,
+                        placement, scene.contact_options, scene.options.fitting);
+      };
+      start.targets = std::move(side.targets);
+      result.starts.push_back(std::move(start));
+    }
+    return result;
+  }
+
+  std::vector<std::string> failures() const override {
+    std::vector<std::string> names;
+    for (const TargetFailure failure : {TargetFailure::NoSeed, TargetFailure::NoSecond,
+                                        TargetFailure::NoFurther, TargetFailure::NoPalm}) {
+      names.emplace_back(failure_name(failure));
+    }
+    return names;
+  }
+
+  /// The score map: one point per partial voxel.
+  GuidanceModel model() const override {
+    GuidanceModel model;
+    model.columns = {"x_m",
+                     "y_m",
+                     "z_m",
+                     "nx",
+                     "ny",
+                     "nz",
+                     "score",
+                     "mean_plane_distance_voxels",
+                     "mean_normal_angle_deg"};
+    const ContactScoreMap& scores = scene_.object.scores;
+    for (std::size_t i = 0; i < scene_.object.patches.size(); ++i) {
+      const geometry::SurfacePatch& patch = scene_.object.patches[i];
+      model.rows.push_back({patch.centroid.x(), patch.centroid.y(), patch.centroid.z(),
+                            patch.outward_normal.x(), patch.outward_normal.y(),
+                            patch.outward_normal.z(), scores.scores[i],
+                            scores.mean_plane_distance[i], scores.mean_normal_angle_deg[i]});
+    }
+    return model;
+  }
+
+ private:
+  /// The next of the sets in their order.
+  std::vector<Side> ranked_sides(std::int64_t number, GuidedStarts& result) const {
+    const std::optional<TargetContacts> targets = ranked_targets(number);
+    if (!targets) {
+      result.is_exhausted = true;
+      if (number == 0) result.failure = failure_name(ranked_->failure());
+      return {};
+    }
+    std::vector<Side> sides = sides_of(*targets);
+    if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
+    std::stable_sort(sides.begin(), sides.end(), by_misfit);
+    return sides;
+  }
+
+  /// Of several random sets the one whose targets suit the fingertips best.
+  std::vector<Side> drawn_sides(std::int64_t number, GuidedStarts& result) const {
+    const PlannerOptions& options = scene_.options;
+    geometry::Random random =
+        geometry::Random::stream(options.seed, static_cast<std::uint64_t>(number));
+    std::vector<Side> best;
+    TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
+    double best_misfit = std::numeric_limits<double>::infinity();
+    int num_judged = 0;
+    // Where sets are rare, the seeds of one search are the budget of all draws together.
+    const auto may_draw = [&](int draw) {
+      return draw < num_draws() && num_judged < kSidesPerDraw * num_draws() &&
+             (best.empty() || result.seeds_tried < options.targets.max_seeds);
+    };
+    for (int draw = 0; may_draw(draw); ++draw) {
+      const TargetSelection selection = selector_->select(random);
+      result.seeds_tried += selection.seeds_tried;
+      if (!selection.targets) {
+        failure = selection.failure;
+        break;  // the search gave up after many seeds of its own
+      }
+      std::vector<Side> sides = sides_of(*selection.targets);
+      if (sides.empty()) continue;
+      num_judged += static_cast<int>(sides.size());
+      if (options.target_draws == 1) return sides;
+      const double misfit = std::min_element(sides.begin(), sides.end(), by_misfit)->misfit;
+      if (misfit >= best_misfit) continue;
+      best_misfit = misfit;
+      std::stable_sort(sides.begin(), sides.end(), by_misfit);
+      best = std::move(sides);
+    }
+    if (best.empty()) result.failure = failure_name(failure);
+    return best;
+  }
+
+  /// Sets with a target for the palm are chosen by the fingers' reach already.
+  int num_draws() const {
+    const int draws = scene_.options.target_draws;
+    return scene_.parts.palm ? std::max(1, draws / 4) : draws;
+  }
+
+  /// The sides from which to reach for a set, in the order of their placements.
+  std::vector<Side> sides_of(const TargetContacts& targets) const {
+    const hands::HandModel& hand = scene_.hand.model();
+    std::vector<Side> sides;
+    for (const PalmPlacement& placement : palm_placements(
+             scene_.object, targets, scene_.options.approach_O, scene_.options.approach_angle)) {
+      Side side{assign_fingers(hand, targets, scene_.parts, placement), placement};
+      if (scene_.options.target_draws > 1 || ranked_) {
+        side.misfit = reach_misfit(hand, side.targets, placement);
+      }
+      sides.push_back(std::move(side));
+    }
+    return sides;
+  }
+
+  std::optional<TargetContacts> ranked_targets(std::int64_t number) const {
+    const std::lock_guard<std::mutex> lock(ranked_lock_);
+    while (static_cast<std::int64_t>(ranked_sets_.size()) <= number) {
+      std::optional<TargetContacts> next = ranked_->next();
+      if (!next) return std::nullopt;
+      ranked_sets_.push_back(std::move(*next));
+    }
+    return ranked_sets_[static_cast<std::size_t>(number)];
+  }
+
+  const GuidanceScene scene_;
+  const PartDistances distances_;           ///< Outlives the searches, which refer to it.
+  std::optional<TargetSelector> selector_;  ///< Of the random search.
+  mutable std::mutex ranked_lock_;
+  mutable std::optional<RankedTargets> ranked_;
+  mutable std::vector<TargetContacts> ranked_sets_;  ///< Those that `ranked_` gave so far.
+};
+
+}  // namespace
+
+std::unique_ptr<GraspGuidance> fitting_guidance(const GuidanceScene& scene) {
+  return std::make_unique<FittingGuidance>(scene);
+}
+
+}  // namespace graspfit::grasp::internal

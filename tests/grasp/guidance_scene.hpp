@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "grasp/fitting_scene.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
+
+/// \file
+/// A planning method at work, without the planner around it.
+
+namespace graspfit::testing {
+
+struct Guided {
+  Guided(const geometry::TriangleMesh& mesh, grasp::PlannerOptions planner_options,
+         const std::string& hand_name = "barrett")
+      : options(std::move(planner_options)),
+        scene(mesh, hand_name, options),
+        guidance(grasp::find_planning_method(options.planner)
+                     .make({.object = scene.object,
+                            .hand = scene.fitting_hand,
+                            .surroundings = scene.nothing,
+                            .parts = scene.parts,
+                            .options = options,
+                            .contact_options = scene.contact_options})) {}
+
+  grasp::PlannerOptions options;
+  Scene scene;
+  std::unique_ptr<grasp::GraspGuidance> guidance;
+};
+
+/// The paper's level: voxels guard, nothing is refined.
+inline grasp::PlannerOptions at_voxel_level(const std::string& planner) {
+  grasp::PlannerOptions options;
+  options.planner = planner;
+  options.refine = false;
+  options.fitting.guard = grasp::PenetrationGuard::Voxels;
+  options.fitting.settle = false;
+  options.acceptance = grasp::Acceptance::Usable;
+  options.missing_contact = grasp::MissingContact::Measured;
+  options.weak.reset();
+  return options;
+}
+
+/// Σ (observed − expected)² / expected.
+template <class Observed, class Expected>
+double chi_square(const Observed& observed, const Expected& expected) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < observed.size(); ++i) {
+    const double off = static_cast<double>(observed[i]) - expected[i];
+    sum += off * off / expected[i];
+  }
+  return sum;
+}
+
+}  // namespace graspfit::testing
