@@ -12,14 +12,12 @@ input or a missing program.
 """
 
 import argparse
-import array
-import base64
-import json
 import math
 import pathlib
 import sys
 
 sys.dont_write_bytecode = True  # the folder may be the sources' or root's
+from scene_file import exit_code, read_scene  # noqa: E402
 from vtk_picture import (  # noqa: E402
     COLORS,
     SUPERSAMPLING,
@@ -36,25 +34,10 @@ CAPTION, LEGEND = 64, 40  # heights of the strips above and below [pixels]
 STRIP = 40  # below each view: its name and scale bar [pixels]
 
 
-def read_scene(path):
-    """The scene with decoded meshes."""
-    try:
-        scene = json.loads(path.read_text(encoding="utf-8"))
-        for link in scene["hand"]["links"]:
-            numbers = array.array("f", base64.b64decode(link["mesh"]["vertices"]))
-            indices = array.array("I", base64.b64decode(link["mesh"]["faces"]))
-            if sys.byteorder == "big":
-                numbers.byteswap()
-                indices.byteswap()
-            link["vertices"] = [numbers[i : i + 3] for i in range(0, len(numbers), 3)]
-            link["faces"] = [indices[i : i + 3] for i in range(0, len(indices), 3)]
-        if not (scene["poses"] and scene["views"] and scene["plates"] is not None):
-            raise ValueError("no pose or no view")
-        return scene
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise BadInput(f"{path}: not the scene of a hand: {error!r}") from error
+def decode(scene):
+    """Checks that there is something to draw."""
+    if not (scene["poses"] and scene["views"] and scene["plates"] is not None):
+        raise ValueError("no pose or no view")
 
 
 # Poses are column-major 4x4.
@@ -120,7 +103,7 @@ class Painter(Canvas):
 
     def parts(self, X_HL):
         return [
-            ([mapped(X, v) for v in link["vertices"]], link["faces"])
+            ([mapped(X, v) for v in link["mesh"]["vertices"]], link["mesh"]["faces"])
             for link, X in zip(self.hand["links"], X_HL)
         ]
 
@@ -202,8 +185,9 @@ def main():
     parser.add_argument("--panel-width", type=pixels, default=460, help="pixels (default 460)")
     parser.add_argument("--panel-height", type=pixels, default=400, help="pixels (default 400)")
     arguments = parser.parse_args()
-    try:
-        scene = read_scene(arguments.scene)
+
+    def work():
+        scene = read_scene(arguments.scene, "hand", decode)
         known = {view["name"]: view for view in scene["views"]}
         views = []
         for name in arguments.views.split(","):
@@ -215,12 +199,8 @@ def main():
         height = arguments.panel_height * len(views) + CAPTION + LEGEND
         picture = Painter(width, height, scene).paint(views)
         write_atomically(arguments.picture, picture)
-    except BadInput as error:
-        print(f"render_hand.py: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+
+    return exit_code("render_hand.py", work)
 
 
 if __name__ == "__main__":

@@ -12,15 +12,13 @@ line on bad input or a missing program.
 """
 
 import argparse
-import array
-import base64
 import io
-import json
 import math
 import pathlib
 import sys
 
 sys.dont_write_bytecode = True  # the folder may be the sources' or root's
+from scene_file import decode_mesh, exit_code, numbers, read_scene  # noqa: E402
 from vtk_picture import (  # noqa: E402
     COLORS,
     SUPERSAMPLING,
@@ -43,40 +41,17 @@ LAST_FRAME = 2.0  # how long the last frame stays [s]
 ARROW = 0.55  # length of the load's arrow, over the object's diagonal
 
 
-def numbers(text, kind):
-    values = array.array(kind, base64.b64decode(text))
-    if sys.byteorder == "big":
-        values.byteswap()
-    return values
-
-
-def decode_mesh(mesh):
-    vertices, faces = numbers(mesh["vertices"], "f"), numbers(mesh["faces"], "I")
-    mesh["vertices"] = [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
-    mesh["faces"] = [faces[i : i + 3] for i in range(0, len(faces), 3)]
-
-
-def read_scene(path):
-    """The scene with decoded meshes and poses."""
-    try:
-        scene = json.loads(path.read_text(encoding="utf-8"))
-        decode_mesh(scene["object"])
-        links = scene["hand"]["links"]
-        for link in links:
-            decode_mesh(link["mesh"])
-        for load in scene["directions"]:
-            for key, bodies in (("object_poses", 1), ("link_poses", len(links))):
-                values = numbers(load[key], "f")
-                load[key] = [values[i : i + 7] for i in range(0, len(values), 7)]
-                if len(load[key]) != bodies * len(load["times"]) or not load["times"]:
-                    raise ValueError(f"{key} of load {load['name']} does not fit its times")
-        if not 0 <= scene["shown"] < len(scene["directions"]):
-            raise ValueError("no load to show")
-        return scene
-    except OSError as error:
-        raise BadInput(f"{path}: {error.strerror}") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise BadInput(f"{path}: not the scene of a hold test: {error!r}") from error
+def decode(scene):
+    """Decodes object and poses."""
+    decode_mesh(scene["object"])
+    for load in scene["directions"]:
+        for key, bodies in (("object_poses", 1), ("link_poses", len(scene["hand"]["links"]))):
+            values = numbers(load[key], "f")
+            load[key] = [values[i : i + 7] for i in range(0, len(values), 7)]
+            if len(load[key]) != bodies * len(load["times"]) or not load["times"]:
+                raise ValueError(f"{key} of load {load['name']} does not fit its times")
+    if not 0 <= scene["shown"] < len(scene["directions"]):
+        raise ValueError("no load to show")
 
 
 # Poses are x, y, z and a unit quaternion w, x, y, z.
@@ -303,8 +278,9 @@ def main():
     parser.add_argument("--width", type=pixels, default=640, help="pixels (default 640)")
     parser.add_argument("--height", type=pixels, default=620, help="pixels (default 620)")
     arguments = parser.parse_args()
-    try:
-        scene = read_scene(arguments.scene)
+
+    def work():
+        scene = read_scene(arguments.scene, "hold test", decode)
         loads = {load["name"]: load for load in scene["directions"]}
         name = arguments.load or scene["directions"][scene["shown"]]["name"]
         if name not in loads:
@@ -313,12 +289,8 @@ def main():
         load = loads[name]
         painter = Painter(arguments.width, arguments.height, scene, load)
         write_atomically(arguments.picture, animation(painter, frames_to_show(scene, load)))
-    except BadInput as error:
-        print(f"render_hold.py: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+
+    return exit_code("render_hold.py", work)
 
 
 if __name__ == "__main__":

@@ -195,6 +195,24 @@ TEST_CASE("A simulation that diverges is a grasp that fails, and says so", "[hol
   CHECK(verdict.reason == "the simulation diverged");
 }
 
+TEST_CASE("Links that are said to have mass and no inertia are as inert as their solid",
+          "[hold_test]") {
+  // As the fingertips of the Shadow hand's description, which the engine alone would refuse.
+  hands::HandModel described = testing::two_jaws();
+  hands::HandModel silent = described;
+  for (std::size_t link = 1; link < described.links.size(); ++link) {
+    described.links[link].inertia = {0.0064, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
+  }
+  const HoldObject cube = testing::convex_object(geometry::box({0.04, 0.04, 0.04}));
+  // Boxes of 20 mm and 800 kg/m3 have just that mass.
+  const HoldVerdict verdict =
+      HoldTest(testing::convex_hand(described), cube, bench()).test(pinch(5.0));
+  CHECK(verdict.held());
+  CHECK(verdict.squeeze_force ==
+        Approx(HoldTest(testing::convex_hand(silent), cube, bench()).test(pinch(5.0)).squeeze_force)
+            .epsilon(1e-6));
+}
+
 TEST_CASE("Joint positions that are not the hand's are refused", "[hold_test]") {
   HoldTest test = jaws_on_cube(bench());
   grasp::Grasp grasp = pinch(5.0);

@@ -1,5 +1,6 @@
 #include "internal/scene_text.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -61,6 +62,10 @@ std::string inertial(double mass, const Eigen::Vector3d& center, const Eigen::Ma
                            inertia(0, 1), inertia(0, 2), inertia(1, 2)};
   return "<inertial" + position(center) + attribute("mass", number(mass)) +
          attribute("fullinertia", numbers(full)) + "/>\n";
+}
+
+bool is_positive_definite(const Eigen::Matrix3d& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues().minCoeff() > 0.0;
 }
 
 class Scene {
@@ -125,17 +130,22 @@ class Scene {
     return geoms;
   }
 
+  /// As described; what the description leaves out or says as zero is that of the link's solid: of
+  /// the described mass, or else of the protocol's density.
   std::string link_inertial(const hands::Link& link) const {
-    if (link.inertia && link.inertia->mass > 0.0) {
+    const bool has_mass = link.inertia && link.inertia->mass > 0.0;
+    if (has_mass && is_positive_definite(link.inertia->inertia_L)) {
       return inertial(link.inertia->mass, link.inertia->center_L, link.inertia->inertia_L);
     }
     if (link.mesh_L.faces.empty()) {
-      return inertial(kLeastMass, Eigen::Vector3d::Zero(),
+      return inertial(has_mass ? link.inertia->mass : kLeastMass,
+                      has_mass ? link.inertia->center_L : Eigen::Vector3d(Eigen::Vector3d::Zero()),
                       kLeastInertia * Eigen::Matrix3d::Identity());
     }
-    const geometry::MassProperties mass = geometry::mass_properties(link.mesh_L);
-    return inertial(protocol_.link_density * mass.volume, mass.center_of_mass,
-                    protocol_.link_density * mass.inertia);
+    const geometry::MassProperties solid = geometry::mass_properties(link.mesh_L);
+    const double mass = has_mass ? link.inertia->mass : protocol_.link_density * solid.volume;
+    return inertial(mass, has_mass ? link.inertia->center_L : solid.center_of_mass,
+                    mass / solid.volume * solid.inertia);
   }
 
   std::string joint_element(int index) const {
