@@ -132,6 +132,8 @@ const char* stop_text(grasp::PlannerStop stop) {
       return "every set of targets tried";
     case grasp::PlannerStop::WallClock:
       return "stopped at the wall-clock limit";
+    case grasp::PlannerStop::Iterations:
+      return "all iterations made";
   }
   return "";
 }

@@ -98,6 +98,9 @@ std::vector<Setting> request_settings() {
           integer(
               "max-attempts", "target sets fitted",
               [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
+          option("max-iterations", "1",
+                 "fitting and refinement steps of all attempts together; none without",
+                 [](PlannerOptions& o, const SettingValue& v) { o.max_iterations = v.integer(); }),
           {{"table", "m",
             "a table: everything at or below this z of the object's frame is solid; none without"},
            [](PlanningSettings& s, const SettingValue& v) { s.table_z_O = v.number(); }},
@@ -110,42 +113,46 @@ std::vector<Setting> request_settings() {
 }
 
 std::vector<Setting> score_settings() {
-  return {integer(
-              "resolution", "voxels along the object's longest extent",
-              [](PlannerOptions & o) -> auto& { return o.resolution; }),
-          choice<geometry::PatchAveraging>(
-              "averaging", "how pieces of surface are averaged",
-              [](PlannerOptions & o) -> auto& { return o.averaging; }),
-          integer(
-              "neighborhood", "edge of the score's window in voxels",
-              [](PlannerOptions & o) -> auto& { return o.score.neighborhood; }),
-          choice<grasp::ScoreNormalization>(
-              "score-normalization", "how raw scores become comparable with the threshold",
-              [](PlannerOptions & o) -> auto& { return o.score.normalization; }),
-          choice<grasp::PlaneDistance>(
-              "plane-distance", "distances of neighbors to the voxel's plane",
-              [](PlannerOptions & o) -> auto& { return o.score.plane_distance; }),
-          number(
-              "score-length-voxels", "1", "normalizer of the mean plane distance in voxels",
-              [](PlannerOptions & o) -> auto& { return o.score.length_voxels; }),
-          integer(
-              "mean-filter-radius", "of the smoothing of scores in voxels",
-              [](PlannerOptions & o) -> auto& { return o.score.mean_filter_radius; }),
-          integer(
-              "mean-filter-passes", "of the smoothing of scores",
-              [](PlannerOptions & o) -> auto& { return o.score.mean_filter_passes; }),
-          number(
-              "score-threshold", "1", "every target's score must exceed it",
-              [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
-          option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
-                 [](PlannerOptions& o, const SettingValue& v) {
-                   if (v.number() == 0.0) {
-                     o.weak.reset();
-                   } else {
-                     o.weak = geometry::WeakRegionOptions{};
-                     o.weak->weak_thickness = v.number() * kMetersPerMillimeter;
-                   }
-                 })};
+  return {
+      integer(
+          "resolution", "voxels along the object's longest extent",
+          [](PlannerOptions & o) -> auto& { return o.resolution; }),
+      choice<geometry::PatchAveraging>(
+          "averaging", "how pieces of surface are averaged",
+          [](PlannerOptions & o) -> auto& { return o.averaging; }),
+      integer(
+          "neighborhood", "edge of the score's window in voxels",
+          [](PlannerOptions & o) -> auto& { return o.score.neighborhood; }),
+      choice<grasp::ScoreNormalization>(
+          "score-normalization", "how raw scores become comparable with the threshold",
+          [](PlannerOptions & o) -> auto& { return o.score.normalization; }),
+      choice<grasp::PlaneDistance>(
+          "plane-distance", "distances of neighbors to the voxel's plane",
+          [](PlannerOptions & o) -> auto& { return o.score.plane_distance; }),
+      number(
+          "score-length-voxels", "1", "normalizer of the mean plane distance in voxels",
+          [](PlannerOptions & o) -> auto& { return o.score.length_voxels; }),
+      integer(
+          "mean-filter-radius", "of the smoothing of scores in voxels",
+          [](PlannerOptions & o) -> auto& { return o.score.mean_filter_radius; }),
+      integer(
+          "mean-filter-passes", "of the smoothing of scores",
+          [](PlannerOptions & o) -> auto& { return o.score.mean_filter_passes; }),
+      number(
+          "score-threshold", "1", "every target's score must exceed it",
+          [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
+      option(
+          "contact-score-threshold", "1", "every contact's score must exceed it; none without",
+          [](PlannerOptions& o, const SettingValue& v) { o.contact_score_threshold = v.number(); }),
+      option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
+             [](PlannerOptions& o, const SettingValue& v) {
+               if (v.number() == 0.0) {
+                 o.weak.reset();
+               } else {
+                 o.weak = geometry::WeakRegionOptions{};
+                 o.weak->weak_thickness = v.number() * kMetersPerMillimeter;
+               }
+             })};
 }
 
 std::vector<Setting> target_settings() {

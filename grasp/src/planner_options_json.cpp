@@ -85,6 +85,7 @@ class Reader {
     }
   }
   static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
+  static void read(const JsonNode& node, std::int64_t& value) { value = node.integer(); }
   static void read(const JsonNode& node, bool& value) { value = node.flag(); }
   static void read(const JsonNode& node, std::vector<std::string>& value) { value = node.texts(); }
   static void read(const JsonNode& node, Eigen::Vector3d& value) { value = node.vector3(); }
@@ -216,6 +217,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("palm", options.palm);
   at("count", options.count);
   at("max_attempts", options.max_attempts);
+  at("max_iterations", options.max_iterations);
   at("acceptance", options.acceptance);
   at("search", options.search);
   at("target_draws", options.target_draws);
@@ -233,6 +235,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("refine", options.refine);
   at.group("refinement", options.refinement, refinement_fields);
   at("self_overlap_m", options.self_overlap);
+  at("contact_score_threshold", options.contact_score_threshold);
   at("pre_grasps", options.pre_grasps);
   at.group("pre_grasp", options.pre_grasp, pre_grasp_fields);
   at.group("squeeze", options.squeeze, squeeze_fields);
