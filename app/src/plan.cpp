@@ -136,6 +136,8 @@ const char* stop_text(grasp::PlannerStop stop) {
       return "every start tried";
     case grasp::PlannerStop::WallClock:
       return "stopped at the wall-clock limit";
+    case grasp::PlannerStop::Iterations:
+      return "all iterations made";
   }
   return "";
 }

@@ -115,6 +115,9 @@ po::options_description search_options() {
              "[R, A36]");
   add_integer(search, "max-attempts", static_cast<std::uint64_t>(defaults.max_attempts),
               "target sets tried before giving up: work, not time [R, A36]");
+  add_option(search, "max-iterations", "N", std::nullopt,
+             "fitting and refinement steps of all attempts together: the attempt that reaches them "
+             "is the last; the same on every machine [R, A36]");
   add_option(search, "wall-clock-limit-s", "SECONDS", std::nullopt,
              "also stop after this time; results then depend on the machine, and say so");
 
@@ -221,6 +224,9 @@ po::options_description refinement_options() {
   add_integer(refinement, "slide-steps", static_cast<std::uint64_t>(limits.slide_steps),
               "in which pads that touch are slid toward their targets: larger M, more work; 8 is a "
               "good number, 0: not");
+  add_option(refinement, "contact-score-threshold", "NUMBER", std::nullopt,
+             "every contact's score must exceed it, 0 to 1, not only those of targets, which "
+             "fingers miss; such grasps count as usable but not valid; without: not asked [R]");
   add_option(refinement, "pre-grasps", "yes|no", defaults.pre_grasps ? "yes" : "no",
              "a grasp needs a pre-grasp, open and clear, from which the straight way is free");
   add_number(refinement, "pre-grasp-clearance-mm", defaults.pre_grasp.clearance * 1000.0,
@@ -338,6 +344,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   read_angle(flags, "largest-turn-deg", limits.largest_turn);
   limits.max_iterations = flags.integer("refine-iterations");
   limits.slide_steps = flags.integer("slide-steps");
+  options.contact_score_threshold = flags.optional_number("contact-score-threshold");
   options.pre_grasps = flags.yes_or_no("pre-grasps");
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
   read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);
@@ -378,6 +385,7 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.target_draws = flags.integer("target-draws");
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
+  if (flags.has("max-iterations")) options.max_iterations = flags.integer("max-iterations");
   options.wall_clock_limit_s = flags.optional_number("wall-clock-limit-s");
 }
 

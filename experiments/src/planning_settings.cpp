@@ -129,6 +129,9 @@ std::vector<Setting> request_settings() {
           integer(
               "max-attempts", "target sets fitted",
               [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
+          option("max-iterations", "1",
+                 "fitting and refinement steps of all attempts together; none without",
+                 [](PlannerOptions& o, const SettingValue& v) { o.max_iterations = v.integer(); }),
           {{"table", "m",
             "a table: everything at or below this z of the object's frame is solid; none without"},
            of_type("number"),
@@ -183,6 +186,11 @@ std::vector<Setting> score_settings() {
           number(
               "score-threshold", "1", "every target's score must exceed it",
               [](PlannerOptions & o) -> auto& { return o.targets.score_threshold; }),
+          option("contact-score-threshold", "1",
+                 "every contact's score must exceed it; none without", of_type("number"),
+                 [](PlannerOptions& o, const SettingValue& v) {
+                   o.contact_score_threshold = v.number();
+                 }),
           option("weak-thickness-mm", "mm", "parts thinner are fragile; 0: none are looked for",
                  of_type("number"), [](PlannerOptions& o, const SettingValue& v) {
                    if (v.number() == 0.0) {

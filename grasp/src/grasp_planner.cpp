@@ -110,6 +110,10 @@ class Run {
       end(PlannerStop::Count);
     } else if (num_taken_ == options_.max_attempts) {
       end(PlannerStop::Attempts);
+    } else if (options_.max_iterations &&
+               statistics.fitting_iterations + statistics.refinement_iterations >=
+                   *options_.max_iterations) {
+      end(PlannerStop::Iterations);
     } else if (options_.wall_clock_limit_s &&
                seconds_since_start() > *options_.wall_clock_limit_s) {
       end(PlannerStop::WallClock);

@@ -1,6 +1,7 @@
 #include "graspfit/grasp/object_model.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -133,6 +134,26 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                      .scores = std::move(parts.scores),
                      .weak = std::move(weak),
                      .is_weak_patch = std::move(is_weak_patch)};
+}
+
+std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::Vector3d& point_O) {
+  const geometry::VoxelLattice& lattice = object.grid.lattice;
+  const Eigen::Vector3i own = lattice.voxel_at(point_O);
+  const auto patch_at = [&](const Eigen::Vector3i& voxel) {
+    return lattice.contains(voxel) ? object.patch_of_voxel[lattice.index(voxel)] : -1;
+  };
+  std::int32_t patch = patch_at(own);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; patch_at(own) < 0 && i < 27; ++i) {
+    const std::int32_t other = patch_at(own + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+    if (other < 0) continue;
+    const double distance = (object.patches[other].centroid - point_O).squaredNorm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    patch = other;
+  }
+  if (patch < 0) return std::nullopt;
+  return object.scores.scores[patch];
 }
 
 }  // namespace graspfit::grasp

@@ -118,7 +118,8 @@ std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>() {
       NamedValue<PlannerStop>{PlannerStop::Count, "count"},
       NamedValue<PlannerStop>{PlannerStop::Attempts, "attempts"},
       NamedValue<PlannerStop>{PlannerStop::Exhausted, "exhausted"},
-      NamedValue<PlannerStop>{PlannerStop::WallClock, "wall-clock"}};
+      NamedValue<PlannerStop>{PlannerStop::WallClock, "wall-clock"},
+      NamedValue<PlannerStop>{PlannerStop::Iterations, "iterations"}};
   return names;
 }
 

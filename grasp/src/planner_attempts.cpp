@@ -192,7 +192,8 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     return result;
   }
   // A start that cut something may have been turned before refinement.
-  const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle;
+  const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle &&
+                           are_scores_high(grasp.contacts);
   const bool is_valid = is_as_asked && grasp.is_valid();
   result.outcome = is_valid ? AttemptOutcome::Valid : AttemptOutcome::UsableOnly;
   result.is_accepted = is_as_asked && is_accepted(grasp);
@@ -289,6 +290,15 @@ double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& conf
   const Eigen::Vector3d palm = configuration.X_OH.linear() * hand_.palm.direction_H;
   const Eigen::Vector3d& wanted = *options_.approach_O;
   return std::atan2(palm.cross(wanted).norm(), palm.dot(wanted));
+}
+
+/// Fingers miss their targets, so a target's score says little about the contact's.
+bool PlannerAttempts::are_scores_high(const std::vector<Contact>& contacts) const {
+  if (!options_.contact_score_threshold) return true;
+  return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+    return contact_score_at(object_, contact.point_O).value_or(0.0) >
+           *options_.contact_score_threshold;
+  });
 }
 
 bool PlannerAttempts::is_accepted(const Grasp& grasp) const {

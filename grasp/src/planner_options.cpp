@@ -22,6 +22,7 @@ void PlannerOptions::validate() const {
   find_planning_method(planner);
   require(count >= 1, "count", count, ">= 1");
   require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
+  if (max_iterations) require(*max_iterations >= 1, "max_iterations", *max_iterations, ">= 1");
   const bool has_palm = palm.value_or(style == GraspStyle::Power);
   const int least_fingers = has_palm ? 1 : 2;
   require(!fingers.empty() || num_contacts >= least_fingers, "num_contacts", num_contacts,
@@ -48,6 +49,10 @@ void PlannerOptions::validate() const {
           "finite and >= 0 m");
   require(approach_angle > 0.0 && approach_angle <= std::numbers::pi, "approach_angle",
           approach_angle, "in (0, pi] rad");
+  if (contact_score_threshold) {
+    require(*contact_score_threshold >= 0.0 && *contact_score_threshold < 1.0,
+            "contact_score_threshold", *contact_score_threshold, "in [0, 1)");
+  }
   require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
   score.validate();
   if (weak) weak->validate();

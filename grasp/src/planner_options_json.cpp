@@ -85,6 +85,7 @@ class Reader {
     }
   }
   static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
+  static void read(const JsonNode& node, std::int64_t& value) { value = node.integer(); }
   static void read(const JsonNode& node, bool& value) { value = node.flag(); }
   static void read(const JsonNode& node, std::string& value) { value = node.text(); }
   static void read(const JsonNode& node, std::vector<std::string>& value) { value = node.texts(); }
@@ -236,6 +237,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("palm", options.palm);
   at("count", options.count);
   at("max_attempts", options.max_attempts);
+  at("max_iterations", options.max_iterations);
   at("acceptance", options.acceptance);
   at("missing_contact", options.missing_contact);
   at("search", options.search);
@@ -256,6 +258,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("refine", options.refine);
   at.group("refinement", options.refinement, refinement_fields);
   at("self_overlap_m", options.self_overlap);
+  at("contact_score_threshold", options.contact_score_threshold);
   at("pre_grasps", options.pre_grasps);
   at.group("pre_grasp", options.pre_grasp, pre_grasp_fields);
   at.group("squeeze", options.squeeze, squeeze_fields);

@@ -90,9 +90,11 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   : "clip volume max(0.5 voxel, 1 mm) thick"},
       {"A34", averaging},
       {"A35", "contacts of all pads count"},
-      {"A36", std::string(name_of(options.search)) + " " +
-                  std::string(name_of(options.acceptance)) + " of at most " +
-                  std::to_string(options.max_attempts) + " attempts"},
+      {"A36",
+       std::string(name_of(options.search)) + " " + std::string(name_of(options.acceptance)) +
+           " of at most " + std::to_string(options.max_attempts) + " attempts" +
+           (options.max_iterations ? ", " + std::to_string(*options.max_iterations) + " iterations"
+                                   : "")},
       {"A37", options.weak ? "slender features thinner than " +
                                  shortest_decimal(options.weak->weak_thickness) + " m"
                            : text("not looked for: nothing counts as weak")},

@@ -151,6 +151,8 @@ class BadFlags(program.ProgramTest):
         for flag, *values in (
                 ("score-threshold", "-0.1", "1", "1.5"), ("theta-max-deg", "0", "-5", "90", "120"),
                 ("resolution", "3", "513", "-30"), ("count", "0", "-1"), ("max-attempts", "0"),
+                ("max-iterations", "0", "-1", "1.5"),
+                ("contact-score-threshold", "-0.1", "1"),
                 ("alpha", "-1"), ("beta", "-0.3"), ("w1", "-1"), ("w2", "-1"), ("w3", "-1"),
                 ("max-hole", "-0.1", "1.1"), ("weld", "-0.001", "0.011"), ("longest", "0", "-0.15"),
                 ("clip-thickness-mm", "0", "-1"), ("wall-clock-limit-s", "0", "-1"),

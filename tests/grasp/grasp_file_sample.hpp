@@ -36,9 +36,11 @@ inline grasp::PlannerOptions unusual_options() {
   options.acceptance = grasp::Acceptance::Quality;
   options.count = 7;
   options.max_attempts = 77;
+  options.max_iterations = 5000000000;  // more than an int holds
   options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
   options.approach_angle = 0.4;
   options.wall_clock_limit_s = 12.5;
+  options.contact_score_threshold = 0.55;
   options.resolution = 31;
   options.clip_thickness = 0.1;
   options.score.normalization = grasp::ScoreNormalization::Raw;

@@ -76,7 +76,9 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
   CHECK(read.statistics.refinement_iterations == written.statistics.refinement_iterations);
   CHECK(read.options.seed == written.options.seed);
   CHECK(read.options.approach_O == written.options.approach_O);
+  CHECK(read.options.max_iterations == written.options.max_iterations);
   CHECK(read.options.wall_clock_limit_s == written.options.wall_clock_limit_s);
+  CHECK(read.options.contact_score_threshold == written.options.contact_score_threshold);
   CHECK(read.options.score.normalization == written.options.score.normalization);
   CHECK(read.options.targets.pair_rule == written.options.targets.pair_rule);
   CHECK(read.options.quality.regularity == written.options.quality.regularity);

@@ -170,6 +170,61 @@ TEST_CASE("A time limit stops the work and is recorded", "[grasp][grasp_planner]
   CHECK(sum == result.statistics.attempts);
 }
 
+TEST_CASE("Contacts keep to surface with a high score where that is asked for",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));
+  constexpr double kThreshold = 0.6;
+  const auto lowest_score = [](const Run& run, const Grasp& grasp) {
+    double lowest = 1.0;
+    for (const grasp::Contact& contact : grasp.contacts) {
+      lowest = std::min(lowest, grasp::contact_score_at(run.object, contact.point_O).value_or(0.0));
+    }
+    return lowest;
+  };
+  PlannerOptions options = collecting(Acceptance::Usable, 1000, 30);
+  options.max_placements = 1;  // else another side is tried where the first is turned down
+  const Run free(mesh, options);
+  options.contact_score_threshold = kThreshold;
+  const Run bound(mesh, options);
+  const PlannerResult all = free.plan();
+  const PlannerResult kept = bound.plan();
+  std::set<std::int64_t> expected;
+  for (const Grasp& grasp : all.grasps) {
+    if (lowest_score(free, grasp) > kThreshold) expected.insert(grasp.attempt);
+  }
+  std::set<std::int64_t> found;
+  for (const Grasp& grasp : kept.grasps) found.insert(grasp.attempt);
+  CHECK(found == expected);
+  CHECK_FALSE(found.empty());
+  CHECK(found.size() < all.grasps.size());  // edges are touched where nothing forbids it
+  CHECK(kept.statistics.usable() == all.statistics.usable());
+}
+
+TEST_CASE("A budget of iterations ends the run at the attempt that reaches it, on any threads",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::torus(0.05, 0.018);
+  const auto used_by = [&](int max_attempts) {
+    const PlannerResult result =
+        Run(mesh, collecting(Acceptance::Usable, 1000, max_attempts)).plan();
+    return result.statistics.fitting_iterations + result.statistics.refinement_iterations;
+  };
+  const std::int64_t by_two = used_by(2);
+  const std::int64_t by_three = used_by(3);
+  REQUIRE(by_two < by_three);
+  for (const std::int64_t budget : {by_two + 1, by_three}) {
+    PlannerOptions options = collecting(Acceptance::Usable, 1000, 40);
+    options.max_iterations = budget;
+    const Run run(mesh, options);
+    const PlannerResult result = run.plan(1);
+    CHECK(result.stop == PlannerStop::Iterations);
+    CHECK(result.statistics.attempts == 3);
+    CHECK(result.statistics.fitting_iterations + result.statistics.refinement_iterations ==
+          by_three);
+    for (const int num_threads : {2, 5})
+      CHECK(all_fields(result) == all_fields(run.plan(num_threads)));
+  }
+}
+
 TEST_CASE("A turned object is grasped as often", "[grasp][grasp_planner]") {
   constexpr int kAttempts = 20;
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -250,4 +251,29 @@ TEST_CASE("Object model options out of range are refused by field and value",
   CHECK_THROWS_WITH(build_object_model(ball, {.margin = std::nan("")}), Contains("margin = nan"));
   CHECK_THROWS_WITH(build_object_model(ball, {.score = {.neighborhood = 2}}),
                     Contains("neighborhood = 2"));
+}
+
+TEST_CASE("The score at a point is that of the patch there", "[grasp][object_model]") {
+  const ObjectModel object = build_object_model(geometry::box({0.06, 0.08, 0.10}), {});
+  const geometry::VoxelLattice& lattice = object.grid.lattice;
+  for (std::size_t i = 0; i < object.patches.size(); ++i) {
+    const Vector3d& centroid = object.patches[i].centroid;
+    // Rounding may put a centroid on a plane between voxels into either.
+    const bool is_inside = lattice.index(lattice.voxel_at(centroid)) == object.patches[i].voxel;
+    if (is_inside) CHECK(contact_score_at(object, centroid) == object.scores.scores[i]);
+  }
+  const auto [lowest, highest] =
+      std::minmax_element(object.scores.scores.begin(), object.scores.scores.end());
+  REQUIRE(*lowest < *highest);  // edges and faces differ
+
+  // The face lies in a plane between voxels: on one of its sides is a voxel without surface, which
+  // has the score of its neighbor.
+  const double h = lattice.voxel_size;
+  const Vector3d on_face(0.03, 0.4 * h, 0.4 * h);
+  const auto at_face = contact_score_at(object, on_face);
+  REQUIRE(at_face);
+  CHECK(contact_score_at(object, on_face + Vector3d(0.5 * h, 0, 0)) == at_face);
+  CHECK_FALSE(contact_score_at(object, on_face + Vector3d(3.5 * h, 0, 0)));
+  CHECK_FALSE(contact_score_at(object, Vector3d(10, 0, 0)));  // beyond the lattice
+  CHECK_FALSE(contact_score_at(object, Vector3d::Zero()));    // far inside
 }

@@ -41,6 +41,7 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
   CHECK(unsaid(message_after([](auto& o) { o.num_contacts = 1; }), "num_contacts", "1") == "");
   CHECK(unsaid(message_after([](auto& o) { o.count = 0; }), "count", "0") == "");
   CHECK(unsaid(message_after([](auto& o) { o.max_attempts = -4; }), "max_attempts", "-4") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.max_iterations = 0; }), "max_iterations", "0") == "");
   CHECK(unsaid(message_after([](auto& o) { o.approach_O = Vector3d(0, 0, 0); }), "approach_O",
                "0") == "");
   CHECK(unsaid(message_after([=](auto& o) { o.approach_O = Vector3d(0, nan, 1); }), "approach_O",
@@ -56,6 +57,8 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
   CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "planner", "none") == "");
   CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "fitting|gs|ma",
                "ma-full-retreat") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.contact_score_threshold = 1.0; }),
+               "contact_score_threshold", "1") == "");
   // Options inside options.
   CHECK(unsaid(message_after([](auto& o) { o.sampling.count = 0; }), "count", "0") == "");
   CHECK(unsaid(message_after([](auto& o) { o.sampling.box_spacing = 0.0; }), "box_spacing", "0") ==

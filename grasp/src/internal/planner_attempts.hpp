@@ -46,6 +46,7 @@ class PlannerAttempts {
   void complete(Grasp& grasp, AttemptResult& result) const;
   double ideal_m(const TargetContacts& targets) const;
   double angle_from_approach(const hands::HandConfiguration& configuration) const;
+  bool are_scores_high(const std::vector<Contact>& contacts) const;
   bool is_accepted(const Grasp& grasp) const;
 
   const ObjectModel& object_;

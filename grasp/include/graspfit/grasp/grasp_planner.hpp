@@ -63,6 +63,9 @@ struct PlannerOptions {
   std::uint64_t seed = 1;
   SearchRule search = SearchRule::Best;
   int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
+  /// Steps of fitting and refinement of all attempts together, ≥ 1: the attempt with which their
+  /// sum, taken in the order of attempts, reaches it is the last; empty: no such budget (A36).
+  std::optional<std::int64_t> max_iterations;
   Acceptance acceptance = Acceptance::Valid;
   MissingContact missing_contact = MissingContact::Fails;
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
@@ -95,6 +98,9 @@ struct PlannerOptions {
   double self_overlap =
       0.001;  ///< Without refinement: overlap of links of different fingers that a formed grasp may
               ///< have before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
+  /// Every contact's score must exceed it, in [0, 1), whether the pad had a target or not; empty:
+  /// only the scores of targets count, as the paper states it [R].
+  std::optional<double> contact_score_threshold;
   bool pre_grasps = true;  ///< Whether a grasp needs a pre-grasp with a free way in [R].
   PreGraspOptions pre_grasp;
   SqueezeOptions squeeze;
@@ -106,17 +112,18 @@ struct PlannerOptions {
 
 /// How the planner's work ended.
 enum class PlannerStop {
-  Count,      ///< As many grasps as were asked for.
-  Attempts,   ///< All attempts made.
-  Exhausted,  ///< Ranked search: every feasible target set was tried; ma: every candidate.
-  WallClock,  ///< Opt-in limit.
+  Count,       ///< As many grasps as were asked for.
+  Attempts,    ///< All attempts made.
+  Exhausted,   ///< Ranked search: every feasible target set was tried; ma: every candidate.
+  WallClock,   ///< Opt-in limit.
+  Iterations,  ///< The budget of fitting and refinement steps is used up.
 };
 
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
 enum class AttemptOutcome {
   Valid,
   UsableOnly,  ///< Usable but penetrating, without a requested contact, without a way in, or with
-               ///< the palm out of the cone of approach.
+               ///< the palm out of the cone of approach, or a contact where the score is too low.
   NoTargets,   ///< Nothing to start from: of fitting no seed, no pair or no further contact.
   InitialCollision,
   BlockedFinger,

@@ -51,6 +51,11 @@ struct ObjectModel {
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
 
+/// Score of the surface at `point_O`, a point on it: of the patch in the voxel that holds the
+/// point. Where rounding put it into a voxel without surface, of the patch with the nearest
+/// centroid of those in the 26 voxels around. Empty for points farther away.
+std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::Vector3d& point_O);
+
 /// Seconds spent in each step of `build_object_model`, for benchmarks.
 struct ObjectModelTimings {
   double query_s = 0.0;
