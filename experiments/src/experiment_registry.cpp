@@ -5,8 +5,10 @@ namespace graspfit::experiments {
 
 const std::vector<Experiment>& all_experiments() {
   static const std::vector<Experiment> experiments = {
-      internal::force_closure(),    internal::hold_prediction(),       internal::hold_rates(),
-      internal::planner_everyday(), internal::planner_paper_objects(), internal::special_cases(),
+      internal::contacts_and_time(),     internal::fitting_stages(), internal::force_closure(),
+      internal::hold_prediction(),       internal::hold_rates(),     internal::measured_contacts(),
+      internal::object_voxels(),         internal::paper_grasps(),   internal::planner_everyday(),
+      internal::planner_paper_objects(), internal::special_cases(),
   };
   return experiments;
 }
