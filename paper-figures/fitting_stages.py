@@ -44,7 +44,7 @@ def draw(source):
     points = np.concatenate([vertices, *(hand_points(links, found[name][1]) for name in WORDS)])
     stage = Stage(560, 620)
     figure, axes = panels(
-        "SQUIRREL (15 cm), Barrett hand: from targets (blue) to contacts (red)", 1, 4, 8.8, 3.6,
+        "SQUIRREL (15 cm), Barrett hand: from targets (blue) to contacts (red)", 1, 4, 8.8, 3.3,
         f"Mean distance of contacts from targets {1000 * row['mean_target_distance_m']:.1f} mm;"
         f" refinement moved the palm by {1000 * row['refinement_shift_m']:.1f} mm. {measures(record['grasps'][0]).splitlines()[0]}.",
         head=0.48, foot=0.3,

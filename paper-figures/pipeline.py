@@ -39,10 +39,10 @@ def draw(source):
     _, up = up_of("bunny")
     view = (level(70, 12), up, vertices)
     figure, axes = panels(
-        "BUNNY (12 cm), Barrett hand: from mesh to grasp", 2, 4, 8.8, 5.2,
+        "BUNNY (12 cm), Barrett hand: from mesh to grasp", 2, 4, 8.8, 5.6,
         f"Slice of the distance map through the center of mass; black: the partial voxels ({int(voxels.row['partial'])} in all)."
         " The hand is shown as its meshes (purple), of which the loop keeps the voxels clear.",
-        head=0.5, foot=0.15, hspace=0.16, wspace=0.08,
+        head=0.5, foot=0.15, hspace=0.3, wspace=0.08,
     )  # fmt: skip
     one, two = axes
     solid = stage.mesh(vertices, triangles, OBJECT)
@@ -52,8 +52,8 @@ def draw(source):
     shown = draw_distances(one[3], voxels)
     one[3].set_title("4  signed distances [voxels]", pad=3)
     box = one[3].get_position()
-    one[3].set_position([box.x0 + 0.02, box.y0 + 0.055, box.width - 0.045, box.height - 0.055])
-    bar = figure.colorbar(shown, cax=figure.add_axes([0.965, box.y0 + 0.08, 0.009, box.height - 0.11]))
+    one[3].set_position([box.x0 + 0.02, box.y0 + 0.045, box.width - 0.055, box.height - 0.045])
+    bar = figure.colorbar(shown, cax=figure.add_axes([0.955, box.y0 + 0.08, 0.008, box.height - 0.11]))
     bar.ax.tick_params(labelsize=6)
     bar.outline.set_visible(False)
     targets = target_panel(stage, record, record["grasps"][0], vertices, triangles, *view, span(vertices))
@@ -61,5 +61,5 @@ def draw(source):
     points = np.concatenate([vertices, *(hand_points(links, found[name][1]) for name in ("initial", "loop_2", "grasp"))])
     for ax, name, words in zip(two[1:], ("initial", "loop_2", "grasp"), ("6  fitting: start", "6  fitting: on its way", "7  grasp")):
         show_picture(ax, stage_panel(stage, source, record, found[name][1], points, name == "grasp"), words)
-    score_bar(figure, figure.add_axes([0.54, 0.535, 0.16, 0.012]))
+    score_bar(figure, figure.add_axes([0.545, 0.522, 0.15, 0.011]))
     return figure

@@ -2,16 +2,32 @@
 
 import numpy as np
 from figure_style import BLUE, CYCLE, ORANGE, SOFT, panels
-from object_names import shown_name
 from voxel_data import CENTROID, NORMAL, Voxels, window
 
-# Where to look: object, what its surface is like there, and which voxel stands for it.
+# Where to look: object, and which of its partial voxels stands for the kind of surface.
 PLACES = {
-    "sharp": ("box", "corner of a box"),
-    "concave": ("flower_pot", "inside a pot, floor to wall"),
-    "uneven": ("armadillo", "ARMADILLO's shell"),
+    "sharp": ("box", "a box's corner"),
+    "concave": ("squirrel", "the squirrel's crease"),
+    "uneven": ("armadillo", "the armadillo's skin"),
     "smooth": ("ball", "a ball"),
 }
+LEAST_NEIGHBORS = 20  # of a voxel on a sheet of surface; tips and edges have fewer
+
+
+def on_sheets(voxels):
+    """Per partial voxel on a sheet of surface: index, mean signed distance of its neighbors to its plane.
+
+    Voxels with neighbors that look the other way (thin parts) are left out.
+    """
+    found = []
+    normals = voxels.partial[NORMAL].fillna(0.0).to_numpy()
+    centroids = voxels.partial[CENTROID].to_numpy()
+    for index in range(len(voxels.partial)):
+        near = window(voxels, index).index
+        if len(near) < LEAST_NEIGHBORS or (normals[near] @ normals[index]).min() < -0.5:
+            continue
+        found.append((index, ((centroids[near] - centroids[index]) @ normals[index]).mean() / voxels.size))
+    return found
 
 
 def representative(kind, voxels):
@@ -19,19 +35,11 @@ def representative(kind, voxels):
     part = voxels.partial
     if kind == "sharp":  # the corner: the farthest from the center
         return int(np.linalg.norm(part[CENTROID].to_numpy(), axis=1).argmax())
-    if kind == "concave":  # lowest place that looks up or inward, next to the wall
-        x, y, z = part[CENTROID].to_numpy().T
-        nx, ny, nz = part[NORMAL].fillna(0.0).to_numpy().T
-        radius = np.hypot(x, y)
-        inward = -(x * nx + y * ny) / np.maximum(radius, 1e-9)
-        is_inside = (inward > 0.3) & (nz > 0.2) & (z < z.min() + 0.25 * np.ptp(z))
-        candidates = np.flatnonzero(is_inside)
-        return int(candidates[np.argmin(np.abs(y[candidates]) + z[candidates])])
-    if kind == "uneven":  # the median C_a of the most uneven fifth among voxels that face away from the body's middle
-        normal_angle = part["normal_angle_deg"].to_numpy()
-        plane_distance = part["plane_distance_voxels"].to_numpy()
-        flat_enough = np.flatnonzero(plane_distance < np.median(plane_distance))
-        return int(flat_enough[normal_angle[flat_enough].argmax()])
+    if kind == "concave":  # neighbors rise over its plane the most
+        return max(on_sheets(voxels), key=lambda found: found[1])[0]
+    if kind == "uneven":  # normals differ the most where neighbors lie on both sides of its plane
+        both_sides = [index for index, offset in on_sheets(voxels) if abs(offset) < 0.1]
+        return max(both_sides, key=lambda index: part["normal_angle_deg"][index])
     return int((part["normal_angle_deg"] - part["normal_angle_deg"].median()).abs().argmin())
 
 
@@ -63,7 +71,7 @@ def draw(source):
     figure, axes = panels(
         "Terms of the contact score: mean plane distance C_d and mean normal angle C_a of a voxel's neighbors", 2, 4, 9.4, 5.3,
         "Above: one voxel (red) and its neighbors in 5 x 5 x 5 voxels, seen in the plane of its normal and the direction in which normals vary most.\n"
-        "Below: all partial voxels of four bodies (30 along the longest side), every one a dot; the voxel above is the cross.",
+        "Below: all partial voxels of four bodies (30 along the longest side), every one a dot; the voxel above is the cross. Box and ball are shapes of our own.",
         left=0.065, right=0.985, head=0.72, foot=0.4, hspace=0.3, wspace=0.24, height_ratios=(1.15, 1.0),
     )  # fmt: skip
     for k, (kind, voxels) in enumerate(found.items()):
@@ -77,7 +85,7 @@ def draw(source):
         below.set_xlim(0, 2.5)
         below.set_ylim(0, 120)
         below.set_xlabel("C_d [voxels]", labelpad=1)
-        below.set_title(f"{shown_name(PLACES[kind][0]).strip('*')}, {len(part)} voxels", fontsize=7)
+        below.set_title(f"{PLACES[kind][0]}, {len(part)} voxels", fontsize=7)
         if k == 0:
             above.set_ylabel("along the normal [voxels]")
             below.set_ylabel("C_a [degrees]")

@@ -9,7 +9,7 @@ SETS = {
     "finger_edge": "one finger touches\nwith its edge (small)",
     "no_stable_pair": "no stable pair:\nfree to leave",
     "irregular": "irregular triangle",
-    "off_center": "triangle beside the\ncenter of mass",
+    "off_center": "triangle above the center\nof mass (out of all cones)",
 }
 COLUMNS = ("set", "m", "m1", "m2", "m3", "stable_pairs")
 DETAILS = ("set", "contact", "x_m", "y_m", "z_m", "boundary_distance", "strength", "paired_with")

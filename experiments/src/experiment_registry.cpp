@@ -5,9 +5,20 @@ namespace graspfit::experiments {
 
 const std::vector<Experiment>& all_experiments() {
   static const std::vector<Experiment> experiments = {
-      internal::force_closure(),    internal::hold_prediction(),  internal::hold_rates(),
-      internal::parameter_sweeps(), internal::planner_everyday(), internal::planner_paper_objects(),
-      internal::special_cases(),    internal::table1(),           internal::table1_all_objects(),
+      internal::contacts_and_time(),
+      internal::fitting_stages(),
+      internal::force_closure(),
+      internal::hold_prediction(),
+      internal::hold_rates(),
+      internal::measured_contacts(),
+      internal::object_voxels(),
+      internal::paper_grasps(),
+      internal::parameter_sweeps(),
+      internal::planner_everyday(),
+      internal::planner_paper_objects(),
+      internal::special_cases(),
+      internal::table1(),
+      internal::table1_all_objects(),
       internal::table1_refined(),
   };
   return experiments;

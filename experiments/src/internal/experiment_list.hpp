@@ -7,10 +7,15 @@
 
 namespace graspfit::experiments::internal {
 
+Experiment contacts_and_time();
+Experiment fitting_stages();
 Experiment force_closure();
 Experiment hold_prediction();
 Experiment hold_rates();
 Experiment parameter_sweeps();
+Experiment measured_contacts();
+Experiment object_voxels();
+Experiment paper_grasps();
 Experiment planner_everyday();
 Experiment planner_paper_objects();
 Experiment special_cases();

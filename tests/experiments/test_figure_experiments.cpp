@@ -1,0 +1,202 @@
+// Experiments whose rows pictures are drawn from: their numbers against closed forms, the library's
+// own results and one another.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "graspfit/experiments/experiment.hpp"
+#include "internal/planning_table.hpp"
+#include "support/catch.hpp"
+
+using namespace graspfit;
+using namespace graspfit::experiments;
+
+namespace {
+
+using Fields = std::map<std::string, std::string>;
+
+struct Result {
+  Fields row;
+  std::vector<Fields> details;
+};
+
+Fields named(const std::vector<Column>& columns, const std::vector<std::string>& fields) {
+  Fields all;
+  for (std::size_t i = 0; i < columns.size(); ++i) all[columns[i].name] = fields[i];
+  return all;
+}
+
+Result run(const std::string& slug, const std::string& settings) {
+  const Experiment& experiment = find_experiment(slug);
+  const Cell cell{{"cell"}, "case=cell", 7, settings};
+  experiment.check(cell);
+  const CellResult result = experiment.run(cell, "folder that is never made");
+  Result read{named(experiment.columns, result.row.csv_fields()), {}};
+  for (const ResultRow& row : result.details) {
+    read.details.push_back(named(experiment.details, row.csv_fields()));
+  }
+  return read;
+}
+
+double number(const Fields& fields, const std::string& name) {
+  const std::string& text = fields.at(name);
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+std::string contact(const std::string& direction, const std::string& weak = "false") {
+  return R"({"direction": )" + direction +
+         R"(, "boundary_distance_rel": 0.7, "area_rel": 0.4, "weak": )" + weak + "}";
+}
+
+std::string contact_set(const std::vector<std::string>& contacts) {
+  std::string list;
+  for (const std::string& item : contacts) list += (list.empty() ? "" : ", ") + item;
+  return R"({"radius_m": 0.04, "hand": "barrett", "contacts": [)" + list + "]}";
+}
+
+const std::string kEast = "[1, 0, 0]";
+const std::string kNorthWest = "[-0.5, 0.86602540378443865, 0]";
+const std::string kSouthWest = "[-0.5, -0.86602540378443865, 0]";
+
+constexpr double kRounding = 1e-9;  // A dozen operations on numbers near one.
+
+}  // namespace
+
+TEST_CASE("M of contact sets on a ball is what the formulas say",
+          "[experiments][measured_contacts]") {
+  // M1 = 0.7 + 2 * 0.4 = 1.5. An equilateral triple has 30 degrees on its three pairs: M2 = 3 (1 -
+  // 30/45) = 1. It is regular and centered: M3 = 1.
+  const Result good = run("measured_contacts",
+                          contact_set({contact(kEast), contact(kNorthWest), contact(kSouthWest)}));
+  CHECK(number(good.row, "m1") == Approx(1.5).margin(kRounding));
+  CHECK(number(good.row, "m2") == Approx(1.0).margin(kRounding));
+  CHECK(number(good.row, "m3") == Approx(1.0).margin(kRounding));
+  CHECK(number(good.row, "m") == Approx(1.5).margin(kRounding));
+  REQUIRE(good.details.size() == 3);
+  CHECK(good.details[0].at("paired_with") == "1 2");
+  CHECK(good.details[2].at("paired_with") == "0 1");
+
+  // One of three on a fragile part: a third of M1 is gone.
+  const Result fragile =
+      run("measured_contacts",
+          contact_set({contact(kEast, "true"), contact(kNorthWest), contact(kSouthWest)}));
+  CHECK(number(fragile.row, "m1") == Approx(1.0).margin(kRounding));
+  CHECK(number(fragile.row, "m") == Approx(1.0).margin(kRounding));
+  CHECK(number(fragile.details[0], "strength") == 0.0);
+
+  const Result opposite =
+      run("measured_contacts", contact_set({contact(kEast), contact("[-2, 0, 0]")}));
+  CHECK(number(opposite.row, "m") == Approx(1.5).margin(kRounding));
+
+  // Central angles of 45 degrees leave 67.5 degrees between line and normal.
+  const Result loose =
+      run("measured_contacts", contact_set({contact(kEast), contact("[1, 1, 0]")}));
+  CHECK(number(loose.row, "stable_pairs") == 0.0);
+  CHECK(number(loose.row, "m") == 0.0);
+}
+
+TEST_CASE("Contact sets that make no sense are refused by name",
+          "[experiments][measured_contacts]") {
+  const auto refused = [](const std::string& settings, const std::string& why) {
+    CHECK_THROWS_WITH(run("measured_contacts", settings), Catch::Contains(why));
+  };
+  refused(contact_set({contact("[0, 0, 0]")}), "must not be zero");
+  refused(R"({"radius_m": 0, "hand": "barrett", "contacts": []})", "must be > 0");
+  refused(R"({"radius_m": 1, "hand": "barrett"})", "there is no setting contacts");
+  refused(R"({"radius_m": 1, "hand": "barrett", "contacts": [], "size_m": 1})", "is no setting");
+  refused(contact_set(std::vector<std::string>(4, contact(kEast))), "has 3 fingers for 4 contacts");
+}
+
+TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
+          "[experiments][object_voxels]") {
+  const Result ball = run("object_voxels", R"({"shape": "ball", "size_m": 0.08, "hand": "barrett",
+      "slice_axis": "y", "weak-thickness-mm": 0, "resolution": 20})");
+  std::int64_t partial = 0;
+  std::set<std::string> slice_rows;
+  for (const Fields& voxel : ball.details) {
+    const std::string& voxel_class = voxel.at("class");
+    const double distance = number(voxel, "distance_voxels");
+    if (voxel_class == "partial") {
+      ++partial;
+      CHECK(distance == 0.0);
+      Eigen::Vector3d point;
+      Eigen::Vector3d normal;
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, static_cast<char>('x' + axis));
+        point[axis] = number(voxel, "centroid_" + name + "_m");
+        normal[axis] = number(voxel, "normal_" + name);
+      }
+      // The ball is a polyhedron of 5120 faces: its radius within half a percent, its normals
+      // within two degrees, and what a patch of one voxel turns, 1/10 rad, averages out.
+      CHECK(point.norm() == Approx(0.04).epsilon(0.01));
+      CHECK(normal.dot(point.normalized()) > 0.99);
+      CHECK(number(voxel, "score") > 0.6);  // all of a ball suits contacts
+    } else {
+      CHECK((voxel_class == "full" ? distance < 0.0 : distance > 0.0));
+      CHECK(voxel.at("j") == ball.row.at("slice"));
+      CHECK(voxel.at("score").empty());
+    }
+    if (voxel.at("j") == ball.row.at("slice"))
+      slice_rows.insert(voxel.at("i") + "," + voxel.at("k"));
+  }
+  CHECK(partial == static_cast<std::int64_t>(number(ball.row, "partial")));
+  CHECK(number(ball.row, "eligible_share") == 1.0);
+  CHECK(number(ball.row, "voxel_size_m") == Approx(0.004));
+  // 20 voxels and 8 of room on each side.
+  CHECK(slice_rows.size() == 36 * 36);
+}
+
+TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][fitting_stages]") {
+  const std::string settings = R"({"shape": "torus", "size_m": 0.14, "hand": "barrett",
+      "contacts": 3, "count": 1, "max-attempts": 3, "resolution": 20, "weak-thickness-mm": 0})";
+  const Result stages = run("fitting_stages", settings);
+  const internal::Planned planned = internal::plan(planning_settings(settings, 7));
+  REQUIRE_FALSE(planned.result.grasps.empty());
+  const grasp::Grasp& grasp = planned.result.grasps.front();
+  CHECK(number(stages.row, "m") == grasp.quality.m);
+
+  const std::string palm = planned.hand->links.front().name;
+  std::map<std::string, Eigen::Vector3d> palm_at;
+  std::map<std::string, double> iterations;
+  for (const Fields& row : stages.details) {
+    if (row.at("link") != palm) continue;
+    palm_at[row.at("stage")] = {number(row, "x_m"), number(row, "y_m"), number(row, "z_m")};
+    iterations[row.at("stage")] = number(row, "iterations");
+  }
+  REQUIRE(palm_at.size() == 6);
+  CHECK(stages.details.size() == 6 * planned.hand->links.size());
+  CHECK((palm_at["grasp"] - grasp.configuration.X_OH.translation()).norm() == 0.0);
+  CHECK(iterations["initial"] == 0.0);
+  CHECK(iterations["loop_1"] <= iterations["loop_2"]);
+  CHECK(iterations["loop_2"] <= iterations["loop_3"]);
+  CHECK(iterations["loop_3"] <= iterations["fitted"]);
+  // Refinement moves the palm by at most its limit; the loop comes from farther away.
+  const double refined = (palm_at["fitted"] - palm_at["grasp"]).norm();
+  CHECK(refined == Approx(number(stages.row, "refinement_shift_m")).margin(1e-12));
+  CHECK(refined <= planned.settings.options.refinement.largest_shift + 1e-9);
+  CHECK((palm_at["initial"] - palm_at["grasp"]).norm() > refined);
+}
+
+TEST_CASE("Time and quality by contacts: the row sums up the grasps",
+          "[experiments][contacts_and_time]") {
+  const std::string grip = R"({"shape": "torus", "size_m": 0.14, "hand": "barrett", "contacts": 3,
+      "max-attempts": 4, "resolution": 20, "weak-thickness-mm": 0, "accept": "usable", "count": )";
+  const Result result = run("contacts_and_time", grip + "4}");
+  REQUIRE_FALSE(result.details.empty());
+  CHECK(number(result.row, "requested") == 3.0);
+  for (const std::string name : {"m", "m2", "num_contacts", "stable_pairs"}) {
+    double sum = 0.0;
+    for (const Fields& grasp : result.details) sum += number(grasp, name);
+    CHECK(number(result.row, "mean_" + name) ==
+          Approx(sum / static_cast<double>(result.details.size())));
+  }
+  for (const Fields& grasp : result.details) CHECK(number(grasp, "num_contacts") >= 3.0);
+  CHECK_THROWS_WITH(run("contacts_and_time", grip + "2}"),
+                    Catch::Contains("must be at least max-attempts"));
+}
