@@ -7,7 +7,7 @@ const std::vector<Experiment>& all_experiments() {
   static const std::vector<Experiment> experiments = {
       internal::force_closure(),    internal::hold_prediction(),  internal::hold_rates(),
       internal::parameter_sweeps(), internal::planner_everyday(), internal::planner_paper_objects(),
-      internal::special_cases(),
+      internal::special_cases(),    internal::table_tidying(),
   };
   return experiments;
 }

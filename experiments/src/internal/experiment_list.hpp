@@ -14,5 +14,6 @@ Experiment parameter_sweeps();
 Experiment planner_everyday();
 Experiment planner_paper_objects();
 Experiment special_cases();
+Experiment table_tidying();
 
 }  // namespace graspfit::experiments::internal
