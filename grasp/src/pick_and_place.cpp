@@ -94,7 +94,8 @@ class MoveSearch {
   }
 
   /// What the hand must keep clear of, in W with the object at its start: the table and what
-  /// stands there, and the same as the object sees them at its goal.
+  /// stands there, and the same as the object sees them at its goal. Objects as their convex hulls,
+  /// which have fewer faces: a hand clear of those is clear of them.
   Surroundings surroundings_at_both_ends() const {
     Surroundings around;
     around.table_z_O = 0.0;
@@ -113,8 +114,7 @@ class MoveSearch {
       const RigidTransform& X_WS = X_WO_[static_cast<std::size_t>(other)];
       for (const RigidTransform& X : {X_WS, X_from_goal * X_WS}) {
         if (object_W.exteriorDistance(box_of(other, X)) > reach) continue;
-        around.obstacles.emplace_back(
-            geometry::transformed(scene_.object(other).surface_O.mesh(), X));
+        around.obstacles.emplace_back(geometry::transformed(scene_.hull_O(other), X));
       }
     }
     return around;

@@ -43,6 +43,20 @@ constexpr std::array<std::pair<MotionPhase, const char*>, 7> kPhases = {
      {MotionPhase::Release, "release"},
      {MotionPhase::Retreat, "retreat"}}};
 
+geometry::TriangleMesh hull_mesh(const geometry::TriangleMesh& mesh) {
+  const geometry::ConvexHull3 hull = geometry::convex_hull(mesh.vertices);
+  geometry::TriangleMesh result;
+  std::vector<std::int32_t> index_of(mesh.vertices.size(), -1);
+  for (const std::size_t i : hull.vertices) {
+    index_of[i] = static_cast<std::int32_t>(result.vertices.size());
+    result.vertices.push_back(mesh.vertices[i]);
+  }
+  for (const geometry::HullFacet& facet : hull.facets) {
+    result.faces.push_back({index_of[facet[0]], index_of[facet[1]], index_of[facet[2]]});
+  }
+  return result;
+}
+
 /// The stretch touches the handled object with the hand at one of its ends.
 bool is_touching(MotionPhase phase) {
   return phase == MotionPhase::Approach || phase == MotionPhase::Release;
@@ -267,12 +281,7 @@ TableScene::TableScene(hands::HandModel hand, std::vector<SceneObject> objects)
     if (!names.insert(object.name).second) {
       throw geometry::InvalidInput("TableScene: two objects are called " + object.name);
     }
-    const std::vector<Vector3d>& vertices = object.surface_O.mesh().vertices;
-    std::vector<Vector3d> corners;
-    for (const std::size_t i : geometry::convex_hull(vertices).vertices) {
-      corners.push_back(vertices[i]);
-    }
-    corners_O_.push_back(std::move(corners));
+    hulls_O_.push_back(hull_mesh(object.surface_O.mesh()));
   }
 }
 
@@ -282,7 +291,7 @@ double TableScene::height_of_link(int link, const RigidTransform& X_WL, double e
 
 double TableScene::height_of_object(int object, const RigidTransform& X_WO) const {
   double lowest = kInfinity;
-  for (const Vector3d& corner : corners_O_.at(static_cast<std::size_t>(object))) {
+  for (const Vector3d& corner : hull_O(object).vertices) {
     lowest = std::min(lowest, (X_WO * corner).z());
   }
   return lowest;

@@ -29,7 +29,7 @@ struct PickAndPlaceOptions {
   std::vector<double> lifts = {0.08, 0.16, 0.26};       ///< Heights to lift by, tried in order [m].
   std::vector<double> withdrawals = {0.06, 0.12, 0.2};  ///< Of the palm, against its direction,
                                                         ///< from the pre-grasp, tried in order [m].
-  geometry::ContentCache cache = {.is_on = false};  ///< Of objects prepared before.
+  geometry::ContentCache cache = {.is_on = false};      ///< Of objects prepared before.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -63,8 +63,9 @@ struct MoveAttempt {
 /// `X_WO_goal`, every stretch proven free (`find_encounter`): reach, approach, lift, transport and
 /// turn, place, release, retreat.
 ///
-/// Grasps are planned in W on the object as it stands, amid the table and the other objects, and
-/// amid both as the object will see them at its goal, so that the hand has room at both ends; the
+/// Grasps are planned in W on the object as it stands, amid the table and the convex hulls of the
+/// other objects, and amid both as the object will see them at its goal, so that the hand has room
+/// at both ends; the motion is then proven on the true meshes; the
 /// best that can be carried on a tried way is taken. Ways: straight up by one of `lifts`, then
 /// straight, or turning first, or turning last, then straight down; the free hand comes and goes
 /// over points behind the pre-grasp (`withdrawals`) and above those. Deterministic in its input.

@@ -36,6 +36,11 @@ class TableScene {
     return objects_.at(static_cast<std::size_t>(index));
   }
 
+  /// The convex hull of an object, exact; its vertices are corners of the object.
+  const geometry::TriangleMesh& hull_O(int index) const {
+    return hulls_O_.at(static_cast<std::size_t>(index));
+  }
+
   /// Height of a link's lowest point over the table [m], ≤ `enough` or else `enough`; zero where it
   /// touches or is below.
   double height_of_link(int link, const geometry::RigidTransform& X_WL, double enough) const;
@@ -47,7 +52,7 @@ class TableScene {
   hands::HandCollision collision_;
   SurroundingsCollision table_;
   std::vector<SceneObject> objects_;
-  std::vector<std::vector<Eigen::Vector3d>> corners_O_;  ///< Of the objects' convex hulls.
+  std::vector<geometry::TriangleMesh> hulls_O_;
 };
 
 /// What happens in a stretch of a motion.
