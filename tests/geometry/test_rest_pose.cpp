@@ -7,6 +7,7 @@
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/rest_pose.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -119,10 +120,22 @@ TEST_CASE("Rest poses are the local minima of the center's height", "[geometry][
         return (pose.up_O - up).norm() < 1e-9;
       });
       const double height = height_of_center(mesh, center, up);
-      bool is_minimum = true;
-      for (int i = 0; i < 300; ++i) {
-        const Vector3d tilted = (up + 1e-4 * random_unit(random)).normalized();
-        is_minimum = is_minimum && height_of_center(mesh, center, tilted) > height - 1e-12;
+      // Where the height falls at all, it falls toward the point of the facet nearest to the plumb
+      // point, and in a cone around that, however narrow.
+      const Vector3d plumb = center - height * up;
+      const TriangleMesh facet{{mesh.vertices[static_cast<std::size_t>(mesh.faces[f][0])],
+                                mesh.vertices[static_cast<std::size_t>(mesh.faces[f][1])],
+                                mesh.vertices[static_cast<std::size_t>(mesh.faces[f][2])]},
+                               {{0, 1, 2}}};
+      const Vector3d nearest = MeshQuery(facet).closest_point(plumb).point;
+      // A tilt by k toward it, at a distance d, lowers the center by k d: here d² / 1000.
+      const Vector3d toward = nearest - plumb;
+      const double fall = std::max(0.5e-3 * toward.squaredNorm(), 1e-15);
+      const Vector3d tilted = (up + 1e-3 * toward).normalized();
+      bool is_minimum = height_of_center(mesh, center, tilted) > height - fall;
+      for (int i = 0; i < 100; ++i) {
+        const Vector3d anyhow = (up + 1e-4 * random_unit(random)).normalized();
+        is_minimum = is_minimum && height_of_center(mesh, center, anyhow) > height - 1e-12;
       }
       CHECK(is_rest == is_minimum);
       ++num_facets;

@@ -32,9 +32,10 @@ struct HeldBlock {
                testing::scene_object("wall", geometry::box(wall_size))}) {
     hold = hands::open_configuration(scene.hand());
     hold.q.setConstant(0.02 + gap);
-    // Palm direction down; the pads' middle, 62 mm from the palm frame, at the block's center.
+    // Palm direction down; the pads' middle, 62 mm from the palm frame, 12 mm over the block's
+    // center, so that the jaws end above its lower face.
     hold.X_OH.linear() = Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
-    hold.X_OH.translation().z() = 0.062;
+    hold.X_OH.translation().z() = 0.074;
   }
 
   HandConfiguration holding(const RigidTransform& X_WO) const { return {X_WO * hold.X_OH, hold.q}; }
@@ -52,19 +53,23 @@ struct HeldBlock {
 
 TEST_CASE("A block that is carried past a wall keeps the known distance and no more",
           "[grasp][table_motion]") {
-  // The wall is lower than the gripper's palm is wide beside it only where the block is: its top is
-  // at the block's upper face, so that the block is nearest. Gap 7 mm along y.
+  // The wall's top is below the jaws and above the block's lower face, so that the block is
+  // nearest. Gap 7 mm along y.
   const HeldBlock held({0.2, 0.02, 0.01});
   const double gap = 0.007;
-  const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({0.0, 0.02 + gap, 0.193})};
+  const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({0.0, 0.02 + gap, 0.187})};
   const MotionStretch past =
       held.carry(MotionPhase::Transport, at({-0.3, 0, 0.2}), at({0.3, 0, 0.2}));
   for (const double share : {0.3, 0.5, 0.61}) {
     CHECK(clearance_at(held.scene, X_WO, past, share).object == Approx(gap).epsilon(1e-9));
   }
   CHECK_FALSE(find_encounter(held.scene, X_WO, past, 0.0));
-  const double nearest = std::min(gap, clearance_at(held.scene, X_WO, past, 0.5).hand);
-  CHECK_FALSE(find_encounter(held.scene, X_WO, past, nearest - 1e-6));
+  double nearest = gap;
+  for (int i = 0; i <= 600; ++i) {
+    nearest = std::min(nearest, clearance_at(held.scene, X_WO, past, i / 600.0).hand);
+  }
+  CHECK(nearest > 0.005);
+  CHECK_FALSE(find_encounter(held.scene, X_WO, past, nearest - 1e-4));
   const auto met = find_encounter(held.scene, X_WO, past, gap + 1e-6);
   REQUIRE(met);
   CHECK(met->second == "wall");
@@ -95,7 +100,7 @@ TEST_CASE("A turn is refused whose ends are free and whose middle is not",
   const RigidTransform to = at({0, 0, 0.2}, 0.5 * std::numbers::pi - 0.1);
   const MotionStretch turn = held.carry(MotionPhase::Transport, from, to);
   const auto wall_at = [](double distance) {
-    return std::vector<RigidTransform>{at({0, 0, 0}), at({distance + 0.005, 0, 0.192})};
+    return std::vector<RigidTransform>{at({0, 0, 0}), at({distance + 0.005, 0, 0.187})};
   };
   const double corner = std::hypot(0.02, 0.01);
   CHECK(find_encounter(held.scene, wall_at(corner - 1e-5), turn, 0.0));
