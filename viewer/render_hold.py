@@ -12,13 +12,13 @@ line on bad input or a missing program.
 """
 
 import argparse
-import io
 import math
 import pathlib
 import sys
 
 sys.dont_write_bytecode = True  # the folder may be the sources' or root's
-from scene_file import decode_mesh, exit_code, numbers, read_scene  # noqa: E402
+from frame_picture import decode_poses, gif, mapped, put, rotated  # noqa: E402
+from scene_file import decode_mesh, exit_code, read_scene  # noqa: E402
 from vtk_picture import (  # noqa: E402
     COLORS,
     SUPERSAMPLING,
@@ -46,25 +46,11 @@ def decode(scene):
     decode_mesh(scene["object"])
     for load in scene["directions"]:
         for key, bodies in (("object_poses", 1), ("link_poses", len(scene["hand"]["links"]))):
-            values = numbers(load[key], "f")
-            load[key] = [values[i : i + 7] for i in range(0, len(values), 7)]
+            load[key] = decode_poses(load[key])
             if len(load[key]) != bodies * len(load["times"]) or not load["times"]:
                 raise ValueError(f"{key} of load {load['name']} does not fit its times")
     if not 0 <= scene["shown"] < len(scene["directions"]):
         raise ValueError("no load to show")
-
-
-# Poses are x, y, z and a unit quaternion w, x, y, z.
-
-
-def rotated(pose, v):
-    w, q = pose[3], pose[4:7]
-    t = [2.0 * x for x in cross(q, v)]
-    return [a + w * b + c for a, b, c in zip(v, t, cross(q, t))]
-
-
-def mapped(pose, p):
-    return [a + b for a, b in zip(rotated(pose, p), pose[:3])]
 
 
 def frames_to_show(scene, load):
@@ -157,15 +143,7 @@ class Painter(Canvas):
     def paint(self, frame, shown):
         """PNG file of one frame as bytes; `shown`: the frames of the whole picture."""
         for body, actor in enumerate(self.body_actors):
-            pose = self.pose(frame, body)
-            matrix = self.vtk.vtkMatrix4x4()
-            for column in range(3):
-                axis = rotated(pose, [float(k == column) for k in range(3)])
-                for row in range(3):
-                    matrix.SetElement(row, column, axis[row])
-            for row in range(3):
-                matrix.SetElement(row, 3, pose[row])
-            actor.SetUserMatrix(matrix)
+            put(self.vtk, actor, self.pose(frame, body))
         for renderer, mark in self.marks:
             renderer.RemoveActor(mark)
         self.marks = []
@@ -248,24 +226,8 @@ class Painter(Canvas):
 
 def animation(painter, shown):
     """GIF file as bytes."""
-    try:
-        from PIL import Image
-    except ImportError as error:
-        raise BadInput(f"{error}: install python3-pil") from error
-    pictures = [Image.open(io.BytesIO(painter.paint(frame, shown))).convert("RGB") for frame in shown]
-    # One palette for all frames, so that colors do not flicker; of frames from start to end.
-    sample = pictures[:: max(1, len(pictures) // 4)]
-    sheet = Image.new("RGB", (painter.width, painter.height * len(sample)))
-    for i, picture in enumerate(sample):
-        sheet.paste(picture, (0, i * painter.height))
-    palette = sheet.quantize(256, dither=Image.Dither.NONE)
-    pictures = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    delays = [round(1000 * FRAME_TIME * SLOWNESS)] * (len(pictures) - 1) + [round(1000 * LAST_FRAME)]
-    file = io.BytesIO()
-    pictures[0].save(
-        file, "GIF", save_all=True, append_images=pictures[1:], duration=delays, loop=0
-    )
-    return file.getvalue()
+    pictures = [painter.paint(frame, shown) for frame in shown]
+    return gif(pictures, round(1000 * FRAME_TIME * SLOWNESS), round(1000 * LAST_FRAME))
 
 
 def main():

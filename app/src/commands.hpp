@@ -16,6 +16,7 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_hold(const std::vector<std::string>& arguments);
 ExitCode run_convert(const std::vector<std::string>& arguments);
 ExitCode run_shape(const std::vector<std::string>& arguments);
+ExitCode run_motion(const std::vector<std::string>& arguments);
 ExitCode run_hand(const std::vector<std::string>& arguments);
 ExitCode run_experiment(const std::vector<std::string>& arguments);
 

@@ -14,6 +14,7 @@
 #include "hand_commands.hpp"
 #include "hand_loading.hpp"
 #include "hand_poses.hpp"
+#include "output_folder.hpp"
 #include "pictures.hpp"
 #include "text_table.hpp"
 
@@ -200,18 +201,6 @@ void print_tables(const viewer::HandScene& scene) {
   print_overlaps(hand, scene.poses);
 }
 
-/// Throws IoError unless the file's folder is there.
-void require_folder(const std::string& flag, const fs::path& file) {
-  const fs::path folder = fs::absolute(file).parent_path();
-  std::error_code error;
-  if (!file.has_filename() || fs::is_directory(file, error)) {
-    throw geometry::IoError(flag + ' ' + file.string() + ": is a folder, not a file");
-  }
-  if (!fs::is_directory(folder, error)) {
-    throw geometry::IoError(flag + ' ' + file.string() + ": there is no folder " + folder.string());
-  }
-}
-
 }  // namespace
 
 ExitCode run_hand_show(const std::vector<std::string>& arguments) {
@@ -229,7 +218,7 @@ ExitCode run_hand_show(const std::vector<std::string>& arguments) {
   if (words.empty()) throw UsageError("--pose names no pose");
   hands::HandReading reading = load_hand(flags.positional());
   for (const std::string flag : {"png", "html"}) {
-    if (flags.has(flag)) require_folder("--" + flag, flags.text(flag));
+    if (flags.has(flag)) require_parent_folder("--" + flag, flags.text(flag));
   }
   if (flags.has("png")) require_pictures("--png");
   viewer::HandScene scene;

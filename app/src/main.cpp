@@ -25,6 +25,7 @@ const char* const kUsage =
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit hold GRASPS.json     tests in physics whether the grasps of a file hold\n"
     "  graspfit convert IN OUT       grasp files of other tools: writes five formats, reads one\n"
+    "  graspfit motion MOTION.json   checks and shows how a hand moves objects on a table\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
     "  graspfit experiment ...       lists, describes and runs tables of results\n"
@@ -43,11 +44,12 @@ constexpr std::array<std::pair<const char*, Run>, 8> kCommands = {{{"plan", run_
                                                                    {"evaluate", run_evaluate},
                                                                    {"hold", run_hold},
                                                                    {"convert", run_convert},
+                                                                   {"motion", run_motion},
                                                                    {"shape", run_shape},
                                                                    {"hand", run_hand},
                                                                    {"experiment", run_experiment}}};
 const char* const kCommandNames =
-    "plan, inspect, evaluate, hold, convert, shape, hand and experiment";
+    "plan, inspect, evaluate, hold, convert, motion, shape, hand and experiment";
 
 const std::pair<const char*, Run>* find_command(const std::string& name) {
   const auto found = std::find_if(kCommands.begin(), kCommands.end(),

@@ -122,4 +122,15 @@ void OutputFolder::commit(const std::string& last_file) {
   });
 }
 
+void require_parent_folder(const std::string& flag, const fs::path& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::error_code error;
+  if (!file.has_filename() || fs::is_directory(file, error)) {
+    throw geometry::IoError(flag + ' ' + file.string() + ": is a folder, not a file");
+  }
+  if (!fs::is_directory(folder, error)) {
+    throw geometry::IoError(flag + ' ' + file.string() + ": there is no folder " + folder.string());
+  }
+}
+
 }  // namespace graspfit::app

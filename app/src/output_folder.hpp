@@ -45,4 +45,8 @@ class OutputFolder {
   std::unique_ptr<CleanupOnInterrupt> cleanup_;
 };
 
+/// Throws IoError unless `file` could be written where it is said to be: its folder is there, and
+/// it is no folder itself. `flag` names it; messages start with it.
+void require_parent_folder(const std::string& flag, const std::filesystem::path& file);
+
 }  // namespace graspfit::app

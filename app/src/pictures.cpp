@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 constexpr const char* kGraspScript = "render_grasps.py";
 constexpr const char* kHandScript = "render_hand.py";
 constexpr const char* kHoldScript = "render_hold.py";
+constexpr const char* kMotionScript = "render_motion.py";
 
 /// A picture script: beside an installed program wherever it was moved, else in the sources of the
 /// build, else where it was installed.
@@ -114,6 +115,7 @@ void draw_pictures(const fs::path& folder) {
 void require_animations(const std::string& flag) {
   require_pictures(flag);
   find_script(flag, kHoldScript);
+  find_script(flag, kMotionScript);
   if (run_program({GRASPFIT_PYTHON, "-c", "import PIL"}).code != 0) {
     throw geometry::IoError(flag + ": needs Pillow for " GRASPFIT_PYTHON "; install python3-pil");
   }
@@ -125,6 +127,11 @@ void draw_hand_picture(const std::string& scene_json, const fs::path& picture) {
 
 void draw_replay_picture(const std::string& scene_json, const fs::path& picture) {
   draw_scene("--gif", kHoldScript, scene_json, picture);
+}
+
+void draw_motion_picture(const std::string& flag, const std::string& scene_json,
+                         const fs::path& picture) {
+  draw_scene(flag, kMotionScript, scene_json, picture);
 }
 
 }  // namespace graspfit::app

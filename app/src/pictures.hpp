@@ -24,4 +24,10 @@ void require_animations(const std::string& flag);
 /// viewer::replay_scene_json. @throws IoError with the script's own words if it fails.
 void draw_replay_picture(const std::string& scene_json, const std::filesystem::path& picture);
 
+/// Draws a hand that moves objects about into the file `picture`, from a scene of
+/// viewer::motion_scene_json: an animated GIF, or a PNG with a picture per phase. `flag` asked for
+/// it. @throws IoError with the script's own words if it fails.
+void draw_motion_picture(const std::string& flag, const std::string& scene_json,
+                         const std::filesystem::path& picture);
+
 }  // namespace graspfit::app

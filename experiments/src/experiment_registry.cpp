@@ -20,6 +20,7 @@ const std::vector<Experiment>& all_experiments() {
       internal::table1(),
       internal::table1_all_objects(),
       internal::table1_refined(),
+      internal::table_tidying(),
   };
   return experiments;
 }

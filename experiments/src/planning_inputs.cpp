@@ -95,6 +95,8 @@ std::shared_ptr<const hands::HandModel> load_hand(const std::string& hand) {
   return models.value(hand, [&] { return hands::read_hand_model(hand_file(hand)); });
 }
 
+fs::path data_folder() { return internal::data_folder(); }
+
 std::vector<fs::path> planning_inputs(const PlanningSettings& settings) {
   std::vector<fs::path> files;
   if (!settings.object.file.empty()) {

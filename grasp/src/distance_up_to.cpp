@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+#include "graspfit/geometry/surface_proximity.hpp"
+
 namespace graspfit::grasp::internal {
 
 using Eigen::Vector3d;
@@ -27,8 +29,10 @@ geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geomet
                                     Vector3d::Zero()};
   if (box_gap(a.box(), b.box(), X_AB) > enough) return none;
   if (box_gap(b.box(), a.box(), X_AB.inverse()) > enough) return none;
-  const geometry::MeshDistance found = geometry::distance(a, b, X_AB);
-  return found.distance <= enough ? found : none;
+  if (geometry::do_intersect(a, b, X_AB)) return {0.0, Vector3d::Zero(), Vector3d::Zero()};
+  const auto found = geometry::nearest_points(a, b, X_AB, enough);
+  if (!found) return none;
+  return {found->distance, found->point_on_a_A, found->point_on_b_A};
 }
 
 }  // namespace graspfit::grasp::internal

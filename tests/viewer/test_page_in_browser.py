@@ -533,6 +533,64 @@ class ReplayInBrowser(PageInBrowser):
         self.assertIn("check_interval_s 0.1", self.text("knobs"))
 
 
+class MotionInBrowser(PageInBrowser):
+    """The page of a hand that moves objects: tests/viewer/sample_motion.cpp."""
+
+    def setUp(self):
+        self.open("motion.html")
+
+    def selected(self):
+        rows = self.browser.find_elements(By.CSS_SELECTOR, '#list [aria-selected="true"]')
+        return [row.get_attribute("id") for row in rows]
+
+    def test_says_what_moves_and_what_does_not(self):
+        self.assertEqual(self.browser.title, "Two moves & a <flat> box")
+        self.assertIn("2 moves · 2 of 3 objects at their goals", self.text("summary"))
+        self.assertIn("3.0 mm", self.text("story"))
+        self.assertIn("flat <box>: it is too flat", self.browser.find_element(By.ID, "right").text)
+        self.assertIn("1. ball: reach", self.text("phase"))
+
+    def test_slider_and_moves_change_the_picture_and_back(self):
+        start = self.picture("motion_start")
+        body = self.browser.find_element(By.TAG_NAME, "body")
+        self.element("move-1").click()
+        self.assertEqual(self.selected(), ["move-1"])
+        self.assertIn("2. red block: reach", self.text("phase"))
+        self.assert_differs(start, self.picture("motion_second"), "the ball has moved")
+        body.send_keys(Keys.ARROW_UP)
+        self.assertEqual(self.selected(), ["move-0"])
+        self.assert_same(start, self.picture(), "there and back")
+        self.browser.execute_script(
+            "const slider = document.getElementById('time');"
+            "slider.value = slider.max; slider.dispatchEvent(new Event('input'));")
+        self.assertIn("2. red block: retreat", self.text("phase"))
+        self.assert_differs(start, self.picture("motion_end"), "both have moved")
+
+    def test_layers_and_views_change_the_picture(self):
+        self.browser.execute_script(
+            "const slider = document.getElementById('time');"
+            "slider.value = Math.round(slider.max / 3); slider.dispatchEvent(new Event('input'));")
+        plain = self.picture("motion")
+        for layer in ("objects", "hand", "table", "path"):
+            with self.subTest(layer=layer):
+                box = self.element(f"show-{layer}")
+                box.click()
+                self.assert_differs(plain, self.picture(f"motion_{layer}"), f"{layer} toggled, the same picture")
+                box.click()
+        self.assert_same(plain, self.picture(), "all toggled twice, another picture")
+        for view in ("left", "right", "above", "front"):
+            before = self.picture()
+            self.browser.find_element(By.CSS_SELECTOR, f'[data-view="{view}"]').click()
+            self.assert_differs(before, self.picture(f"motion_view_{view}"), view)
+
+    def test_plays_on_and_pauses(self):
+        self.element("play").click()
+        WebDriverWait(self.browser, 60).until(
+            lambda _: int(self.element("time").get_property("value")) > 3)
+        self.element("play").click()
+        self.assertEqual(self.text("play"), "Play")
+
+
 if __name__ == "__main__":
     CHROMIUM = shutil.which("chromium")
     CHROMEDRIVER = shutil.which("chromedriver")

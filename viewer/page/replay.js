@@ -1,23 +1,13 @@
-// The page that replays a hold test: one grasp, its loads one after the other. After stage.js.
+// The page that replays a hold test: one grasp, its loads one after the other. After player.js.
 
 const {protocol, verdict, directions} = data;
 const limits = {shift: protocol.largest_shift, turn: protocol.largest_turn};
 let shown = data.shown;   // of `directions`
-let frame = 0;            // of that direction
-let isPlaying = false;
-let speed = 0.5;          // of real time
 const layers = {object: true, hand: true, load: true, path: true, pieces: false};
 handOpacity = 0.75;
 
 // ------------------------------------------------------------------------------------------- data
 
-// Frames hold x, y, z and a quaternion w, x, y, z per body.
-function poseAt(numbers, index) {
-  const [x, y, z, w, i, j, k] = numbers.subarray(7 * index, 7 * index + 7);
-  return [1 - 2 * (j * j + k * k), 2 * (i * j + k * w), 2 * (i * k - j * w), 0,
-          2 * (i * j - k * w), 1 - 2 * (i * i + k * k), 2 * (j * k + i * w), 0,
-          2 * (i * k + j * w), 2 * (j * k - i * w), 1 - 2 * (i * i + j * j), 0, x, y, z, 1];
-}
 for (const direction of directions) {
   direction.object_poses = floats(direction.object_poses);
   direction.link_poses = floats(direction.link_poses);
@@ -28,10 +18,11 @@ const objectPose = (direction, at) => poseAt(direction.object_poses, at);
 const linkPosesAt = (direction, at) =>
     links.map((_, i) => poseAt(direction.link_poses, at * links.length + i));
 const centerAt = (direction, at) => mapped(objectPose(direction, at), data.center_of_mass);
-const time = () => current().times[frame];
+const numFramesNow = () => numFrames(current());
+const timeOf = (at) => current().times[at];
+const time = () => timeOf(frame);
 const isLoaded = () => protocol.is_lift || time() > protocol.load_start + 1e-9;
 
-const meshOf = (mesh) => ({vertices: floats(mesh.vertices), faces: integers(mesh.faces)});
 const object = meshOf(data.object);
 const objectBounds = boundsOf(object.vertices);
 const objectSize = length(subtract(objectBounds.high, objectBounds.low));
@@ -73,11 +64,10 @@ function boundsOfScene() {
   return bounds;
 }
 function makeBackdrop() {
-  const upload_mesh = ({vertices, faces}) => upload(surface(vertices, faces));
-  scene.object = upload_mesh(object);
-  scene.objectPieces = upload_mesh(meshOf(data.pieces.object));
+  scene.object = uploadMesh(object);
+  scene.objectPieces = uploadMesh(meshOf(data.pieces.object));
   scene.linkMeshes = scene.links;
-  scene.linkPieces = data.pieces.links.map((link) => upload_mesh(meshOf(link)));
+  scene.linkPieces = data.pieces.links.map((link) => uploadMesh(meshOf(link)));
 }
 function drawBackdrop() {
   scene.links = layers.pieces ? scene.linkPieces : scene.linkMeshes;
@@ -128,32 +118,6 @@ function view(name) {
 
 // ------------------------------------------------------------------------------- time and controls
 
-function showFrame(at) {
-  frame = Math.min(Math.max(at, 0), numFrames(current()) - 1);
-  byId('time').value = frame;
-  updateNow();
-  updateMarks();
-  draw();
-}
-function nearestFrame(seconds) {
-  const after = current().times.findIndex((t) => t >= seconds - 1e-9);
-  return after < 0 ? numFrames(current()) - 1 : after;
-}
-
-function play(on) {
-  isPlaying = on;
-  byId('play').textContent = on ? 'Pause' : 'Play';
-  if (!on) return;
-  if (frame === numFrames(current()) - 1) showFrame(0);
-  const [from, began] = [time(), performance.now()];
-  const step = (now) => {
-    if (!isPlaying) return;
-    showFrame(nearestFrame(from + Math.max(now - began, 0) / 1000 * speed));
-    if (frame === numFrames(current()) - 1) play(false); else requestAnimationFrame(step);
-  };
-  requestAnimationFrame(step);
-}
-
 const kStages = {
   held: ['valid', 'held', 'Not lost under any load'],
   load: ['unusable', 'lost under load', 'Lost while the load pulled'],
@@ -166,26 +130,7 @@ const badge = (stage) => {
 };
 
 function makeControls() {
-  const button = element('button', {type: 'button', id: 'play', title: 'Play or pause (space)'}, 'Play');
-  button.addEventListener('click', () => play(!isPlaying));
-  const pace = element('select', {id: 'speed', title: 'Speed'},
-      ...[['1', '1 ×'], ['0.5', '1/2 ×'], ['0.2', '1/5 ×']].map(
-          ([value, text]) => element('option', {value}, text)));
-  pace.value = String(speed);
-  pace.addEventListener('change', () => {
-    speed = Number(pace.value);
-    if (isPlaying) play(true);
-  });
-  const slider = element('input', {type: 'range', id: 'time', min: 0, step: 1});
-  slider.setAttribute('aria-label', 'Time');
-  slider.addEventListener('input', () => {
-    play(false);
-    showFrame(Number(slider.value));
-  });
-  makeSection('replay', 'Replay',
-      element('div', {id: 'player'}, button, pace, element('span', {id: 'clock', className: 'range'})),
-      slider, element('p', {id: 'phase', className: 'soft'}));
-
+  makePlayer([['1', '1 ×'], ['0.5', '1/2 ×'], ['0.2', '1/5 ×']], 0.5);
   const list = element('div', {id: 'list', tabIndex: 0});
   list.setAttribute('role', 'listbox');
   list.setAttribute('aria-label', 'Loads');
@@ -341,24 +286,7 @@ function select(direction) {
   showFrame(nearestFrame(protocol.load_start));
 }
 
-document.addEventListener('keydown', (event) => {
-  if (event.ctrlKey || event.altKey || event.metaKey) return;
-  if (event.target.matches('select, button, input[type=range]')) return;
-  const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
-  const other = {ArrowDown: 1, ArrowUp: -1}[event.key];
-  if (event.key === ' ') {
-    play(!isPlaying);
-    event.preventDefault();
-  } else if (step) {
-    play(false);
-    showFrame(frame + step);
-  } else if (other) {
-    select(Math.min(Math.max(shown + other, 0), directions.length - 1));
-    event.preventDefault();
-  } else if (event.key === 'f' || event.key === 'F') {
-    view('fit');
-  }
-});
+listenToKeys((step) => select(Math.min(Math.max(shown + step, 0), directions.length - 1)));
 camera.up = 2;
 makeControls();
 byId('hint').append(' · space: play · ← →: frame · ↑ ↓: load');

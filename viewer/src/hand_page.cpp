@@ -116,7 +116,7 @@ std::string hand_scene_json(const HandScene& scene) {
 }
 
 std::string hand_page_html(const HandScene& scene) {
-  return filled_page({scene.hand.name, kHandJs, hand_scene_json(scene)});
+  return filled_page({scene.hand.name, std::string(kHandJs), hand_scene_json(scene)});
 }
 
 void write_hand_page(const std::filesystem::path& file, const HandScene& scene) {

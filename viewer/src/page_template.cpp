@@ -54,6 +54,10 @@ std::string filled(std::string_view rest, const Places& places) {
 
 }  // namespace
 
+std::string script_of_player(std::string_view script) {
+  return std::string(kPlayerJs).append(script);
+}
+
 std::string filled_page(const PageParts& parts) {
   const std::string title = escaped_for_html(parts.title);
   return filled(kPageHtml, {{"{{title}}", title},

@@ -10,6 +10,7 @@
 #include "graspfit/hold_test/hold_batch.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
+#include "internal/frame_data.hpp"
 #include "internal/hand_data.hpp"
 #include "internal/page_template.hpp"
 
@@ -53,14 +54,6 @@ Json pieces_json(const geometry::ConvexDecomposition& shape) {
     }
   }
   return to_json(all);
-}
-
-void append_pose(const RigidTransform& X, std::vector<float>& numbers) {
-  const Eigen::Quaterniond turn(X.linear());
-  for (const double x : {X.translation().x(), X.translation().y(), X.translation().z(), turn.w(),
-                         turn.x(), turn.y(), turn.z()}) {
-    numbers.push_back(static_cast<float>(x));
-  }
 }
 
 /// Shift of the object's center of mass [m] and turn [rad] between two frames, as the palm sees it.
@@ -199,7 +192,7 @@ std::string replay_scene_json(const ReplayInput& input) {
 }
 
 std::string replay_page_html(const ReplayInput& input) {
-  return filled_page({input.title, kReplayJs, replay_scene_json(input)});
+  return filled_page({input.title, script_of_player(kReplayJs), replay_scene_json(input)});
 }
 
 void write_replay_page(const std::filesystem::path& file, const ReplayInput& input) {

@@ -22,5 +22,6 @@ Experiment special_cases();
 Experiment table1();
 Experiment table1_all_objects();
 Experiment table1_refined();
+Experiment table_tidying();
 
 }  // namespace graspfit::experiments::internal

@@ -62,6 +62,10 @@ std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& setti
 /// The hand of a cell. @throws MissingData if its file is not there; as `hands::read_hand_model`.
 std::shared_ptr<const hands::HandModel> load_hand(const std::string& hand);
 
+/// Folder of meshes and hands that are not part of the repository: `$GRASPFIT_DATA`, or else
+/// `shared` beside the repository.
+std::filesystem::path data_folder();
+
 /// The files of object and hand, for manifests.
 std::vector<std::filesystem::path> planning_inputs(const PlanningSettings& settings);
 

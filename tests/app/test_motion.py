@@ -1,0 +1,79 @@
+"""graspfit motion: a motion of table_tidying, checked again and shown."""
+
+import csv
+import json
+import os
+import pathlib
+import shutil
+
+from program import SOURCE_DIR, ProgramTest, main, run
+
+
+def data_folder():
+    return pathlib.Path(os.environ.get("GRASPFIT_DATA", SOURCE_DIR.parent / "shared"))
+
+
+class Motion(ProgramTest):
+    """The quick table. Its motion is looked at twice as finely as when it was measured."""
+
+    def setUp(self):
+        super().setUp()
+        if not (data_folder() / "meshes/paper/flower_pot.obj").is_file():
+            self.skipTest("SKIPPED: no meshes; set GRASPFIT_DATA")
+        out = self.folder / "out"
+        done = run("experiment", "run", "table_tidying", "--quick", "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(out / "table_tidying.csv", newline="", encoding="utf-8") as stream:
+            self.row = next(csv.DictReader(stream))
+        with open(out / "table_tidying.details.csv", newline="", encoding="utf-8") as stream:
+            self.details = list(csv.DictReader(stream))
+        self.motion = next((out / "cells").glob("*/motion.json"))
+
+    def test_tidies_checks_and_shows(self):
+        self.assertEqual((self.row["status"], self.row["at_goal"]), ("ok", self.row["objects"]),
+                         self.row)
+        self.assertEqual(self.row["overlaps"], "0")
+        self.assertLess(float(self.row["goal_error_m"]), 1e-9)
+        self.assertLess(float(self.row["goal_error_rad"]), 1e-7)
+        travelling = [row for row in self.details if row["phase"] in ("reach", "transport", "retreat")]
+        self.assertEqual(len(travelling), 3 * int(self.row["moves"]))
+        for row in travelling:
+            self.assertGreater(float(row["hand_clearance_m"]), float(self.row["proven_clearance_m"]))
+
+        page = self.folder / "motion.html"
+        done = run("motion", self.motion, "--step-mm", "10", "--html", page)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(done.stdout.count(" yes\n"), int(self.row["moves"]), done.stdout)
+        self.assertIn("A flower pot and a bottle", page.read_text(encoding="utf-8"))
+
+        # Into the table: the pose in which the first object is put down, 5 mm deeper.
+        motion = json.loads(self.motion.read_text())
+        place = next(step for step in motion["moves"][0]["to"] if step["phase"] == "place")
+        for key in ("X_WO", "X_WH"):
+            place[key]["translation_m"][2] -= 0.005
+        changed = self.write("changed.json", json.dumps(motion))
+        done = run("motion", changed, "--step-mm", "50")
+        self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
+        self.assertIn("and table", done.stdout)
+
+        # Another mesh than the one that was moved.
+        folder = self.folder / "meshes/paper"
+        folder.mkdir(parents=True)
+        for name in ("flower_pot.obj", "bottle.obj"):
+            shutil.copy(data_folder() / "meshes/paper" / name, folder / name)
+        (folder / "bottle.obj").chmod(0o644)
+        with open(folder / "bottle.obj", "a", encoding="utf-8") as stream:
+            stream.write("# changed\n")
+        self.assert_refused("motion", self.motion, "--meshes", self.folder, says=["bottle.obj", "SHA-256"])
+
+
+class BadFlags(ProgramTest):
+    def test_refusals(self):
+        self.assert_refused("motion", says=["MOTION.json"])
+        self.assert_refused("motion", "none.json", says=["none.json"])
+        self.assert_refused("motion", self.write("x.json", "{}"), says=["/format"])
+        self.assert_refused("motion", "x.json", "--step-mm", "0", says=["--step-mm"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "graspfit/grasp/motion_io.hpp"
+#include "graspfit/grasp/table_motion.hpp"
+
+namespace graspfit::viewer {
+
+/// A hand that moves objects about on a table, to be looked at. In the world W, in meters.
+struct MotionInput {
+  grasp::TableScene scene;      ///< Of the file: hand and objects as it names them.
+  grasp::MotionFile file;       ///< With at least one move.
+  double frame_step = 0.01;     ///< No point moves farther between two frames [m], > 0.
+  double largest_speed = 0.25;  ///< Of the fastest point, as it is shown [m/s], > 0: motions have
+                                ///< no times of their own.
+};
+
+/// What the page and the picture script (viewer/render_motion.py) know of a motion, as JSON:
+/// meshes, and in every frame the poses of all objects and links; moves and phases with their first
+/// and last frames. Same input, same bytes.
+/// @throws InvalidInput if there is no move, scene and file differ in their objects or joints, or a
+/// step or speed is not positive.
+std::string motion_scene_json(const MotionInput& input);
+
+/// The page's text: one HTML document with everything in it, for any browser with WebGL 2, from
+/// disk and without a network: play and pause, a slider over time, a choice of the move. About 0.5
+/// MB per thousand frames beside the meshes. Same input, same bytes. @throws as
+/// `motion_scene_json`.
+std::string motion_page_html(const MotionInput& input);
+
+/// Writes `motion_page_html` atomically. @throws IoError if that fails; InvalidInput as above.
+void write_motion_page(const std::filesystem::path& file, const MotionInput& input);
+
+}  // namespace graspfit::viewer

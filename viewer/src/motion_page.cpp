@@ -1,0 +1,129 @@
+#include "graspfit/viewer/motion_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/frame_data.hpp"
+#include "internal/hand_data.hpp"
+#include "internal/page_template.hpp"
+
+namespace graspfit::viewer {
+namespace {
+
+using geometry::RigidTransform;
+
+void validate(const MotionInput& input) {
+  const auto refuse = [](const std::string& what) {
+    throw geometry::InvalidInput("motion_scene_json: " + what);
+  };
+  if (input.file.moves.empty()) refuse("the motion has no move");
+  if (!(input.frame_step > 0.0)) refuse("frame_step is not a length above 0 m");
+  if (!(input.largest_speed > 0.0)) refuse("largest_speed is not above 0 m/s");
+  if (input.scene.objects().size() != input.file.objects.size()) {
+    refuse("the scene has " + std::to_string(input.scene.objects().size()) + " objects, the file " +
+           std::to_string(input.file.objects.size()));
+  }
+  if (input.scene.hand().joints.size() != input.file.joints.size()) {
+    refuse("the hand has " + std::to_string(input.scene.hand().joints.size()) +
+           " joints, the file " + std::to_string(input.file.joints.size()));
+  }
+}
+
+/// Poses of all bodies, frame by frame.
+class Frames {
+ public:
+  explicit Frames(const grasp::TableScene& scene) : scene_(scene) {}
+
+  void add(std::vector<RigidTransform> X_WO, int object, const grasp::MotionState& state) {
+    X_WO.at(static_cast<std::size_t>(object)) = state.X_WO;
+    for (const RigidTransform& X : X_WO) append_pose(X, objects_);
+    for (const RigidTransform& X : hands::forward_kinematics(scene_.hand(), state.hand)) {
+      append_pose(X, links_);
+    }
+    ++count_;
+  }
+  int count() const { return count_; }
+  Json objects() const { return base64_of(objects_); }
+  Json links() const { return base64_of(links_); }
+
+ private:
+  const grasp::TableScene& scene_;
+  int count_ = 0;
+  std::vector<float> objects_;
+  std::vector<float> links_;
+};
+
+/// Adds a move's frames; the phases with the frames in which they end.
+Json add_move(const MotionInput& input, const grasp::RecordedMove& move,
+              const std::vector<RigidTransform>& X_WO, Frames& frames) {
+  Json phases = Json::array();
+  for (const grasp::MotionStretch& stretch : move.stretches) {
+    constexpr double kFewest = 4.0;  // so that a short approach can be seen
+    const double travel = grasp::largest_travel(input.scene, stretch);
+    const int parts = static_cast<int>(std::max(kFewest, std::ceil(travel / input.frame_step)));
+    for (int i = 1; i <= parts; ++i) {
+      const double share = static_cast<double>(i) / parts;
+      frames.add(X_WO, move.object, grasp::state_at(input.scene, stretch, share));
+    }
+    phases.push_back({{"name", grasp::phase_name(stretch.phase)}, {"last", frames.count() - 1}});
+  }
+  return phases;
+}
+
+}  // namespace
+
+std::string motion_scene_json(const MotionInput& input) {
+  validate(input);
+  const grasp::MotionFile& file = input.file;
+  const auto poses = grasp::object_poses(file);
+  Frames frames(input.scene);
+  const grasp::MotionStretch& start = file.moves.front().stretches.front();
+  frames.add(poses.front(), file.moves.front().object, grasp::state_at(input.scene, start, 0.0));
+  Json moves = Json::array();
+  for (std::size_t k = 0; k < file.moves.size(); ++k) {
+    const grasp::RecordedMove& move = file.moves[k];
+    const int first = frames.count() - 1;
+    const Json phases = add_move(input, move, poses[k], frames);
+    moves.push_back({{"object", move.object},
+                     {"m", move.grasp_m},
+                     {"num_contacts", move.num_contacts},
+                     {"first", first},
+                     {"last", frames.count() - 1},
+                     {"phases", phases}});
+  }
+  Json objects = Json::array();
+  for (const grasp::SceneObject& object : input.scene.objects()) {
+    objects.push_back({{"name", object.name},
+                       {"mesh", to_json(object.surface_O.mesh())},
+                       {"center", to_json(object.center_of_mass_O)}});
+  }
+  Json unmoved = Json::array();
+  for (const grasp::UnmovedObject& object : file.unmoved) {
+    unmoved.push_back({{"object", object.object}, {"reason", object.reason}});
+  }
+  const Json data = {{"title", file.title},
+                     {"hand", hand_data(input.scene.hand(), 0.0)},
+                     {"objects", objects},
+                     {"frame_time", input.frame_step / input.largest_speed},
+                     {"num_frames", frames.count()},
+                     {"object_poses", frames.objects()},
+                     {"link_poses", frames.links()},
+                     {"proven_clearance", file.clearance},
+                     {"moves", moves},
+                     {"unmoved", unmoved}};
+  return script_text(data);
+}
+
+std::string motion_page_html(const MotionInput& input) {
+  return filled_page({input.file.title, script_of_player(kMotionJs), motion_scene_json(input)});
+}
+
+void write_motion_page(const std::filesystem::path& file, const MotionInput& input) {
+  geometry::write_file_atomically(file, motion_page_html(input));
+}
+
+}  // namespace graspfit::viewer
