@@ -1,5 +1,6 @@
 #include "command_line.hpp"
 
+#include <algorithm>
 #include <boost/program_options/parsers.hpp>
 #include <boost/program_options/positional_options.hpp>
 #include <boost/program_options/value_semantic.hpp>
@@ -15,6 +16,7 @@ namespace {
 namespace po = boost::program_options;
 
 const char* const kPositional = "argument without a flag";
+const char* const kSecondPositional = "second argument without a flag";
 
 template <class Number>
 Number parse_number(const std::string& name, const std::string& text, const char* kind) {
@@ -73,12 +75,14 @@ void add_switch(po::options_description& options, const std::string& name,
 }
 
 Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
-    : positional_name_(command.positional) {
+    : positional_name_(command.positional), second_positional_name_(command.second_positional) {
   po::options_description all;
   all.add(command.options);
-  all.add_options()("help,h", "")(kPositional, po::value<std::string>());
+  all.add_options()("help,h", "")(kPositional, po::value<std::string>())(kSecondPositional,
+                                                                         po::value<std::string>());
   po::positional_options_description positional;
   positional.add(kPositional, 1);
+  if (!second_positional_name_.empty()) positional.add(kSecondPositional, 1);
   // No guessing: an abbreviation that works today may be ambiguous tomorrow.
   const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
   try {
@@ -89,7 +93,10 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
     throw UsageError("unknown option " + error.get_option_name());
   } catch (const po::too_many_positional_options_error&) {
     throw UsageError(positional_name_.empty() ? "takes no argument without a flag"
-                                              : "more than one " + positional_name_ + " given");
+                     : second_positional_name_.empty()
+                         ? "more than one " + positional_name_ + " given"
+                         : "more than " + positional_name_ + " and " + second_positional_name_ +
+                               " given");
   } catch (const po::error& error) {
     throw UsageError(error.what());
   }
@@ -102,6 +109,11 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
 const std::string& Flags::positional() const {
   if (!has(kPositional)) throw UsageError("no " + positional_name_ + " given");
   return text(kPositional);
+}
+
+const std::string& Flags::second_positional() const {
+  if (!has(kSecondPositional)) throw UsageError("no " + second_positional_name_ + " given");
+  return text(kSecondPositional);
 }
 
 const std::string& Flags::text(const std::string& name) const {
@@ -150,6 +162,21 @@ std::vector<double> Flags::numbers(const std::string& name) const {
   return numbers;
 }
 
+std::vector<std::size_t> Flags::indices(const std::string& name) const {
+  std::vector<std::size_t> indices;
+  if (!has(name)) return indices;
+  for (const double rank : numbers(name)) {
+    if (!(rank >= 1.0 && rank <= 1e9 && rank == std::floor(rank))) {
+      throw UsageError("--" + name + " \"" + text(name) + "\" does not list ranks from 1");
+    }
+    indices.push_back(static_cast<std::size_t>(rank) - 1);
+  }
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  if (indices.empty()) throw UsageError("--" + name + " names no grasp");
+  return indices;
+}
+
 std::vector<std::pair<std::string, double>> Flags::settings(const std::string& name) const {
   std::vector<std::pair<std::string, double>> settings;
   for (const std::string& word : words(name)) {
@@ -167,7 +194,9 @@ std::vector<std::pair<std::string, double>> Flags::settings(const std::string& n
 std::string help_text(const Command& command) {
   std::ostringstream text;
   text << "Usage: graspfit " << command.name
-       << (command.positional.empty() ? "" : " " + command.positional) << " [options]\n\n"
+       << (command.positional.empty() ? "" : " " + command.positional)
+       << (command.second_positional.empty() ? "" : " " + command.second_positional)
+       << " [options]\n\n"
        << command.summary << command.options
        << "\n  -h [ --help ]                       print this text\n";
   if (!command.epilog.empty()) text << '\n' << command.epilog;

@@ -19,7 +19,8 @@ struct Command {
   std::string positional;  ///< What the one argument without a flag is, "OBJECT"; empty: none.
   std::string summary;     ///< One or more sentences for --help.
   boost::program_options::options_description options;
-  std::string epilog;  ///< Printed after the options.
+  std::string epilog;                  ///< Printed after the options.
+  std::string second_positional = "";  ///< A second argument without a flag, "OUT"; empty: none.
 };
 
 /// A group of options under a caption, laid out for --help.
@@ -51,6 +52,8 @@ class Flags {
   bool wants_help() const { return has("help"); }
   /// The argument without a flag; it must be there.
   const std::string& positional() const;
+  /// The second one; it must be there.
+  const std::string& second_positional() const;
 
   bool has(const std::string& name) const { return values_.count(name) > 0; }
   bool is_default(const std::string& name) const { return values_[name].defaulted(); }
@@ -65,6 +68,10 @@ class Flags {
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
   std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.
+
+  /// From ranks separated by commas, which count from 1: indices, which count from 0, ascending,
+  /// each once; none where the option is not given.
+  std::vector<std::size_t> indices(const std::string& name) const;
 
   /// The value of an enumeration by its name.
   template <class Enum>
@@ -81,6 +88,7 @@ class Flags {
 
  private:
   std::string positional_name_;
+  std::string second_positional_name_;
   boost::program_options::variables_map values_;
 };
 

@@ -14,6 +14,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_hold(const std::vector<std::string>& arguments);
+ExitCode run_convert(const std::vector<std::string>& arguments);
 ExitCode run_shape(const std::vector<std::string>& arguments);
 ExitCode run_hand(const std::vector<std::string>& arguments);
 ExitCode run_experiment(const std::vector<std::string>& arguments);

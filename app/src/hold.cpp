@@ -89,26 +89,10 @@ struct Request {
   bool gif = false;
 };
 
-/// Indices of the grasps whose ranks a flag lists, ascending, each once.
-std::vector<std::size_t> indices_of(const Flags& flags, const std::string& name) {
-  std::vector<std::size_t> indices;
-  if (!flags.has(name)) return indices;
-  for (const double rank : flags.numbers(name)) {
-    if (!(rank >= 1.0 && rank <= 1e9 && rank == std::floor(rank))) {
-      throw UsageError("--" + name + " \"" + flags.text(name) + "\" does not list ranks from 1");
-    }
-    indices.push_back(static_cast<std::size_t>(rank) - 1);
-  }
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
-  if (indices.empty()) throw UsageError("--" + name + " names no grasp");
-  return indices;
-}
-
 Request read_request(const Flags& flags) {
   Request request;
   request.protocol = read_hold_protocol(flags);
-  request.run.indices = indices_of(flags, "grasp");
+  request.run.indices = flags.indices("grasp");
   request.run.margin = flags.has("margin");
   if (request.run.margin && request.protocol.load == hold_test::HoldLoad::Lift) {
     throw UsageError("--margin: protocol " + request.protocol.name +
@@ -121,7 +105,7 @@ Request read_request(const Flags& flags) {
   request.pieces.max_pieces = flags.integer("pieces");
   request.pieces.largest_deviation = flags.number("deviation");
   request.pieces.validate();
-  request.replays = indices_of(flags, "replay");
+  request.replays = flags.indices("replay");
   request.gif = flags.has("gif");
   if (!flags.has("out") && !request.replays.empty()) throw UsageError("--replay needs --out DIR");
   if (request.gif && request.replays.empty()) throw UsageError("--gif needs --replay N");

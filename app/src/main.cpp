@@ -24,6 +24,7 @@ const char* const kUsage =
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit hold GRASPS.json     tests in physics whether the grasps of a file hold\n"
+    "  graspfit convert IN OUT       grasp files of other tools: writes five formats, reads one\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
     "  graspfit experiment ...       lists, describes and runs tables of results\n"
@@ -37,14 +38,16 @@ void print_error(const std::string& command, const std::string& what) {
 }
 
 using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 7> kCommands = {{{"plan", run_plan},
+constexpr std::array<std::pair<const char*, Run>, 8> kCommands = {{{"plan", run_plan},
                                                                    {"inspect", run_inspect},
                                                                    {"evaluate", run_evaluate},
                                                                    {"hold", run_hold},
+                                                                   {"convert", run_convert},
                                                                    {"shape", run_shape},
                                                                    {"hand", run_hand},
                                                                    {"experiment", run_experiment}}};
-const char* const kCommandNames = "plan, inspect, evaluate, hold, shape, hand and experiment";
+const char* const kCommandNames =
+    "plan, inspect, evaluate, hold, convert, shape, hand and experiment";
 
 const std::pair<const char*, Run>* find_command(const std::string& name) {
   const auto found = std::find_if(kCommands.begin(), kCommands.end(),

@@ -8,7 +8,8 @@ std::vector<std::pair<std::string, std::string>> version_rows() {
           {"build", kBuildType},   {"CGAL", kCgal},
           {"Eigen", kEigen},       {"assimp", kAssimp},
           {"Boost", kBoost},       {"nlohmann-json", kNlohmannJson},
-          {"tinyxml2", kTinyxml2}, {"OpenSSL", kOpenSsl}};
+          {"tinyxml2", kTinyxml2}, {"yaml-cpp", kYamlCpp},
+          {"OpenSSL", kOpenSsl}};
 }
 
 std::string version_text() {

@@ -402,6 +402,10 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   for (const auto& [key, node] : results.members()) {
     if (key == "hold") file.hold = read_hold(node, file.grasps.size());
   }
+  for (const auto& [key, node] : root.members()) {
+    if (key != "imported") continue;
+    file.imported = {node.at("format").text(), node.at("file").text(), node.at("sha256").text()};
+  }
   file.timings = read_timings(root.at("timings"));
   return file;
 }

@@ -84,6 +84,11 @@ Json conventions() {
        "only where planned grasps were tested in physics: those that did not hold under the "
        "protocol are left out and counted by the stage they came to, the others are ordered by "
        "margins_N, the smallest force that fails for each"},
+      {"imported",
+       "only where grasps come from another tool's file: poses and joints are that file's, "
+       "everything "
+       "else is computed by the planner's options; attempt is the grasp's place in that file, from "
+       "0"},
       {"usable", "m > 0"},
       {"valid",
        "usable, no link shares a point with the object, the surroundings or another link that is "
@@ -96,7 +101,7 @@ Json planner_json(const GraspFile& file) {
   for (const auto& [point, reading] : internal::planner_readings(file.options)) {
     readings[point] = reading;
   }
-  return {{"name", "hand-object geometric fitting"},
+  return {{"name", file.imported ? "none: imported" : "hand-object geometric fitting"},
           {"version", file.version},
           {"seed", file.options.seed},
           {"options", internal::planner_options_json(file.options)},
@@ -319,15 +324,21 @@ Json timings_json(const PlannerTimings& timings) {
 std::string to_json(const GraspFile& file) {
   const auto used_mesh_file =
       file.used_meshes ? std::optional(file.used_meshes->object) : std::nullopt;
-  return internal::json_text({{"format", "graspfit-grasps"},
-                              {"version", internal::kGraspFileVersion},
-                              {"conventions", conventions()},
-                              {"object", internal::object_json(file.object, used_mesh_file)},
-                              {"surroundings", internal::surroundings_json(file)},
-                              {"hand", internal::hand_json(file)},
-                              {"planner", planner_json(file)},
-                              {"results", results_json(file)},
-                              {"timings", timings_json(file.timings)}});
+  Json json = {{"format", "graspfit-grasps"},
+               {"version", internal::kGraspFileVersion},
+               {"conventions", conventions()},
+               {"object", internal::object_json(file.object, used_mesh_file)},
+               {"surroundings", internal::surroundings_json(file)},
+               {"hand", internal::hand_json(file)},
+               {"planner", planner_json(file)}};
+  if (file.imported) {
+    json["imported"] = {{"format", file.imported->format},
+                        {"file", file.imported->file},
+                        {"sha256", file.imported->sha256}};
+  }
+  json["results"] = results_json(file);
+  json["timings"] = timings_json(file.timings);
+  return internal::json_text(json);
 }
 
 }  // namespace graspfit::grasp

@@ -10,6 +10,7 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/checked_pre_grasp.hpp"
 #include "internal/option_check.hpp"
 #include "internal/straight_way.hpp"
 
@@ -94,6 +95,14 @@ class PreGraspSearch {
     return std::nullopt;
   }
 
+  std::optional<PreGrasp> checked(const HandConfiguration& start) {
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
+    if (!is_clear(X_OL) || !is_free(start, X_OL)) return std::nullopt;
+    const Eigen::Vector3d moved = grasp_.X_OH.translation() - start.X_OH.translation();
+    return PreGrasp{start, nearest_distance(X_OL), opening_of(start.q),
+                    std::max(0.0, moved.dot(grasp_.X_OH.linear() * hand_.palm.direction_H))};
+  }
+
  private:
   const geometry::MeshQuery& solid(int link) const { return *collision_.link_solid(link); }
 
@@ -111,6 +120,18 @@ class PreGraspSearch {
     hands::clamp_to_limits(hand_, q);
     hands::apply_couplings(hand_, q);
     return q;
+  }
+
+  /// The largest share of a closing joint's way to where the open hand has it, in [0, 1].
+  double opening_of(const Eigen::VectorXd& q) const {
+    double largest = 0.0;
+    for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
+      const auto i = static_cast<Eigen::Index>(j);
+      const double whole = open_q_[i] - grasp_.q[i];
+      if (hand_.joints[j].closing_sign == 0 || whole == 0.0) continue;
+      largest = std::max(largest, (q[i] - grasp_.q[i]) / whole);
+    }
+    return std::min(largest, 1.0);
   }
 
   RigidTransform retreated(double retreat) const {
@@ -258,6 +279,19 @@ std::optional<PreGrasp> find_pre_grasp(const hands::HandModel& hand,
   options.validate();
   hands::validate(hand, grasp);
   return PreGraspSearch(hand, collision, object, surroundings, grasp, options)();
+}
+
+std::optional<PreGrasp> internal::checked_pre_grasp(const hands::HandModel& hand,
+                                                    const hands::HandCollision& collision,
+                                                    const geometry::MeshQuery& object,
+                                                    const SurroundingsCollision& surroundings,
+                                                    const HandConfiguration& start,
+                                                    const HandConfiguration& grasp,
+                                                    const PreGraspOptions& options) {
+  options.validate();
+  hands::validate(hand, start);
+  hands::validate(hand, grasp);
+  return PreGraspSearch(hand, collision, object, surroundings, grasp, options).checked(start);
 }
 
 }  // namespace graspfit::grasp

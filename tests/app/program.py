@@ -3,6 +3,7 @@
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -51,6 +52,21 @@ def box(x, y, z):
                 for sz in (-1, 1) for sy in (-1, 1) for sx in (-1, 1)]
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     return vertices, [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+
+
+def german_environment(folder):
+    """With a locale whose decimals have a comma: the system's, or one compiled into `folder`."""
+    done = subprocess.run(["locale", "-a"], capture_output=True, text=True, check=False)
+    german = [name for name in done.stdout.split() if name.startswith("de_")]
+    if german:
+        return {**os.environ, "LC_ALL": german[0]}
+    if shutil.which("localedef"):
+        locale = folder / "de_DE.UTF-8"
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", locale],
+                       capture_output=True, check=False)
+        if locale.is_dir():
+            return {**os.environ, "LOCPATH": str(folder), "LC_ALL": locale.name}
+    return None
 
 
 class ProgramTest(unittest.TestCase):

@@ -173,22 +173,8 @@ class Plan(program.ProgramTest):
 
 
 class Locale(program.ProgramTest):
-    def german_environment(self):
-        """With a locale whose decimals have a comma: the system's, or one compiled here."""
-        done = subprocess.run(["locale", "-a"], capture_output=True, text=True, check=False)
-        german = [name for name in done.stdout.split() if name.startswith("de_")]
-        if german:
-            return {**os.environ, "LC_ALL": german[0]}
-        if shutil.which("localedef"):
-            folder = self.folder / "de_DE.UTF-8"
-            subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", folder],
-                           capture_output=True, check=False)
-            if folder.is_dir():
-                return {**os.environ, "LOCPATH": str(self.folder), "LC_ALL": folder.name}
-        return None
-
     def test_locale_does_not_change_the_bytes(self):
-        environment = self.german_environment()
+        environment = program.german_environment(self.folder)
         if environment is None:
             print("SKIPPED: no German locale, and none could be compiled; install the package "
                   "locales")

@@ -44,6 +44,13 @@ struct HoldRecord {
                                 ///< not measured.
 };
 
+/// Where grasps come from that were not planned here (component exchange).
+struct ImportRecord {
+  std::string format;  ///< With its version: "isaac_grasp 1.0".
+  std::string file;    ///< As given.
+  std::string sha256;  ///< Of that file's bytes.
+};
+
 /// A grasp file (`grasps.json`): everything needed to recompute every number without this program.
 /// Its schema is grasp/grasps.schema.json.
 struct GraspFile {
@@ -62,6 +69,7 @@ struct GraspFile {
   double merge_distance = 0.0;              ///< Used by the measure [m].
   std::vector<Grasp> grasps;                ///< Best M first; with `hold`, largest margin first.
   std::optional<HoldRecord> hold;           ///< Empty: not tested while planning.
+  std::optional<ImportRecord> imported;     ///< Empty: planned; else `options` only measured.
   PlannerStatistics statistics;
   PlannerStop stop = PlannerStop::Attempts;
   PlannerTimings timings;

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/object_file.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+
+namespace graspfit::exchange {
+
+/// A grasp as another tool's file states it.
+struct ImportedGrasp {
+  std::string name;
+  hands::HandConfiguration configuration;      ///< X_OH and all joints.
+  std::optional<Eigen::VectorXd> pre_grasp_q;  ///< Joints before, at the same palm pose.
+};
+
+/// Grasps of another tool, measured as ours are.
+struct ImportResult {
+  grasp::GraspFile file;             ///< Best M first, ties in the order given.
+  std::vector<std::size_t> sources;  ///< Per grasp of `file`: its index among those given.
+  std::vector<std::string> notes;    ///< For people: pre-grasps that could not be kept.
+};
+
+/// A grasp file of grasps that come from elsewhere.
+///
+/// Nothing but poses and joints is taken over: contacts, M, ε, penetration, pre-grasps and squeezes
+/// are computed from the meshes, by `options`, which the file records as if the planner had used
+/// them. `options` also say which fingers and whether the palm are to touch. A pre-grasp that was
+/// given is kept where it is clear by `options.pre_grasp.clearance` and the straight way from it is
+/// proven free (of grasps that cut something no way is); else one is looked for
+/// (`grasp::find_pre_grasp`).
+/// `Grasp::attempt` is the grasp's index among those given, and no attempts are counted.
+/// @throws InvalidInput for bad options, a hand that cannot do what they ask, an object that is not
+/// a closed outward solid, configurations outside the hand's limits.
+/// @throws IoError if a link mesh of the hand can no longer be read.
+ImportResult import_grasps(const grasp::ObjectFile& object, const hands::HandModel& hand,
+                           std::span<const ImportedGrasp> grasps, const grasp::ImportRecord& source,
+                           const grasp::PlannerOptions& options = {});
+
+}  // namespace graspfit::exchange
