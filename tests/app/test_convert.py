@@ -444,7 +444,7 @@ class BadInput(ConvertTest):
                 ((theirs, "a.json", "--hand", "elbow", *mesh), "elbow"),
                 ((theirs, "a.json", "--hand", "human_hand", *mesh), "has no such joint"),
                 ((theirs, "a.json", *hand, "--object", "none.off"), "none.off"),
-                ((theirs, "a.json", *hand, *mesh, "--fingers", "pinky"), "pinky"),
+                ((theirs, "a.json", *hand, *mesh, "--fingers", "thumb,pinky"), "pinky"),
                 ((theirs, "a.json", *hand, *mesh, "--longest", "0.1"), "exclude each other")):
             with self.subTest(arguments):
                 self.refused(*arguments, says=says)
