@@ -198,7 +198,7 @@ class Schema(ProgramTest):
                 (["settings", "accept"], "all", "/settings/accept: is \"all\", must be one of "),
                 (["settings", "accpet"], "all", "/settings/accpet: is no setting; there are "),
                 (["settings", "refine"], "on", "/settings/refine: is \"on\", must be true or"),
-                (["settings", "count"], 1.5, "/settings/count: is 1.5, must be an integer"),
+                (["settings", "slide-steps"], 1.5, "/settings/slide-steps: is 1.5, must be an"),
                 (["settings", "approach"], [0, 1], "/settings/approach: is [0,1], must be three"),
                 (["settings", "size_m"], 0, "/settings/size_m: is 0, must be > 0"),
                 (["axes", "option"], [], "/axes/option: is not an array with at least one"),

@@ -24,8 +24,9 @@ SOURCE_DIR = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "snakemake")
 SLUG = "parameter_sweeps"
 SHARDS = 3
-# 12 cells of some seconds each, so that there is a middle to be killed in; a shape, no data needed.
-CHANGES = ["--quick", "--set", "seed=1,2,3,4,5,6", "--set", "max-attempts=60"]
+# 12 cells of a second or more each, so that there is a middle to be killed in; of a shape, which
+# needs no data.
+CHANGES = ["--quick", "--set", "seed=1,2,3,4,5,6", "--set", "max-attempts=20"]
 START = time.monotonic()
 
 SLURM_CONF = """\
