@@ -6,7 +6,12 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/grasp_diversity.hpp"
+#include "graspfit/grasp/grasp_file_metrics.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/grasp_metric.hpp"
+#include "metric_report.hpp"
 #include "recorded_files.hpp"
 #include "text_table.hpp"
 
@@ -20,20 +25,42 @@ using geometry::shortest_decimal;
 /// quaternions, which moves them by about 1e-16 m; the measures follow within about 1e-12.
 constexpr double kTolerance = 1e-9;
 
+/// By what the diversity of a file's grasps is measured.
+constexpr grasp::DistinctOptions kDistinct;
+
 Command evaluate_command() {
   Command command{
       "evaluate", "GRASPS.json",
       "Computes contacts, M, epsilon, gaps and penetration of every grasp in a file again, from "
       "the "
-      "meshes\nof object, obstacles and hand alone, and compares. The hashes of all files are "
-      "checked first.\n",
+      "meshes\nof object, obstacles and hand alone, and compares; then prints metrics of each "
+      "grasp. The hashes of\nall files are checked first.\n",
       option_group("Options"),
       "The same: M, epsilon and the largest gap of a requested contact within 1e-9, and equal "
       "answers to\nwhether every requested contact is there and whether the hand meets object, "
-      "itself or surroundings.\n"};
+      "itself or surroundings.\n\nMetrics:\n" +
+          metrics_help()};
   add_object_flag(command.options);
-  add_switch(command.options, "json", "print JSON instead of a table");
+  add_option(command.options, "metrics", "NAME,...", "all",
+             "metrics to print, of those below; all or none");
+  add_option(command.options, "convention", grasp::names_of<grasp::WrenchTool>(), "house",
+             "whose wrench convention metrics are in");
+  add_switch(command.options, "json", "print JSON instead of tables");
+  add_switch(command.options, "csv", "print metrics as CSV, a row per grasp and metric");
   return command;
+}
+
+/// The metrics that --metrics asks for.
+grasp::GraspMetrics metrics_of(const Flags& flags) {
+  const grasp::GraspMetrics& all = grasp::grasp_metrics();
+  const std::vector<std::string> names = flags.words("metrics");
+  if (names == std::vector<std::string>{"all"}) return all;
+  if (names == std::vector<std::string>{"none"}) return {};
+  try {
+    return all.selected(names);
+  } catch (const geometry::InvalidInput& error) {
+    throw UsageError(std::string("--metrics: ") + error.what());
+  }
 }
 
 /// What one grasp was and what it is computed to be.
@@ -117,7 +144,39 @@ std::string table_of(const std::vector<Comparison>& comparisons) {
   return text_table(rows);
 }
 
-std::string json_of(const std::vector<Comparison>& comparisons, double largest_m_difference) {
+grasp::GraspDiversity diversity_of(const grasp::GraspFile& file) {
+  std::vector<hands::HandConfiguration> configurations;
+  for (const grasp::Grasp& grasp : file.grasps) configurations.push_back(grasp.configuration);
+  return grasp::grasp_diversity(file.hand, configurations, kDistinct);
+}
+
+/// What tells clusters apart.
+std::string distances_text() {
+  return shortest_decimal(kDistinct.translation) + " m, " + shortest_decimal(kDistinct.rotation) +
+         " rad, joints " + shortest_decimal(kDistinct.joints) + " rad or " +
+         shortest_decimal(kDistinct.joints * kDistinct.slide_scale) + " m";
+}
+
+std::string text_of(const grasp::GraspDiversity& diversity) {
+  return "diversity: " + std::to_string(diversity.num_clusters) + " clusters of " +
+         std::to_string(diversity.num_grasps) + " grasps (apart by " + distances_text() +
+         "); variance along the first principal axis: " +
+         (diversity.first_axis_share ? fixed_decimal(*diversity.first_axis_share, 4)
+                                     : std::string("none")) +
+         "\n";
+}
+
+std::string json_of(const grasp::GraspDiversity& diversity) {
+  return "{\"num_grasps\": " + std::to_string(diversity.num_grasps) +
+         ", \"num_clusters\": " + std::to_string(diversity.num_clusters) +
+         ", \"first_axis_share\": " +
+         (diversity.first_axis_share ? shortest_decimal(*diversity.first_axis_share)
+                                     : std::string("null")) +
+         ", \"convention\": \"apart by " + distances_text() + "\"}";
+}
+
+std::string json_of(const std::vector<Comparison>& comparisons, double largest_m_difference,
+                    const grasp::GraspDiversity& diversity, const MetricReport& metrics) {
   const auto quality = [](const grasp::Grasp& grasp) {
     return "{\"m\": " + shortest_decimal(grasp.quality.m) +
            ", \"m1\": " + shortest_decimal(grasp.quality.m1) +
@@ -134,14 +193,16 @@ std::string json_of(const std::vector<Comparison>& comparisons, double largest_m
            ", \"valid\": " + (grasp.is_valid() ? "true" : "false") + "}";
   };
   std::string text = "{\n  \"largest_m_difference\": " + shortest_decimal(largest_m_difference) +
-                     ",\n  \"grasps\": [";
+                     ",\n  \"diversity\": " + json_of(diversity) + ",\n  \"grasps\": [";
   const char* separator = "\n";
   for (const Comparison& comparison : comparisons) {
     text += separator + std::string("    {\"stored\": ") + quality(comparison.stored) +
             ",\n     \"computed\": " + quality(comparison.computed) +
             ",\n     \"same_contacts\": " + (comparison.has_same_contacts ? "true" : "false") +
             ", \"same\": " + (comparison.is_same() ? "true" : "false") +
-            ", \"largest_difference\": " + shortest_decimal(comparison.largest_difference) + "}";
+            ", \"largest_difference\": " + shortest_decimal(comparison.largest_difference) +
+            ",\n     \"metrics\": " +
+            metrics.json(static_cast<std::size_t>(&comparison - comparisons.data())) + "}";
     separator = ",\n";
   }
   return text + "\n  ]\n}\n";
@@ -156,6 +217,10 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
     std::fputs(help_text(command).c_str(), stdout);
     return kSuccess;
   }
+  if (flags.has("json") && flags.has("csv"))
+    throw UsageError("--json and --csv exclude each other");
+  MetricReport metrics(metrics_of(flags));
+  const auto tool = flags.choice<grasp::WrenchTool>("convention");
   const grasp::GraspFile file = grasp::read_grasps(flags.positional());
   const geometry::TriangleMesh mesh = load_recorded_object(flags, file);
   const grasp::RecordedScene scene(file, mesh, load_recorded_surroundings(flags, file));
@@ -166,11 +231,22 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
     comparisons.push_back(compare(stored, scene.measure(stored.configuration)));
     largest_m_difference = std::max(largest_m_difference, comparisons.back().m_difference);
   }
+  const geometry::MeshQuery surface(mesh);
+  const grasp::GraspFileMetrics facts(file, surface, tool);
+  for (const Comparison& comparison : comparisons) {
+    metrics.add(grasp::GraspMetricInput(facts.facts(comparison.computed)));
+  }
   if (flags.has("json")) {
-    std::fputs(json_of(comparisons, largest_m_difference).c_str(), stdout);
+    std::fputs(json_of(comparisons, largest_m_difference, diversity_of(file), metrics).c_str(),
+               stdout);
+  } else if (flags.has("csv")) {
+    std::fputs(metrics.csv().c_str(), stdout);
   } else {
     std::printf("%slargest difference of M: %s\n", table_of(comparisons).c_str(),
                 shortest_decimal(largest_m_difference).c_str());
+    if (!metrics.is_empty()) {
+      std::printf("%s\n%s", metrics.tables().c_str(), text_of(diversity_of(file)).c_str());
+    }
   }
   const auto different =
       std::find_if_not(comparisons.begin(), comparisons.end(),

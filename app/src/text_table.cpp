@@ -31,4 +31,11 @@ std::string fixed_decimal(double value, int decimals) {
   return {text.data(), end};
 }
 
+std::string significant_decimal(double value, int digits) {
+  std::array<char, 40> text{};  // sign, digits, point, exponent
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value,
+                                          std::chars_format::general, std::min(digits, 17));
+  return {text.data(), end};
+}
+
 }  // namespace graspfit::app

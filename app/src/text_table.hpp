@@ -12,4 +12,7 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows);
 /// `value` with `decimals` digits after the point, in the C locale. Not for files.
 std::string fixed_decimal(double value, int decimals);
 
+/// `value` with at most `digits` significant digits, in the C locale. Not for files.
+std::string significant_decimal(double value, int digits);
+
 }  // namespace graspfit::app

@@ -7,6 +7,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "internal/convention_text.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -58,7 +59,7 @@ void WrenchSpaceOptions::validate() const {
         "finite and positive");
 }
 
-std::string describe(const WrenchConvention& convention) {
+std::string internal::describe(const WrenchConvention& convention, std::string_view norm) {
   const auto number = [](double value) { return geometry::shortest_decimal(value); };
   const WrenchSpaceOptions& options = convention.options;
   const Vector3d& c = convention.reference_point_O;
@@ -67,11 +68,19 @@ std::string describe(const WrenchConvention& convention) {
   text.append("torques about (" + number(c.x()) + ", " + number(c.y()) + ", " + number(c.z()) +
               ") m over " + number(options.torque_scale) + " m, friction " +
               number(options.friction) + ", " + std::to_string(options.num_cone_edges) +
-              " inscribed edges from normal x e_x, L1, unit ");
+              " inscribed edges from normal x e_x, ")
+      .append(norm)
+      .append(", unit ");
   text.append(options.force_scaling == ForceScaling::UnitNormal ? "normal" : "edge")
       .append(" force");
   if (options.force_limit != 1.0) text.append(" x " + number(options.force_limit));
-  return text.append(", outside ").append(name_of_outside(options.outside));
+  return text;
+}
+
+std::string describe(const WrenchConvention& convention) {
+  return internal::describe(convention, "L1")
+      .append(", outside ")
+      .append(name_of_outside(convention.options.outside));
 }
 
 WrenchObject wrench_object(const geometry::TriangleMesh& mesh_O, const Vector3d& center_of_mass_O) {

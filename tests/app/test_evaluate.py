@@ -1,5 +1,7 @@
 """`graspfit evaluate` computes every grasp again from the meshes."""
 
+import csv
+import io
 import json
 import pathlib
 import shutil
@@ -48,10 +50,48 @@ class Evaluate(program.ProgramTest):
             self.assertEqual(row["stored"]["m"], grasp["m"])
             self.assertEqual(row["computed"]["valid"], grasp["valid"])
 
-        done = self.evaluate(self.file)
+        done = self.evaluate(self.file, "--metrics", "none")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("largest difference of M: ", done.stdout)
         self.assertEqual(len(done.stdout.splitlines()), len(stored) + 2)
+
+    def test_prints_metrics_in_groups_with_their_conventions(self):
+        done = self.evaluate(self.file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for group in ("the paper's measure", "wrench space", "contacts", "penetration"):
+            self.assertIn("\n" + group + "\n", done.stdout)
+        self.assertIn("house: torques about (", done.stdout)
+
+        rows = list(csv.DictReader(io.StringIO(self.evaluate(self.file, "--csv").stdout)))
+        report = json.loads(self.evaluate(self.file, "--json").stdout)["grasps"]
+        self.assertEqual(len(rows), sum(len(grasp["metrics"]) for grasp in report))
+        for row in rows:
+            grasp = report[int(row["grasp"]) - 1]
+            metric = grasp["metrics"][row["metric"]]
+            value = None if row["value"] == "" else float(row["value"])
+            self.assertEqual((value, row["unit"], row["better"], row["convention"]),
+                             tuple(metric[key] for key in ("value", "unit", "better",
+                                                           "convention")))
+        for grasp in report:
+            metrics = grasp["metrics"]
+            self.assertEqual(metrics["m"]["value"], grasp["computed"]["m"])
+            self.assertEqual(metrics["epsilon_graspit"]["value"], grasp["computed"]["epsilon"])
+            self.assertEqual(metrics["num_contacts"]["value"], grasp["computed"]["num_contacts"])
+            self.assertIn("GraspIt!: ", metrics["epsilon_graspit"]["convention"])
+
+    def test_metrics_by_name_and_in_another_convention(self):
+        done = self.evaluate(self.file, "--metrics", "volume,m", "--csv", "--convention", "simox")
+        rows = list(csv.DictReader(io.StringIO(done.stdout)))
+        self.assertEqual([row["metric"] for row in rows], ["m", "volume"] * 2)
+        self.assertTrue(rows[1]["convention"].startswith("Simox: "))
+        self.assert_refused("evaluate", self.file, "--metrics", "m,goodness", cwd=self.folder,
+                            says=["--metrics", "goodness", "epsilon"])
+        self.assert_refused("evaluate", self.file, "--metrics", "m,m", cwd=self.folder,
+                            says="once")
+        self.assert_refused("evaluate", self.file, "--convention", "ours", cwd=self.folder,
+                            says="dexgraspbench")
+        self.assert_refused("evaluate", self.file, "--json", "--csv", cwd=self.folder,
+                            says="exclude")
 
     def test_reproduces_other_readings_too(self):
         done = program.run("plan", self.object, "--count", "2", "--accept", "usable",

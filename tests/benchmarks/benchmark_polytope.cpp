@@ -1,12 +1,14 @@
 // What it measures: convex hulls in 6-D beside Qhull on the same points, and what grasps need of
 // them. Points are random, wrenches of random contacts on a sphere (all edges of a contact lie in
 // one plane but for rounding: the hard case), and wrenches of contacts on a box (many exactly
-// coplanar).
+// coplanar). Then epsilon as a whole, from contacts to the number, beside Qhull on the same
+// wrenches, and the other measures of wrenches.
 //
 // How to read it: wall time per hull, the median over several sets, both sides in turn. "ratio" is
 // ours over Qhull's, below 1 is faster. Ours keeps every facet that rounding makes, Qhull merges
 // them and is therefore no exact answer; the numbers of facets say so.
 // Run: build/release/bin/graspfit_benchmarks "[polytope]".
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -15,8 +17,10 @@
 
 #include "graspfit/geometry/convex_polytope.hpp"
 #include "graspfit/geometry/random.hpp"
+#include "graspfit/grasp/epsilon_linf.hpp"
 #include "graspfit/grasp/grasp_balance.hpp"
 #include "graspfit/grasp/grasp_wrench_space.hpp"
+#include "graspfit/grasp/min_weight.hpp"
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
 #include "timing.hpp"
@@ -79,6 +83,52 @@ void compare(const std::string& name, const std::function<MatrixXd()>& next_poin
               median(ours) / median(theirs), median(our_facets), median(their_facets));
 }
 
+using NextContacts = std::function<std::vector<grasp::Contact>()>;
+
+/// Contacts to epsilon: wrenches, hull, nearest facet. Qhull gets the wrenches for nothing.
+void compare_epsilon(const std::string& name, const NextContacts& next_contacts) {
+  std::vector<double> ours, theirs;
+  double largest_difference = 0.0;
+  for (int set = 0; set < kSets; ++set) {
+    const std::vector<grasp::Contact> contacts = next_contacts();
+    const grasp::Wrenches wrenches = wrenches_of(contacts);
+    double epsilon = 0.0;
+    double other = 0.0;
+    ours.push_back(seconds_of([&] {
+      epsilon = grasp::epsilon_quality(grasp::grasp_wrench_space(
+          contacts, Vector3d::Zero(), {.friction = 0.5, .torque_scale = 1.0}));
+    }));
+    theirs.push_back(seconds_of([&] {
+      const testing::QhullResult hull = testing::qhull(wrenches);
+      other = hull.is_full ? std::max(0.0, -hull.planes.row(6).maxCoeff()) : 0.0;
+    }));
+    largest_difference = std::max(largest_difference, std::abs(epsilon - other));
+  }
+  std::printf("  %-28s %8.3f ms  Qhull %8.3f ms  ratio %5.2f  largest difference %.0e\n",
+              name.c_str(), median(ours) * kMilli, median(theirs) * kMilli,
+              median(ours) / median(theirs), largest_difference);
+}
+
+void time_measures(const std::string& name, const NextContacts& next_contacts) {
+  std::vector<double> linf, weight, points;
+  for (int set = 0; set < kSets; ++set) {
+    const std::vector<grasp::Contact> contacts = next_contacts();
+    const grasp::Wrenches wrenches = wrenches_of(contacts);
+    grasp::LInfinityEpsilon epsilon;
+    const double seconds = seconds_of([&] {
+      epsilon = grasp::epsilon_linf(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
+    });
+    weight.push_back(seconds_of([&] { grasp::min_weight(wrenches); }));
+    if (epsilon.upper == 0.0) continue;  // seen at once
+    linf.push_back(seconds);
+    points.push_back(epsilon.num_points);
+  }
+  std::printf(
+      "  %-28s epsilon L-infinity of %zu closed ones %8.3f ms, %.0f points; min-weight %.3f ms\n",
+      name.c_str(), linf.size(), linf.empty() ? 0.0 : median(linf) * kMilli,
+      points.empty() ? 0.0 : median(points), median(weight) * kMilli);
+}
+
 double microseconds(const std::function<void()>& work) {
   std::vector<double> times;
   for (int i = 0; i < kSets; ++i) times.push_back(seconds_of(work));
@@ -99,6 +149,15 @@ TEST_CASE("Convex hulls in six dimensions beside Qhull", "[!benchmark][polytope]
             [&] { return MatrixXd(wrenches_of(contacts_on_ball(random, count))); });
     compare(size + "wrenches on a box",
             [&] { return MatrixXd(wrenches_of(contacts_on_box(random, count))); });
+  }
+
+  std::printf("\nEpsilon as a whole, from contacts\n");
+  for (const int count : {3, 5}) {
+    const std::string size = std::to_string(count) + " x 8 ";
+    const NextContacts on_ball = [&] { return contacts_on_ball(random, count); };
+    compare_epsilon(size + "contacts on a ball", on_ball);
+    compare_epsilon(size + "contacts on a box", [&] { return contacts_on_box(random, count); });
+    time_measures(size + "contacts on a ball", on_ball);
   }
 
   std::printf("\nGrasps on a ball, 8 edges, microseconds\n");

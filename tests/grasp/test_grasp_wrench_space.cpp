@@ -7,6 +7,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/grasp/grasp_wrench_space.hpp"
+#include "known_grasps.hpp"
 #include "random_contacts.hpp"
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
@@ -19,27 +20,14 @@ using graspfit::geometry::ConvexPolytope;
 using graspfit::geometry::InvalidInput;
 using graspfit::geometry::Random;
 using graspfit::testing::contact_at;
+using graspfit::testing::Contacts;
+using graspfit::testing::on_cube;
+using graspfit::testing::on_sphere;
+using graspfit::testing::on_tetrahedron;
 using graspfit::testing::random_contacts;
 using graspfit::testing::random_direction;
-using Contacts = std::vector<Contact>;
 
 namespace {
-
-/// Points of the unit sphere held along its normals.
-Contacts on_sphere(const std::vector<Vector3d>& directions) {
-  Contacts contacts;
-  for (const Vector3d& direction : directions) {
-    contacts.push_back(contact_at(direction.normalized(), -direction.normalized()));
-  }
-  return contacts;
-}
-
-/// The middles of the faces of a cube with half edge 1.
-Contacts on_cube() {
-  return on_sphere({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
-}
-
-Contacts on_tetrahedron() { return on_sphere({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}); }
 
 GraspWrenchSpace space_of(const Contacts& contacts, double friction, int num_edges = 8) {
   return grasp_wrench_space(

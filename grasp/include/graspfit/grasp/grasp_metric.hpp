@@ -1,0 +1,127 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/grasp/contact.hpp"
+#include "graspfit/grasp/contact_quality.hpp"
+#include "graspfit/grasp/grasp.hpp"
+#include "graspfit/grasp/grasp_wrench_space.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/pose_robustness.hpp"
+#include "graspfit/grasp/wrench_convention.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+/// \file
+/// Numbers that say how good a grasp is, by name. One metric is one function of the facts about a
+/// grasp; grasp/README.md shows how to add one.
+
+namespace graspfit::grasp {
+
+struct PlannerOptions;
+
+/// All that a metric may look at. Contacts and the object's scales are enough for most; what is not
+/// given makes the metrics that need it have no value. Everything pointed at must outlive this.
+struct GraspMetricFacts {
+  std::vector<Contact> contacts;
+  WrenchObject object;                  ///< Center of mass and scales.
+  double friction = 0.4;                ///< Coulomb's μ of all wrench metrics, ≥ 0.
+  WrenchTool tool = WrenchTool::House;  ///< Whose wrench convention.
+  const Grasp* grasp = nullptr;  ///< As measured, with these contacts: for penetration and M.
+  const geometry::MeshQuery* surface = nullptr;   ///< Of the object: for pose robustness.
+  std::optional<QualityContext> quality_context;  ///< For M where there is no `grasp`, and for
+                                                  ///< pose robustness.
+  QualityOptions quality_options = {};
+};
+
+/// Facts and what several metrics compute from them, each once and when it is first asked for. For
+/// one thread at a time.
+class GraspMetricInput {
+ public:
+  explicit GraspMetricInput(GraspMetricFacts facts) : facts_(std::move(facts)) {}
+
+  const GraspMetricFacts& facts() const { return facts_; }
+  std::span<const Contact> contacts() const { return facts_.contacts; }
+
+  /// The convention of `facts().tool`. Empty without contacts, and where it has no torque scale for
+  /// them (DexGraspBench, all contacts in one point). @throws InvalidInput for bad facts: a
+  /// friction below 0, an object without extent.
+  const std::optional<WrenchConvention>& convention() const;
+
+  /// The wrench space in that convention; null where there is no convention.
+  /// @throws InvalidInput as `grasp_wrench_space`.
+  const GraspWrenchSpace* wrench_space() const;
+
+  /// M and its parts: of the grasp, or from contacts and `quality_context`; null without both.
+  const ContactQuality* quality() const;
+
+  /// At the default noise; null without contacts or `surface`.
+  const PoseRobustness* robustness() const;
+
+ private:
+  GraspMetricFacts facts_;
+  mutable bool has_asked_for_convention_ = false;
+  mutable std::optional<WrenchConvention> convention_;
+  mutable std::optional<GraspWrenchSpace> wrench_space_;
+  mutable std::optional<ContactQuality> quality_;
+  mutable std::optional<PoseRobustness> robustness_;
+};
+
+/// Which of two values of a metric is the better one.
+enum class BetterValue { Larger, Smaller };
+
+/// A number about a grasp.
+struct GraspMetric {
+  std::string name;     ///< snake_case; what tables and the command line call it.
+  std::string group;    ///< Heading that it is printed under, such as "wrench space".
+  std::string unit;     ///< "1", "m", ...
+  std::string meaning;  ///< One line.
+  BetterValue better = BetterValue::Larger;
+  /// Empty where the metric is not defined.
+  std::function<std::optional<double>(const GraspMetricInput&)> value;
+  /// What the value depends on besides the grasp, in one line; empty text: nothing.
+  std::function<std::string(const GraspMetricInput&)> convention;
+};
+
+/// A metric's value with what it depends on: two values are comparable only if these agree.
+struct GraspMetricValue {
+  std::optional<double> value;  ///< Empty: not defined for this grasp.
+  std::string convention;
+};
+GraspMetricValue evaluate(const GraspMetric& metric, const GraspMetricInput& input);
+
+/// Metrics in the order in which they are printed, no two of one name.
+class GraspMetrics {
+ public:
+  /// Adds a metric after the others of its group, or with a new group at the end.
+  /// @throws InvalidInput unless it has a new name in snake_case, group, unit, meaning and value.
+  void add(GraspMetric metric);
+
+  std::span<const GraspMetric> all() const { return metrics_; }
+
+  /// @throws InvalidInput for a name that is not here; says which are.
+  const GraspMetric& at(std::string_view name) const;
+  bool contains(std::string_view name) const;
+
+  /// Those of the given names, in the order that they have here. @throws InvalidInput as `at`, and
+  /// for a name given twice.
+  GraspMetrics selected(std::span<const std::string> names) const;
+
+ private:
+  std::vector<GraspMetric> metrics_;
+};
+
+/// The metrics of this library. To use others too, copy it and `add` them.
+const GraspMetrics& grasp_metrics();
+
+/// The facts about a grasp that was planned on `object` with `options`: everything there is.
+/// `object`, `hand` and `grasp` must outlive the result.
+GraspMetricFacts metric_facts(const ObjectModel& object, const hands::HandModel& hand,
+                              const PlannerOptions& options, const Grasp& grasp);
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,25 @@
+#include "graspfit/grasp/grasp_balance.hpp"
+#include "internal/metric_list.hpp"
+
+namespace graspfit::grasp::internal {
+
+std::vector<GraspMetric> balance_metrics() {
+  return {{.name = "balance_residual",
+           .group = "wrench space",
+           .unit = "1",
+           .meaning = "smallest wrench left over by contact forces whose normal parts sum up to 1",
+           .better = BetterValue::Smaller,
+           .value = [](const GraspMetricInput& input) -> std::optional<double> {
+             if (!input.convention()) return std::nullopt;
+             const WrenchConvention& convention = *input.convention();
+             return balance_forces(input.contacts(), convention.reference_point_O, Wrench::Zero(),
+                                   {.num_cone_edges = convention.options.num_cone_edges,
+                                    .friction = convention.options.friction,
+                                    .least_normal_sum = 1.0,
+                                    .torque_scale = convention.options.torque_scale})
+                 .residual_norm;
+           },
+           .convention = describe_convention}};
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <numeric>
+
+#include "internal/metric_list.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using Value = std::optional<double>;
+using Contacts = std::span<const Contact>;
+
+GraspMetric of_contacts(std::string name, std::string unit, std::string meaning, BetterValue better,
+                        double (*value)(Contacts)) {
+  return {.name = std::move(name),
+          .group = "contacts",
+          .unit = std::move(unit),
+          .meaning = std::move(meaning),
+          .better = better,
+          .value = [value](const GraspMetricInput& input) -> Value {
+            if (input.contacts().empty()) return std::nullopt;
+            return value(input.contacts());
+          },
+          .convention = nullptr};
+}
+
+bool has_smaller_gap(const Contact& a, const Contact& b) { return a.gap < b.gap; }
+
+double largest_gap(Contacts contacts) {
+  return std::max_element(contacts.begin(), contacts.end(), has_smaller_gap)->gap;
+}
+
+double sum(Contacts contacts, double Contact::*field) {
+  return std::accumulate(
+      contacts.begin(), contacts.end(), 0.0,
+      [field](double total, const Contact& contact) { return total + contact.*field; });
+}
+
+}  // namespace
+
+std::vector<GraspMetric> contact_metrics() {
+  std::vector<GraspMetric> metrics = {
+      of_contacts("contact_area", "m2", "object surface inside the clip volumes, all contacts",
+                  BetterValue::Larger,
+                  [](Contacts contacts) { return sum(contacts, &Contact::area); }),
+      of_contacts("contact_gap_mean", "m", "mean distance of the contacts' pads from the surface",
+                  BetterValue::Smaller,
+                  [](Contacts contacts) {
+                    return sum(contacts, &Contact::gap) / static_cast<double>(contacts.size());
+                  }),
+      of_contacts("contact_gap_spread", "m", "largest less smallest gap of the contacts",
+                  BetterValue::Smaller,
+                  [](Contacts contacts) {
+                    return largest_gap(contacts) -
+                           std::min_element(contacts.begin(), contacts.end(), has_smaller_gap)->gap;
+                  }),
+      of_contacts("contact_gap_max", "m", "largest gap of a contact", BetterValue::Smaller,
+                  largest_gap)};
+  metrics.push_back({.name = "claimed_gap_max",
+                     .group = "contacts",
+                     .unit = "m",
+                     .meaning = "largest gap of the contacts that were asked for",
+                     .better = BetterValue::Smaller,
+                     .value = [](const GraspMetricInput& input) -> Value {
+                       Value largest;
+                       for (const Contact& contact : input.contacts()) {
+                         if (contact.is_target)
+                           largest = std::max(largest.value_or(0), contact.gap);
+                       }
+                       return largest;
+                     },
+                     .convention = nullptr});
+  metrics.push_back({.name = "num_contacts",
+                     .group = "contacts",
+                     .unit = "1",
+                     .meaning = "number of contacts, N'",
+                     .better = BetterValue::Larger,
+                     .value = [](const GraspMetricInput& input) -> Value {
+                       return static_cast<double>(input.contacts().size());
+                     },
+                     .convention = nullptr});
+  return metrics;
+}
+
+}  // namespace graspfit::grasp::internal

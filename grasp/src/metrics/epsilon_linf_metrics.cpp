@@ -1,0 +1,21 @@
+#include "graspfit/grasp/epsilon_linf.hpp"
+#include "internal/metric_list.hpp"
+
+namespace graspfit::grasp::internal {
+
+std::vector<GraspMetric> epsilon_linf_metrics() {
+  return {{.name = "epsilon_linf",
+           .group = "wrench space",
+           .unit = "1",
+           .meaning = "largest ball where each contact presses with at most 1 (L-infinity)",
+           .better = BetterValue::Larger,
+           .value = [](const GraspMetricInput& input) -> std::optional<double> {
+             if (!input.convention()) return std::nullopt;
+             return epsilon_linf(input.contacts(), *input.convention()).lower;
+           },
+           .convention = [](const GraspMetricInput& input) -> std::string {
+             return input.convention() ? describe_linf(*input.convention()) : std::string();
+           }}};
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "graspfit/grasp/wrench_convention.hpp"
+#include "random_contacts.hpp"
+
+/// \file
+/// Sets of contacts whose measures are known in closed form, named as in the project's table of
+/// known values. Torque scale 1, torques about the origin.
+
+namespace graspfit::testing {
+
+using Contacts = std::vector<grasp::Contact>;
+
+/// Points of the unit sphere held along its normals.
+inline Contacts on_sphere(const std::vector<Eigen::Vector3d>& directions) {
+  Contacts contacts;
+  for (const Eigen::Vector3d& direction : directions) {
+    contacts.push_back(contact_at(direction.normalized(), -direction.normalized()));
+  }
+  return contacts;
+}
+
+/// Case E: two contacts opposite each other; rank 5.
+inline Contacts antipodal() { return on_sphere({{1, 0, 0}, {-1, 0, 0}}); }
+
+/// Case F: the middles of the faces of a cube with half edge 1.
+inline Contacts on_cube() {
+  return on_sphere({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
+}
+
+/// Case G.
+inline Contacts on_tetrahedron() {
+  return on_sphere({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}});
+}
+
+/// What tools scale by: the unit ball.
+inline grasp::WrenchObject unit_ball() {
+  return {.center_of_mass_O = Eigen::Vector3d::Zero(),
+          .largest_radius = 1.0,
+          .extents_O = Eigen::Vector3d::Constant(2.0)};
+}
+
+}  // namespace graspfit::testing
