@@ -152,9 +152,10 @@ grasp::GraspDiversity diversity_of(const grasp::GraspFile& file) {
 
 /// What tells clusters apart.
 std::string distances_text() {
-  return shortest_decimal(kDistinct.translation) + " m, " + shortest_decimal(kDistinct.rotation) +
-         " rad, joints " + shortest_decimal(kDistinct.joints) + " rad or " +
-         shortest_decimal(kDistinct.joints * kDistinct.slide_scale) + " m";
+  const auto number = [](double value) { return significant_decimal(value, 4); };
+  return number(kDistinct.translation) + " m, " + number(kDistinct.rotation) + " rad, joints " +
+         number(kDistinct.joints) + " rad or " + number(kDistinct.joints * kDistinct.slide_scale) +
+         " m";
 }
 
 std::string text_of(const grasp::GraspDiversity& diversity) {

@@ -111,7 +111,7 @@ TEST_CASE("Metrics of robustness are these numbers at the default noise",
   const GraspMetricValue epsilon = evaluate(grasp_metrics().at("robust_epsilon"), input);
   CHECK(*epsilon.value == found.mean_epsilon);
   CHECK_THAT(epsilon.convention,
-             Catch::StartsWith("100 poses, seed 1, Gaussian: 0.005 m and 0.0872664625997165 rad"));
+             Catch::StartsWith("100 poses, seed 1, Gaussian: 0.005 m and 0.08726646259971647 rad"));
   CHECK_THAT(epsilon.convention, Catch::Contains("house: torques about"));
   CHECK_FALSE(evaluate(grasp_metrics().at("robust_usable_share"), input).value.has_value());
 }

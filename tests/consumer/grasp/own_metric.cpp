@@ -46,7 +46,7 @@ int main() {
                     contact({0, -r, 0})},
        .object = {.largest_radius = r, .extents_O = Eigen::Vector3d::Constant(2 * r)},
        .friction = mu});
-  for (const char* const name : {"epsilon", "epsilon_linf", "min_weight", "carried_load"}) {
+  for (const char* const name : {"epsilon", "min_weight", "carried_load"}) {
     const GraspMetricValue found = evaluate(metrics.at(name), grasp);
     std::printf("%-12s %.6f\n", name, *found.value);
   }

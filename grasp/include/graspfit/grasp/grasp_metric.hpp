@@ -33,9 +33,9 @@ struct GraspMetricFacts {
   double friction = 0.4;                ///< Coulomb's μ of all wrench metrics, ≥ 0.
   WrenchTool tool = WrenchTool::House;  ///< Whose wrench convention.
   const Grasp* grasp = nullptr;  ///< As measured, with these contacts: for penetration and M.
-  const geometry::MeshQuery* surface = nullptr;   ///< Of the object: for pose robustness.
-  std::optional<QualityContext> quality_context;  ///< For M where there is no `grasp`, and for
-                                                  ///< pose robustness.
+  const geometry::MeshQuery* surface = nullptr;  ///< Of the object: for pose robustness.
+  /// For M where there is no `grasp`, and for pose robustness.
+  std::optional<QualityContext> quality_context = std::nullopt;
   QualityOptions quality_options = {};
 };
 
