@@ -16,6 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+// How far a ball's center may be off, over its radius: what the tolerance of `medial_balls` leaves
+// on faceted round bodies.
+constexpr double kCenterAccuracy = 0.03;
 constexpr int kRandomCandidates = 8;  // As many as an axis has.
 
 MedialSymmetry symmetry_of(const geometry::MedialBall& ball, const std::vector<Vector3d>& centers,
@@ -33,7 +36,8 @@ MedialSymmetry symmetry_of(const geometry::MedialBall& ball, const std::vector<V
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);  // smallest first
   const double first = std::max(0.0, axes.eigenvalues()[2]);
   const double second = std::max(0.0, axes.eigenvalues()[1]);
-  if (std::sqrt(first / static_cast<double>(centers.size())) <= least_spread) {
+  const double noise = std::max(least_spread, kCenterAccuracy * ball.radius);
+  if (std::sqrt(first / static_cast<double>(centers.size())) <= noise) {
     symmetry.kind = SymmetryKind::Point;
     return symmetry;
   }

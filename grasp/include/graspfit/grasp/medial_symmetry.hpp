@@ -28,9 +28,10 @@ struct MedialSymmetryOptions {
   double rim_ratio = 0.4;           ///< Largest one of a rim, ≥ axis_ratio, ≤ 1.
   double search_radius = 0.01;      ///< In which balls are neighbors [m], > 0.
   double search_radius_rel = 0.05;  ///< At least this share of the longest extent, ≥ 0 [R].
-  double least_spread_rel = 1e-3;   ///< Root mean square of the centers along their first axis over
-                                    ///< the longest extent; below: `Point`. ≥ 0 [R].
-  void validate() const;            ///< Throws InvalidInput naming the field and its value.
+  /// Root mean square of the centers along their first axis over the longest extent; below this,
+  /// or below 3 % of the ball's radius (how well centers are known), `Point`. ≥ 0 [R].
+  double least_spread_rel = 1e-3;
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One ball and the symmetry of its neighborhood.
