@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "internal/planning_setting_schemas.hpp"
 #include "internal/setting_value.hpp"
 
@@ -29,6 +30,11 @@ struct Setting {
 Schema of_type(const char* type) { return {{"type", type}}; }
 Schema above_zero() { return {{"type", "number"}, {"exclusiveMinimum", 0}}; }
 Schema text() { return {{"type", "string"}, {"minLength", 1}}; }
+Schema planning_methods() {
+  Schema names = Schema::array();
+  for (const auto& method : grasp::planning_methods()) names.push_back(std::string(method.name));
+  return {{"enum", names}};
+}
 Schema three_numbers() {
   return {{"type", "array"}, {"items", of_type("number")}, {"minItems", 3}, {"maxItems", 3}};
 }
@@ -139,7 +145,7 @@ std::vector<Setting> request_settings() {
           choice<grasp::Acceptance>(
               "accept", "which grasps are collected",
               [](PlannerOptions & o) -> auto& { return o.acceptance; }),
-          option("planner", "", "the method that guides the hand",
+          option("planner", "", "the method that guides the hand", planning_methods(),
                  [](PlannerOptions& o, const SettingValue& v) { o.planner = v.text(); }),
           choice<grasp::ApproachSource>(
               "gs-sampling", "of planner gs: where its points come from",
