@@ -26,7 +26,7 @@ int main() {
   // Wide open beside the cube: nothing holds it.
   grasp::Grasp open;
   open.configuration = hands::open_configuration(gripper);
-  open.configuration.X_OH.translation() = {0.0, 0.0, 0.5};
+  open.configuration.X_OH.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
   open.pre_grasp.emplace().configuration = open.configuration;
   open.squeeze.emplace().configuration = open.configuration;
   const hold_test::HoldVerdict verdict = hold_test::HoldTest(hand, object, protocol).test(open);
