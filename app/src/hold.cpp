@@ -287,7 +287,7 @@ ExitCode run_hold(const std::vector<std::string>& arguments) {
   }
   const Request request = read_request(flags);
   flags.positional();
-  require_physics("hold");
+  require_physics();
   std::optional<OutputFolder> out;
   if (flags.has("out")) out.emplace(flags.text("out"), is_hold_file);
   if (request.gif) require_animations("--gif");

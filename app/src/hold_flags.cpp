@@ -49,10 +49,10 @@ hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
   return protocol;
 }
 
-void require_physics(const std::string& flag_or_command) {
+void require_physics(const std::string& flag) {
   if (hold_test::is_available()) return;
-  throw geometry::InvalidInput(flag_or_command +
-                               ": this build has no physics engine; configure with MuJoCo 2.2 "
+  throw geometry::InvalidInput((flag.empty() ? "" : flag + ": ") +
+                               "this build has no physics engine; configure with MuJoCo 2.2 "
                                "(Debian: libmujoco-dev and libgl-dev)");
 }
 

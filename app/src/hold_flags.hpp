@@ -13,8 +13,8 @@ boost::program_options::options_description hold_protocol_options();
 /// What those flags say, validated. @throws UsageError, InvalidInput.
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags);
 
-/// Throws InvalidInput unless this build can test grasps in physics; `flag_or_command` starts the
+/// Throws InvalidInput unless this build can test grasps in physics; `flag`, if any, starts the
 /// message.
-void require_physics(const std::string& flag_or_command);
+void require_physics(const std::string& flag = {});
 
 }  // namespace graspfit::app

@@ -40,6 +40,7 @@ class PhysicsTest(program.ProgramTest):
         done = program.run("hold", "out/grasps.json", cwd=cls.folder_of_plan)
         if "no physics engine" in done.stderr:
             assert done.returncode == 2, done.stderr
+            assert done.stderr.startswith("graspfit hold: this build"), done.stderr
             print("SKIPPED: built without MuJoCo")
             raise unittest.SkipTest("built without MuJoCo")
         assert done.returncode == 0, done.stderr
