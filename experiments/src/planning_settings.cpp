@@ -137,6 +137,7 @@ std::vector<Setting> request_settings() {
               [](PlannerOptions & o) -> auto& { return o.max_attempts; }),
           option("max-iterations", "1",
                  "fitting and refinement steps of all attempts together; none without",
+                 of_type("integer"),
                  [](PlannerOptions& o, const SettingValue& v) { o.max_iterations = v.integer(); }),
           {{"table", "m",
             "a table: everything at or below this z of the object's frame is solid; none without"},
