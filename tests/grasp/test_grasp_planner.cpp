@@ -173,7 +173,6 @@ TEST_CASE("A time limit stops the work and is recorded", "[grasp][grasp_planner]
 TEST_CASE("Contacts keep to surface with a high score where that is asked for",
           "[grasp][grasp_planner]") {
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));
-  constexpr double kThreshold = 0.6;
   const auto lowest_score = [](const Run& run, const Grasp& grasp) {
     double lowest = 1.0;
     for (const grasp::Contact& contact : grasp.contacts) {
@@ -184,19 +183,26 @@ TEST_CASE("Contacts keep to surface with a high score where that is asked for",
   PlannerOptions options = collecting(Acceptance::Usable, 1000, 30);
   options.max_placements = 1;  // else another side is tried where the first is turned down
   const Run free(mesh, options);
-  options.contact_score_threshold = kThreshold;
-  const Run bound(mesh, options);
   const PlannerResult all = free.plan();
+  // Where nothing forbids it, edges are touched: a threshold that half of the grasps exceed.
+  std::vector<double> scores;
+  for (const Grasp& grasp : all.grasps) scores.push_back(lowest_score(free, grasp));
+  std::sort(scores.begin(), scores.end());
+  REQUIRE(scores.size() >= 4);
+  const double threshold = scores[(scores.size() - 1) / 2];
+  REQUIRE(threshold < scores.back());
+  options.contact_score_threshold = threshold;
+  const Run bound(mesh, options);
   const PlannerResult kept = bound.plan();
   std::set<std::int64_t> expected;
   for (const Grasp& grasp : all.grasps) {
-    if (lowest_score(free, grasp) > kThreshold) expected.insert(grasp.attempt);
+    if (lowest_score(free, grasp) > threshold) expected.insert(grasp.attempt);
   }
   std::set<std::int64_t> found;
   for (const Grasp& grasp : kept.grasps) found.insert(grasp.attempt);
   CHECK(found == expected);
   CHECK_FALSE(found.empty());
-  CHECK(found.size() < all.grasps.size());  // edges are touched where nothing forbids it
+  CHECK(found.size() < all.grasps.size());
   CHECK(kept.statistics.usable() == all.statistics.usable());
 }
 
