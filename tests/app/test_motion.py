@@ -44,7 +44,7 @@ class Motion(ProgramTest):
         done = run("motion", self.motion, "--step-mm", "10", "--html", page)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count(" yes\n"), int(self.row["moves"]), done.stdout)
-        self.assertIn("A flower pot and a bottle", page.read_text(encoding="utf-8"))
+        self.assertIn("A flower pot past a bottle", page.read_text(encoding="utf-8"))
 
         # Into the table: the pose in which the first object is put down, 5 mm deeper.
         motion = json.loads(self.motion.read_text())
