@@ -39,7 +39,7 @@ void print_error(const std::string& command, const std::string& what) {
 }
 
 using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 8> kCommands = {{{"plan", run_plan},
+constexpr std::array<std::pair<const char*, Run>, 9> kCommands = {{{"plan", run_plan},
                                                                    {"inspect", run_inspect},
                                                                    {"evaluate", run_evaluate},
                                                                    {"hold", run_hold},
