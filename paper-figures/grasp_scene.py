@@ -23,7 +23,7 @@ CONTACT, STABLE, EDGE, TARGET = "#d43127", "#2e8f57", "#8c9196", "#0072B2"
 CENTER, PALM, CLIP = "#22252a", "#7a4ab3", "#009E9E"
 
 # Axis of the mesh file that points up in pictures; y where nothing else is said.
-UP = {"mug": 2, "bottle": 2, "torus": 1, "toy_car": 1, "flower_pot": 1, "bowling_pin": 1}
+UP = {"bottle": 2, "torus": 1, "toy_car": 1, "flower_pot": 1, "bowling_pin": 1}
 
 
 class Stage(vtk_picture.Canvas):

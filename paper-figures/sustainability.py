@@ -37,7 +37,8 @@ def draw_pad(ax, contact, grasp, pad):
     ax.set_aspect("equal")
     ax.set_xlim(-35, 35)
     ax.set_ylim(-35, 35)
-    ax.set_title(f"{contact['finger'].replace('_', ' ')}\nd = {1000 * contact['pad_boundary_distance_m']:.1f} mm", fontsize=7.5)
+    words = contact["pad"].removesuffix("_pad").replace("_", " ")
+    ax.set_title(f"{words}\nd = {1000 * contact['pad_boundary_distance_m']:.1f} mm", fontsize=7.5)
     ax.set_xlabel("in the pad [mm]", labelpad=1)
     ax.tick_params(labelsize=6)
 
@@ -63,7 +64,7 @@ def draw(source):
     x = np.arange(len(shown))
     bars.bar(x - 0.2, [t["boundary_distance"] for _, t in shown], width=0.38, color=BLUE, label="d")
     bars.bar(x + 0.2, [t["area"] for _, t in shown], width=0.38, color=GREEN, label="A")
-    bars.set_xticks(x, [c["finger"].replace("_", "\n") for c, _ in shown])
+    bars.set_xticks(x, [c["pad"].removesuffix("_pad").replace("_", "\n") for c, _ in shown])
     bars.set_ylim(0, 1)
     bars.set_title(f"shares; M1 = {grasp['m1']:.2f} over {len(grasp['contacts'])} contacts", fontsize=7.5)
     bars.legend(loc="upper right")
