@@ -136,8 +136,8 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
     }
     return result;
   };
-  const auto rows = [columns = summary](const ParameterSweep&,
-                                        const std::vector<FinishedCell>& cells) {
+  const auto summed_up = [columns = summary](const ParameterSweep&,
+                                             const std::vector<FinishedCell>& cells) {
     std::size_t parts = 0;
     for (const FinishedCell& cell : cells) parts += cell.details.size();
     std::vector<ResultRow> all(1, ResultRow(columns));
@@ -145,7 +145,7 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
     all[0].set("parts", static_cast<std::int64_t>(parts));
     return all;
   };
-  experiment.summaries.push_back({"summary", summary, rows});
+  experiment.summaries.push_back({"summary", summary, summed_up});
   const ExperimentConfig config = config_in(folder);
   const auto tables_of = [&](int jobs, const std::string& name) {
     const fs::path out = folder.path() / name;

@@ -36,13 +36,13 @@ Experiment experiment_with_all() {
     std::ofstream(folder / "cell.txt") << cell.key;
     return result;
   };
-  const auto rows = [columns = summary](const ParameterSweep&,
-                                        const std::vector<FinishedCell>& cells) {
+  const auto summed_up = [columns = summary](const ParameterSweep&,
+                                             const std::vector<FinishedCell>& cells) {
     std::vector<ResultRow> all(1, ResultRow(columns));
     all[0].set("parts", static_cast<std::int64_t>(cells.size()));
     return all;
   };
-  experiment.summaries.push_back({"summary", summary, rows});
+  experiment.summaries.push_back({"summary", summary, summed_up});
   return experiment;
 }
 
