@@ -394,8 +394,8 @@ class Refusals(ProgramTest):
         self.assert_refused(*experiment, "nothing", says=["nothing", "planner_everyday"])
         self.assert_refused(*experiment, "force_closure", "--set", "grip=pinch",
                             says=["--set grip", "there are precision_45_deg, "])
-        self.assert_refused(*experiment, "force_closure", "--set", "accept=pinch",
-                            says=["--set accept", "valid|usable"])
+        self.assert_refused(*experiment, "force_closure", "--set", "regularity=round",
+                            says=["--set regularity", "combined|angle-only"])
         self.assert_refused(*experiment, "force_closure", "--set", "colour=red",
                             says=["--set colour", "is no setting; there are"])
         self.assert_refused(*experiment, "force_closure", "--jobs", "0", says="jobs = 0")
