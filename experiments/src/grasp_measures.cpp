@@ -1,56 +1,49 @@
 #include "internal/grasp_measures.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
+#include <string_view>
+
+#include "graspfit/grasp/grasp_metric.hpp"
 
 namespace graspfit::experiments::internal {
 namespace {
 
-struct Measure {
-  Column column;
-  std::optional<double> (*value)(const grasp::Grasp&);
-};
+// A hundred wrench spaces a grasp, half a second: `graspfit evaluate` has them for single grasps.
+constexpr std::string_view kLeftOut = "pose robustness";
 
-const std::array<Measure, 7>& all_measures() {
-  using grasp::Grasp;
-  static const std::array<Measure, 7> measures = {
-      {{{"m", "1", "M"}, [](const Grasp& g) -> std::optional<double> { return g.quality.m; }},
-       {{"m1", "1", "M1"}, [](const Grasp& g) -> std::optional<double> { return g.quality.m1; }},
-       {{"m2", "1", "M2"}, [](const Grasp& g) -> std::optional<double> { return g.quality.m2; }},
-       {{"m3", "1", "M3"}, [](const Grasp& g) -> std::optional<double> { return g.quality.m3; }},
-       {{"epsilon", "1", "epsilon, GraspIt!'s convention, 0 without closure"},
-        [](const Grasp& g) -> std::optional<double> { return std::max(0.0, g.wrench.epsilon); }},
-       {{"volume", "1", "volume of the wrench space, GraspIt!'s convention"},
-        [](const Grasp& g) -> std::optional<double> { return g.wrench.volume; }},
-       {{"contact_area_m2", "m2", "of all contacts"}, [](const Grasp& g) -> std::optional<double> {
-          double area = 0.0;
-          for (const grasp::Contact& contact : g.contacts) area += contact.area;
-          return area;
-        }}}};
-  return measures;
+/// The library's metrics but those that take too long for thousands of grasps.
+std::vector<const grasp::GraspMetric*> table_metrics() {
+  std::vector<const grasp::GraspMetric*> metrics;
+  for (const grasp::GraspMetric& metric : grasp::grasp_metrics().all()) {
+    if (metric.group != kLeftOut) metrics.push_back(&metric);
+  }
+  return metrics;
 }
 
 }  // namespace
 
 std::vector<Column> grasp_measure_columns() {
   std::vector<Column> columns;
-  for (const Measure& measure : all_measures()) columns.push_back(measure.column);
+  for (const grasp::GraspMetric* metric : table_metrics()) {
+    columns.push_back({metric->name, metric->unit, metric->meaning});
+  }
   return columns;
 }
 
-GraspMeasures measures_of(const Planned&, const grasp::Grasp& grasp, double& seconds) {
+GraspMeasures measures_of(const Planned& planned, const grasp::Grasp& grasp, double& seconds) {
   const auto start = std::chrono::steady_clock::now();
+  const grasp::GraspMetricInput input(
+      grasp::metric_facts(planned.object, *planned.hand, planned.settings.options, grasp));
   GraspMeasures values;
-  for (const Measure& measure : all_measures()) {
-    values[measure.column.name] = measure.value(grasp);
+  for (const grasp::GraspMetric* metric : table_metrics()) {
+    values[metric->name] = metric->value(input);
   }
   seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return values;
 }
 
 std::vector<std::string> correlated_measures() {
-  return {"m", "m1", "m2", "m3", "epsilon", "volume"};
+  return {"m", "m1", "m2", "m3", "epsilon", "volume", "min_weight"};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -45,8 +45,7 @@ std::vector<Column> details() {
       {"is_valid", "", "without penetration, every requested part in contact"},
       {"has_all_contacts", "", "every requested part in contact"},
       {"is_penetrating", "", "on the true meshes, decided exactly"},
-      {"penetration_m", "m", "deepest overlap with the object or of the hand with itself"},
-      {"num_contacts", "1", "N'"}};
+      {"deepest_overlap_m", "m", "with the object or of the hand with itself"}};
   for (Column& column : grasp_measure_columns()) columns.push_back(std::move(column));
   return columns;
 }
@@ -123,8 +122,7 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
     row.set("is_valid", grasp->is_valid());
     row.set("has_all_contacts", grasp->has_all_contacts);
     row.set("is_penetrating", grasp->penetration.is_any());
-    row.set("penetration_m", grasp::largest_penetration(*grasp));
-    row.set("num_contacts", field(grasp->contacts.size()));
+    row.set("deepest_overlap_m", grasp::largest_penetration(*grasp));
     for (const auto& [name, value] : measured.back()) row.set(name, field(value));
     result.details.push_back(std::move(row));
   }
