@@ -37,7 +37,8 @@ inline std::optional<Encounter> sampled_overlap(const TableScene& scene,
                                                 const std::vector<RigidTransform>& X_WO,
                                                 const MotionStretch& stretch, int samples) {
   for (int i = 0; i <= samples; ++i) {
-    if (auto met = grasp::find_overlap(scene, X_WO, stretch, static_cast<double>(i) / samples)) return met;
+    if (auto met = grasp::find_overlap(scene, X_WO, stretch, static_cast<double>(i) / samples))
+      return met;
   }
   return std::nullopt;
 }
