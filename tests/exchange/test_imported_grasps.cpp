@@ -53,7 +53,10 @@ TEST_CASE("Imported grasps are measured from the meshes and stand best first",
   const exchange::ImportResult result =
       import_grasps(scene.object, scene.hand, grasps, kSource, scene.options);
   REQUIRE(result.file.grasps.size() == 3);
-  CHECK(result.sources.back() == 0);
+  CHECK(result.sources.front() == 1);
+  for (std::size_t i = 1; i < 3; ++i) {
+    CHECK(result.file.grasps[i - 1].quality.m >= result.file.grasps[i].quality.m);
+  }
   const auto named = [&](std::size_t index) -> const grasp::Grasp& {
     for (const grasp::Grasp& grasp : result.file.grasps) {
       if (grasp.attempt == static_cast<std::int64_t>(index)) return grasp;

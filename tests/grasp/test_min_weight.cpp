@@ -111,6 +111,11 @@ TEST_CASE(
     const MinWeight found = min_weight(space.wrenches);
     REQUIRE(found.rank == 6);
     REQUIRE(found.weight.has_value());
+    // Three contacts may miss closure by rounding alone, and the two round differently.
+    if (std::abs(*found.weight) < 1e-12) {
+      CHECK(epsilon_quality(space) < 1e-12);
+      continue;
+    }
     CHECK((*found.weight > 0.0) == is_force_closure(space));
     CHECK(*found.weight <= 1.0 / static_cast<double>(space.wrenches.cols()) + 1e-15);
     if (!found.is_force_closure()) continue;
