@@ -1,5 +1,6 @@
 #include "planner_flags.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -392,6 +393,12 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
 /// Which method, and what it alone has.
 void read_method_flags(const Flags& flags, PlannerOptions& options) {
   options.planner = flags.text("planner");
+  const auto& methods = grasp::planning_methods();
+  if (std::none_of(methods.begin(), methods.end(),
+                   [&](const auto& method) { return method.name == options.planner; })) {
+    throw UsageError("--planner \"" + options.planner + "\" is not one of " +
+                     grasp::planning_method_names());
+  }
   for (const auto& [flag, prefix] : {std::pair("gs-sampling", "gs"), std::pair("gs-samples", "gs"),
                                      std::pair("ma-samples", "ma")}) {
     if (flags.is_default(flag) || options.planner.starts_with(prefix)) continue;

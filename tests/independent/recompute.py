@@ -113,8 +113,8 @@ class Scene:
     """Object, surroundings and hand of a grasp file."""
 
     def __init__(self, record, folder):
-        if record["version"] != 2:
-            raise ValueError(f"is of version {record['version']}, not 2")
+        if record["version"] != 3:
+            raise ValueError(f"is of version {record['version']}, not 3")
         self.record, self.folder = record, folder
         self.options = record["planner"]["options"]
         self.used = record["planner"]["used"]

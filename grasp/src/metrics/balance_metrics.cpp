@@ -7,7 +7,7 @@ std::vector<GraspMetric> balance_metrics() {
   return {{.name = "balance_residual",
            .group = "wrench space",
            .unit = "1",
-           .meaning = "smallest wrench left over by contact forces whose normal parts sum up to 1",
+           .meaning = "smallest wrench left by contact forces with normal parts of 1 in all",
            .better = BetterValue::Smaller,
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
