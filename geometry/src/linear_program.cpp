@@ -5,6 +5,7 @@
 #include <CGAL/Gmpzf.h>
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
+#include <CGAL/QP_options.h>
 
 #include <string>
 
@@ -32,7 +33,10 @@ LinearProgramSolution maximize_linear(const Eigen::Ref<const Eigen::VectorXd>& o
     program.set_c(static_cast<int>(j), -objective[j]);
   }
   for (Index i = 0; i < b.size(); ++i) program.set_b(static_cast<int>(i), b[i]);
-  const auto solved = CGAL::solve_nonnegative_linear_program(program, CGAL::Gmpzf());
+  // The default choice of the entering variable goes round in circles on some degenerate programs.
+  CGAL::Quadratic_program_options options;
+  options.set_pricing_strategy(CGAL::QP_BLAND);
+  const auto solved = CGAL::solve_nonnegative_linear_program(program, CGAL::Gmpzf(), options);
   LinearProgramSolution solution;
   if (solved.is_unbounded()) solution.outcome = LinearProgramOutcome::Unbounded;
   if (!solved.is_optimal()) return solution;

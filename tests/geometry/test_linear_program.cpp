@@ -113,6 +113,36 @@ TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
   CHECK(solution.x.size() == 0);
 }
 
+TEST_CASE("Degenerate programs come to an end", "[geometry][linear_program]") {
+  // Wrenches of a grasp of three contacts, in 1/4096, one forgotten: the largest share that all of
+  // them can have in a resultant of zero. Choosing the unknown of the steepest descent goes round
+  // in circles here; all right sides but one are zero.
+  Eigen::Matrix<double, 23, 6> wrenches;
+  wrenches << 711, 1148, 4200, 1892, -232, -257, -430, 647, 4343, 1735, 238, 136, -902, -513, 4288,
+      1240, 432, 313, -430, -1653, 4067, 697, 234, 169, 711, -2106, 3811, 424, -238, -211, 1852,
+      -1605, 3668, 582, -708, -604, 2325, -445, 3723, 1076, -901, -780, 1852, 695, 3943, 1619, -704,
+      -636, -101, -4364, 636, 1179, -86, -405, -1259, -4224, 176, 830, -229, 432, -1739, -3942,
+      -948, -14, -187, 803, -1259, -3683, -2077, -858, 16, 491, -101, -3598, -2550, -1207, 261,
+      -321, 1057, -3738, -2090, -858, 405, -1157, 1537, -4021, -967, -14, 362, -1528, 1057, -4280,
+      162, 830, 159, -1217, -4296, -1001, 37, -15, 141, 2144, -3992, -1480, 1155, 673, -503, 1680,
+      -3653, -1001, 2262, 1389, -1143, 1738, -3477, 157, 2711, 1716, -1404, 2282, -3567, 1315, 2238,
+      1461, -1133, 2994, -3872, 1794, 1120, 774, -488, 3458, -4211, 1315, 12, 57, 152, 3400;
+  const Eigen::Matrix<double, 7, 23> a =
+      (Eigen::Matrix<double, 7, 23>() << wrenches.transpose() / 4096.0,
+       Eigen::RowVectorXd::Ones(23))
+          .finished();
+  MatrixXd constraints(7, 25);
+  constraints << a, a.rowwise().sum(), -a.rowwise().sum();
+  VectorXd objective = VectorXd::Zero(25);
+  objective[23] = 1.0;
+  objective[24] = -1.0;
+  const LinearProgramSolution solution =
+      maximize_linear(objective, constraints, VectorXd::Unit(7, 6));
+  REQUIRE(solution.outcome == LinearProgramOutcome::Optimal);
+  // By HiGHS, dual simplex and interior points alike (scipy.optimize.linprog).
+  CHECK(solution.value == Approx(-0.07044609300396587).epsilon(1e-12));
+}
+
 TEST_CASE("Linear programs whose parts do not fit are refused", "[geometry][linear_program]") {
   const VectorXd one = VectorXd::Ones(1);
   CHECK_THROWS_WITH(maximize_linear(VectorXd::Ones(2), MatrixXd::Ones(1, 3), one),

@@ -22,8 +22,8 @@ struct LinearProgramSolution {
 ///
 /// Exact for the numbers as they are: the outcome, and the sign of the value; value and x are
 /// rounded once. Which optimal vertex is found is not specified, but the same for the same input.
-/// By CGAL's simplex method with exact arithmetic [Gärtner & Schönherr 2000]: for few constraints,
-/// milliseconds for seven of them and fifty unknowns.
+/// By CGAL's simplex method with exact arithmetic [Gärtner & Schönherr 2000] and Bland's rule, with
+/// which it always ends: for few constraints, milliseconds for seven of them and fifty unknowns.
 /// @throws InvalidInput unless `a` has as many rows as `b` and as many columns, one or more, as
 /// `objective`, and all are finite.
 LinearProgramSolution maximize_linear(const Eigen::Ref<const Eigen::VectorXd>& objective,
