@@ -19,6 +19,7 @@ const std::vector<Experiment>& all_experiments() {
       internal::special_cases(),
       internal::table1(),
       internal::table1_all_objects(),
+      internal::table1_readings(),
       internal::table1_refined(),
       internal::table_tidying(),
   };

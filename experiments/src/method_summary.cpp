@@ -17,7 +17,7 @@ namespace {
 /// Methods in the paper's order, with the names of their columns.
 constexpr std::pair<const char*, const char*> kMethods[] = {
     {"gs", "gs"}, {"ma", "ma"}, {"ma-full-retreat", "ma_full_retreat"}, {"fitting", "fitting"}};
-constexpr const char* kAllMethods = "all";
+constexpr const char* kAll = "all";
 
 std::optional<std::size_t> axis_of(const ParameterSweep& sweep, const std::string& name) {
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
@@ -53,9 +53,10 @@ std::vector<double> numbers_of(const FinishedCell& cell, std::size_t column) {
 
 }  // namespace
 
-std::vector<Column> paper_layout_columns() {
-  std::vector<Column> columns = {{"object", "", "label of the object"},
-                                 {"size", "", "label of its size; empty where there is one only"}};
+std::vector<Column> paper_layout_columns(const MethodTableAxes& axes) {
+  std::vector<Column> columns = {
+      {"object", "", "label of the object"},
+      {axes.row, "", "label of its " + axes.row + "; empty where there is one only"}};
   for (const auto& [method, name] : kMethods) {
     const std::string prefix = name;
     const std::string of = std::string(" of planner ") + method;
@@ -74,15 +75,16 @@ std::vector<Column> paper_layout_columns() {
 }
 
 std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const ParameterSweep& sweep,
-                                    const std::vector<FinishedCell>& cells) {
+                                    const std::vector<FinishedCell>& cells,
+                                    const MethodTableAxes& axes) {
   const auto object_axis = axis_of(sweep, kObjectAxis);
-  const auto size_axis = axis_of(sweep, kSizeAxis);
+  const auto row_axis = axis_of(sweep, axes.row);
   const auto method_axis = axis_of(sweep, kMethodAxis);
   const std::size_t m_at = column_of(details, "m");
   std::vector<std::pair<std::string, std::string>> order;  // of rows, as in the sweep
   std::map<std::pair<std::string, std::string>, std::map<std::string, std::vector<double>>> found;
   for (const FinishedCell& cell : cells) {
-    const std::pair key(label_of(cell, object_axis), label_of(cell, size_axis));
+    const std::pair key(label_of(cell, object_axis), label_of(cell, row_axis));
     if (!found.contains(key)) order.push_back(key);
     std::vector<double>& ms = found[key][label_of(cell, method_axis)];
     const std::vector<double> more = numbers_of(cell, m_at);
@@ -90,9 +92,9 @@ std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const Pa
   }
   std::vector<ResultRow> rows;
   for (const auto& key : order) {
-    ResultRow row(paper_layout_columns());
+    ResultRow row(paper_layout_columns(axes));
     row.set("object", key.first);
-    row.set("size", key.second);
+    row.set(axes.row, key.second);
     std::map<std::string, double> means;
     for (const auto& [method, name] : kMethods) {
       const std::string prefix = name;
@@ -122,8 +124,8 @@ std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const Pa
   return rows;
 }
 
-std::vector<Column> correlation_columns() {
-  return {{"planner", "", "of whose grasps, or all"},
+std::vector<Column> correlation_columns(const MethodTableAxes& axes) {
+  return {{axes.group, "", "of whose grasps, or all"},
           {"measure", "", "one measure"},
           {"other", "", "the other one"},
           {"scope", "", "all: all grasps are compared; cell: only those of one cell"},
@@ -135,11 +137,12 @@ std::vector<Column> correlation_columns() {
 
 std::vector<ResultRow> correlations(const std::vector<std::string>& measures,
                                     const std::vector<Column>& details, const ParameterSweep& sweep,
-                                    const std::vector<FinishedCell>& cells) {
-  const auto method_axis = axis_of(sweep, kMethodAxis);
-  std::vector<std::string> groups = {kAllMethods};
-  if (method_axis) {
-    for (const AxisValue& value : sweep.axes[*method_axis].values) groups.push_back(value.label);
+                                    const std::vector<FinishedCell>& cells,
+                                    const MethodTableAxes& axes) {
+  const auto group_axis = axis_of(sweep, axes.group);
+  std::vector<std::string> groups = {kAll};
+  if (group_axis) {
+    for (const AxisValue& value : sweep.axes[*group_axis].values) groups.push_back(value.label);
   }
   std::vector<ResultRow> rows;
   for (const std::string& group : groups) {
@@ -150,7 +153,7 @@ std::vector<ResultRow> correlations(const std::vector<std::string>& measures,
         std::vector<ScoredOutcomes> clusters;
         std::size_t count = 0;
         for (const FinishedCell& cell : cells) {
-          if (group != kAllMethods && label_of(cell, method_axis) != group) continue;
+          if (group != kAll && label_of(cell, group_axis) != group) continue;
           ScoredOutcomes cluster;
           for (const std::vector<std::string>& row : cell.details) {
             const auto x = number(row[a]);
@@ -165,8 +168,8 @@ std::vector<ResultRow> correlations(const std::vector<std::string>& measures,
         for (const StatisticScope scope : {StatisticScope::All, StatisticScope::WithinClusters}) {
           const Estimate found =
               estimate(clusters, RankStatistic::Spearman, scope, {.seed = sweep.base_seed});
-          ResultRow row(correlation_columns());
-          row.set("planner", group);
+          ResultRow row(correlation_columns(axes));
+          row.set(axes.group, group);
           row.set("measure", measures[i]);
           row.set("other", measures[j]);
           row.set("scope", scope == StatisticScope::All ? "all" : "cell");

@@ -5,7 +5,6 @@
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "internal/grasp_measures.hpp"
-#include "internal/method_summary.hpp"
 #include "internal/planning_table.hpp"
 #include "internal/setting_value.hpp"
 
@@ -174,7 +173,7 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
 
 }  // namespace
 
-Experiment method_experiment(const std::string& slug) {
+Experiment method_experiment(const std::string& slug, const MethodTableAxes& axes) {
   Experiment experiment;
   experiment.slug = slug;
   experiment.columns = columns();
@@ -182,14 +181,16 @@ Experiment method_experiment(const std::string& slug) {
   experiment.settings = own_settings();
   experiment.details = details();
   experiment.summaries.push_back(
-      {"summary", paper_layout_columns(),
-       [columns = details()](const ParameterSweep& sweep, const std::vector<FinishedCell>& cells) {
-         return paper_layout(columns, sweep, cells);
+      {"summary", paper_layout_columns(axes),
+       [columns = details(), axes](const ParameterSweep& sweep,
+                                   const std::vector<FinishedCell>& cells) {
+         return paper_layout(columns, sweep, cells, axes);
        }});
   experiment.summaries.push_back(
-      {"correlations", correlation_columns(),
-       [columns = details()](const ParameterSweep& sweep, const std::vector<FinishedCell>& cells) {
-         return correlations(correlated_measures(), columns, sweep, cells);
+      {"correlations", correlation_columns(axes),
+       [columns = details(), axes](const ParameterSweep& sweep,
+                                   const std::vector<FinishedCell>& cells) {
+         return correlations(correlated_measures(), columns, sweep, cells, axes);
        }});
   experiment.check = [](const Cell& cell) { settings_of(cell); };
   experiment.run = run;

@@ -21,6 +21,7 @@ Experiment planner_paper_objects();
 Experiment special_cases();
 Experiment table1();
 Experiment table1_all_objects();
+Experiment table1_readings();
 Experiment table1_refined();
 Experiment table_tidying();
 

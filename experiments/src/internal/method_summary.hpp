@@ -10,16 +10,25 @@
 
 namespace graspfit::experiments::internal {
 
-/// The paper's layout: a row per object and size, mean M of each method beside the paper's, and
-/// whether the order of methods is the paper's.
-std::vector<Column> paper_layout_columns();
-std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const ParameterSweep& sweep,
-                                    const std::vector<FinishedCell>& cells);
+/// Axes that tell the rows of a summary apart beside the object, and the correlations' groups.
+struct MethodTableAxes {
+  std::string row = "size";       ///< In the summary, empty where the sweep has no such axis.
+  std::string group = "planner";  ///< Correlations of its values apart, and of all.
+};
 
-/// A row per pair of measures, method (or all) and scope: Spearman's rank correlation.
-std::vector<Column> correlation_columns();
+/// The paper's layout: a row per object and `axes.row`, mean M of each method beside the paper's,
+/// and whether the order of methods is the paper's.
+std::vector<Column> paper_layout_columns(const MethodTableAxes& axes = {});
+std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const ParameterSweep& sweep,
+                                    const std::vector<FinishedCell>& cells,
+                                    const MethodTableAxes& axes = {});
+
+/// A row per pair of measures, value of `axes.group` (or all) and scope: Spearman's rank
+/// correlation.
+std::vector<Column> correlation_columns(const MethodTableAxes& axes = {});
 std::vector<ResultRow> correlations(const std::vector<std::string>& measures,
                                     const std::vector<Column>& details, const ParameterSweep& sweep,
-                                    const std::vector<FinishedCell>& cells);
+                                    const std::vector<FinishedCell>& cells,
+                                    const MethodTableAxes& axes = {});
 
 }  // namespace graspfit::experiments::internal

@@ -3,12 +3,12 @@
 #include <string>
 
 #include "graspfit/experiments/experiment.hpp"
+#include "internal/method_summary.hpp"
 
 namespace graspfit::experiments::internal {
 
-/// Axes that tables over methods have, with `size` or without.
+/// Axes that tables over methods have.
 inline constexpr const char* kObjectAxis = "object";
-inline constexpr const char* kSizeAxis = "size";
 inline constexpr const char* kMethodAxis = "planner";
 
 /// An experiment whose cell is one run of one planning method on one object until it has as many
@@ -17,6 +17,6 @@ inline constexpr const char* kMethodAxis = "planner";
 /// table, `correlations`, how much the measures agree on which grasps are better.
 ///
 /// All cells plan with the same seed, the setting `planner-seed`, instead of seeds of their own.
-Experiment method_experiment(const std::string& slug);
+Experiment method_experiment(const std::string& slug, const MethodTableAxes& axes = {});
 
 }  // namespace graspfit::experiments::internal
