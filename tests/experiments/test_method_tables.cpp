@@ -56,10 +56,10 @@ TEST_CASE("Tables over methods refuse settings that select grasps", "[experiment
              Catch::Contains("fitting|gs|ma|ma-full-retreat"));
 }
 
-TEST_CASE("The three tables compare the same methods with the same seed",
-          "[experiments][methods]") {
+TEST_CASE("The four tables compare the same methods with the same seed", "[experiments][methods]") {
   const auto configs = graspfit::testing::source_directory() / "experiments/configs";
-  for (const char* const slug : {"table1", "table1_refined", "table1_all_objects"}) {
+  for (const char* const slug :
+       {"table1", "table1_refined", "table1_readings", "table1_all_objects"}) {
     const ParameterSweep sweep =
         read_config(find_experiment(slug), configs / (std::string(slug) + ".json")).sweep;
     const Axis& methods = sweep.axes.back();
@@ -70,7 +70,8 @@ TEST_CASE("The three tables compare the same methods with the same seed",
     CHECK_THAT(sweep.settings, Catch::Contains("\"planner-seed\":1"));
     if (std::string(slug) == "table1_all_objects") continue;
     CHECK(sweep.axes[0].values.size() == 4);
-    CHECK(sweep.axes[1].values.size() == 3);
+    CHECK(sweep.axes[1].values.size() ==
+          (sweep.axes[1].name == "reading" ? std::size_t{7} : std::size_t{3}));
   }
 }
 
@@ -118,6 +119,33 @@ TEST_CASE("The summary has the means of all methods side by side and says which 
   CHECK(of(1, "gs_grasps") == "0");
   CHECK(of(1, "gs_mean_m").empty());
   CHECK(of(1, "gs_paper_m").empty());
+}
+
+TEST_CASE("Rows and correlations may be told apart by another axis", "[experiments][methods]") {
+  ParameterSweep sweep = sweep_of_methods();
+  sweep.axes[1] = {"reading", {{"own", "{}"}, {"other", "{}"}}};
+  const internal::MethodTableAxes axes{.row = "reading", .group = "reading"};
+  const std::vector<FinishedCell> cells = {
+      {{"kitten", "own", "gs"}, {{"1", "1"}, {"2", "2"}}},
+      {{"kitten", "other", "gs"}, {{"1", "2"}, {"4", "1"}}},
+      {{"kitten", "other", "ma"}, {{"5", "0"}}},
+  };
+  const auto rows = internal::paper_layout(kDetails, sweep, cells, axes);
+  const auto columns = internal::paper_layout_columns(axes);
+  REQUIRE(rows.size() == 2);
+  CHECK(field_of(rows[0], columns, "reading") == "own");
+  CHECK(field_of(rows[0], columns, "gs_mean_m") == "1.5");
+  CHECK(field_of(rows[0], columns, "ma_mean_m").empty());
+  CHECK(field_of(rows[1], columns, "gs_mean_m") == "2.5");
+  CHECK(field_of(rows[1], columns, "ma_above_gs") == "true");
+
+  const auto agreement = internal::correlations({"m", "other"}, kDetails, sweep, cells, axes);
+  REQUIRE(agreement.size() == 3 * 2);  // all and two readings, two scopes
+  const auto names = internal::correlation_columns(axes);
+  CHECK(field_of(agreement[2], names, "reading") == "own");
+  CHECK(field_of(agreement[2], names, "spearman") == "1");
+  CHECK(field_of(agreement[4], names, "reading") == "other");
+  CHECK(field_of(agreement[4], names, "spearman") == "-1");
 }
 
 TEST_CASE("Correlations are of ranks, over all grasps and within cells", "[experiments][methods]") {
