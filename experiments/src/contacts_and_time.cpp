@@ -25,7 +25,7 @@ std::vector<Column> columns() {
           {"requested", "1", "N: fingers and palm that must touch"},
           {"attempts", "1", "target sets fitted"},
           {"usable", "1", "attempts that ended in a grasp with M > 0"},
-          {"grasps", "1", "distinct grasps returned; the following are about these"},
+          {"grasps", "1", "usable grasps, alike ones too; the following are about these"},
           {"mean_num_contacts", "1", "mean N'"},
           {"mean_stable_pairs", "1", "mean number of stable pairs"},
           {"mean_m", "1", "mean M"},
@@ -69,6 +69,13 @@ PlanningSettings settings_of(const Cell& cell) {
   }
   if (settings.options.search != grasp::SearchRule::Best) {
     throw SettingError("search", "must be best: all attempts are made");
+  }
+  const grasp::DistinctOptions& alike = settings.options.distinct;
+  if (alike.translation > 0.0 || alike.rotation > 0.0 || alike.joints > 0.0) {
+    throw SettingError(
+        "distinct-translation-mm",
+        "must be 0, as distinct-rotation-deg and distinct-joints: of grasps that are "
+        "alike the one with the larger M would stay");
   }
   return settings;
 }

@@ -65,6 +65,7 @@ std::vector<Column> paper_layout_columns(const MethodTableAxes& axes) {
     columns.push_back({prefix + "_sd_m", "1", "standard deviation of M of these"});
     columns.push_back({prefix + "_median_m", "1", "median M of these"});
     columns.push_back({prefix + "_paper_m", "1", "mean M in the paper's Table 1"});
+    columns.push_back({prefix + "_paper_time_s", "s", "its time per grasp"});
   }
   columns.push_back({"fitting_above_ma", "", "fitting has the larger mean M, as in the paper"});
   columns.push_back({"ma_above_gs", "", "ma has the larger mean M, as in the paper"});
@@ -100,6 +101,7 @@ std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const Pa
       const std::string prefix = name;
       if (const auto paper = paper_table1(key.first, method)) {
         row.set(prefix + "_paper_m", paper->quality);
+        row.set(prefix + "_paper_time_s", paper->time_s);
       }
       const auto ms = found[key].find(method);
       if (ms == found[key].end()) continue;

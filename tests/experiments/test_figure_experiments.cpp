@@ -186,8 +186,9 @@ TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][
 TEST_CASE("Time and quality by contacts: the row sums up the grasps",
           "[experiments][contacts_and_time]") {
   const std::string grip = R"({"shape": "torus", "size_m": 0.14, "hand": "barrett", "contacts": 3,
-      "max-attempts": 4, "resolution": 20, "weak-thickness-mm": 0, "accept": "usable", "count": )";
-  const Result result = run("contacts_and_time", grip + "4}");
+      "max-attempts": 4, "resolution": 20, "weak-thickness-mm": 0, "accept": "usable", "distinct-rotation-deg": 0,
+      "distinct-joints": 0, "distinct-translation-mm": )";
+  const Result result = run("contacts_and_time", grip + R"(0, "count": 4})");
   REQUIRE_FALSE(result.details.empty());
   CHECK(number(result.row, "requested") == 3.0);
   for (const std::string name : {"m", "m2", "num_contacts", "stable_pairs"}) {
@@ -197,6 +198,8 @@ TEST_CASE("Time and quality by contacts: the row sums up the grasps",
           Approx(sum / static_cast<double>(result.details.size())));
   }
   for (const Fields& grasp : result.details) CHECK(number(grasp, "num_contacts") >= 3.0);
-  CHECK_THROWS_WITH(run("contacts_and_time", grip + "2}"),
+  CHECK_THROWS_WITH(run("contacts_and_time", grip + R"(0, "count": 2})"),
                     Catch::Contains("must be at least max-attempts"));
+  CHECK_THROWS_WITH(run("contacts_and_time", grip + R"(10, "count": 4})"),
+                    Catch::Contains("the one with the larger M would stay"));
 }

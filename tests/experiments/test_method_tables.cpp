@@ -113,12 +113,14 @@ TEST_CASE("The summary has the means of all methods side by side and says which 
   CHECK(of(0, "fitting_mean_m") == "3");
   CHECK(of(0, "fitting_median_m") == "2");
   CHECK(of(0, "fitting_paper_m") == "1.06");
+  CHECK(of(0, "ma_paper_time_s") == "1.2");
   CHECK(of(0, "fitting_above_ma") == "true");
   CHECK(of(0, "ma_above_gs") == "false");
   CHECK(of(0, "fitting_above_ma_full_retreat").empty());
   CHECK(of(1, "gs_grasps") == "0");
   CHECK(of(1, "gs_mean_m").empty());
   CHECK(of(1, "gs_paper_m").empty());
+  CHECK(of(1, "gs_paper_time_s").empty());
 }
 
 TEST_CASE("Rows and correlations may be told apart by another axis", "[experiments][methods]") {
