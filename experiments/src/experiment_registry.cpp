@@ -8,6 +8,7 @@ const std::vector<Experiment>& all_experiments() {
       internal::contacts_and_time(),
       internal::fitting_stages(),
       internal::force_closure(),
+      internal::guidance_models(),
       internal::hold_prediction(),
       internal::hold_rates(),
       internal::measured_contacts(),

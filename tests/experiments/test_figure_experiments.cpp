@@ -57,7 +57,7 @@ std::string contact(const std::string& direction, const std::string& weak = "fal
 std::string contact_set(const std::vector<std::string>& contacts) {
   std::string list;
   for (const std::string& item : contacts) list += (list.empty() ? "" : ", ") + item;
-  return R"({"radius_m": 0.04, "hand": "barrett", "contacts": [)" + list + "]}";
+  return R"({"radius_m": 0.04, "pads_of": "barrett", "contact_set": [)" + list + "]}";
 }
 
 const std::string kEast = "[1, 0, 0]";
@@ -107,9 +107,13 @@ TEST_CASE("Contact sets that make no sense are refused by name",
     CHECK_THROWS_WITH(run("measured_contacts", settings), Catch::Contains(why));
   };
   refused(contact_set({contact("[0, 0, 0]")}), "must not be zero");
-  refused(R"({"radius_m": 0, "hand": "barrett", "contacts": []})", "must be > 0");
-  refused(R"({"radius_m": 1, "hand": "barrett"})", "there is no setting contacts");
-  refused(R"({"radius_m": 1, "hand": "barrett", "contacts": [], "size_m": 1})", "is no setting");
+  refused(R"({"radius_m": 0, "pads_of": "barrett", "contact_set": []})", "must be > 0");
+  refused(R"({"radius_m": 1, "pads_of": "barrett"})", "there is no setting contact_set");
+  refused(R"({"radius_m": 1, "pads_of": "barrett", "contact_set": [], "size_m": 1})",
+          "is no setting");
+  // Elsewhere these mean the planner's hand and a number.
+  refused(R"({"radius_m": 1, "hand": "barrett", "contact_set": []})", "hand");
+  refused(R"({"radius_m": 1, "pads_of": "barrett", "contacts": []})", "contacts");
   refused(contact_set(std::vector<std::string>(4, contact(kEast))), "has 3 fingers for 4 contacts");
 }
 
@@ -150,6 +154,11 @@ TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
   CHECK(number(ball.row, "voxel_size_m") == Approx(0.004));
   // 20 voxels and 8 of room on each side.
   CHECK(slice_rows.size() == 36 * 36);
+
+  const Result whole = run("object_voxels", R"({"shape": "ball", "size_m": 0.08, "hand": "barrett",
+      "weak-thickness-mm": 0, "resolution": 20})");
+  CHECK(static_cast<std::int64_t>(whole.details.size()) == partial);
+  CHECK(whole.row.at("slice").empty());
 }
 
 TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][fitting_stages]") {
