@@ -23,7 +23,7 @@ def draw(source):
         words,
         note_for(
             OBJECTS,
-            "Of the first nine grasps of each method (refined and free of penetration for all) the one with the median M.",
+            "Of the first five grasps of each method (refined and free of penetration for all) the one with the median M.",
         ),
         size=2.2,
         arrows=False,
