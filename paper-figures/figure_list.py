@@ -29,6 +29,8 @@ FIGURES = (
     Listed("object_sizes", "Fig. 15", ("paper_grasps",), True),
     Listed("torus_sizes", "Fig. 16", ("paper_grasps",), True),
     Listed("ball_modes", "Fig. 17", ("paper_grasps",), True),
+    Listed("three_methods", "Fig. 18", ("paper_grasps",), True),
+    Listed("intermediate_models", "Fig. 19", ("guidance_models", "object_voxels", "paper_grasps"), True),
     Listed("table1", "Table 1", ("table1",), False),
     Listed("failures", "Fig. 21", ("paper_grasps", "planner_paper_objects"), True),
     Listed("parameter_sweeps", "ours", ("parameter_sweeps",), False),

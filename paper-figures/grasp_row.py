@@ -1,4 +1,4 @@
-"""Figures that are panels of grasps: the best grasp of cells of one experiment."""
+"""Figures that are panels of grasps: one of each of some cells of one experiment, as a rule the best."""
 
 from figure_data import BadData
 from figure_style import panels, show_picture
@@ -11,8 +11,21 @@ def measures(grasp):
     return f"M {grasp['m']:.2f}, N' {len(grasp['contacts'])}\n{parts}"
 
 
-def grasp_panels(source, experiment, rows, width=430, height=430, **marks):
-    """Panels [rows][columns] of (panel, grasp); None where the table says that no grasp was found."""
+def best(grasps):
+    """Index of the grasp with the largest M: files hold that one first."""
+    return 0
+
+
+def middle(grasps):
+    """Index of the grasp with the median M, of an even number the better of the middle two."""
+    return (len(grasps) - 1) // 2
+
+
+def grasp_panels(source, experiment, rows, width=430, height=430, pick=best, **marks):
+    """Panels [rows][columns] of (panel, grasp); None where the table says that no grasp was found.
+
+    `pick` chooses among the grasps of a cell, which come in the order of falling M.
+    """
     stage = Stage(width, height)
     table = source.table(experiment, ("case", "grasps")).set_index("case")
     made = []
@@ -25,7 +38,8 @@ def grasp_panels(source, experiment, rows, width=430, height=430, **marks):
                 made[-1].append(None)
                 continue
             record = source.grasp_file(experiment, cell)
-            made[-1].append((grasp_panel(stage, source, record, **marks), record["grasps"][0]))
+            index = pick(record["grasps"])
+            made[-1].append((grasp_panel(stage, source, record, index, **marks), record["grasps"][index]))
     return made
 
 

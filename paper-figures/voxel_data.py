@@ -1,6 +1,9 @@
 """Voxels of an object and stages of a fitting, as the tables of their experiments give them."""
 
+import math
+
 import numpy as np
+from figure_data import BadData
 
 VOXELS = "object_voxels"
 CENTROID = ["centroid_x_m", "centroid_y_m", "centroid_z_m"]
@@ -12,7 +15,7 @@ STAGE = ("object", "stage", "iterations", "link", "x_m", "y_m", "z_m", "qw", "qx
 
 
 class Voxels:
-    """One object's voxels: `row` about all of it, `partial` and `slice` tables of voxels."""
+    """One object's voxels: `row` about all of it, `partial` a table of those that hold surface."""
 
     def __init__(self, source, name):
         table = source.table(VOXELS, ROW)
@@ -20,9 +23,7 @@ class Voxels:
         details = source.table(f"{VOXELS}.details", DETAILS)
         details = details[details["object"] == name]
         self.partial = details[details["class"] == "partial"].reset_index(drop=True)
-        counts = {axis: details[details[axis] == self.row["slice"]] for axis in "ijk"}
-        self.axis = max(counts, key=lambda axis: (counts[axis]["class"] != "partial").sum())
-        self.slice = counts[self.axis]
+        self.details = details
         self.size = float(self.row["voxel_size_m"])
         self.origin = self.row[["grid_x_m", "grid_y_m", "grid_z_m"]].to_numpy(dtype=float)
 
@@ -32,8 +33,12 @@ class Voxels:
 
     def distance_slice(self):
         """Signed distances [rows, columns] in the slice, the names of its axes, and its extent [m]."""
-        others = [axis for axis in "ijk" if axis != self.axis]
-        image = self.slice.pivot(index=others[1], columns=others[0], values="distance_voxels")
+        if math.isnan(self.row["slice"]):
+            raise BadData(f"{VOXELS}.csv: has no slice of {self.row['object']}")
+        slices = {axis: self.details[self.details[axis] == self.row["slice"]] for axis in "ijk"}
+        across = max(slices, key=lambda axis: (slices[axis]["class"] != "partial").sum())
+        others = [axis for axis in "ijk" if axis != across]
+        image = slices[across].pivot(index=others[1], columns=others[0], values="distance_voxels")
         low = [self.origin["ijk".index(axis)] for axis in others]
         extent = []
         for start, count in zip(low, image.shape[::-1]):

@@ -34,8 +34,8 @@ struct ContactSet {
 
 std::vector<Column> own_settings() {
   return {{"radius_m", "m", "of the ball"},
-          {"hand", "", "a shipped hand; its fingertip pads touch, one finger after the other"},
-          {"contacts", "",
+          {"pads_of", "", "a shipped hand; its fingertip pads touch, one finger after the other"},
+          {"contact_set", "",
            "array of {direction: [x, y, z], boundary_distance_rel, area_rel, weak}: where on the "
            "ball, d and A as shares of the pad's, whether that part is fragile"}};
 }
@@ -51,15 +51,16 @@ ContactSet contact_set(const Cell& cell) {
   for (const auto& [key, value] : json.items()) {
     bool is_known = false;
     for (const Column& setting : own_settings()) is_known = is_known || setting.name == key;
-    if (!is_known) throw SettingError(key, "is no setting; there are radius_m, hand, contacts");
+    if (!is_known)
+      throw SettingError(key, "is no setting; there are radius_m, pads_of, contact_set");
   }
   for (const Column& setting : own_settings()) {
     if (!json.contains(setting.name)) throw SettingError("", "there is no setting " + setting.name);
   }
   ContactSet set;
   set.radius = SettingValue("radius_m", json.at("radius_m")).positive_number();
-  set.hand = SettingValue("hand", json.at("hand")).text();
-  for (const SettingValue& item : SettingValue("contacts", json.at("contacts")).items()) {
+  set.hand = SettingValue("pads_of", json.at("pads_of")).text();
+  for (const SettingValue& item : SettingValue("contact_set", json.at("contact_set")).items()) {
     item.require_members_among({"direction", "boundary_distance_rel", "area_rel", "weak"});
     BallContact contact;
     contact.direction = item.at("direction").vector3();
@@ -99,7 +100,7 @@ std::vector<grasp::Contact> contacts_on_pads(const ContactSet& set, const hands:
   std::vector<grasp::Contact> contacts;
   for (std::size_t i = 0; i < set.contacts.size(); ++i) {
     if (i >= hand.fingers.size()) {
-      throw geometry::InvalidInput("contacts: hand " + set.hand + " has " +
+      throw geometry::InvalidInput("contact_set: hand " + set.hand + " has " +
                                    std::to_string(hand.fingers.size()) + " fingers for " +
                                    std::to_string(set.contacts.size()) + " contacts");
     }

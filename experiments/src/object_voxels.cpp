@@ -3,13 +3,14 @@
 // how its score comes about, and what is fragile?
 //
 // Answered by a row per object (how many voxels, how scores are distributed) and, in the details, a
-// row per partial voxel and per voxel of one slice through the center of mass: what the pictures of
-// voxels, score map and distance map are drawn from.
+// row per partial voxel and, where a slice is asked for, per voxel of it, through the center of
+// mass: what the pictures of voxels, score map and distance map are drawn from.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,13 +33,13 @@ constexpr std::array kAxes = {"x", "y", "z"};
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
 std::vector<Column> own_settings() {
-  return {{"slice_axis", "", "x, y or z: the slice of the details is across it"}};
+  return {{"slice_axis", "", "x, y or z: the details have a slice across it; without: none"}};
 }
 
-int slice_axis(const Cell& cell) {
+std::optional<int> slice_axis(const Cell& cell) {
   const nlohmann::json json = nlohmann::json::parse(cell.settings);
   const std::string name = own_settings().front().name;
-  if (!json.contains(name)) throw SettingError("", "there is no setting " + name);
+  if (!json.contains(name)) return std::nullopt;
   return SettingValue(name, json.at(name)).axis();
 }
 
@@ -57,7 +58,7 @@ std::vector<Column> columns() {
     all.push_back({std::string("mass_center_") + axis + "_m", "m", "center of mass"});
   }
   for (const Column& column : std::vector<Column>{
-           {"slice", "1", "index of the slice along slice_axis"},
+           {"slice", "1", "index of the slice along slice_axis, if there is one"},
            {"partial", "1", "voxels that hold surface"},
            {"full", "1", "voxels inside"},
            {"median_score", "1", "of the partial voxels, after the mean filter"},
@@ -174,13 +175,14 @@ CellResult run(const Cell& cell, const std::filesystem::path&) {
   result.timings.set("prepare_s", prepare.count());
   fill(object, settings.options.targets.score_threshold, result.row);
   const geometry::VoxelLattice& lattice = object.grid.lattice;
-  const int axis = slice_axis(cell);
-  const int slice = lattice.voxel_at(object.mass.center_of_mass)[axis];
-  result.row.set("slice", std::int64_t{slice});
+  const std::optional<int> axis = slice_axis(cell);
+  const Eigen::Vector3i center = lattice.voxel_at(object.mass.center_of_mass);
+  if (axis) result.row.set("slice", std::int64_t{center[*axis]});
   for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
     const Eigen::Vector3i voxel = lattice.voxel(index);
     const bool is_partial = object.grid.at(voxel) == VoxelClass::Partial;
-    if (is_partial || voxel[axis] == slice) result.details.push_back(detail_of(object, voxel));
+    const bool is_in_slice = axis && voxel[*axis] == center[*axis];
+    if (is_partial || is_in_slice) result.details.push_back(detail_of(object, voxel));
   }
   return result;
 }

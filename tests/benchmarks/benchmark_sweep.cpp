@@ -1,6 +1,6 @@
 // What it measures: the wall time of a sweep of the planner (a torus in 36 cells with the Barrett
-// hand, of nearly equal work) with one job and with two, each five times, in turns; the median ratio.
-// With fewer cells the last one, during which the other job idles, weighs more.
+// hand, of nearly equal work) with one job and with two, each five times, in turns; the median
+// ratio. With fewer cells the last one, during which the other job idles, weighs more.
 //
 // How to read it: cells share nothing but the journal, so two cores that are otherwise idle finish
 // at least 1.8 times as fast as one. On a busy machine, or with cores that are two threads of one,

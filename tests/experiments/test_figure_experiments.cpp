@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graspfit/experiments/experiment.hpp"
+#include "graspfit/experiments/planning_settings.hpp"
 #include "internal/planning_table.hpp"
 #include "support/catch.hpp"
 
@@ -57,7 +58,7 @@ std::string contact(const std::string& direction, const std::string& weak = "fal
 std::string contact_set(const std::vector<std::string>& contacts) {
   std::string list;
   for (const std::string& item : contacts) list += (list.empty() ? "" : ", ") + item;
-  return R"({"radius_m": 0.04, "hand": "barrett", "contacts": [)" + list + "]}";
+  return R"({"radius_m": 0.04, "pads_of": "barrett", "contact_set": [)" + list + "]}";
 }
 
 const std::string kEast = "[1, 0, 0]";
@@ -107,10 +108,14 @@ TEST_CASE("Contact sets that make no sense are refused by name",
     CHECK_THROWS_WITH(run("measured_contacts", settings), Catch::Contains(why));
   };
   refused(contact_set({contact("[0, 0, 0]")}), "must not be zero");
-  refused(R"({"radius_m": 0, "hand": "barrett", "contacts": []})", "must be > 0");
-  refused(R"({"radius_m": 1, "hand": "barrett"})", "there is no setting contacts");
-  refused(R"({"radius_m": 1, "hand": "barrett", "contacts": [], "size_m": 1})", "is no setting");
-  refused(contact_set(std::vector<std::string>(4, contact(kEast))), "has 3 fingers for 4 contacts");
+  refused(R"({"radius_m": 0, "pads_of": "barrett", "contact_set": []})", "must be > 0");
+  refused(R"({"radius_m": 1, "pads_of": "barrett"})", "there is no setting contact_set");
+  refused(R"({"radius_m": 1, "pads_of": "barrett", "contact_set": [], "size_m": 1})",
+          "is no setting");
+  // Elsewhere these mean the planner's hand and a number.
+  const std::string known = "is no setting; there are radius_m, pads_of, contact_set";
+  refused(R"({"radius_m": 1, "hand": "barrett", "contact_set": []})", known);
+  refused(R"({"radius_m": 1, "pads_of": "barrett", "contacts": []})", known);
 }
 
 TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
@@ -150,6 +155,60 @@ TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
   CHECK(number(ball.row, "voxel_size_m") == Approx(0.004));
   // 20 voxels and 8 of room on each side.
   CHECK(slice_rows.size() == 36 * 36);
+
+  const Result whole = run("object_voxels", R"({"shape": "ball", "size_m": 0.08, "hand": "barrett",
+      "weak-thickness-mm": 0, "resolution": 20})");
+  CHECK(static_cast<std::int64_t>(whole.details.size()) == partial);
+  CHECK(whole.row.at("slice").empty());
+}
+
+TEST_CASE("What methods look at on a ball: samples on it, medial balls that are the ball",
+          "[experiments][guidance_models]") {
+  const auto model_of = [](const std::string& planner) {
+    return run("guidance_models", R"({"shape": "ball", "size_m": 0.08, "hand": "barrett",
+        "weak-thickness-mm": 0, "resolution": 10, "gs-samples": 200, "ma-samples": 200,
+        "planner": ")" + planner + "\"}");
+  };
+  const auto point_of = [](const Fields& fields) {
+    return Eigen::Vector3d(number(fields, "x_m"), number(fields, "y_m"), number(fields, "z_m"));
+  };
+  const Result samples = model_of("gs");
+  CHECK(number(samples.row, "points") == 200.0);
+  REQUIRE(samples.details.size() == 200);
+  for (const Fields& sample : samples.details) {
+    const Eigen::Vector3d normal(number(sample, "normal_x"), number(sample, "normal_y"),
+                                 number(sample, "normal_z"));
+    // Faces of the polyhedron lie up to half a percent deeper and are turned by two degrees.
+    CHECK(point_of(sample).norm() == Approx(0.04).epsilon(0.01));
+    CHECK(normal.dot(point_of(sample).normalized()) > 0.99);
+    CHECK(sample.at("radius_m").empty());
+    CHECK(sample.at("kind").empty());
+  }
+  const Result balls = model_of("ma");
+  REQUIRE_FALSE(balls.details.empty());
+  for (const Fields& ball : balls.details) {
+    // Along the sample's normal a center is known to 3 % of the radius; across it the normal's two
+    // degrees turn it by 3.5 %.
+    CHECK(point_of(ball).norm() < 0.05 * 0.04);
+    CHECK(number(ball, "radius_m") == Approx(0.04).epsilon(0.03));
+    CHECK(ball.at("kind") == "point");
+    CHECK(ball.at("normal_x").empty());
+  }
+  CHECK(number(balls.row, "balls_point") == number(balls.row, "points"));
+  CHECK(number(balls.row, "balls_axis") == 0.0);
+}
+
+TEST_CASE("Settings of an experiment's own do not share names with the planner's",
+          "[experiments][settings]") {
+  // A name has one description in the schema of all configurations.
+  for (const Experiment& experiment : all_experiments()) {
+    for (const Column& setting : experiment.settings) {
+      for (const Column& known : planning_setting_names()) {
+        INFO(experiment.slug);
+        CHECK(setting.name != known.name);
+      }
+    }
+  }
 }
 
 TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][fitting_stages]") {

@@ -10,6 +10,7 @@ namespace graspfit::experiments::internal {
 Experiment contacts_and_time();
 Experiment fitting_stages();
 Experiment force_closure();
+Experiment guidance_models();
 Experiment hold_prediction();
 Experiment hold_rates();
 Experiment parameter_sweeps();
