@@ -5,26 +5,10 @@ PAGES holds what write_sample_pages wrote; a replay's page has the scene that th
 """
 
 import json
-import os
-import pathlib
-import shutil
-import subprocess
-import sys
-import tempfile
-import unittest
 
-PACKAGES = "apt-get install python3-vtk9 xvfb xauth python3-pil"
+from picture_test import PictureTest, main  # first: says what is missing
 
-try:
-    import vtk  # noqa: F401
-    from PIL import Image, ImageChops
-except ImportError as error:
-    print(f"SKIPPED: {error}; {PACKAGES}")
-    sys.exit(0)
-
-SCRIPT = None
-PAGES = None
-PICTURES = None
+from PIL import Image, ImageChops
 
 
 def share_near(image, color, tolerance=45):
@@ -34,27 +18,11 @@ def share_near(image, color, tolerance=45):
     return sum(largest.histogram()[: tolerance + 1]) / (image.width * image.height)
 
 
-class RenderHold(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = pathlib.Path(temporary.name)
-        html = (PAGES / "replay.html").read_text()
-        self.text = html.split('<script type="application/json" id="data">')[1].split("</script>")[0]
-
-    def draw(self, text, *flags):
-        scene = self.folder / "scene.json"
-        scene.write_text(text)
-        return subprocess.run(
-            [sys.executable, "-B", SCRIPT, str(scene), str(self.folder / "replay.gif"), *flags],
-            capture_output=True, text=True, timeout=500, check=False)
+class RenderHold(PictureTest):
+    page = "replay.html"
 
     def test_shows_the_hand_closing_and_the_load_pulling_the_ball_away(self):
-        done = self.draw(self.text, "--width", "320", "--height", "310")
-        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
-        file = self.folder / "replay.gif"
-        if PICTURES:
-            shutil.copy(file, PICTURES)
+        file = self.drawn("replay.gif", "--width", "320", "--height", "310")
         with Image.open(file) as image:
             # The ball passes 50 mm at 0.56 s, then 0.2 s more: a frame every 0.04 s, but no farther
             # than the frames that the scene has (0.72 s).
@@ -81,23 +49,8 @@ class RenderHold(unittest.TestCase):
             (json.dumps(scene), (), "does not fit its times"),
             (self.text, ("--load", "up"), "no load named up; there are +x, -x, +y"),
         ):
-            with self.subTest(says=says):
-                done = self.draw(text, *flags)
-                self.assertEqual(done.returncode, 1, done.stderr)
-                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-                self.assertIn(says, done.stderr)
-                self.assertFalse((self.folder / "replay.gif").exists())
+            self.assert_refused(text, "replay.gif", flags, says)
 
 
 if __name__ == "__main__":
-    if not shutil.which("xvfb-run") and not os.environ.get("DISPLAY"):
-        print(f"SKIPPED: no display; {PACKAGES}")
-        sys.exit(0)
-    SCRIPT = sys.argv.pop(1)
-    PAGES = pathlib.Path(sys.argv.pop(1))
-    if "--keep-pictures" in sys.argv:
-        at = sys.argv.index("--keep-pictures")
-        PICTURES = pathlib.Path(sys.argv[at + 1])
-        PICTURES.mkdir(parents=True, exist_ok=True)
-        del sys.argv[at : at + 2]
-    unittest.main(verbosity=2)
+    main()
