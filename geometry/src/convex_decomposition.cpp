@@ -39,6 +39,8 @@ constexpr double kMeasuredRel = 0.05;      // of the outward deviation's bound
 constexpr double kSameVolumeRel = 1e-12;
 constexpr int kDepthResolution = 128;
 constexpr int kVolumeLines = 128;
+// Of a part's depth: cuts that leave more of it, and nothing beside it, are the last.
+constexpr double kLeastGainRel = 0.9;
 
 // More parts than pieces: cuts that were right at first part what later may be united.
 constexpr std::size_t kPartsPerPiece = 3;
@@ -128,11 +130,15 @@ class Decomposer {
 
   /// What sampling found shallow is looked at closely.
   void verify(Piece& piece) const {
-    if (piece.depth > options_.largest_deviation) return;
+    if (piece.depth <= options_.largest_deviation) prove(piece, aimed());
+  }
+
+  /// The depth from a proven bound, for which no less than `floor` [m] matters.
+  void prove(Piece& piece, double floor) const {
     piece.is_proven = true;
     piece.depth = internal::outward_deviation(
         {&piece.hull, 1}, solid_,
-        {.tolerance = kMeasuredRel * options_.largest_deviation, .floor = aimed()});
+        {.tolerance = kMeasuredRel * options_.largest_deviation, .floor = floor});
   }
 
  private:
@@ -143,6 +149,13 @@ class Decomposer {
     pieces_.push_back(*std::move(piece));
     parts_.push_back(std::move(part));
     can_split_.push_back(true);
+  }
+
+  void remove(std::size_t index) {
+    const auto at = static_cast<std::ptrdiff_t>(index);
+    pieces_.erase(pieces_.begin() + at);
+    parts_.erase(parts_.begin() + at);
+    can_split_.erase(can_split_.begin() + at);
   }
 
   void split(std::size_t index) {
@@ -161,7 +174,8 @@ class Decomposer {
     std::optional<Piece> lower = piece_of(below.hull_points());
     std::optional<Piece> upper = piece_of(above.hull_points());
     if (!lower && !upper) {
-      can_split_[index] = false;
+      // Of a sliver, which may still reach far out, nothing is left that is thick enough.
+      remove(index);
       return;
     }
     if (!lower) {
@@ -169,6 +183,8 @@ class Decomposer {
       std::swap(below, above);
     }
     verify(*lower);
+    // Where only a layer too thin for a piece comes off, the next cut would take the next one.
+    if (!upper && lower->depth > kLeastGainRel * pieces_[index].depth) can_split_[index] = false;
     pieces_[index] = *std::move(lower);
     parts_[index] = std::move(below);
     if (!upper) return;
@@ -211,7 +227,7 @@ class Merger {
       if (best->depth <= limit) {
         const Pair pair = *best;
         pairs_.erase(best);
-        if (unite(pair)) --count;
+        if (unite(pair, limit)) --count;
         if (limit > decomposer_.aimed() && count <= most_pieces) break;
       } else if (count > most_pieces) {
         limit = std::max(kRaise * limit, best->depth);
@@ -252,17 +268,17 @@ class Merger {
     pair.is_known = pair.depth <= limit;
   }
 
-  bool unite(const Pair& pair) {
+  /// What samples missed shows here: a union deeper than the limit waits for its turn.
+  bool unite(const Pair& pair, double limit) {
     std::vector<Vector3d> points = pieces_[pair.a].points;
     points.insert(points.end(), pieces_[pair.b].points.begin(), pieces_[pair.b].points.end());
     std::optional<Piece> merged = decomposer_.piece_of(std::move(points));
     if (!merged) return false;
-    if (pair.depth <= decomposer_.aimed()) {
-      decomposer_.verify(*merged);
-      if (merged->depth > decomposer_.largest_deviation()) {
-        pairs_.push_back({pair.a, pair.b, merged->depth, true});
-        return false;
-      }
+    const double allowed = std::max(limit / kAimedRel, decomposer_.largest_deviation());
+    decomposer_.prove(*merged, kAimedRel * allowed);
+    if (merged->depth > allowed) {
+      pairs_.push_back({pair.a, pair.b, merged->depth, true});
+      return false;
     }
     pieces_[pair.a] = *std::move(merged);
     boxes_[pair.a] = bounding_box(pieces_[pair.a].hull.mesh);

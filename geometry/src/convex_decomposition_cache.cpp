@@ -1,7 +1,14 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "graspfit/geometry/content_cache.hpp"
@@ -11,7 +18,39 @@ namespace graspfit::geometry {
 namespace {
 
 // Raised whenever the same input may give another result.
-constexpr std::string_view kAlgorithm = "convex decomposition 1";
+constexpr std::string_view kAlgorithm = "convex decomposition 2";
+
+/// Held by whoever looks for an entry: what takes seconds to find is found by one, thread or
+/// process, while the others wait for it. Where no lock can be had there is none, and both do it.
+class EntryLock {
+ public:
+  explicit EntryLock(const std::optional<std::filesystem::path>& entry) {
+    if (!entry) return;
+    file_ = *entry;
+    file_ += ".lock";
+    std::error_code error;
+    std::filesystem::create_directories(file_.parent_path(), error);
+    constexpr int kOwnerMayWrite = 0644;
+    descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kOwnerMayWrite);
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0) {
+      if (errno == EINTR) continue;
+      close(descriptor_);
+      descriptor_ = -1;
+    }
+  }
+  /// The entry is there by now: who waits on the removed file, or makes a new one, reads it.
+  ~EntryLock() {
+    if (descriptor_ < 0) return;
+    unlink(file_.c_str());
+    close(descriptor_);
+  }
+  EntryLock(const EntryLock&) = delete;
+  EntryLock& operator=(const EntryLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
 
 std::string to_text(const ConvexDecomposition& result) {
   NumberWriter out;
@@ -84,9 +123,11 @@ ConvexDecomposition cached_convex_decomposition(const TriangleMesh& mesh,
                                                 const ConvexDecompositionOptions& options,
                                                 const ContentCache& cache) {
   options.validate();
+  const std::string key = convex_decomposition_key(mesh, options);
+  const EntryLock lock(cache.file_of(kConvexDecompositionKind, key));
   return cache.value(
-      kConvexDecompositionKind, convex_decomposition_key(mesh, options),
-      [&] { return convex_decomposition(mesh, options); }, from_text, to_text);
+      kConvexDecompositionKind, key, [&] { return convex_decomposition(mesh, options); }, from_text,
+      to_text);
 }
 
 }  // namespace graspfit::geometry

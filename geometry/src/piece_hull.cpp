@@ -157,6 +157,8 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
     std::vector<Vector3d> kept = hull.mesh.vertices;
     for (std::size_t k = 0; k < std::min(room, farthest.size()); ++k) {
       kept.push_back(points[farthest[k].second]);
+      // Once is enough: the hull holds it, even if the rounded plane of a sharp needle says else.
+      std::erase(outside, farthest[k].second);
     }
     chosen.resize(kept.size());
     for (std::size_t k = 0; k < kept.size(); ++k) chosen[k] = k;
