@@ -1,10 +1,12 @@
 #include "internal/hold_cell.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 
 #include "graspfit/hold_test/hold_protocol.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
+#include "internal/grasp_measures.hpp"
 #include "internal/last_used.hpp"
 #include "internal/planning_table.hpp"
 #include "internal/prediction_statistics.hpp"
@@ -74,24 +76,6 @@ std::vector<Column> protocol_columns(const TestedProtocol& protocol) {
           {prefix + "lost_under_load", "1", "grasps lost under load"}};
 }
 
-/// Names of the quartiles of a margin.
-constexpr std::array<std::pair<const char*, double>, 3> kQuartiles = {
-    {{"lower_quartile_", 0.25}, {"median_", 0.5}, {"upper_quartile_", 0.75}}};
-
-std::vector<Column> margin_columns() {
-  std::vector<Column> columns = {
-      {"margins", "1", "grasps, the first found, whose margins were searched for"}};
-  for (const char* const margin : kMarginColumns) {
-    const bool is_force = margin == kMarginColumns[0];
-    for (const auto& [name, share] : kQuartiles) {
-      columns.push_back({std::string(name) + margin, is_force ? "N" : "N m",
-                         std::string("of the smallest ") + (is_force ? "force" : "torque") +
-                             " that fails; 0 where the grasp is lost without load"});
-    }
-  }
-  return columns;
-}
-
 std::vector<Column> columns() {
   std::vector<Column> all = {
       {"object_pieces", "1", "convex pieces that stand for the object"},
@@ -112,22 +96,17 @@ std::vector<Column> timings() {
   std::vector<Column> all = {
       {"pieces_s", "s", "cutting hand and object, or nothing where the last cells had the same"},
       {"hold_test_s", "s", "testing all grasps under all protocols"},
-      {"margins_s", "s", "searching for margins"}};
+      {"margins_s", "s", "searching for margins"},
+      {"measures_s", "s", "measures beside the planner's own"}};
   for (Column& column : planning_timings()) all.push_back(std::move(column));
   return all;
 }
 
 std::vector<Column> details() {
-  std::vector<Column> all = {
-      {"attempt", "1", "of the planner, from 0"},
-      {"m", "1", "the paper's measure M"},
-      {"m1", "1", "its sustainability"},
-      {"m2", "1", "its stability"},
-      {"m3", "1", "its form"},
-      {"epsilon", "1", "GraspIt!'s convention at the planner's friction; -1 without closure"},
-      {"volume", "1", "of the same wrench space"},
-      {"num_contacts", "1", "N'"},
-      {"squeeze_residual", "1", "unbalanced wrench of the squeeze over its normal forces"}};
+  std::vector<Column> all = {{"attempt", "1", "of the planner, from 0"}};
+  for (Column& column : grasp_measure_columns()) all.push_back(std::move(column));
+  all.push_back(
+      {"squeeze_residual", "1", "unbalanced wrench of the squeeze over its normal forces"});
   for (const TestedProtocol& protocol : kTestedProtocols) {
     all.push_back({std::string(protocol.prefix) + kStageColumn, "",
                    std::string("how far it came under ") + protocol.name +
@@ -173,6 +152,7 @@ void fill_pieces(const hold_test::HoldHand& hand, const hold_test::HoldObject& o
 /// What the simulator says of one grasp.
 struct TestedGrasp {
   const grasp::Grasp* grasp = nullptr;
+  GraspMeasures measures;
   std::vector<hold_test::HoldVerdict> verdicts;  ///< Per tested protocol.
   std::optional<hold_test::HoldMargin> margin;   ///< Under the first of them.
 };
@@ -180,7 +160,7 @@ struct TestedGrasp {
 /// The returned grasps in the order in which they were found.
 std::vector<TestedGrasp> grasps_as_found(const Planned& planned) {
   std::vector<TestedGrasp> tested;
-  for (const grasp::Grasp& grasp : planned.result.grasps) tested.push_back({&grasp, {}, {}});
+  for (const grasp::Grasp& grasp : planned.result.grasps) tested.push_back({&grasp, {}, {}, {}});
   std::sort(tested.begin(), tested.end(), [](const TestedGrasp& a, const TestedGrasp& b) {
     return a.grasp->attempt < b.grasp->attempt;
   });
@@ -250,13 +230,7 @@ ResultRow detail_of(const TestedGrasp& tested) {
   const grasp::Grasp& grasp = *tested.grasp;
   ResultRow row(details());
   row.set("attempt", grasp.attempt);
-  row.set("m", grasp.quality.m);
-  row.set("m1", grasp.quality.m1);
-  row.set("m2", grasp.quality.m2);
-  row.set("m3", grasp.quality.m3);
-  row.set("epsilon", grasp.wrench.epsilon);
-  row.set("volume", grasp.wrench.volume);
-  row.set("num_contacts", field(grasp.contacts.size()));
+  for (const auto& [name, value] : tested.measures) row.set(name, field(value));
   if (grasp.squeeze) row.set("squeeze_residual", grasp.squeeze->residual);
   std::string reason;
   for (std::size_t p = 0; p < kTestedProtocols.size(); ++p) {
@@ -287,6 +261,11 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
 
   std::vector<TestedGrasp> grasps = grasps_as_found(planned);
   test_all(*hand, *object, num_margins(cell), grasps, result.timings);
+  double measures_s = 0.0;
+  for (TestedGrasp& tested : grasps) {
+    tested.measures = measures_of(planned, *tested.grasp, measures_s);
+  }
+  result.timings.set("measures_s", measures_s);
   fill_pieces(*hand, *object, result.row);
   fill_verdicts(grasps, planned.result.statistics.attempts, result.row);
   fill_margins(grasps, result.row);
@@ -297,7 +276,54 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
   return result;
 }
 
+/// Axis whose values are summed up apart, too.
+constexpr const char* kGroupAxis = "grip";
+constexpr const char* kAllGroups = "all";
+
 }  // namespace
+
+std::vector<Column> margin_columns() {
+  std::vector<Column> columns = {
+      {"margins", "1", "grasps, the first found, whose margins were searched for"}};
+  for (const char* const margin : kMarginColumns) {
+    const bool is_force = margin == kMarginColumns[0];
+    for (const auto& [name, share] : kQuartiles) {
+      columns.push_back({std::string(name) + margin, is_force ? "N" : "N m",
+                         std::string("of the smallest ") + (is_force ? "force" : "torque") +
+                             " that fails; 0 where the grasp is lost without load"});
+    }
+  }
+  return columns;
+}
+
+std::optional<double> number(const std::string& field) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
+  return value;
+}
+
+std::size_t column_index(const std::vector<Column>& columns, const std::string& name) {
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const Column& column) { return column.name == name; });
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+std::vector<std::pair<std::string, std::vector<const FinishedCell*>>> cells_by_grip(
+    const ParameterSweep& sweep, const std::vector<FinishedCell>& cells) {
+  std::vector<std::pair<std::string, std::vector<const FinishedCell*>>> groups = {{kAllGroups, {}}};
+  for (const FinishedCell& cell : cells) groups[0].second.push_back(&cell);
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    if (sweep.axes[a].name != kGroupAxis) continue;
+    for (const AxisValue& value : sweep.axes[a].values) {
+      groups.emplace_back(value.label, std::vector<const FinishedCell*>());
+      for (const FinishedCell& cell : cells) {
+        if (cell.labels[a] == value.label) groups.back().second.push_back(&cell);
+      }
+    }
+  }
+  return groups;
+}
 
 Experiment hold_experiment(const std::string& slug) {
   Experiment experiment;

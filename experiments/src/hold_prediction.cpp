@@ -1,24 +1,20 @@
-// Question: do the paper's measure M, its parts, and the wrench-space measures epsilon and volume
-// tell grasps that hold in a physics engine from those that do not, and those with a large margin
-// from those with a small one?
+// Question: do the paper's measure M, its parts, and the wrench-space measures epsilon, volume and
+// min-weight tell grasps that hold in a physics engine from those that do not, and those with a
+// large margin from those with a small one?
 //
 // Answered by the summary: per grip and for all together, for every measure the area under the ROC
 // curve against held (0.5: no better than chance) and Spearman's rank correlation with the margins
 // (0: none), with 95 % bootstrap intervals over cells; among all grasps, and among grasps of one
 // hand on one object only, where a measure cannot profit from telling objects apart.
 #include <algorithm>
-#include <charconv>
 
 #include "internal/experiment_list.hpp"
+#include "internal/grasp_measures.hpp"
 #include "internal/hold_cell.hpp"
 #include "internal/prediction_statistics.hpp"
 
 namespace graspfit::experiments::internal {
 namespace {
-
-/// Axis whose values are summed up apart, too.
-constexpr const char* kGroupAxis = "grip";
-constexpr const char* kAllGroups = "all";
 
 std::vector<Column> summary_columns() {
   return {{"grip", "", "hand and style, or all"},
@@ -53,13 +49,6 @@ std::vector<Target> targets() {
   return all;
 }
 
-std::optional<double> number(const std::string& field) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
-
 std::optional<double> outcome(const std::string& field, RankStatistic statistic) {
   if (statistic == RankStatistic::Spearman) return number(field);
   if (field.empty()) return std::nullopt;
@@ -70,13 +59,8 @@ std::optional<double> outcome(const std::string& field, RankStatistic statistic)
 std::vector<ScoredOutcomes> clusters_of(const std::vector<const FinishedCell*>& cells,
                                         const std::vector<Column>& details,
                                         const std::string& measure, const Target& target) {
-  const auto index_of = [&](const std::string& name) {
-    const auto found = std::find_if(details.begin(), details.end(),
-                                    [&](const Column& column) { return column.name == name; });
-    return static_cast<std::size_t>(found - details.begin());
-  };
-  const std::size_t score_at = index_of(measure);
-  const std::size_t outcome_at = index_of(target.column);
+  const std::size_t score_at = column_index(details, measure);
+  const std::size_t outcome_at = column_index(details, target.column);
   std::vector<ScoredOutcomes> clusters;
   for (const FinishedCell* cell : cells) {
     ScoredOutcomes cluster;
@@ -120,29 +104,12 @@ ResultRow summary_row(const std::string& group, const Target& target, const std:
   return row;
 }
 
-/// The cells of every value of the axis, and all.
-std::vector<std::pair<std::string, std::vector<const FinishedCell*>>> groups_of(
-    const ParameterSweep& sweep, const std::vector<FinishedCell>& cells) {
-  std::vector<std::pair<std::string, std::vector<const FinishedCell*>>> groups = {{kAllGroups, {}}};
-  for (const FinishedCell& cell : cells) groups[0].second.push_back(&cell);
-  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-    if (sweep.axes[a].name != kGroupAxis) continue;
-    for (const AxisValue& value : sweep.axes[a].values) {
-      groups.emplace_back(value.label, std::vector<const FinishedCell*>());
-      for (const FinishedCell& cell : cells) {
-        if (cell.labels[a] == value.label) groups.back().second.push_back(&cell);
-      }
-    }
-  }
-  return groups;
-}
-
 std::vector<ResultRow> summarize(const std::vector<Column>& details, const ParameterSweep& sweep,
                                  const std::vector<FinishedCell>& cells) {
   std::vector<ResultRow> rows;
-  for (const auto& [group, members] : groups_of(sweep, cells)) {
+  for (const auto& [group, members] : cells_by_grip(sweep, cells)) {
     for (const Target& target : targets()) {
-      for (const char* const measure : kGraspMetrics) {
+      for (const std::string& measure : correlated_measures()) {
         const std::vector<ScoredOutcomes> clusters = clusters_of(members, details, measure, target);
         for (const StatisticScope scope : {StatisticScope::All, StatisticScope::WithinClusters}) {
           rows.push_back(summary_row(group, target, measure, scope, clusters, sweep.base_seed));

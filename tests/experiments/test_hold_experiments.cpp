@@ -1,11 +1,13 @@
 #include <set>
 
 #include "graspfit/experiments/experiment_config.hpp"
+#include "internal/grasp_measures.hpp"
 #include "internal/hold_cell.hpp"
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
 using namespace graspfit::experiments;
+using graspfit::experiments::internal::correlated_measures;
 
 namespace {
 
@@ -104,7 +106,7 @@ TEST_CASE("The summary says how well a measure predicts, per grip and for all",
       {{"mug", "strong"}, {}}};
   const auto rows = experiment.summaries.at(0).rows(sweep, cells);
   // Groups (all and two grips) x targets x measures x scopes.
-  CHECK(rows.size() == 3 * 5 * 6 * 2);
+  CHECK(rows.size() == 3 * 5 * correlated_measures().size() * 2);
   const auto fields_of = [&](const std::vector<std::string>& wanted) {
     for (const ResultRow& row : rows) {
       const std::vector<std::string> fields = row.csv_fields();
@@ -126,4 +128,42 @@ TEST_CASE("The summary says how well a measure predicts, per grip and for all",
   CHECK(fields_of({"all", "hard_held", "m", "all"}) == Fields{"auc", "", "", "", "0", "0", "0"});
   CHECK(fields_of({"weak", "margin_force_n", "m", "cell"}) ==
         Fields{"spearman", "1", "1", "1", "4", "", "2"});
+}
+
+TEST_CASE("The rates' summary has the quartiles of the margins that were searched for",
+          "[experiments][hold]") {
+  const Experiment& experiment = find_experiment("hold_rates");
+  ParameterSweep sweep;
+  sweep.axes = {{"object", {{"ball", "{}"}, {"mug", "{}"}}},
+                {"grip", {{"weak", "{}"}, {"strong", "{}"}}}};
+  const auto detail = [&](const std::string& stage, const std::string& margin) {
+    std::vector<std::string> row(experiment.details.size());
+    row[column(experiment.details, "normal_stage")] = stage;
+    row[column(experiment.details, "margin_force_n")] = margin;
+    return row;
+  };
+  const std::vector<FinishedCell> cells = {
+      {{"ball", "weak"}, {detail("load", "0"), detail("held", "")}},
+      {{"ball", "strong"}, {detail("held", "2")}},
+      {{"mug", "weak"}, {detail("held", "1")}},
+      {{"mug", "strong"}, {}}};
+  const auto& summary = experiment.summaries.at(0);
+  const auto rows = summary.rows(sweep, cells);
+  REQUIRE(rows.size() == 3);
+  const auto value = [&](std::size_t row, const std::string& name) {
+    return rows[row].csv_fields()[column(summary.columns, name)];
+  };
+  // Of 0, 1 and 2 the quartiles are 0.5, 1 and 1.5; of 0 and 1 they are 0.25, 0.5 and 0.75.
+  CHECK(value(0, "grip") == "all");
+  CHECK(value(0, "grasps") == "4");
+  CHECK(value(0, "normal_held") == "3");
+  CHECK(value(0, "margins") == "3");
+  CHECK(value(0, "lower_quartile_margin_force_n") == "0.5");
+  CHECK(value(0, "median_margin_force_n") == "1");
+  CHECK(value(0, "upper_quartile_margin_force_n") == "1.5");
+  CHECK(value(1, "grip") == "weak");
+  CHECK(value(1, "lower_quartile_margin_force_n") == "0.25");
+  CHECK(value(2, "margins") == "1");
+  CHECK(value(2, "upper_quartile_margin_force_n") == "2");
+  CHECK(value(2, "median_margin_torque_nm").empty());
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "graspfit/experiments/experiment.hpp"
 
@@ -18,11 +21,26 @@ inline constexpr std::array<TestedProtocol, 3> kTestedProtocols = {
      {"multidex-0.05g", "multidex_"}}};
 
 /// Column names of a grasp's details that others read.
-inline constexpr std::array<const char*, 6> kGraspMetrics = {"m",  "m1",      "m2",
-                                                             "m3", "epsilon", "volume"};
 inline constexpr const char* kStageColumn = "stage";  ///< After a protocol's prefix.
 inline constexpr const char* kHeldStage = "held";
 inline constexpr std::array<const char*, 2> kMarginColumns = {"margin_force_n", "margin_torque_nm"};
+
+/// Names of the quartiles of a margin, before its column's.
+inline constexpr std::array<std::pair<const char*, double>, 3> kQuartiles = {
+    {{"lower_quartile_", 0.25}, {"median_", 0.5}, {"upper_quartile_", 0.75}}};
+
+/// Columns of the number of margins and of their quartiles.
+std::vector<Column> margin_columns();
+
+/// A number as tables write it; empty for an empty field.
+std::optional<double> number(const std::string& field);
+
+/// Index of the column of that name, which there is.
+std::size_t column_index(const std::vector<Column>& columns, const std::string& name);
+
+/// All finished cells ("all"), then those of each value of the axis `grip`.
+std::vector<std::pair<std::string, std::vector<const FinishedCell*>>> cells_by_grip(
+    const ParameterSweep& sweep, const std::vector<FinishedCell>& cells);
 
 /// An experiment whose cell plans with a fixed number of attempts and puts every valid grasp to the
 /// hold test; nothing is filtered by the simulator. A row per cell, and one per grasp in its
