@@ -181,6 +181,10 @@ po::options_description target_options() {
       target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
       "target sets drawn per attempt; the one that suits the fingertips' directions best is "
       "fitted [R]; 1: the paper's random set");
+  add_option(target, "prefer-balanced", "yes|no", defaults.prefer_balanced ? "yes" : "no",
+             "of the sets drawn take first those whose targets balance one another at "
+             "--squeeze-friction, then at --friction, and try all sides until a grasp's squeeze "
+             "balances [R]");
   add_integer(target, "max-seeds", static_cast<std::uint64_t>(targets.max_seeds),
               "seeds tried per target set [R, A20]");
   add_number(target, "clearance-mm", defaults.fitting.clearance * 1000.0,
@@ -241,7 +245,11 @@ po::options_description force_options() {
   const PlannerOptions defaults;
   po::options_description forces = option_group("Forces: epsilon and squeeze [R]");
   add_number(forces, "friction", defaults.friction,
-             "Coulomb's coefficient of epsilon and squeeze; targets and M have --theta-max-deg");
+             "Coulomb's coefficient of epsilon; targets and M have --theta-max-deg");
+  add_number(
+      forces, "squeeze-friction", defaults.squeeze_friction,
+      "Coulomb's coefficient within whose cones the squeeze's forces balance: less than there "
+      "is, which is left for loads");
   add_number(forces, "squeeze-force", defaults.squeeze.normal_sum,
              "sum of the normal forces of all contacts in the squeeze, in newtons");
   add_number(forces, "squeeze-stiffness", defaults.squeeze.stiffness,
@@ -350,6 +358,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
   read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);
   options.friction = flags.number("friction");
+  options.squeeze_friction = flags.number("squeeze-friction");
   options.squeeze.normal_sum = flags.number("squeeze-force");
   options.squeeze.stiffness = flags.number("squeeze-stiffness");
   read_millimeters(flags, "distinct-translation-mm", options.distinct.translation);
@@ -384,6 +393,7 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.missing_contact = flags.choice<grasp::MissingContact>("missing-contact");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
+  options.prefer_balanced = flags.yes_or_no("prefer-balanced");
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
   if (flags.has("max-iterations")) options.max_iterations = flags.integer("max-iterations");

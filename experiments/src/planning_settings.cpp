@@ -256,6 +256,9 @@ std::vector<Setting> target_settings() {
       integer(
           "target-draws", "target sets drawn per attempt",
           [](PlannerOptions & o) -> auto& { return o.target_draws; }),
+      yes_or_no(
+          "prefer-balanced", "sets and sides are looked for whose squeeze balances",
+          [](PlannerOptions & o) -> auto& { return o.prefer_balanced; }),
       integer(
           "max-seeds", "seeds tried per target set",
           [](PlannerOptions & o) -> auto& { return o.targets.max_seeds; })};
@@ -355,7 +358,10 @@ std::vector<Setting> measure_settings() {
           "centroid", "centroid of the contacts' hull",
           [](PlannerOptions & o) -> auto& { return o.quality.centroid; }),
       number(
-          "friction", "1", "Coulomb's mu of epsilon and squeeze",
+          "squeeze-friction", "1", "Coulomb's mu of the squeeze",
+          [](PlannerOptions & o) -> auto& { return o.squeeze_friction; }),
+      number(
+          "friction", "1", "Coulomb's mu of epsilon",
           [](PlannerOptions & o) -> auto& { return o.friction; })};
 }
 

@@ -242,6 +242,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("missing_contact", options.missing_contact);
   at("search", options.search);
   at("target_draws", options.target_draws);
+  at("prefer_balanced", options.prefer_balanced);
   at("max_placements", options.max_placements);
   at("approach_O", options.approach_O);
   at("approach_angle_rad", options.approach_angle);
@@ -264,6 +265,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at.group("squeeze", options.squeeze, squeeze_fields);
   at.group("distinct", options.distinct, distinct_fields);
   at("friction", options.friction);
+  at("squeeze_friction", options.squeeze_friction);
   at.group("quality", options.quality, quality_fields);
 };
 

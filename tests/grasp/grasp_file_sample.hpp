@@ -56,6 +56,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.targets.pool_spacing = 0.01;
   options.targets.palm_reach_tolerance = 0.02;
   options.target_draws = 3;
+  options.prefer_balanced = true;
   options.max_placements = 2;
   options.fitting.give_up_distance = 0.02;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;
@@ -84,6 +85,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.distinct.joints = 0.4;
   options.distinct.slide_scale = 0.2;
   options.friction = 0.7;
+  options.squeeze_friction = 0.3;
   options.quality.regularity = grasp::Regularity::EdgeOnly;
   options.quality.units = grasp::MeasureUnits::Centimeters;
   options.quality.alpha = 0.1;
