@@ -192,6 +192,10 @@ po::options_description target_options() {
   add_choice(target, "guard", defaults.fitting.guard,
              "what a motion must not enter: full voxels [P], or also, near the surface, the true "
              "meshes [R]");
+  add_option(target, "guard-self", "yes|no", defaults.fitting.guard_self ? "yes" : "no",
+             "fingers stop at each other, too, while they close, those without a target swing out "
+             "of the way, and sets for which none cross go first; no: fingers close through each "
+             "other, and refinement parts them or gives up [R]");
   add_option(target, "settle", "yes|no", defaults.fitting.settle ? "yes" : "no",
              "after the clip test, close fingers on until they touch [R]; no: the paper's contact");
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
@@ -238,6 +242,11 @@ po::options_description refinement_options() {
              "of every link from the object and what is around it");
   add_number(refinement, "pre-grasp-retreat-mm", defaults.pre_grasp.largest_retreat * 1000.0,
              "largest one of the palm, against its direction");
+  add_option(
+      refinement, "pre-grasp-open-neutral", "yes|no",
+      defaults.pre_grasp.open_neutral ? "yes" : "no",
+      "where no other way is free, joints that neither open nor close (spread, abduction) go "
+      "along to where the open hand has them");
   return refinement;
 }
 
@@ -357,6 +366,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   options.pre_grasps = flags.yes_or_no("pre-grasps");
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
   read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);
+  options.pre_grasp.open_neutral = flags.yes_or_no("pre-grasp-open-neutral");
   options.friction = flags.number("friction");
   options.squeeze_friction = flags.number("squeeze-friction");
   options.squeeze.normal_sum = flags.number("squeeze-force");
@@ -442,6 +452,7 @@ void read_target_flags(const Flags& flags, PlannerOptions& options) {
   options.targets.ideal_m_bias = flags.number("ideal-m-bias");
   read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
   options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
+  options.fitting.guard_self = flags.yes_or_no("guard-self");
   options.fitting.settle = flags.yes_or_no("settle");
   options.fitting.clearance = flags.number("clearance-mm") / 1000.0;
   if (const auto thickness_mm = flags.optional_number("clip-thickness-mm")) {

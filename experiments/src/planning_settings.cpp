@@ -273,6 +273,9 @@ std::vector<Setting> fitting_settings() {
           "guard", "what a motion must not enter",
           [](PlannerOptions & o) -> auto& { return o.fitting.guard; }),
       yes_or_no(
+          "guard-self", "fingers stop at each other while they close",
+          [](PlannerOptions & o) -> auto& { return o.fitting.guard_self; }),
+      yes_or_no(
           "settle", "fingers close on until they touch",
           [](PlannerOptions & o) -> auto& { return o.fitting.settle; }),
       option("clip-thickness-mm", "mm", "of clip volumes", above_zero(),
@@ -317,6 +320,9 @@ std::vector<Setting> fitting_settings() {
           "pre-grasp-retreat-mm", "mm", "largest retreat of the palm to the pre-grasp",
           [](PlannerOptions & o) -> auto& { return o.pre_grasp.largest_retreat; },
           kMetersPerMillimeter),
+      yes_or_no(
+          "pre-grasp-open-neutral", "spread and abduction may go along to the pre-grasp",
+          [](PlannerOptions & o) -> auto& { return o.pre_grasp.open_neutral; }),
       number(
           "squeeze-force", "N", "sum of the normal forces of the squeeze",
           [](PlannerOptions & o) -> auto& { return o.squeeze.normal_sum; }),

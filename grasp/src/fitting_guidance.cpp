@@ -7,7 +7,9 @@
 
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/grasp/grasp_balance.hpp"
+#include "internal/finger_crossing.hpp"
 #include "internal/guidance_list.hpp"
+#include "internal/target_posture.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -35,9 +37,13 @@ struct Side {
   TargetContacts targets;
   PalmPlacement placement;
   double misfit = 0.0;
+  bool do_fingers_cross = false;  ///< Where that counts: at the start from this side.
 };
 
-bool by_misfit(const Side& a, const Side& b) { return a.misfit < b.misfit; }
+/// What fingers can do about a side, those that need not cross first.
+std::pair<bool, double> misfit_of(const Side& side) { return {side.do_fingers_cross, side.misfit}; }
+
+bool by_misfit(const Side& a, const Side& b) { return misfit_of(a) < misfit_of(b); }
 
 class FittingGuidance : public GraspGuidance {
  public:
@@ -126,8 +132,8 @@ class FittingGuidance : public GraspGuidance {
     std::vector<Side> best;
     TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
     // Sets that balance first where that counts, then those that suit the fingertips.
-    auto best_rank =
-        std::make_pair(std::numeric_limits<int>::max(), std::numeric_limits<double>::infinity());
+    auto best_rank = std::make_pair(std::numeric_limits<int>::max(),
+                                    std::make_pair(true, std::numeric_limits<double>::infinity()));
     int num_judged = 0;
     // Where sets are rare, the seeds of one search are the budget of all draws together.
     const auto may_draw = [&](int draw) {
@@ -145,7 +151,7 @@ class FittingGuidance : public GraspGuidance {
       if (sides.empty()) continue;
       num_judged += static_cast<int>(sides.size());
       if (options.target_draws == 1) return sides;
-      const double misfit = std::min_element(sides.begin(), sides.end(), by_misfit)->misfit;
+      const auto misfit = misfit_of(*std::min_element(sides.begin(), sides.end(), by_misfit));
       const auto rank =
           std::make_pair(options.prefer_balanced ? imbalance(*selection.targets) : 0, misfit);
       if (rank >= best_rank) continue;
@@ -193,10 +199,17 @@ class FittingGuidance : public GraspGuidance {
       Side side{assign_fingers(hand, targets, scene_.parts, placement), placement};
       if (scene_.options.target_draws > 1 || ranked_) {
         side.misfit = reach_misfit(hand, side.targets, placement);
+        side.do_fingers_cross = scene_.options.fitting.guard_self && crosses(side);
       }
       sides.push_back(std::move(side));
     }
     return sides;
+  }
+
+  bool crosses(const Side& side) const {
+    const hands::HandConfiguration goal =
+        posture_for(scene_.hand.model(), side.targets, side.placement).configuration;
+    return do_fingers_cross(scene_.hand, with_fingers_apart(scene_.hand, side.targets, goal));
   }
 
   std::optional<TargetContacts> ranked_targets(std::int64_t number) const {

@@ -162,6 +162,7 @@ constexpr auto fitting_fields = [](auto& at, auto& fitting) {
   at("guard", fitting.guard);
   at("settle", fitting.settle);
   at("settle_tolerance_m", fitting.settle_tolerance);
+  at("guard_self", fitting.guard_self);
   at("give_up_distance_m", fitting.give_up_distance);
 };
 
@@ -199,6 +200,7 @@ constexpr auto pre_grasp_fields = [](auto& at, auto& pre_grasp) {
   at("largest_retreat_m", pre_grasp.largest_retreat);
   at("retreat_step_m", pre_grasp.retreat_step);
   at("opening_steps", pre_grasp.opening_steps);
+  at("open_neutral", pre_grasp.open_neutral);
   at("way_tolerance_m", pre_grasp.way_tolerance);
 };
 

@@ -60,6 +60,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.max_placements = 2;
   options.fitting.give_up_distance = 0.02;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;
+  options.fitting.guard_self = true;
   options.refine = false;
   options.refinement.wanted_gap = 3e-5;
   options.refinement.largest_gap = 3e-4;
@@ -75,6 +76,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.pre_grasp.largest_retreat = 0.2;
   options.pre_grasp.retreat_step = 0.02;
   options.pre_grasp.opening_steps = 11;
+  options.pre_grasp.open_neutral = true;
   options.pre_grasp.way_tolerance = 2e-5;
   options.squeeze.normal_sum = 12.0;
   options.squeeze.stiffness = 4.0;

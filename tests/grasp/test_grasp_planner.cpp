@@ -85,6 +85,24 @@ TEST_CASE("A wanted approach direction is kept", "[grasp][grasp_planner]") {
   }
 }
 
+TEST_CASE("How hard grasps are squeezed, and within which cones, changes their squeezes alone",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
+  PlannerOptions options = collecting(Acceptance::Valid, 1000, 6);
+  PlannerResult firm = Run(mesh, options).plan();
+  options.squeeze_friction = options.friction;
+  options.squeeze.normal_sum /= 2.0;
+  PlannerResult soft = Run(mesh, options).plan();
+  REQUIRE(firm.grasps.size() == soft.grasps.size());
+  REQUIRE_FALSE(firm.grasps.empty());
+  for (std::size_t i = 0; i < firm.grasps.size(); ++i) {
+    CHECK(all_fields(firm.grasps[i]) != all_fields(soft.grasps[i]));
+    firm.grasps[i].squeeze.reset();
+    soft.grasps[i].squeeze.reset();
+    CHECK(all_fields(firm.grasps[i]) == all_fields(soft.grasps[i]));
+  }
+}
+
 TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and lose no grasp by it",
           "[grasp][grasp_planner]") {
   PlannerOptions options = collecting(Acceptance::Valid, 1000, 12);
