@@ -181,6 +181,10 @@ po::options_description target_options() {
       target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
       "target sets drawn per attempt; the one that suits the fingertips' directions best is "
       "fitted [R]; 1: the paper's random set");
+  add_option(target, "prefer-balanced", "yes|no", defaults.prefer_balanced ? "yes" : "no",
+             "of the sets drawn take first those whose targets balance one another at "
+             "--squeeze-friction, then at --friction, and try all sides until a grasp's squeeze "
+             "balances [R]");
   add_integer(target, "max-seeds", static_cast<std::uint64_t>(targets.max_seeds),
               "seeds tried per target set [R, A20]");
   add_number(target, "clearance-mm", defaults.fitting.clearance * 1000.0,
@@ -188,6 +192,10 @@ po::options_description target_options() {
   add_choice(target, "guard", defaults.fitting.guard,
              "what a motion must not enter: full voxels [P], or also, near the surface, the true "
              "meshes [R]");
+  add_option(target, "guard-self", "yes|no", defaults.fitting.guard_self ? "yes" : "no",
+             "fingers stop at each other, too, while they close, those without a target swing out "
+             "of the way, and sets for which none cross go first; no: fingers close through each "
+             "other, and refinement parts them or gives up [R]");
   add_option(target, "settle", "yes|no", defaults.fitting.settle ? "yes" : "no",
              "after the clip test, close fingers on until they touch [R]; no: the paper's contact");
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
@@ -234,6 +242,11 @@ po::options_description refinement_options() {
              "of every link from the object and what is around it");
   add_number(refinement, "pre-grasp-retreat-mm", defaults.pre_grasp.largest_retreat * 1000.0,
              "largest one of the palm, against its direction");
+  add_option(
+      refinement, "pre-grasp-open-neutral", "yes|no",
+      defaults.pre_grasp.open_neutral ? "yes" : "no",
+      "where no other way is free, joints that neither open nor close (spread, abduction) go "
+      "along to where the open hand has them");
   return refinement;
 }
 
@@ -241,7 +254,11 @@ po::options_description force_options() {
   const PlannerOptions defaults;
   po::options_description forces = option_group("Forces: epsilon and squeeze [R]");
   add_number(forces, "friction", defaults.friction,
-             "Coulomb's coefficient of epsilon and squeeze; targets and M have --theta-max-deg");
+             "Coulomb's coefficient of epsilon; targets and M have --theta-max-deg");
+  add_number(
+      forces, "squeeze-friction", defaults.squeeze_friction,
+      "Coulomb's coefficient within whose cones the squeeze's forces balance: less than there "
+      "is, which is left for loads");
   add_number(forces, "squeeze-force", defaults.squeeze.normal_sum,
              "sum of the normal forces of all contacts in the squeeze, in newtons");
   add_number(forces, "squeeze-stiffness", defaults.squeeze.stiffness,
@@ -349,7 +366,9 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   options.pre_grasps = flags.yes_or_no("pre-grasps");
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
   read_millimeters(flags, "pre-grasp-retreat-mm", options.pre_grasp.largest_retreat);
+  options.pre_grasp.open_neutral = flags.yes_or_no("pre-grasp-open-neutral");
   options.friction = flags.number("friction");
+  options.squeeze_friction = flags.number("squeeze-friction");
   options.squeeze.normal_sum = flags.number("squeeze-force");
   options.squeeze.stiffness = flags.number("squeeze-stiffness");
   read_millimeters(flags, "distinct-translation-mm", options.distinct.translation);
@@ -384,6 +403,7 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.missing_contact = flags.choice<grasp::MissingContact>("missing-contact");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
+  options.prefer_balanced = flags.yes_or_no("prefer-balanced");
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
   if (flags.has("max-iterations")) options.max_iterations = flags.integer("max-iterations");
@@ -432,6 +452,7 @@ void read_target_flags(const Flags& flags, PlannerOptions& options) {
   options.targets.ideal_m_bias = flags.number("ideal-m-bias");
   read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
   options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
+  options.fitting.guard_self = flags.yes_or_no("guard-self");
   options.fitting.settle = flags.yes_or_no("settle");
   options.fitting.clearance = flags.number("clearance-mm") / 1000.0;
   if (const auto thickness_mm = flags.optional_number("clip-thickness-mm")) {

@@ -256,6 +256,9 @@ std::vector<Setting> target_settings() {
       integer(
           "target-draws", "target sets drawn per attempt",
           [](PlannerOptions & o) -> auto& { return o.target_draws; }),
+      yes_or_no(
+          "prefer-balanced", "sets and sides are looked for whose squeeze balances",
+          [](PlannerOptions & o) -> auto& { return o.prefer_balanced; }),
       integer(
           "max-seeds", "seeds tried per target set",
           [](PlannerOptions & o) -> auto& { return o.targets.max_seeds; })};
@@ -269,6 +272,9 @@ std::vector<Setting> fitting_settings() {
       choice<grasp::PenetrationGuard>(
           "guard", "what a motion must not enter",
           [](PlannerOptions & o) -> auto& { return o.fitting.guard; }),
+      yes_or_no(
+          "guard-self", "fingers stop at each other while they close",
+          [](PlannerOptions & o) -> auto& { return o.fitting.guard_self; }),
       yes_or_no(
           "settle", "fingers close on until they touch",
           [](PlannerOptions & o) -> auto& { return o.fitting.settle; }),
@@ -314,6 +320,9 @@ std::vector<Setting> fitting_settings() {
           "pre-grasp-retreat-mm", "mm", "largest retreat of the palm to the pre-grasp",
           [](PlannerOptions & o) -> auto& { return o.pre_grasp.largest_retreat; },
           kMetersPerMillimeter),
+      yes_or_no(
+          "pre-grasp-open-neutral", "spread and abduction may go along to the pre-grasp",
+          [](PlannerOptions & o) -> auto& { return o.pre_grasp.open_neutral; }),
       number(
           "squeeze-force", "N", "sum of the normal forces of the squeeze",
           [](PlannerOptions & o) -> auto& { return o.squeeze.normal_sum; }),
@@ -355,7 +364,10 @@ std::vector<Setting> measure_settings() {
           "centroid", "centroid of the contacts' hull",
           [](PlannerOptions & o) -> auto& { return o.quality.centroid; }),
       number(
-          "friction", "1", "Coulomb's mu of epsilon and squeeze",
+          "squeeze-friction", "1", "Coulomb's mu of the squeeze",
+          [](PlannerOptions & o) -> auto& { return o.squeeze_friction; }),
+      number(
+          "friction", "1", "Coulomb's mu of epsilon",
           [](PlannerOptions & o) -> auto& { return o.friction; })};
 }
 

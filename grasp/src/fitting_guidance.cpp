@@ -5,7 +5,11 @@
 #include <mutex>
 #include <utility>
 
+#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/grasp/grasp_balance.hpp"
+#include "internal/finger_crossing.hpp"
 #include "internal/guidance_list.hpp"
+#include "internal/target_posture.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -33,14 +37,21 @@ struct Side {
   TargetContacts targets;
   PalmPlacement placement;
   double misfit = 0.0;
+  bool do_fingers_cross = false;  ///< Where that counts: at the start from this side.
 };
 
-bool by_misfit(const Side& a, const Side& b) { return a.misfit < b.misfit; }
+/// What fingers can do about a side, those that need not cross first.
+std::pair<bool, double> misfit_of(const Side& side) { return {side.do_fingers_cross, side.misfit}; }
+
+bool by_misfit(const Side& a, const Side& b) { return misfit_of(a) < misfit_of(b); }
 
 class FittingGuidance : public GraspGuidance {
  public:
   explicit FittingGuidance(const GuidanceScene& scene)
-      : scene_(scene), distances_(part_distances(scene.hand.model())) {
+      : scene_(scene),
+        torque_scale_(
+            geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)),
+        distances_(part_distances(scene.hand.model())) {
     if (scene.options.targets.search == TargetSearch::Ranked) {
       ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
     } else {
@@ -120,7 +131,9 @@ class FittingGuidance : public GraspGuidance {
         geometry::Random::stream(options.seed, static_cast<std::uint64_t>(number));
     std::vector<Side> best;
     TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
-    double best_misfit = std::numeric_limits<double>::infinity();
+    // Sets that balance first where that counts, then those that suit the fingertips.
+    auto best_rank = std::make_pair(std::numeric_limits<int>::max(),
+                                    std::make_pair(true, std::numeric_limits<double>::infinity()));
     int num_judged = 0;
     // Where sets are rare, the seeds of one search are the budget of all draws together.
     const auto may_draw = [&](int draw) {
@@ -138,14 +151,37 @@ class FittingGuidance : public GraspGuidance {
       if (sides.empty()) continue;
       num_judged += static_cast<int>(sides.size());
       if (options.target_draws == 1) return sides;
-      const double misfit = std::min_element(sides.begin(), sides.end(), by_misfit)->misfit;
-      if (misfit >= best_misfit) continue;
-      best_misfit = misfit;
+      const auto misfit = misfit_of(*std::min_element(sides.begin(), sides.end(), by_misfit));
+      const auto rank =
+          std::make_pair(options.prefer_balanced ? imbalance(*selection.targets) : 0, misfit);
+      if (rank >= best_rank) continue;
+      best_rank = rank;
       std::stable_sort(sides.begin(), sides.end(), by_misfit);
       best = std::move(sides);
     }
     if (best.empty()) result.failure = failure_name(failure);
     return best;
+  }
+
+  /// 0: forces at the targets balance one another as a squeeze must, within its cones; 1: within
+  /// those of `friction` only; 2: within neither.
+  int imbalance(const TargetContacts& targets) const {
+    std::vector<Contact> contacts;
+    for (const TargetContact& target : targets.contacts) {
+      Contact contact;
+      contact.point_O = target.point_O;
+      contact.inward_normal_O = -target.outward_normal_O;
+      contacts.push_back(contact);
+    }
+    const PlannerOptions& options = scene_.options;
+    const auto do_balance = [&](double friction) {
+      const BalanceForces forces = balance_forces(
+          contacts, scene_.object.mass.center_of_mass, Wrench::Zero(),
+          {.friction = friction, .least_normal_sum = 1.0, .torque_scale = torque_scale_});
+      return forces.residual_norm <= options.squeeze.largest_residual;
+    };
+    if (do_balance(options.squeeze_friction)) return 0;
+    return do_balance(options.friction) ? 1 : 2;
   }
 
   /// Sets with a target for the palm are chosen by the fingers' reach already.
@@ -163,10 +199,17 @@ class FittingGuidance : public GraspGuidance {
       Side side{assign_fingers(hand, targets, scene_.parts, placement), placement};
       if (scene_.options.target_draws > 1 || ranked_) {
         side.misfit = reach_misfit(hand, side.targets, placement);
+        side.do_fingers_cross = scene_.options.fitting.guard_self && crosses(side);
       }
       sides.push_back(std::move(side));
     }
     return sides;
+  }
+
+  bool crosses(const Side& side) const {
+    const hands::HandConfiguration goal =
+        posture_for(scene_.hand.model(), side.targets, side.placement).configuration;
+    return do_fingers_cross(scene_.hand, with_fingers_apart(scene_.hand, side.targets, goal));
   }
 
   std::optional<TargetContacts> ranked_targets(std::int64_t number) const {
@@ -180,6 +223,7 @@ class FittingGuidance : public GraspGuidance {
   }
 
   const GuidanceScene scene_;
+  const double torque_scale_;               ///< As of squeezes [m].
   const PartDistances distances_;           ///< Outlives the searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
   mutable std::mutex ranked_lock_;

@@ -7,6 +7,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/contact_test.hpp"
 #include "internal/finger_alignment.hpp"
+#include "internal/finger_crossing.hpp"
 #include "internal/stopwatch.hpp"
 #include "internal/target_marks.hpp"
 
@@ -53,6 +54,7 @@ FittingLoop::FittingLoop(const FittingHand& hand, const ObjectModel& object,
 
 FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacement& placement) {
   goal_ = posture_for(model_, targets, placement).configuration;
+  if (options_.guard_self) goal_ = with_fingers_apart(hand_, targets, goal_);
   for (Part& part : parts_) {
     part.is_toward_goal =
         style_ == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
@@ -153,14 +155,7 @@ bool FittingLoop::place() {
   for (const geometry::SurfacePatch& patch : object_.patches) {
     extent = std::max(extent, (palm - patch.centroid).dot(direction));
   }
-  hands::HandConfiguration start = goal_;
-  const hands::HandConfiguration open = hands::open_configuration(model_);
-  for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
-    if (model_.joints[joint].closing_sign != 0) {
-      start.q[static_cast<Eigen::Index>(joint)] = open.q[static_cast<Eigen::Index>(joint)];
-    }
-  }
-  hands::apply_couplings(model_, start.q);
+  hands::HandConfiguration start = opened_from(model_, goal_);
   start.X_OH.pretranslate(Vector3d(-(extent + options_.clearance) * direction));
   return retreat(start, voxel_size_,
                  static_cast<int>(2.0 * hands::largest_reach(model_) / voxel_size_));

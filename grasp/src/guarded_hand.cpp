@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/finger_crossing.hpp"
 #include "internal/target_posture.hpp"
 
 namespace graspfit::grasp {
@@ -40,6 +41,15 @@ GuardedHand::GuardedHand(const FittingHand& hand, const ObjectModel& object,
       distance_(model_.links.size()),
       room_(model_.links.size(), kInfinity) {
   std::iota(all_links_.begin(), all_links_.end(), 0);
+  if (!options.guard_self) return;
+  const auto has_solid = [&](int link) { return hand.collision().link_solid(link).has_value(); };
+  for (const int a : all_links_) {
+    for (const int b : all_links_) {
+      if (a < b && has_solid(a) && has_solid(b) && !model_.is_excluded(a, b)) {
+        pairs_.emplace_back(a, b);
+      }
+    }
+  }
 }
 
 float GuardedHand::measured(int link, const RigidTransform& X_OL) {
@@ -121,7 +131,25 @@ bool GuardedHand::passes_exact(const std::vector<int>& moved) {
       return false;
     }
   }
-  return true;
+  return !meets_itself(moved);
+}
+
+bool GuardedHand::meets_itself(const std::vector<int>& moved) {
+  constexpr double kRounding = 1e-12;  // of poses that a rigid motion has composed anew
+  const auto is_moved = [&](int link) {
+    return std::find(moved.begin(), moved.end(), link) != moved.end();
+  };
+  for (const auto& [a, b] : pairs_) {
+    const bool is_b_moved = is_moved(b);
+    if (!is_b_moved && !is_moved(a)) continue;
+    const RigidTransform X_AB = trial_X_OL_[a].inverse() * trial_X_OL_[b];
+    const RigidTransform before = X_OL_[a].inverse() * X_OL_[b];
+    if ((X_AB.matrix() - before.matrix()).cwiseAbs().maxCoeff() < kRounding) continue;
+    if (!do_links_meet(hand_, a, b, X_AB) || do_links_meet(hand_, a, b, before)) continue;
+    blocking_link_ = is_b_moved ? b : a;
+    return true;
+  }
+  return false;
 }
 
 void GuardedHand::accept() {

@@ -66,10 +66,24 @@ AttemptOutcome unusable_outcome(const Grasp& grasp) {
   return grasp.quality.stable_pairs.empty() ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape;
 }
 
-/// An accepted grasp before any other, then the later stage.
-bool is_better(const AttemptResult& a, const AttemptResult& b) {
-  return std::make_tuple(a.is_accepted, stage_of(a.outcome)) >
-         std::make_tuple(b.is_accepted, stage_of(b.outcome));
+/// Of the squeeze; infinite without one.
+double squeeze_residual(const AttemptResult& result) {
+  return result.grasp && result.grasp->squeeze ? result.grasp->squeeze->residual
+                                               : std::numeric_limits<double>::infinity();
+}
+
+bool is_balanced(const AttemptResult& result) {
+  return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
+}
+
+/// An accepted grasp before any other, then the later stage, then, if that counts, the squeeze that
+/// leaves less over.
+bool is_better(const AttemptResult& a, const AttemptResult& b, bool prefer_balanced) {
+  const auto rank = [&](const AttemptResult& result) {
+    return std::make_tuple(result.is_accepted, stage_of(result.outcome),
+                           prefer_balanced ? -squeeze_residual(result) : 0.0);
+  };
+  return rank(a) > rank(b);
 }
 
 }  // namespace
@@ -141,8 +155,8 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
     work.fitting_iterations += tried.fitting_iterations;
     work.refinement_iterations += tried.refinement_iterations;
     work.timings += tried.timings;
-    if (!best || is_better(tried, *best)) best = std::move(tried);
-    if (best->is_accepted) break;
+    if (!best || is_better(tried, *best, options_.prefer_balanced)) best = std::move(tried);
+    if (best->is_accepted && (!options_.prefer_balanced || is_balanced(*best))) break;
   }
   if (best) {
     work.outcome = best->outcome;
@@ -267,7 +281,7 @@ void PlannerAttempts::complete(Grasp& grasp, AttemptResult& result) const {
   }
   grasp.squeeze = squeeze_configuration(
       hand_, grasp.configuration, grasp.contacts, object_.mass.center_of_mass,
-      scene_.wrench_object.largest_radius, options_.friction, options_.squeeze);
+      scene_.wrench_object.largest_radius, options_.squeeze_friction, options_.squeeze);
 }
 
 double PlannerAttempts::ideal_m(const TargetContacts& targets) const {

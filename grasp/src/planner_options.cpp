@@ -54,6 +54,8 @@ void PlannerOptions::validate() const {
             "contact_score_threshold", *contact_score_threshold, "in [0, 1)");
   }
   require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
+  require(squeeze_friction >= 0.0 && std::isfinite(squeeze_friction), "squeeze_friction",
+          squeeze_friction, "finite and >= 0");
   score.validate();
   if (weak) weak->validate();
   targets.validate();

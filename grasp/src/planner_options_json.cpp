@@ -162,6 +162,7 @@ constexpr auto fitting_fields = [](auto& at, auto& fitting) {
   at("guard", fitting.guard);
   at("settle", fitting.settle);
   at("settle_tolerance_m", fitting.settle_tolerance);
+  at("guard_self", fitting.guard_self);
   at("give_up_distance_m", fitting.give_up_distance);
 };
 
@@ -199,6 +200,7 @@ constexpr auto pre_grasp_fields = [](auto& at, auto& pre_grasp) {
   at("largest_retreat_m", pre_grasp.largest_retreat);
   at("retreat_step_m", pre_grasp.retreat_step);
   at("opening_steps", pre_grasp.opening_steps);
+  at("open_neutral", pre_grasp.open_neutral);
   at("way_tolerance_m", pre_grasp.way_tolerance);
 };
 
@@ -242,6 +244,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("missing_contact", options.missing_contact);
   at("search", options.search);
   at("target_draws", options.target_draws);
+  at("prefer_balanced", options.prefer_balanced);
   at("max_placements", options.max_placements);
   at("approach_O", options.approach_O);
   at("approach_angle_rad", options.approach_angle);
@@ -264,6 +267,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at.group("squeeze", options.squeeze, squeeze_fields);
   at.group("distinct", options.distinct, distinct_fields);
   at("friction", options.friction);
+  at("squeeze_friction", options.squeeze_friction);
   at.group("quality", options.quality, quality_fields);
 };
 

@@ -60,7 +60,8 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
                   " seeds per set; the second of three or more from all; fitted: the flattest for "
                   "the fingertip pads of " +
-                  std::to_string(options.target_draws) + " sets"},
+                  std::to_string(options.target_draws) + " sets" +
+                  (options.prefer_balanced ? ", those that balance first" : "")},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23",

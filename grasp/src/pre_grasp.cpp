@@ -76,12 +76,30 @@ class PreGraspSearch {
   }
 
   std::optional<PreGrasp> operator()() {
+    std::optional<PreGrasp> found = least_opening(Joints::Closing);
+    if (!found && options_.open_neutral) found = least_opening(Joints::All);
+    return found;
+  }
+
+  std::optional<PreGrasp> checked(const HandConfiguration& start) {
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
+    if (!is_clear(X_OL) || !is_free(start, X_OL)) return std::nullopt;
+    const Eigen::Vector3d moved = grasp_.X_OH.translation() - start.X_OH.translation();
+    return PreGrasp{start, nearest_distance(X_OL), opening_of(start.q),
+                    std::max(0.0, moved.dot(grasp_.X_OH.linear() * hand_.palm.direction_H))};
+  }
+
+ private:
+  enum class Joints { Closing, All };
+
+  /// The first of all openings of these joints and retreats, in their order.
+  std::optional<PreGrasp> least_opening(Joints joints) {
     const int num_retreats = static_cast<int>(options_.largest_retreat / options_.retreat_step *
                                               (1.0 + 1e-12));  // 0.1 / 0.01 is 10, not 9.99…
     Eigen::VectorXd tried_q;
     for (int step = 1; step <= options_.opening_steps; ++step) {
       const double opening = static_cast<double>(step) / options_.opening_steps;
-      const Eigen::VectorXd q = opened(opening);
+      const Eigen::VectorXd q = opened(opening, joints);
       if (tried_q.size() == q.size() && tried_q == q) continue;  // joints that cannot open further
       tried_q = q;
       for (int i = 0; i <= num_retreats; ++i) {
@@ -95,25 +113,16 @@ class PreGraspSearch {
     return std::nullopt;
   }
 
-  std::optional<PreGrasp> checked(const HandConfiguration& start) {
-    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
-    if (!is_clear(X_OL) || !is_free(start, X_OL)) return std::nullopt;
-    const Eigen::Vector3d moved = grasp_.X_OH.translation() - start.X_OH.translation();
-    return PreGrasp{start, nearest_distance(X_OL), opening_of(start.q),
-                    std::max(0.0, moved.dot(grasp_.X_OH.linear() * hand_.palm.direction_H))};
-  }
-
- private:
   const geometry::MeshQuery& solid(int link) const { return *collision_.link_solid(link); }
 
   static RigidTransform between(const std::vector<RigidTransform>& X_OL, int a, int b) {
     return X_OL[static_cast<std::size_t>(a)].inverse() * X_OL[static_cast<std::size_t>(b)];
   }
 
-  Eigen::VectorXd opened(double opening) const {
+  Eigen::VectorXd opened(double opening, Joints joints) const {
     Eigen::VectorXd q = grasp_.q;
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
-      if (hand_.joints[j].closing_sign == 0) continue;
+      if (hand_.joints[j].closing_sign == 0 && joints == Joints::Closing) continue;
       double& position = q[static_cast<Eigen::Index>(j)];
       position = (1.0 - opening) * position + opening * open_q_[static_cast<Eigen::Index>(j)];
     }

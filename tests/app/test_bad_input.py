@@ -159,6 +159,7 @@ class BadFlags(program.ProgramTest):
                 ("edge-tolerance", "-1"), ("pool-fraction", "0", "1.1"), ("max-seeds", "0"),
                 ("clearance-mm", "-1"), ("mean-filter-radius", "-1"),
                 ("score-length-voxels", "0"), ("threads", "-1"), ("friction", "-0.1"),
+                ("squeeze-friction", "-0.1"),
                 ("squeeze-force", "0"), ("squeeze-stiffness", "0"), ("ideal-m-bias", "-1"),
                 ("ideal-m-draws", "0"), ("angle-weight", "-1"), ("palm-reach-tolerance-mm", "-1"),
                 ("weak-thickness-mm", "0"), ("largest-gap-mm", "0"), ("wanted-gap-mm", "0", "0.2"),
@@ -197,7 +198,7 @@ class BadFlags(program.ProgramTest):
         for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
-                     "settle"):
+                     "settle", "guard-self", "pre-grasp-open-neutral", "prefer-balanced"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

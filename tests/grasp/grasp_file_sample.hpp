@@ -56,9 +56,11 @@ inline grasp::PlannerOptions unusual_options() {
   options.targets.pool_spacing = 0.01;
   options.targets.palm_reach_tolerance = 0.02;
   options.target_draws = 3;
+  options.prefer_balanced = true;
   options.max_placements = 2;
   options.fitting.give_up_distance = 0.02;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;
+  options.fitting.guard_self = true;
   options.refine = false;
   options.refinement.wanted_gap = 3e-5;
   options.refinement.largest_gap = 3e-4;
@@ -74,6 +76,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.pre_grasp.largest_retreat = 0.2;
   options.pre_grasp.retreat_step = 0.02;
   options.pre_grasp.opening_steps = 11;
+  options.pre_grasp.open_neutral = true;
   options.pre_grasp.way_tolerance = 2e-5;
   options.squeeze.normal_sum = 12.0;
   options.squeeze.stiffness = 4.0;
@@ -84,6 +87,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.distinct.joints = 0.4;
   options.distinct.slide_scale = 0.2;
   options.friction = 0.7;
+  options.squeeze_friction = 0.3;
   options.quality.regularity = grasp::Regularity::EdgeOnly;
   options.quality.units = grasp::MeasureUnits::Centimeters;
   options.quality.alpha = 0.1;

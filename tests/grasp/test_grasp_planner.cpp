@@ -85,6 +85,41 @@ TEST_CASE("A wanted approach direction is kept", "[grasp][grasp_planner]") {
   }
 }
 
+TEST_CASE("How hard grasps are squeezed, and within which cones, changes their squeezes alone",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
+  PlannerOptions options = collecting(Acceptance::Valid, 1000, 6);
+  PlannerResult firm = Run(mesh, options).plan();
+  options.squeeze_friction = options.friction;
+  options.squeeze.normal_sum /= 2.0;
+  PlannerResult soft = Run(mesh, options).plan();
+  REQUIRE(firm.grasps.size() == soft.grasps.size());
+  REQUIRE_FALSE(firm.grasps.empty());
+  for (std::size_t i = 0; i < firm.grasps.size(); ++i) {
+    CHECK(all_fields(firm.grasps[i]) != all_fields(soft.grasps[i]));
+    firm.grasps[i].squeeze.reset();
+    soft.grasps[i].squeeze.reset();
+    CHECK(all_fields(firm.grasps[i]) == all_fields(soft.grasps[i]));
+  }
+}
+
+TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and lose no grasp by it",
+          "[grasp][grasp_planner]") {
+  PlannerOptions options = collecting(Acceptance::Valid, 1000, 12);
+  const auto num_balanced = [](const PlannerResult& result) {
+    return std::count_if(result.grasps.begin(), result.grasps.end(),
+                         [](const Grasp& grasp) { return grasp.squeeze->is_balanced; });
+  };
+  const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
+  const PlannerResult any = Run(mesh, options).plan();
+  options.prefer_balanced = true;
+  const Run run(mesh, options);
+  const PlannerResult balanced = run.plan();
+  CHECK(broken_promises(run, balanced) == kNothing);
+  CHECK(num_balanced(balanced) > num_balanced(any));
+  CHECK(balanced.grasps.size() + 2 >= any.grasps.size());
+}
+
 TEST_CASE("Progress is told after every attempt", "[grasp][grasp_planner]") {
   const Run run(geometry::ball(0.05), collecting(Acceptance::Usable, 2, 30));
   std::vector<std::pair<std::int64_t, std::int64_t>> calls;

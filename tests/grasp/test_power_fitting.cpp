@@ -116,6 +116,31 @@ TEST_CASE("Fingers of a power grasp close whether or not they have targets",
   }
 }
 
+TEST_CASE("Fingers that are kept from each other end apart, others have closed through each other",
+          "[grasp][power_fitting]") {
+  int num_crossed = 0;
+  for (const double radius : {0.015, 0.02, 0.03}) {
+    const Scene scene(geometry::capsule(radius, 0.06), "human_hand", power_options());
+    const TargetContacts open_targets = power_targets(radius, radius + 0.03);
+    const PalmPlacement placement{Vector3d(0, 0, -1)};
+    const TargetContacts targets = scene.assigned(open_targets, placement);
+    const auto meets_itself = [&](const hands::HandConfiguration& configuration) {
+      return scene.collision.against_self(hands::forward_kinematics(scene.hand, configuration))
+          .intersects;
+    };
+    FittingOptions options;
+    options.give_up_distance = 1.0;  // all fingers close as far as they can
+    const FittingResult through = scene.fit(targets, placement, options, GraspStyle::Power);
+    options.guard_self = true;
+    const FittingResult guarded = scene.fit(targets, placement, options, GraspStyle::Power);
+    INFO("radius " << radius);
+    REQUIRE_FALSE(meets_itself(guarded.initial));
+    CHECK_FALSE(meets_itself(guarded.configuration));
+    num_crossed += meets_itself(through.configuration) ? 1 : 0;
+  }
+  CHECK(num_crossed > 0);
+}
+
 TEST_CASE("No configuration of a fit touches the table", "[grasp][power_fitting]") {
   const Scene scene(geometry::ball(0.05));
   const TargetContacts open_targets = testing::equilateral_targets(0.05, 0.2);

@@ -361,6 +361,55 @@ TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]
   CHECK(find(at_once));
 }
 
+TEST_CASE("Neutral joints open along where that is allowed and nothing else is free",
+          "[grasp][pre_grasp]") {
+  // Two blocks on slides along x that change places as they open; one of them stands on a slide
+  // along y that neither opens nor closes, 30 mm aside when it is at rest.
+  HandModel hand;
+  hand.name = "passing";
+  hand.links.resize(4);
+  hand.palm.link = 0;
+  const auto slide = [&](const char* name, int parent, int child, const Vector3d& axis, int sign) {
+    hands::Joint joint;
+    joint.name = name;
+    joint.type = hands::JointType::Prismatic;
+    joint.parent_link = parent;
+    joint.child_link = child;
+    joint.axis_J = axis;
+    joint.lower = -0.05;
+    joint.upper = 0.05;
+    joint.closing_sign = sign;
+    hands::Link& link = hand.links[static_cast<std::size_t>(child)];
+    link.parent_link = parent;
+    link.parent_joint = static_cast<int>(hand.joints.size());
+    hand.joints.push_back(joint);
+  };
+  slide("to_right", 0, 1, Vector3d::UnitX(), 1);
+  slide("aside", 0, 2, Vector3d::UnitY(), 0);
+  slide("to_left", 2, 3, -Vector3d::UnitX(), 1);
+  hand.joints[1].X_PJ.translation().y() = 0.03;
+  for (const std::size_t link : {1, 3}) hand.links[link].mesh_L = geometry::box({0.01, 0.01, 0.01});
+  const HandConfiguration grasp{RigidTransform::Identity(), Vector3d(0.05, -0.03, 0.05)};
+  const MeshQuery object(box_at({0.01, 0.01, 0.01}, {0.0, 0.0, 0.02}));
+  const auto find = [&](const HandConfiguration& at, const PreGraspOptions& options) {
+    return find_pre_grasp(hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}),
+                          at, options);
+  };
+  CHECK_FALSE(find(grasp, {.largest_retreat = 0.0, .opening_steps = 1}));
+  const PreGraspOptions with_neutral{
+      .largest_retreat = 0.0, .opening_steps = 1, .open_neutral = true};
+  const auto passing = find(grasp, with_neutral);
+  REQUIRE(passing);
+  CHECK((passing->configuration.q - Vector3d(-0.05, 0.0, -0.05)).norm() < 1e-15);
+  CHECK(passing->opening == 1.0);
+  // Where closing joints do alone, the neutral one stays.
+  HandConfiguration apart = grasp;
+  apart.q[1] = -0.01;
+  const auto found = find(apart, with_neutral);
+  REQUIRE(found);
+  CHECK(found->configuration.q[1] == -0.01);
+}
+
 TEST_CASE(
     "Ways of the Barrett and the human hand are clear wherever they are looked at, and no "
     "option before them is",

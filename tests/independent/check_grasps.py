@@ -229,7 +229,7 @@ def check_squeeze(scene, grasp, contacts, found):
     stored = grasp["squeeze"]
     if stored is None:
         return
-    options, friction = scene.options["squeeze"], scene.options["friction"]
+    options, friction = scene.options["squeeze"], scene.options["squeeze_friction"]
     X_OL = check_configuration(scene, stored, found, "squeeze ")
     check_poses(X_OL, stored, found, "squeeze ")
     found.equal("pose", "squeeze X_OH", hand_files.pose_of_json(stored["X_OH"]),

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "graspfit/grasp/hand_fitting.hpp"
@@ -25,8 +26,9 @@ class GuardedHand {
   /// A motion under test.
   bool passes_map(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
                   double length);  ///< Poses the moved links; `length`: of the fastest point [m].
-  bool passes_exact(const std::vector<int>& moved);  ///< Meshes and surroundings, after the map.
-  void accept();                                     ///< The motion under test.
+  bool passes_exact(const std::vector<int>& moved);  ///< Meshes, surroundings and, where they
+                                                     ///< count, other links, after the map.
+  void accept();  ///< The motion under test.
 
   /// Motion of the fastest point of `links` allowed now [m] (section 9, A30).
   double allowed_motion(const std::vector<int>& links) const;
@@ -53,6 +55,9 @@ class GuardedHand {
   double measured_room(int link, double enough) const;
   bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL) const;
 
+  /// Whether the motion brings links into each other that were apart; then the moved one blocks.
+  bool meets_itself(const std::vector<int>& moved);
+
   const FittingHand& hand_;
   const hands::HandModel& model_;
   const ObjectModel& object_;
@@ -60,6 +65,7 @@ class GuardedHand {
   const FittingOptions& options_;
   const double voxel_size_;
   std::vector<int> all_links_;
+  std::vector<std::pair<int, int>> pairs_;  ///< Links that must not meet; empty: not guarded.
   hands::HandConfiguration configuration_, trial_;
   std::vector<geometry::RigidTransform> X_OL_, trial_X_OL_;
   std::vector<float> distance_, trial_distance_;

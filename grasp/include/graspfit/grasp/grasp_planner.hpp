@@ -86,6 +86,11 @@ struct PlannerOptions {
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, the side with more room first.
   int target_draws = 32;
+  /// Whether attempts look for grasps whose squeeze balances [R]: of the sets drawn, those whose
+  /// targets balance one another (within the squeeze's largest residual) at `squeeze_friction` go
+  /// first, then those that do at `friction`; and sides are tried until a grasp is accepted and its
+  /// squeeze balances, else the one of least residual is kept. Without: until one is accepted.
+  bool prefer_balanced = false;
   int max_placements = 4;  ///< Sides of one target set that are fitted, the flattest first, ≥ 1
                            ///< (A23) [R]. Three and more targets have two, two have sixteen.
   FittingOptions fitting;
@@ -105,9 +110,11 @@ struct PlannerOptions {
   PreGraspOptions pre_grasp;
   SqueezeOptions squeeze;
   DistinctOptions distinct;
-  double friction = 0.4;   ///< Coulomb's μ of ε and of the squeeze, ≥ 0 [R]; GraspIt!'s usual.
-  QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
-  void validate() const;   ///< Throws InvalidInput naming the field and its value.
+  double friction = 0.4;          ///< Coulomb's μ of ε, ≥ 0 [R]; GraspIt!'s usual.
+  double squeeze_friction = 0.2;  ///< Of the squeeze: within so narrow cones its forces are sought,
+                                  ///< ≥ 0 [R]. What friction there is beyond carries loads.
+  QualityOptions quality;         ///< merge_distance 0: a tenth of a voxel is set by the planner.
+  void validate() const;          ///< Throws InvalidInput naming the field and its value.
 };
 
 /// How the planner's work ended.

@@ -50,6 +50,10 @@ struct FittingOptions {
   /// paper's contact.
   bool settle = true;
   double settle_tolerance = 1e-5;  ///< Motion at which settling ends [m], > 0.
+  /// Whether links must not run into each other either, exclusions of the model left out [R].
+  /// Without: fingers close through each other, and refinement has to part them. Links that meet
+  /// where the loop starts are let go on.
+  bool guard_self = false;
   double give_up_distance = 0.03;  ///< A part that has stopped farther than this from the object
                                    ///< ends the attempt [m], ≥ 0: refinement reaches as far [R].
   void validate() const;           ///< Throws InvalidInput naming the field and its value.

@@ -15,10 +15,13 @@ struct PreGraspOptions {
   double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], ≥ 0.
   double retreat_step = 0.01;    ///< [m], > 0; at most 1000 of them up to `largest_retreat`.
   int opening_steps = 10;        ///< From the grasp's joints to open ones, in [1, 1000].
-  double way_tolerance = 1e-5;   ///< Over so much of the end of the way, bodies that touch in the
-                                 ///< grasp, or nearly, may already do so [m], > 0: half of the gap
-                                 ///< that refinement leaves.
-  void validate() const;         ///< Throws InvalidInput naming the field and its value.
+  /// Whether neutral joints (spread, abduction) may go with the closing ones where nothing else is
+  /// free: fingers drawn together around an object cross each other when they straighten.
+  bool open_neutral = false;
+  double way_tolerance = 1e-5;  ///< Over so much of the end of the way, bodies that touch in the
+                                ///< grasp, or nearly, may already do so [m], > 0: half of the gap
+                                ///< that refinement leaves.
+  void validate() const;        ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Where to start from (evaluation of grasps in the field: pre-grasp, grasp, squeeze).
@@ -43,7 +46,8 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// Openings are 1/n, 2/n, …, 1 (n = `opening_steps`) of the way of every closing joint to where
 /// `open_configuration` has it, followers by their couplings; neutral joints (spread, abduction)
 /// stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`. Every
-/// combination is tried in that order, so that empty means: none of them.
+/// combination is tried in that order, then, with `open_neutral`, every one again with neutral
+/// joints going the same share of their way, so that empty means: none of them.
 ///
 /// That the way is free is proven, not sampled (conservative advancement): two bodies that are a
 /// distance apart cannot meet before the fastest points of both have gone as far together. Each

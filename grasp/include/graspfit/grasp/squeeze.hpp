@@ -10,11 +10,11 @@ namespace graspfit::grasp {
 
 /// How hard a hand is commanded to press.
 struct SqueezeOptions {
-  double normal_sum = 10.0;         ///< Sum of the normal forces of all contacts [N], > 0.
+  double normal_sum = 20.0;         ///< Sum of the normal forces of all contacts [N], > 0.
   double stiffness = 5.0;           ///< kp of position-controlled revolute joints [N m/rad], > 0;
                                     ///< DexGraspBench's.
-  double slide_stiffness = 2000.0;  ///< kp of slides [N/m], > 0; ours: 10 N press 5 mm deep, which
-                                    ///< jaws closed on anything thicker have left.
+  double slide_stiffness = 2000.0;  ///< kp of slides [N/m], > 0; ours: 10 N of a jaw press 5 mm
+                                    ///< deep, which jaws closed on anything thicker have left.
   double largest_residual = 0.05;   ///< Wrench that may stay unbalanced over normal_sum, ≥ 0.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
