@@ -18,7 +18,7 @@ def draw(source):
     per_grasp = timing.loc[cells, "cpu_s"] / table.loc[cells, "valid"]
     figure, axes = panels(
         "Fifteen objects: mesh, time per valid grasp, contacts and quality of the best grasp", 1, 4, 10.0, 4.0,
-        note_for(names, "Time: processor time of the cell, one thread, failures and the object's model included, over its valid grasps;\nweak features, found once per object and kept, apart;"
+        note_for(names, "Time: processor time of the cell, one thread, failures included, over its valid grasps;\nthe object's model, found once and kept in a cache, apart;"
                         " the machine is named in paper_grasps.manifest.json."),
         left=0.155, right=0.985, head=0.62, foot=0.35, wspace=0.09,
     )  # fmt: skip

@@ -36,7 +36,7 @@ def draw(source):
     figure, axes = panels(
         f"One option at a time, Barrett hand, {table['attempts'].max():.0f} attempts each", len(MEASURES), len(OPTIONS), 10.4, 7.0,
         note_for(objects, "Dotted: the paper's value, our default. M changes its meaning with alpha and beta: curves of M compare within, not across, their values.\n"
-                          "Time: processor time of one thread, the object's model included, but for its weak features, which are found once and kept; the machine is named in parameter_sweeps.manifest.json."),
+                          "Time: processor time of one thread; the object's model, found once and kept in a cache, apart; the machine is named in parameter_sweeps.manifest.json."),
         left=0.06, right=0.99, head=0.75, foot=0.38, wspace=0.28, hspace=0.16,
     )  # fmt: skip
     for column, (parameter, (words, default, scale)) in enumerate(OPTIONS.items()):

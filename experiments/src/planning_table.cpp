@@ -9,6 +9,8 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/squeeze.hpp"
+#include "graspfit/grasp/wrench_convention.hpp"
 #include "internal/thread_clock.hpp"
 
 namespace graspfit::experiments::internal {
@@ -49,12 +51,25 @@ struct Measures {
   double largest_penetration = 0.0;
   std::size_t num_penetrating = 0;
   std::size_t num_closed = 0;
-  std::size_t num_squeezed = 0;
+  std::size_t num_balanced = 0;
 };
 
-Measures measures_of(const std::vector<grasp::Grasp>& grasps) {
+/// Whether some forces within the cones of ε's friction, pressing on every contact, balance; its
+/// own squeeze a grasp may have for another friction.
+bool is_balanced(const Planned& planned, const grasp::Grasp& grasp, double torque_scale) {
+  const grasp::PlannerOptions& options = planned.settings.options;
+  return grasp::squeeze_configuration(*planned.hand, grasp.configuration, grasp.contacts,
+                                      planned.object.mass.center_of_mass, torque_scale,
+                                      options.friction, options.squeeze)
+      .is_balanced;
+}
+
+Measures measures_of(const Planned& planned) {
   Measures measures;
-  for (const grasp::Grasp& grasp : grasps) {
+  const double torque_scale =
+      grasp::wrench_object(planned.object.mesh(), planned.object.mass.center_of_mass)
+          .largest_radius;
+  for (const grasp::Grasp& grasp : planned.result.grasps) {
     measures.m.push_back(grasp.quality.m);
     measures.epsilon.push_back(grasp.wrench.epsilon);
     measures.num_contacts.push_back(static_cast<double>(grasp.contacts.size()));
@@ -65,7 +80,7 @@ Measures measures_of(const std::vector<grasp::Grasp>& grasps) {
         std::max(measures.largest_penetration, grasp::largest_penetration(grasp));
     if (grasp.penetration.is_any()) ++measures.num_penetrating;
     if (is_closed(grasp)) ++measures.num_closed;
-    if (grasp.squeeze && grasp.squeeze->is_balanced) ++measures.num_squeezed;
+    if (grasp.squeeze && is_balanced(planned, grasp, torque_scale)) ++measures.num_balanced;
   }
   return measures;
 }
@@ -138,7 +153,8 @@ std::vector<Column> planning_columns() {
       {"median_epsilon", "1", "median of epsilon"},
       {"force_closed_share", "1",
        "share with force closure (epsilon above 1e-9) at the friction of epsilon"},
-      {"balanced_share", "1", "share whose squeeze balances"},
+      {"balanced_share", "1",
+       "share whose contacts can press and balance one another at the friction of epsilon"},
       {"num_penetrating", "1", "grasps that touch with what must not touch, decided exactly"},
       {"largest_penetration_m", "m", "deepest overlap with the object or of the hand with itself"},
       {"mean_gap_m", "m", "mean gap of the contacts that were asked for"},
@@ -158,7 +174,7 @@ std::vector<Column> planning_columns() {
 void fill_planning_columns(const Planned& planned, ResultRow& row) {
   const grasp::PlannerStatistics& statistics = planned.result.statistics;
   const std::vector<grasp::Grasp>& grasps = planned.result.grasps;
-  const Measures measures = measures_of(grasps);
+  const Measures measures = measures_of(planned);
   const auto attempts = static_cast<std::size_t>(statistics.attempts);
   row.set("object_extent_m", geometry::longest_extent(planned.object_file->mesh));
   row.set("attempts", statistics.attempts);
@@ -177,7 +193,7 @@ void fill_planning_columns(const Planned& planned, ResultRow& row) {
   row.set("mean_num_contacts", field(mean(measures.num_contacts)));
   row.set("median_epsilon", field(median(measures.epsilon)));
   row.set("force_closed_share", field(share(measures.num_closed, grasps.size())));
-  row.set("balanced_share", field(share(measures.num_squeezed, grasps.size())));
+  row.set("balanced_share", field(share(measures.num_balanced, grasps.size())));
   row.set("num_penetrating", field(measures.num_penetrating));
   row.set("mean_gap_m", field(mean(measures.claimed_gaps)));
   row.set("largest_gap_m", field(largest(measures.claimed_gaps)));
