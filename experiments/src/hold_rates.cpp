@@ -9,7 +9,7 @@
 // Allegro above 0.932.
 //
 // The summary has the quartiles of the margins, the smallest loads that fail, of the first grasps
-// of the cells of each grip; its rows count those grasps.
+// of the cells of each grip, where the configuration asks for margins.
 #include <array>
 
 #include "internal/experiment_list.hpp"
