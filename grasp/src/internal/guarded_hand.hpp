@@ -28,7 +28,7 @@ class GuardedHand {
                   double length);  ///< Poses the moved links; `length`: of the fastest point [m].
   bool passes_exact(const std::vector<int>& moved);  ///< Meshes, surroundings and, where they
                                                      ///< count, other links, after the map.
-  void accept();  ///< The motion under test.
+  void accept();                                     ///< The motion under test.
 
   /// Motion of the fastest point of `links` allowed now [m] (section 9, A30).
   double allowed_motion(const std::vector<int>& links) const;
