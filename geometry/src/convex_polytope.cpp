@@ -244,7 +244,7 @@ class SpanHull {
     }
     IntegerEchelon echelon(D, scales_of(exact_));
     return std::any_of(star.begin(), star.end(), [&](int f) {
-      echelon.add(builder_.exact_plane(f).normal);
+      echelon.add(builder_.exact_normal(f));
       return echelon.rank() == D;
     });
   }
@@ -363,7 +363,8 @@ MatrixXd directions_on_axes(const Impl& impl) {
 /// span.
 void measure_in_space(Impl& impl) {
   const auto rank = static_cast<Index>(impl.axes.size());
-  if (rank == impl.dimension()) {
+  const bool is_full = rank == impl.dimension();
+  if (is_full) {
     impl.directions = MatrixXd::Identity(rank, rank);
   } else {
     MatrixXd edges(impl.dimension(), rank);
@@ -380,15 +381,25 @@ void measure_in_space(Impl& impl) {
   impl.normals.resize(impl.dimension(), impl.facets.cols());
   impl.offsets.resize(impl.facets.cols());
   impl.stretches.resize(impl.facets.cols());
+  VectorXd gradient(rank);
   for (Index f = 0; f < impl.facets.cols(); ++f) {
-    VectorXd gradient = impl.gradients.col(f);
+    gradient = impl.gradients.col(f);
     for (Index j = 0; j < rank; ++j) {
       gradient[j] = std::ldexp(gradient[j], -impl.exponents[static_cast<std::size_t>(j)]);
     }
-    gradient = on_axes.transpose() * gradient;
+    if (is_full) {
+      gradient.array() += 0.0;  // no negative zeros, which the products leave none of either
+    } else {
+      gradient = on_axes.transpose() * gradient;
+    }
     const double length = gradient.stableNorm();
     impl.stretches[f] = 1.0 / length;
-    impl.normals.col(f) = impl.directions * (gradient / length);
+    gradient /= length;
+    if (is_full) {
+      impl.normals.col(f) = gradient;
+    } else {
+      impl.normals.col(f) = impl.directions * gradient;
+    }
     impl.offsets[f] = impl.normals.col(f).dot(impl.points.col(impl.facets(0, f)));
   }
 }
@@ -456,12 +467,12 @@ ExactSide exact_side(const Impl& impl, Index facet, const Eigen::Ref<const Vecto
   IntegerPoints exact(corners_and_point);
   IntegerHyperplane plane;
   exact.hyperplane({corners.data(), static_cast<std::size_t>(rank)}, plane);
-  const internal::Integer& value = exact.evaluate(plane, static_cast<int>(rank));
+  const internal::BinaryParts value = exact.evaluate(plane, static_cast<int>(rank));
   std::array<long, kMaxDimension> exponents;
   long largest = std::numeric_limits<long>::min();
   VectorXd gradient(rank);
   for (Index j = 0; j < rank; ++j) {
-    const auto [mantissa, exponent] = plane.normal[static_cast<std::size_t>(j)].parts();
+    const auto [mantissa, exponent] = plane.normal_parts[static_cast<std::size_t>(j)];
     gradient[j] = mantissa;
     exponents[static_cast<std::size_t>(j)] = exponent + exact.scale(static_cast<int>(j));
     if (mantissa != 0.0) largest = std::max(largest, exponents[static_cast<std::size_t>(j)]);
@@ -470,13 +481,13 @@ ExactSide exact_side(const Impl& impl, Index facet, const Eigen::Ref<const Vecto
     const long shift = exponents[static_cast<std::size_t>(j)] - largest;
     gradient[j] = std::ldexp(gradient[j], static_cast<int>(std::max(shift, -2000L)));
   }
-  const auto [mantissa, exponent] = value.parts();
+  const auto [mantissa, exponent] = value;
   const double scaled =
       std::ldexp(mantissa, static_cast<int>(std::clamp(exponent - largest, -2000L, 2000L)));
   ExactSide side;
   // A single corner has no order that could tell outside.
   const int orientation = rank == 1 && impl.gradients(0, facet) < 0.0 ? -1 : 1;
-  side.sign = orientation * value.sign();
+  side.sign = orientation * ((mantissa > 0.0) - (mantissa < 0.0));
   side.distance = -orientation * scaled / (directions_on_axes(impl).transpose() * gradient).norm();
   if (side.sign != 0 && side.distance == 0.0) {  // too small for a double is not nothing
     side.distance = -side.sign * std::numeric_limits<double>::min();

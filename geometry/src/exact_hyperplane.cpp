@@ -50,6 +50,130 @@ constexpr auto kColumnSets = [] {
 
 constexpr std::size_t kNarrowBits = 60;
 
+/// A difference of two narrow points.
+struct Row {
+  using Point = std::array<std::int64_t, kMaxDimension>;
+
+  Row() = default;
+  Row(const Point& end, const Point& start, int dimension) {
+    for (int j = 0; j < dimension; ++j) {
+      const std::int64_t x = end[j] - start[j];
+      is_negative[j] = x < 0;
+      magnitudes[j] = static_cast<std::uint64_t>(x < 0 ? -x : x);
+    }
+  }
+
+  std::array<std::uint64_t, kMaxDimension> magnitudes;
+  std::array<unsigned, kMaxDimension> is_negative;
+};
+
+/// sum += number · factor. The last of several digits of `number` only extends its sign: minus one
+/// times a factor is no multiplication.
+template <int NumDigits>
+void add_product(const Digits& number, std::uint64_t factor, std::uint64_t* sum) {
+  if constexpr (NumDigits == 1) {
+    sum[0] += number[0] * factor;
+  } else {
+    __extension__ using Wide = unsigned __int128;
+    std::uint64_t carry = 0;
+    for (int i = 0; i < NumDigits - 1; ++i) {
+      const Wide term = static_cast<Wide>(number[i]) * factor + sum[i] + carry;
+      sum[i] = static_cast<std::uint64_t>(term);
+      carry = static_cast<std::uint64_t>(term >> 64);
+    }
+    sum[NumDigits - 1] += carry - (number[NumDigits - 1] & factor);
+  }
+}
+
+/// One minor of as many rows as `Set` has columns, by Laplace expansion along the last of them:
+/// k × k minors with k digits and one to extend the sign.
+template <unsigned Set, std::size_t... J>
+void expand_minor(const Row& row, SignedDigits* minors, std::index_sequence<J...>) {
+  constexpr int kSize = std::popcount(Set);
+  std::array<std::uint64_t, kSize + 1> sum = {};
+  const auto add = [&]<std::size_t j>(std::integral_constant<std::size_t, j>) {
+    if constexpr ((Set >> j & 1U) != 0) {
+      constexpr unsigned kSign = kSize - 1 + std::popcount(Set & ((1U << j) - 1U));
+      const SignedDigits& smaller = minors[Set ^ (1U << j)];
+      add_product<kSize>(smaller[(kSign ^ row.is_negative[j]) & 1U], row.magnitudes[j], sum.data());
+    }
+  };
+  (add(std::integral_constant<std::size_t, J>{}), ...);
+  sum[kSize] = sum[kSize - 1] >> 63 != 0 ? ~std::uint64_t{0} : 0;
+  auto& [positive, negative] = minors[Set];
+  std::uint64_t carry = 1;
+  for (int i = 0; i <= kSize; ++i) {
+    positive[i] = sum[i];
+    negative[i] = ~sum[i] + carry;
+    carry &= static_cast<std::uint64_t>(negative[i] == 0);
+  }
+}
+
+/// All minors of the first |S| rows in the columns S, for 0 < S < 2^d − 1 in order, so that the
+/// smaller ones are there; unrolled.
+template <int Dimension, std::size_t... S>
+void expand_minors(const std::array<Row, kMaxDimension - 1>& rows, SignedDigits* minors,
+                   std::index_sequence<S...>) {
+  (expand_minor<S + 1>(rows[std::popcount(S + 1) - 1], minors,
+                       std::make_index_sequence<Dimension>{}),
+   ...);
+}
+
+template <int Dimension>
+void expand_minors(const std::array<Row, kMaxDimension - 1>& rows, SignedDigits* minors) {
+  expand_minors<Dimension>(rows, minors,
+                           std::make_index_sequence<(std::size_t{1} << Dimension) - 2>{});
+}
+
+template <int Dimension>
+Digits product(const std::array<SignedDigits, kMaxDimension>& normal, const Row& row) {
+  Digits sum = {};
+  for (int j = 0; j < Dimension; ++j) {
+    add_product<Dimension>(normal[j][row.is_negative[j]], row.magnitudes[j], sum.data());
+  }
+  return sum;
+}
+
+/// normal · row, in as many digits as there are axes: a determinant of that many rows.
+Digits product(const std::array<SignedDigits, kMaxDimension>& normal, const Row& row,
+               int dimension) {
+  switch (dimension) {
+    case 1:
+      return product<1>(normal, row);
+    case 2:
+      return product<2>(normal, row);
+    case 3:
+      return product<3>(normal, row);
+    case 4:
+      return product<4>(normal, row);
+    case 5:
+      return product<5>(normal, row);
+    default:
+      return product<6>(normal, row);
+  }
+}
+
+bool is_negative_number(const Digits& number, int num_digits) {
+  return number[num_digits - 1] >> 63 != 0;
+}
+
+BinaryParts parts_of(Digits number, int num_digits) {
+  const bool is_negative = is_negative_number(number, num_digits);
+  std::uint64_t carry = 1;
+  for (int i = 0; i < num_digits && is_negative; ++i) {
+    number[i] = ~number[i] + carry;
+    carry &= static_cast<std::uint64_t>(number[i] == 0);
+  }
+  int top = num_digits - 1;
+  while (top > 0 && number[top] == 0) --top;
+  if (number[top] == 0) return {0.0, 0};
+  const int num_zeros = std::countl_zero(number[top]);
+  std::uint64_t leading = number[top] << num_zeros;
+  if (num_zeros > 0 && top > 0) leading |= number[top - 1] >> (64 - num_zeros);
+  const double mantissa = std::ldexp(static_cast<double>(leading >> 11), -53);
+  return {is_negative ? -mantissa : mantissa, 64L * (top + 1) - num_zeros};
+}
+
 }  // namespace
 
 IntegerPoints::IntegerPoints(const Eigen::Ref<const Eigen::MatrixXd>& points)
@@ -111,69 +235,31 @@ void IntegerPoints::find_minors(std::span<const int> corners) {
   }
 }
 
-/// The same for one number of rows, on digits: k × k minors with k digits and one to extend the
-/// sign. Of each minor its negative is at hand, so that only magnitudes are multiplied.
-template <int Size>
-void IntegerPoints::expand_narrow_minors(std::span<const int> corners) {
-  __extension__ using Wide = unsigned __int128;
-  std::array<std::uint64_t, kMaxDimension> magnitudes;
-  std::array<unsigned, kMaxDimension> is_negative;
-  for (int j = 0; j < dimension_; ++j) {
-    const std::int64_t x = narrow_points_[corners[Size]][j] - narrow_points_[corners[0]][j];
-    is_negative[j] = x < 0;
-    magnitudes[j] = static_cast<std::uint64_t>(x < 0 ? -x : x);
-  }
-  for (const unsigned set : kColumnSets[dimension_].of_size(Size)) {
-    std::array<std::uint64_t, Size + 1> sum = {};
-    unsigned sign = Size - 1;
-    for (unsigned rest = set; rest != 0; rest &= rest - 1, ++sign) {
-      const int j = std::countr_zero(rest);
-      const Digits& smaller = narrow_minors_[set ^ (1U << j)][(sign ^ is_negative[j]) & 1U];
-      std::uint64_t carry = 0;
-      for (int i = 0; i < Size; ++i) {
-        const Wide term = static_cast<Wide>(smaller[i]) * magnitudes[j] + sum[i] + carry;
-        sum[i] = static_cast<std::uint64_t>(term);
-        carry = static_cast<std::uint64_t>(term >> 64);
-      }
-    }
-    sum[Size] = sum[Size - 1] >> 63 != 0 ? ~std::uint64_t{0} : 0;
-    auto& [positive, negative] = narrow_minors_[set];
-    std::uint64_t carry = 1;
-    for (int i = 0; i <= Size; ++i) {
-      positive[i] = sum[i];
-      negative[i] = ~sum[i] + carry;
-      carry &= static_cast<std::uint64_t>(negative[i] == 0);
-    }
-  }
-}
-
 void IntegerPoints::find_narrow_minors(std::span<const int> corners) {
-  narrow_minors_[0] = {Digits{1}, Digits{~std::uint64_t{0}}};
-  if (dimension_ > 1) expand_narrow_minors<1>(corners);
-  if (dimension_ > 2) expand_narrow_minors<2>(corners);
-  if (dimension_ > 3) expand_narrow_minors<3>(corners);
-  if (dimension_ > 4) expand_narrow_minors<4>(corners);
-  if (dimension_ > 5) expand_narrow_minors<5>(corners);
-  if (dimension_ == 1) mpz_set_ui(minors_[0].mpz(), 1);
-  const unsigned full = (1U << dimension_) - 1U;
-  const auto size = static_cast<std::size_t>(dimension_ - 1);
-  for (int j = 0; j < dimension_ && size > 0; ++j) {
-    const unsigned set = full ^ (1U << j);
-    const bool is_negative = narrow_minors_[set][0][size] != 0;
-    const Digits& digits = narrow_minors_[set][is_negative ? 1 : 0];
-    mpz_ptr minor = minors_[set].mpz();
-    mpz_import(minor, size, -1, sizeof(std::uint64_t), 0, 0, digits.data());
-    if (is_negative) mpz_neg(minor, minor);
+  std::array<Row, kMaxDimension - 1> rows;
+  for (int k = 1; k < dimension_; ++k) {
+    rows[k - 1] = Row(narrow_points_[corners[k]], narrow_points_[corners[0]], dimension_);
+  }
+  SignedDigits* const minors = narrow_minors_.data();
+  minors[0] = {Digits{1}, Digits{~std::uint64_t{0}}};
+  switch (dimension_) {
+    case 1:
+      return;
+    case 2:
+      return expand_minors<2>(rows, minors);
+    case 3:
+      return expand_minors<3>(rows, minors);
+    case 4:
+      return expand_minors<4>(rows, minors);
+    case 5:
+      return expand_minors<5>(rows, minors);
+    default:
+      return expand_minors<6>(rows, minors);
   }
 }
 
-void IntegerPoints::hyperplane(std::span<const int> corners, IntegerHyperplane& result) {
-  assert(static_cast<int>(corners.size()) == dimension_);
-  if (narrow_points_.empty()) {
-    find_minors(corners);
-  } else {
-    find_narrow_minors(corners);
-  }
+void IntegerPoints::wide_hyperplane(std::span<const int> corners, IntegerHyperplane& result) {
+  find_minors(corners);
   const unsigned full = (1U << dimension_) - 1U;
   mpz_ptr offset = result.offset.mpz();
   mpz_set_ui(offset, 0);
@@ -182,16 +268,58 @@ void IntegerPoints::hyperplane(std::span<const int> corners, IntegerHyperplane& 
     mpz_set(coefficient, minors_[full ^ (1U << j)].mpz());
     if ((dimension_ - 1 + j) % 2 != 0) mpz_neg(coefficient, coefficient);
     mpz_addmul(offset, coefficient, points_[corners[0]][j].mpz());
+    result.normal_parts[j] = result.normal[j].parts();
+  }
+  result.offset_parts = result.offset.parts();
+}
+
+void IntegerPoints::narrow_hyperplane(std::span<const int> corners, IntegerHyperplane& result) {
+  find_narrow_minors(corners);
+  const unsigned full = (1U << dimension_) - 1U;
+  for (int j = 0; j < dimension_; ++j) {
+    const SignedDigits& minor = narrow_minors_[full ^ (1U << j)];
+    const unsigned sign = static_cast<unsigned>(dimension_ - 1 + j) & 1U;
+    result.digits[j] = {minor[sign], minor[1 - sign]};
+    result.normal_parts[j] = parts_of(result.digits[j][0], dimension_);
+  }
+  result.base = corners[0];
+  const Row base(narrow_points_[result.base], Row::Point{}, dimension_);
+  result.offset_parts = parts_of(product(result.digits, base, dimension_), dimension_);
+}
+
+void IntegerPoints::hyperplane(std::span<const int> corners, IntegerHyperplane& result) {
+  assert(static_cast<int>(corners.size()) == dimension_);
+  if (is_narrow()) {
+    narrow_hyperplane(corners, result);
+  } else {
+    wide_hyperplane(corners, result);
   }
 }
 
-const Integer& IntegerPoints::evaluate(const IntegerHyperplane& plane, int index) {
+BinaryParts IntegerPoints::evaluate(const IntegerHyperplane& plane, int index) {
+  if (is_narrow()) {
+    const Row row(narrow_points_[index], narrow_points_[plane.base], dimension_);
+    return parts_of(product(plane.digits, row, dimension_), dimension_);
+  }
   mpz_ptr value = value_.mpz();
   mpz_neg(value, plane.offset.mpz());
   for (int j = 0; j < dimension_; ++j) {
     mpz_addmul(value, plane.normal[j].mpz(), points_[index][j].mpz());
   }
-  return value_;
+  return value_.parts();
+}
+
+IntegerVector IntegerPoints::normal(const IntegerHyperplane& plane) const {
+  if (!is_narrow()) return plane.normal;
+  IntegerVector result;
+  for (int j = 0; j < dimension_; ++j) {
+    const bool is_negative = is_negative_number(plane.digits[j][0], dimension_);
+    mpz_ptr coefficient = result[j].mpz();
+    mpz_import(coefficient, static_cast<std::size_t>(dimension_), -1, sizeof(std::uint64_t), 0, 0,
+               plane.digits[j][is_negative ? 1 : 0].data());
+    if (is_negative) mpz_neg(coefficient, coefficient);
+  }
+  return result;
 }
 
 bool IntegerEchelon::add(const IntegerVector& new_row) {

@@ -18,6 +18,10 @@ namespace graspfit::geometry::internal {
 /// Largest dimension of a polytope.
 inline constexpr int kMaxDimension = 6;
 
+/// A number as mantissa in [0.5, 1) in magnitude, cut to 53 bits, and exponent of two; 0 for zero,
+/// so that the mantissa has the sign of the number.
+using BinaryParts = std::pair<double, long>;
+
 /// An integer of any size. `mpz()` is for GMP's own functions, which work in place.
 class Integer {
  public:
@@ -37,8 +41,7 @@ class Integer {
   mpz_srcptr mpz() const { return value_; }
   int sign() const { return mpz_sgn(value_); }
 
-  /// Mantissa in [0.5, 1) in magnitude, cut to 53 bits, and exponent; 0 for zero.
-  std::pair<double, long> parts() const {
+  BinaryParts parts() const {
     long exponent = 0;
     const double mantissa = mpz_get_d_2exp(&exponent, value_);
     return {mantissa, exponent};
@@ -50,9 +53,21 @@ class Integer {
 
 using IntegerVector = std::array<Integer, kMaxDimension>;
 
+/// A number of six 64-bit digits or fewer, two's complement, lowest first.
+using Digits = std::array<std::uint64_t, kMaxDimension>;
+
+/// A number and its negative, so that only magnitudes need be multiplied.
+using SignedDigits = std::array<Digits, 2>;
+
 /// normal · z − offset for integer points z, positive where det(p_1 − p_0, …, p_{d−1} − p_0, z −
 /// p_0) is: on the outer side of a facet whose corners are in outward order.
 struct IntegerHyperplane {
+  std::array<BinaryParts, kMaxDimension> normal_parts;
+  BinaryParts offset_parts;
+
+  // The numbers themselves, one way or the other: see IntegerPoints.
+  int base = 0;  // a corner
+  std::array<SignedDigits, kMaxDimension> digits;
   IntegerVector normal;
   Integer offset;
 };
@@ -72,25 +87,28 @@ class IntegerPoints {
   void hyperplane(std::span<const int> corners, IntegerHyperplane& result);
 
   /// normal · z_index − offset.
-  const Integer& evaluate(const IntegerHyperplane& plane, int index);
+  BinaryParts evaluate(const IntegerHyperplane& plane, int index);
+
+  /// The normal of one of these hyperplanes.
+  IntegerVector normal(const IntegerHyperplane& plane) const;
 
  private:
-  /// A number of six 64-bit digits or fewer, two's complement, lowest first.
-  using Digits = std::array<std::uint64_t, kMaxDimension>;
+  using NarrowPoint = std::array<std::int64_t, kMaxDimension>;
 
+  bool is_narrow() const { return !narrow_points_.empty(); }
   void find_minors(std::span<const int> corners);
   void find_narrow_minors(std::span<const int> corners);
-  template <int Size>
-  void expand_narrow_minors(std::span<const int> corners);
+  void wide_hyperplane(std::span<const int> corners, IntegerHyperplane& result);
+  void narrow_hyperplane(std::span<const int> corners, IntegerHyperplane& result);
 
   int dimension_;
   std::array<int, kMaxDimension> scales_ = {};
   std::vector<IntegerVector> points_;
   /// The same points where all coordinates are below 2^60: then k × k determinants fit in k digits,
   /// and need no memory management. Else empty.
-  std::vector<std::array<std::int64_t, kMaxDimension>> narrow_points_;
-  std::vector<std::array<Digits, 2>> narrow_minors_;  // and their negatives
-  std::vector<Integer> minors_;                       // of the rows so far, by set of columns
+  std::vector<NarrowPoint> narrow_points_;
+  std::vector<SignedDigits> narrow_minors_;  // of the rows so far, by set of columns
+  std::vector<Integer> minors_;
   IntegerVector row_;
   Integer value_;
 };

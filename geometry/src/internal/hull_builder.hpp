@@ -138,10 +138,10 @@ class HullBuilder {
     return planes_[facet];
   }
 
-  /// The facet's plane in integers, for exact work on normals.
-  const IntegerHyperplane& exact_plane(int facet) {
+  /// The normal of the facet's plane in integers, for exact work.
+  IntegerVector exact_normal(int facet) {
     refine(facet);
-    return integer_planes_[exact_index_[facet]];
+    return exact_.normal(integer_planes_[exact_index_[facet]]);
   }
 
   /// D! times the volume of the hull in scaled coordinates: the cones from the first point over
@@ -199,7 +199,8 @@ class HullBuilder {
       refine(facet);
       if (const int side = filtered_side(facet, point); side != 0) return side;
     }
-    return exact_.evaluate(integer_planes_[exact_index_[facet]], point).sign();
+    const double value = exact_.evaluate(integer_planes_[exact_index_[facet]], point).first;
+    return (value > 0.0) - (value < 0.0);
   }
 
   int side(int facet, int point) {
@@ -281,15 +282,15 @@ class HullBuilder {
     Plane& plane = planes_[facet];
     const long all_axes =
         std::accumulate(lattice_exponents_.begin(), lattice_exponents_.begin() + D, 0L);
-    const auto rounded = [&](const Integer& value, long exponent_of_two) {
-      const auto [mantissa, exponent] = value.parts();
+    const auto rounded = [&](const BinaryParts& parts, long exponent_of_two) {
+      const auto [mantissa, exponent] = parts;
       return std::ldexp(mantissa, static_cast<int>(std::clamp(exponent - exponent_of_two,
                                                               long{-2000}, long{2000})));
     };
     for (int j = 0; j < D; ++j) {
-      plane.normal[j] = rounded(exact.normal[j], all_axes - lattice_exponents_[j]);
+      plane.normal[j] = rounded(exact.normal_parts[j], all_axes - lattice_exponents_[j]);
     }
-    plane.offset = rounded(exact.offset, all_axes);
+    plane.offset = rounded(exact.offset_parts, all_axes);
     const double scale = length(plane);
     plane.bound = filter_ && scale > 0x1p-900
                       ? kSideUnits * 0x1p-53 * scale * radius_ + kUnderflowSlack
