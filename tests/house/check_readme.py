@@ -4,6 +4,8 @@ prints, and that the files it links to exist.
 
 Usage: check_readme.py README.md OUTPUT_FILE SHOWN_FILE...
 
+OUTPUT_FILE is "-" for sources that print nothing.
+
 Numbers of the output may differ: the C library picks its sine and cosine by the processor, and the
 planner's search may take another turn after a different last digit.
 """
@@ -22,16 +24,18 @@ def without_numbers(text):
 
 
 def main():
-    readme, output, *shown = (pathlib.Path(argument) for argument in sys.argv[1:])
+    output = sys.argv[2]
+    readme, *shown = (pathlib.Path(argument) for argument in (sys.argv[1], *sys.argv[3:]))
     markdown = readme.read_text(encoding="utf-8")
     failures = []
     for file in shown:
         language = "cpp" if file.suffix == ".cpp" else "cmake"
         if file.read_text(encoding="utf-8") not in code_blocks(markdown, language):
             failures.append(f"{readme}: no {language} block equals {file}")
-    printed = output.read_text(encoding="utf-8")
-    if without_numbers(printed) not in map(without_numbers, code_blocks(markdown, "text")):
-        failures.append(f"{readme}: no text block looks like the program's output:\n{printed}")
+    if output != "-":
+        printed = pathlib.Path(output).read_text(encoding="utf-8")
+        if without_numbers(printed) not in map(without_numbers, code_blocks(markdown, "text")):
+            failures.append(f"{readme}: no text block looks like the program's output:\n{printed}")
     prose = re.sub(r"^```.*?^```$", "", markdown, flags=re.MULTILINE | re.DOTALL)
     for target in re.findall(r"\]\(([^)#:]+)\)", prose):
         if not (readme.parent / target).exists():
