@@ -54,6 +54,8 @@ class MoveSearch {
     for (const Vector3d& approach_W : approaches()) {
       PlannerOptions planner = options_.planner;
       planner.approach_O = approach_W;
+      // Fingers that open just enough still stand around the object when the palm withdraws.
+      planner.pre_grasp.opening_steps = 1;
       const PlannerResult planned = plan_grasps(model, scene_.hand(), planner, surroundings, 1);
       attempt_.planner_attempts += planned.statistics.attempts;
       if (planned.grasps.empty()) note_no_grasp(planned.statistics);

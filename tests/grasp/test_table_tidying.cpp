@@ -88,6 +88,8 @@ TEST_CASE("A block is picked up, turned over and put down at its goal", "[grasp]
   check_chain(*attempt.move, options);
   CHECK(attempt.move->X_WO_to.matrix() == goal.matrix());
   CHECK(attempt.move->grasp.is_valid());
+  // Half open fingers would stand around the object when the palm withdraws.
+  CHECK(attempt.move->grasp.pre_grasp->opening == 1.0);
   check_free(scene, start, {*attempt.move});
   CHECK(attempt.stretches_tried == attempt.move->stretches_tried);
 }

@@ -18,7 +18,8 @@ namespace graspfit::grasp {
 /// for an approach direction and interpolates; that nothing is touched on the way is ours [R].
 struct PickAndPlaceOptions {
   PlannerOptions planner;  ///< `count` grasps are tried per approach, best M first; acceptance must
-                           ///< be Valid with pre-grasps. `approach_O` is set here.
+                           ///< be Valid with pre-grasps. `approach_O` is set here, and pre-grasps
+                           ///< are fully open (`pre_grasp.opening_steps` 1).
   hands::HandConfiguration home;  ///< Where every move begins and ends; `X_OH` is X_WH.
   /// Wanted palm directions in W, tried in order until a grasp can be used. Empty: from the palm
   /// center at home to the object's center of mass [P: "from the hand's initial pose toward the

@@ -123,8 +123,10 @@ inline constexpr double kTouchTolerance = 1e-5;
 /// - Approach, Release: the last (first) `kTouchTolerance` of the way, for there the hand touches.
 /// - Carrying: hand and object keep their places against each other, so that nothing is looked at.
 ///
-/// Like `find_pre_grasp` it never says free wrongly, up to the rounding of distances, and may say
-/// encounter where bodies slide along each other within 1e-8 m.
+/// Like `find_pre_grasp` it never says free wrongly, up to the rounding of distances. It may say
+/// encounter wrongly: where bodies come within 1e-8 m of the clearance, and where 500 distances of
+/// a pair of bodies leave some of the stretch uncovered (long slides hardly farther apart than the
+/// clearance).
 std::optional<Encounter> find_encounter(const TableScene& scene,
                                         std::span<const geometry::RigidTransform> X_WO,
                                         const MotionStretch& stretch, double clearance);
