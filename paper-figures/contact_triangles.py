@@ -24,13 +24,15 @@ def draw(source):
     figure, axes = panels(
         "SQUIRREL (15 cm), Barrett hand: contact polygons, bad and good by M3", 2, 2, 5.6, 5.75,
         f"Of the first {len(record['grasps'])} valid grasps those with the smallest and the largest M3 = R - 0.3 D.\n"
-        "Right: regularity R, distance D of the polygon's centroid from the center of mass (black), M3.",
-        head=0.42, foot=0.24, hspace=0.05,
+        "Right: regularity R, M3, and D: how far the polygon's centroid is from the center of mass (black),\n"
+        "over half the diagonal of the object's bounding box.",
+        head=0.42, foot=0.36, hspace=0.05,
     )  # fmt: skip
     for row, (index, words) in enumerate(zip(by_shape(record), ("irregular or off center", "regular and centered"))):
         grasp = record["grasps"][index]
         show_picture(axes[row][0], grasp_panel(stage, source, record, index, arrows=False), words)
-        below = f"R {grasp['regularity']:.2f}   D {1000 * grasp['centroid_distance_m']:.0f} mm   M3 {grasp['m3']:.2f}"
+        distance = grasp["centroid_distance_m"] / record["object"]["normalizing_radius_m"]
+        below = f"R {grasp['regularity']:.2f}   D {distance:.2f}   M3 {grasp['m3']:.2f}"
         show_picture(axes[row][1], without_hand(stage, source, record, grasp), None)
         axes[row][1].set_title(below, pad=3, fontsize=7.5)
     return figure

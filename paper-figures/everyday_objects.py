@@ -3,9 +3,9 @@
 import matplotlib
 import numpy as np
 from figure_style import panels
-from heat_table import heat_table
+from heat_table import heat_table, why_empty
 
-COLUMNS = ("object", "hand", "status", "attempts", "valid_rate", "best_m")
+COLUMNS = ("object", "hand", "status", "attempts", "valid_rate", "best_m", "reason")
 SHOWN = [
     ("valid_rate", "attempts that end in a valid grasp", "{:.0%}", 1.0),
     ("best_m", "M of the best grasp", "{:.2f}", 4.0),
@@ -27,8 +27,7 @@ def draw(source):
         for row in table.itertuples():
             i, j = objects.index(row.object), hands.index(row.hand)
             values[i, j] = getattr(row, column)
-            if row.status != "ok":
-                reasons[i][j] = "too large"
+            reasons[i][j] = why_empty(row.status, row.reason)
         names = [name.replace("_", " ") for name in objects] if ax is axes[0][0] else [""] * len(objects)
         labels = [hand.replace("_", " ") for hand in hands]
         heat_table(ax, values, names, labels, matplotlib.colormaps["viridis"], most, number, reasons)

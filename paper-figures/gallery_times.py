@@ -10,12 +10,13 @@ COLUMNS = ("case", "attempts", "valid", "best_m", "best_num_contacts")
 
 def draw(source):
     table = source.table("paper_grasps", COLUMNS).set_index("case")
-    timing = source.table("paper_grasps.timing", ("case", "cpu_s", "prepare_s")).set_index("case")
+    timing = source.table("paper_grasps.timing", ("case", "cpu_s")).set_index("case")
     names = [name for of_hand in HANDS.values() for name in of_hand]
     colors = [color for of_hand, color in zip(HANDS.values(), (BLUE, ORANGE, GREEN)) for _ in of_hand]
     cells = [f"gallery_{name}" for name in names]
     vertices = [source.grasp_file("paper_grasps", cell)["object"]["num_vertices"] for cell in cells]
-    per_grasp = timing.loc[cells, "cpu_s"] / table.loc[cells, "valid"]
+    valid = table.loc[cells, "valid"]
+    per_grasp = timing.loc[cells, "cpu_s"] / valid.where(valid > 0)  # not a number without grasps
     figure, axes = panels(
         "Fifteen objects: mesh, time per valid grasp, contacts and quality of the best grasp", 1, 4, 10.0, 4.0,
         note_for(names, "Time: processor time of the cell, one thread, failures included, over its valid grasps;\nthe object's model, found once and kept in a cache, apart;"
@@ -31,11 +32,12 @@ def draw(source):
     y = np.arange(len(names))
     for ax, (values, words, number) in zip(axes[0], shown):
         values = np.asarray(values, dtype=float)
-        ax.barh(y, values, color=colors, height=0.7)
+        ax.barh(y, np.nan_to_num(values), color=colors, height=0.7)
         for at, value in zip(y, values):
-            ax.text(value, at, f" {number.format(value)}", va="center", fontsize=6.5)
+            shown_value = "no valid grasp" if np.isnan(value) else number.format(value)
+            ax.text(np.nan_to_num(value), at, f" {shown_value}", va="center", fontsize=6.5)
         ax.set_yticks(y, [shown_name(name) for name in names] if ax is axes[0][0] else [""] * len(y))
-        ax.set_xlim(0, 1.22 * np.nanmax(values))
+        ax.set_xlim(0, 1.22 * np.max(np.nan_to_num(values)) or 1.0)
         ax.set_ylim(-0.6, len(y) - 0.4)
         ax.invert_yaxis()
         ax.grid(axis="y", visible=False)

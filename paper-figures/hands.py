@@ -1,7 +1,7 @@
 """The three hands with joints, palm centers and palm directions."""
 
 import numpy as np
-from figure_data import posed, rotation, turned
+from figure_data import BadData, posed, rotation, turned
 from figure_style import color_legend, panels, show_picture
 from grasp_scene import HAND, PALM, Stage, hand_points, span
 
@@ -53,10 +53,12 @@ def forward_kinematics(hand):
     links, joints = {hand["palm"]["link"]: np.eye(4)}, {}
     waiting = list(hand["joints"])
     while waiting:
-        joint = waiting.pop(0)
-        if joint["parent_link"] not in links:
-            waiting.append(joint)
-            continue
+        ready = [joint for joint in waiting if joint["parent_link"] in links]
+        if not ready:
+            names = ", ".join(joint["name"] for joint in waiting)
+            raise BadData(f"hand {hand['name']}: joints that do not come after the palm's link: {names}")
+        joint = ready[0]
+        waiting.remove(joint)
         joints[joint["name"]] = links[joint["parent_link"]] @ pose_matrix(joint["X_PJ"])
         links[joint["child_link"]] = joints[joint["name"]] @ joint_motion(joint, values[joint["name"]])
     return links, joints

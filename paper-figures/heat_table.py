@@ -4,6 +4,14 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 
+def why_empty(status, reason):
+    """What stands where a run has no number."""
+    if status == "ok":
+        return "none"
+    too_large = status == "failed" and str(reason).startswith("the object measures ")
+    return "too large" if too_large else status
+
+
 def heat_table(axes, values, rows, columns, colormap, most=1.0, number="{:.0%}", reasons=None):
     """`values` [rows, columns] with NaN where there is none; `reasons` texts for those.
 

@@ -24,6 +24,11 @@ def shown_name(name):
     return f"{known}*" if known else name.replace("_", " ").upper()
 
 
+def short_name(name):
+    """MUG* for mug: without what kind of stand-in it is."""
+    return name.replace("_", " ").upper() + ("*" if name in STAND_INS else "")
+
+
 def has_stand_in(names):
     return any(name in STAND_INS for name in names)
 

@@ -6,7 +6,7 @@ from figure_style import panels, show_picture
 from fitting_stages import stage_panel
 from grasp_scene import OBJECT, Stage, hand_points, level, span, up_of
 from target_panels import score_bar, score_panel, target_panel, voxel_panel
-from voxel_data import Voxels, stages
+from voxel_data import Voxels, stages, voxel_centers
 
 
 def draw_distances(ax, voxels):
@@ -19,7 +19,7 @@ def draw_distances(ax, voxels):
         interpolation="nearest",
     )  # fmt: skip
     ax.contour(
-        np.linspace(*cm[:2], image.shape[1]), np.linspace(*cm[2:], image.shape[0]), image, levels=[-0.5, 0.5],
+        voxel_centers(*cm[:2], image.shape[1]), voxel_centers(*cm[2:], image.shape[0]), image, levels=[-0.5, 0.5],
         colors="black", linewidths=0.5,
     )  # fmt: skip
     ax.set_xlabel(f"{names[0]} [cm]", labelpad=0)

@@ -1,12 +1,12 @@
-"""Valid rate, usable rate's best M and force closure of every object and grip."""
+"""Valid rate, mean M and force closure of every object and grip."""
 
 import matplotlib
 import numpy as np
 from figure_style import panels
-from heat_table import heat_table
+from heat_table import heat_table, why_empty
 from object_names import note_for, shown_name
 
-COLUMNS = ("object", "grip", "status", "attempts", "valid_rate", "mean_m", "force_closed_share")
+COLUMNS = ("object", "grip", "status", "attempts", "valid_rate", "mean_m", "force_closed_share", "reason")
 GRIPS = {
     "gripper_2": "gripper\n2 contacts",
     "barrett_3": "Barrett\n3 contacts",
@@ -36,7 +36,7 @@ def draw(source):
         for row in table.itertuples():
             i, j = objects.index(row.object), list(GRIPS).index(row.grip)
             values[i, j] = getattr(row, column)
-            reasons[i][j] = "too large" if row.status != "ok" else "none"
+            reasons[i][j] = why_empty(row.status, row.reason)
         ax = axes[0][k]
         names = [shown_name(name) for name in objects] if k == 0 else []
         heat_table(ax, values, names or [""] * len(objects), GRIPS.values(), colormap, most, number, reasons)

@@ -2,27 +2,36 @@
 
 import numpy as np
 from figure_style import BLUE, ORANGE, SOFT, panels
-from object_names import NOTE
+from object_names import NOTE, short_name
 
 COLUMNS = ("case", "seed", "status", "satisfied", "satisfying_grasps", "grasps")
+# By case: the object, and what is claimed of its grasps.
 CLAIMS = {
-    "bunny_9cm": "BUNNY 9 cm wide: pinch has the largest M",
-    "bunny_15cm": "BUNNY 15 cm wide: three-finger grip has the largest M",
-    "bunny_30cm": "BUNNY 30 cm wide: power grasp has the largest M",
-    "torus_7cm": "TORUS 7 cm wide: all contacts on the outer side",
-    "torus_16cm": "TORUS 16 cm wide: a finger through the hole",
-    "squirrel_from_top": "SQUIRREL from the top",
-    "squirrel_from_side": "SQUIRREL from the side",
-    "squirrel_from_front": "SQUIRREL from the front",
-    "ball_pinch_2": "BALL*: two-finger pinch",
-    "ball_grip_3": "BALL*: three-finger grip",
-    "ball_power_4": "BALL*: four-finger power grasp",
-    "ball_power_5": "BALL*: five-finger power grasp",
-    "mug_four_contacts": "MUG*: four contacts or more",
-    "teddy_six_contacts": "TEDDY: six contacts or more",
-    "horse_legs": "HORSE: no contact on the legs",
-    "shark_fins": "SHARK*: no contact on the fins",
+    "bunny_9cm": ("bunny", " 9 cm wide: pinch has the largest M"),
+    "bunny_15cm": ("bunny", " 15 cm wide: three-finger grip has the largest M"),
+    "bunny_30cm": ("bunny", " 30 cm wide: power grasp has the largest M"),
+    "torus_7cm": ("torus", " 7 cm wide: all contacts on the outer side"),
+    "torus_16cm": ("torus", " 16 cm wide: a finger through the hole"),
+    "squirrel_from_top": ("squirrel", " from the top"),
+    "squirrel_from_side": ("squirrel", " from the side"),
+    "squirrel_from_front": ("squirrel", " from the front"),
+    "ball_pinch_2": ("ball", ": two-finger pinch"),
+    "ball_grip_3": ("ball", ": three-finger grip"),
+    "ball_power_4": ("ball", ": four-finger power grasp"),
+    "ball_power_5": ("ball", ": five-finger power grasp"),
+    "mug_four_contacts": ("mug", ": four contacts or more"),
+    "teddy_six_contacts": ("teddy", ": six contacts or more"),
+    "horse_legs": ("horse", ": no contact on the legs"),
+    "shark_fins": ("shark", ": no contact on the fins"),
 }
+
+
+def label(case):
+    """The object, with its star, and the claim."""
+    if case not in CLAIMS:
+        return case
+    name, claim = CLAIMS[case]
+    return short_name(name) + claim
 
 
 def wilson(successes, count, z=1.96):
@@ -53,7 +62,7 @@ def draw(source):
         ax.plot([low, high], [y, y], color="black", linewidth=1.0)
         ax.text(1.03, y, f"{satisfied}/{len(rows)}", va="center", fontsize=7, color=SOFT, clip_on=False)
     ax.set_ylim(-0.6, len(cases) - 0.4)
-    ax.set_yticks(range(len(cases)), [CLAIMS.get(case, case) for case in cases])
+    ax.set_yticks(range(len(cases)), [label(case) for case in cases])
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
     ax.set_xlim(0, 1)

@@ -14,6 +14,11 @@ DETAILS = ("object", "i", "j", "k", "class", "distance_voxels", *CENTROID, *NORM
 STAGE = ("object", "stage", "iterations", "link", "x_m", "y_m", "z_m", "qw", "qx", "qy", "qz")
 
 
+def voxel_centers(low, high, count):
+    """Centers of so many voxels side by side between two borders."""
+    return low + (np.arange(count) + 0.5) * (high - low) / count
+
+
 class Voxels:
     """One object's voxels: `row` about all of it, `partial` a table of those that hold surface."""
 

@@ -75,6 +75,25 @@ class Lists(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([line.split()[0] for line in done.stdout.splitlines()], [f.slug for f in FIGURES])
 
+    def test_names_of_stand_ins_have_a_star_in_every_claim(self):
+        from object_names import STAND_INS
+        from special_cases import CLAIMS, label
+
+        self.assertEqual(label("torus_7cm"), "TORUS* 7 cm wide: all contacts on the outer side")
+        self.assertEqual(label("bunny_9cm"), "BUNNY 9 cm wide: pinch has the largest M")
+        for case, (name, _) in CLAIMS.items():
+            self.assertTrue(case.startswith(f"{name}_"), case)
+            self.assertEqual("*" in label(case), name in STAND_INS, case)
+
+    def test_an_empty_cell_says_why(self):
+        from heat_table import why_empty
+
+        self.assertEqual(why_empty("ok", float("nan")), "none")
+        too_large = "the object measures 0.15 x 0.15 x 0.15 m; the hand spans 0.1 m"
+        self.assertEqual(why_empty("failed", too_large), "too large")
+        self.assertEqual(why_empty("failed", "out of memory"), "failed")
+        self.assertEqual(why_empty("skipped", "x.off is not there"), "skipped")
+
     def test_no_committed_file_of_the_figures_holds_a_mesh_of_an_object(self):
         embedding = {".off", ".obj", ".ply", ".stl", ".glb", ".gltf", ".html", ".vtp", ".vti"}
         tracked = subprocess.run(
@@ -110,6 +129,26 @@ class Readers(Folder):
             vertices, triangles = read_mesh(self.folder / name)
             self.assertEqual(vertices.shape, (8, 3), name)
             self.assertAlmostEqual(signed_volume(vertices, triangles), 1.0, places=14, msg=name)
+
+    def test_voxels_lie_in_the_middle_of_their_edges(self):
+        from voxel_data import voxel_centers
+
+        np.testing.assert_allclose(voxel_centers(-1.0, 2.0, 3), [-0.5, 0.5, 1.5], atol=1e-15)
+
+    def test_a_hand_whose_joints_do_not_start_at_the_palm_is_refused(self):
+        from hands import forward_kinematics
+
+        def joint(parent, child):
+            return {"name": f"{parent}_{child}", "type": "revolute", "lower": 0.0, "upper": 1.0,
+                    "parent_link": parent, "child_link": child, "axis_J": [0, 0, 1],
+                    "X_PJ": {"translation_m": [1, 0, 0], "rotation_wxyz": [1, 0, 0, 0]},
+                    "closing_sign": 0, "coupling": None}  # fmt: skip
+
+        joints = [joint("b", "c"), joint("a", "b")]
+        links, _ = forward_kinematics({"name": "chain", "palm": {"link": "a"}, "joints": joints})
+        np.testing.assert_allclose(links["c"][:3, 3], [2, 0, 0], atol=1e-15)
+        with self.assertRaisesRegex(BadData, "hand chain: .* a_b"):
+            forward_kinematics({"name": "chain", "palm": {"link": "b"}, "joints": joints})
 
     def test_a_file_that_makes_no_sense_is_named(self):
         (self.folder / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n1 0\n")
@@ -181,6 +220,59 @@ class BadDataIsOneLine(Folder):
 
     def test_a_figure_that_is_not_there(self):
         self.assertIn("there is no figure fig_99; --list shows all", self.refused("fig_99"))
+
+
+class Rerun(Folder):
+    """make --rerun on copies of the scripts, with programs that only note how they are called."""
+
+    def setUp(self):
+        super().setUp()
+        self.scripts = self.folder / "paper-figures"
+        self.scripts.mkdir()
+        for path in (FIGURES_DIR / "make", *FIGURES_DIR.glob("*.py")):
+            shutil.copy(path, self.scripts / path.name)
+        (self.folder / "viewer").symlink_to(SOURCE_DIR / "viewer")
+        self.stale = [self.scripts / f"data/{slug}/stale.json" for slug in ("paper_grasps", "fitting_stages")]
+        for path in self.stale:
+            path.parent.mkdir(parents=True)
+            path.write_text("{}")
+        self.log = self.folder / "log"
+        # Refuses, as publishing does, once anything of what was there has changed.
+        self.program("graspfit", f'''test -e "{self.stale[0]}" -a -e "{self.stale[1]}" || exit 1
+            echo "$3" >> "{self.log}"
+            mkdir -p "$5"
+            echo object > "$5/$3.csv"''')
+        self.program("xvfb-run", 'shift 3; exec "$@"')
+
+    def program(self, name, text):
+        path = self.folder / "bin" / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+
+    def make(self, *words):
+        environment = {k: v for k, v in os.environ.items() if k != "GRASPFIT_UNDER_XVFB"}
+        environment["PATH"] = f"{self.folder / 'bin'}{os.pathsep}{environment['PATH']}"
+        return subprocess.run(
+            [sys.executable, str(self.scripts / "make"), *map(str, words)],
+            env=environment, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+
+    def test_every_experiment_is_run_once_before_any_grasp_file_is_adopted(self):
+        done = self.make("contact_triangles", "fitting_stages", "--rerun")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.log.read_text().split(), ["paper_grasps", "fitting_stages"])
+        self.assertEqual(done.stdout.count("grasp files adopted"), 2)
+        self.assertFalse(any(path.exists() for path in self.stale))
+
+    def test_pictures_of_earlier_runs_do_not_enter_the_sheet(self):
+        out = self.folder / "out"
+        out.mkdir()
+        shutil.copy(FIGURES_DIR / "contact_sheet.png", out / "special_cases.png")
+        done = self.make("special_cases", "--out", out, "--contact-sheet", self.folder / "sheet.png")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+        self.assertIn("no figure was drawn for it", done.stderr)
+        self.assertFalse((self.folder / "sheet.png").exists())
 
 
 class Rendered(Folder):
