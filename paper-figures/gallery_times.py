@@ -34,8 +34,8 @@ def draw(source):
         values = np.asarray(values, dtype=float)
         ax.barh(y, np.nan_to_num(values), color=colors, height=0.7)
         for at, value in zip(y, values):
-            words = "no valid grasp" if np.isnan(value) else number.format(value)
-            ax.text(np.nan_to_num(value), at, f" {words}", va="center", fontsize=6.5)
+            shown_value = "no valid grasp" if np.isnan(value) else number.format(value)
+            ax.text(np.nan_to_num(value), at, f" {shown_value}", va="center", fontsize=6.5)
         ax.set_yticks(y, [shown_name(name) for name in names] if ax is axes[0][0] else [""] * len(y))
         ax.set_xlim(0, 1.22 * np.max(np.nan_to_num(values)) or 1.0)
         ax.set_ylim(-0.6, len(y) - 0.4)

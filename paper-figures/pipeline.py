@@ -23,7 +23,7 @@ def draw_distances(ax, voxels):
         colors="black", linewidths=0.5,
     )  # fmt: skip
     ax.set_xlabel(f"{names[0]} [cm]", labelpad=0)
-    ax.set_ylabel(f"{names[1]} [cm]", labelpad=-3)
+    ax.set_ylabel(f"{names[1]} [cm]", labelpad=0)
     ax.grid(False)
     ax.tick_params(labelsize=6)
     return shown
@@ -52,7 +52,7 @@ def draw(source):
     shown = draw_distances(one[3], voxels)
     one[3].set_title("4  signed distances [voxels]", pad=3)
     box = one[3].get_position()
-    one[3].set_position([box.x0 + 0.02, box.y0 + 0.045, box.width - 0.055, box.height - 0.045])
+    one[3].set_position([box.x0 + 0.035, box.y0 + 0.045, box.width - 0.07, box.height - 0.045])
     bar = figure.colorbar(shown, cax=figure.add_axes([0.955, box.y0 + 0.08, 0.008, box.height - 0.11]))
     bar.ax.tick_params(labelsize=6)
     bar.outline.set_visible(False)

@@ -39,7 +39,7 @@ constexpr double kMeasuredRel = 0.05;      // of the outward deviation's bound
 constexpr double kSameVolumeRel = 1e-12;
 constexpr int kDepthResolution = 128;
 constexpr int kVolumeLines = 128;
-// Of a part's depth: cuts that leave more of it, and nothing beside it, are the last.
+// Of a part's depth: cuts that leave more of it, and nothing beside it, bring nothing.
 constexpr double kLeastGainRel = 0.9;
 
 // More parts than pieces: cuts that were right at first part what later may be united.
@@ -162,21 +162,38 @@ class Decomposer {
     const double allowed = std::min(aimed(), 0.5 * pieces_[index].depth);
     const auto plane = internal::choose_cut(parts_[index], pieces_[index].hull, depth_,
                                             solid_.mesh(), allowed, index);
-    if (!plane) {
-      can_split_[index] = false;
-      return;
+    if (plane && cut_at(index, *plane)) return;
+    // Of long slivers the planes of faces shave layers; cut in the middle they become shallower.
+    if (!cut_at(index, across(pieces_[index].hull))) can_split_[index] = false;
+  }
+
+  /// Halfway between the two corners that are the farthest apart.
+  static internal::CutPlane across(const PieceHull& hull) {
+    const std::vector<Vector3d>& corners = hull.mesh.vertices;
+    Vector3d longest = Vector3d::Zero();
+    Vector3d middle = Vector3d::Zero();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      for (std::size_t j = i + 1; j < corners.size(); ++j) {
+        const Vector3d between = corners[j] - corners[i];
+        if (between.squaredNorm() <= longest.squaredNorm()) continue;
+        longest = between;
+        middle = 0.5 * (corners[i] + corners[j]);
+      }
     }
-    auto [below, above] = internal::cut(parts_[index], *plane, kOnPlaneRel * extent_, solid_);
-    if (below.num_polygons() == 0 || above.num_polygons() == 0) {
-      can_split_[index] = false;
-      return;
-    }
+    const Vector3d normal = longest.normalized();
+    return {normal, normal.dot(middle)};
+  }
+
+  /// Whether that brought anything: without, the part is as it was.
+  bool cut_at(std::size_t index, const internal::CutPlane& plane) {
+    auto [below, above] = internal::cut(parts_[index], plane, kOnPlaneRel * extent_, solid_);
+    if (below.num_polygons() == 0 || above.num_polygons() == 0) return false;
     std::optional<Piece> lower = piece_of(below.hull_points());
     std::optional<Piece> upper = piece_of(above.hull_points());
     if (!lower && !upper) {
       // Of a sliver, which may still reach far out, nothing is left that is thick enough.
       remove(index);
-      return;
+      return true;
     }
     if (!lower) {
       std::swap(lower, upper);
@@ -184,14 +201,15 @@ class Decomposer {
     }
     verify(*lower);
     // Where only a layer too thin for a piece comes off, the next cut would take the next one.
-    if (!upper && lower->depth > kLeastGainRel * pieces_[index].depth) can_split_[index] = false;
+    if (!upper && lower->depth > kLeastGainRel * pieces_[index].depth) return false;
     pieces_[index] = *std::move(lower);
     parts_[index] = std::move(below);
-    if (!upper) return;
+    if (!upper) return true;
     verify(*upper);
     pieces_.push_back(*std::move(upper));
     parts_.push_back(std::move(above));
     can_split_.push_back(true);
+    return true;
   }
 
   const MeshQuery& solid_;

@@ -18,7 +18,7 @@ namespace graspfit::geometry {
 namespace {
 
 // Raised whenever the same input may give another result.
-constexpr std::string_view kAlgorithm = "convex decomposition 2";
+constexpr std::string_view kAlgorithm = "convex decomposition 3";
 
 /// Held by whoever looks for an entry: what takes seconds to find is found by one, thread or
 /// process, while the others wait for it. Where no lock can be had there is none, and both do it.
