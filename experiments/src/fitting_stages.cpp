@@ -105,6 +105,11 @@ class Loop {
       least = difference;
       best = side;
     }
+    if (!best) {
+      throw geometry::InvalidInput(
+          "fitting_stages: no palm placement leads to the best grasp: it has " +
+          std::to_string(targets_.contacts.size()) + " targets");
+    }
     return *best;
   }
 
@@ -129,8 +134,18 @@ std::optional<double> mean_target_distance(const grasp::Grasp& grasp) {
   return mean(distances);
 }
 
+/// Grasps of other methods have no targets from which the loop could be run again.
+PlanningSettings settings_of(const Cell& cell) {
+  PlanningSettings settings = planning_settings(cell);
+  if (settings.options.planner != "fitting") {
+    throw SettingError("planner", "is \"" + settings.options.planner +
+                                      "\", must be fitting: only its grasps have targets");
+  }
+  return settings;
+}
+
 CellResult run(const Cell& cell, const std::filesystem::path& folder) {
-  const Planned planned = plan(planning_settings(cell));
+  const Planned planned = plan(settings_of(cell));
   CellResult result{ResultRow(columns()), ResultRow(planning_timings())};
   fill_planning_timings(planned, result.timings);
   result.row.set("object_extent_m", geometry::longest_extent(planned.object_file->mesh));
@@ -170,9 +185,9 @@ Experiment fitting_stages() {
   experiment.columns = columns();
   experiment.timings = planning_timings();
   experiment.details = details();
-  experiment.check = [](const Cell& cell) { planning_settings(cell); };
+  experiment.check = [](const Cell& cell) { settings_of(cell); };
   experiment.run = run;
-  experiment.inputs = [](const Cell& cell) { return planning_inputs(planning_settings(cell)); };
+  experiment.inputs = [](const Cell& cell) { return planning_inputs(settings_of(cell)); };
   return experiment;
 }
 

@@ -92,7 +92,7 @@ std::vector<ResultRow> point_rows(const grasp::GuidanceModel& model) {
     const auto values = values_of(model, number.in_model);
     if (!values) continue;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i].set(number.column.name, std::round((*values)[i] * number.steps) / number.steps);
+      rows[i].set(number.column.name, std::round((*values)[i] * number.steps) / number.steps + 0.0);
     }
   }
   if (const auto kinds = values_of(model, kKindInModel)) {

@@ -30,7 +30,8 @@ constexpr double kStepsPerMeter = 1e6;
 constexpr double kStepsPerUnit = 1e4;
 constexpr std::array kAxes = {"x", "y", "z"};
 
-double rounded(double value, double steps) { return std::round(value * steps) / steps; }
+/// Never a negative zero, whose sign is rounding error.
+double rounded(double value, double steps) { return std::round(value * steps) / steps + 0.0; }
 
 std::vector<Column> own_settings() {
   return {{"slice_axis", "", "x, y or z: the details have a slice across it; without: none"}};

@@ -147,6 +147,10 @@ TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
       CHECK(voxel.at("j") == ball.row.at("slice"));
       CHECK(voxel.at("score").empty());
     }
+    for (const auto& [name, text] : voxel) {
+      INFO(name);
+      CHECK(text != "-0");
+    }
     if (voxel.at("j") == ball.row.at("slice"))
       slice_rows.insert(voxel.at("i") + "," + voxel.at("k"));
   }
@@ -240,6 +244,17 @@ TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][
   CHECK(refined == Approx(number(stages.row, "refinement_shift_m")).margin(1e-12));
   CHECK(refined <= planned.settings.options.refinement.largest_shift + 1e-9);
   CHECK((palm_at["initial"] - palm_at["grasp"]).norm() > refined);
+}
+
+TEST_CASE("Stages are those of fitting: another planner is refused by name",
+          "[experiments][fitting_stages]") {
+  for (const std::string planner : {"gs", "ma"}) {
+    CHECK_THROWS_WITH(run("fitting_stages", R"({"shape": "torus", "size_m": 0.14, "hand": "barrett",
+            "contacts": 3, "count": 1, "max-attempts": 3, "resolution": 20,
+            "weak-thickness-mm": 0, "planner": ")" +
+                                                planner + "\"}"),
+                      Catch::Contains("is \"" + planner + "\", must be fitting"));
+  }
 }
 
 TEST_CASE("Time and quality by contacts: the row sums up the grasps",
