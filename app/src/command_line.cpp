@@ -202,9 +202,8 @@ std::string help_text(const Command& command) {
   if (!command.epilog.empty()) text << '\n' << command.epilog;
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
           "line says why,\nnothing is written, except that grasps are kept if drawing their "
-          "pictures fails); 3 no grasp\nfound; 4 evaluate: measures differ; experiment verify: "
-          "results "
-          "differ.\n";
+          "pictures fails); 3 no grasp\nfound; 4 evaluate: measures differ; motion: not "
+          "free of\ncollisions; experiment verify: results differ.\n";
   return text.str();
 }
 

@@ -10,8 +10,8 @@ enum ExitCode : int {
   kInternalError = 1,  ///< Our mistake.
   kBadInput = 2,       ///< A file or a flag that cannot be used; one line says why.
   kNoGrasp = 3,        ///< `plan` found no grasp; the line says how the attempts ended.
-  kDiffers = 4,  ///< `evaluate` computed other measures than the file has; `experiment verify`
-                 ///< found other results than the published ones.
+  kDiffers = 4,  ///< `evaluate` or `experiment verify` found other results than those on file;
+                 ///< `motion` found a stretch that is not free of collisions.
 };
 
 /// A command line that cannot be understood.

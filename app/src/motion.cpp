@@ -8,6 +8,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/motion_io.hpp"
 #include "graspfit/viewer/motion_page.hpp"
@@ -22,6 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using geometry::RigidTransform;
 
+/// Frames nearer to each other than this show nothing new, and take hours [m].
+constexpr double kLeastStep = 1e-5;
+
 Command motion_command() {
   Command command{
       "motion", "MOTION.json",
@@ -33,7 +37,9 @@ Command motion_command() {
   add_option(command.options, "meshes", "DIR", std::nullopt,
              "what the names of object files are relative to (default: $GRASPFIT_DATA, or shared "
              "beside the sources)");
-  add_option(command.options, "step-mm", "NUMBER", "5", "largest motion between two frames [mm]");
+  add_option(command.options, "step-mm", "NUMBER", "5",
+             "largest motion between two frames [mm], at least " +
+                 geometry::shortest_decimal(1000.0 * kLeastStep));
   add_option(command.options, "html", "FILE", std::nullopt,
              "write a page that replays the motion, for any browser");
   add_option(command.options, "gif", "FILE", std::nullopt,
@@ -59,6 +65,17 @@ bool keeps_clearance(grasp::MotionPhase phase) {
          phase == grasp::MotionPhase::Retreat;
 }
 
+/// Frames of a stretch on which a point travels that far, beside its start.
+int num_frames(double travel, double step) {
+  constexpr double kMost = 1e6;
+  const double frames = std::max(1.0, std::ceil(travel / step));
+  if (!(frames <= kMost)) {
+    throw geometry::InvalidInput("a stretch of " + geometry::shortest_decimal(travel) +
+                                 " m has more than 1000000 frames; a larger --step-mm makes fewer");
+  }
+  return static_cast<int>(frames);
+}
+
 CheckedMove checked(const grasp::TableScene& scene, const std::vector<RigidTransform>& X_WO,
                     const grasp::RecordedMove& move, double clearance, double step) {
   CheckedMove result;
@@ -72,7 +89,7 @@ CheckedMove checked(const grasp::TableScene& scene, const std::vector<RigidTrans
       result.findings.push_back(phase + ": not proven free, " + met->text());
     }
     const double travel = grasp::largest_travel(scene, stretch);
-    const int parts = static_cast<int>(std::max(1.0, std::ceil(travel / step)));
+    const int parts = num_frames(travel, step);
     bool has_overlap = false;
     for (int i = 0; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
@@ -144,7 +161,10 @@ ExitCode run_motion(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const double step = flags.number("step-mm") / 1000.0;
-  if (!(step > 0.0)) throw UsageError("--step-mm " + flags.text("step-mm") + " is not above 0");
+  if (!(step >= kLeastStep)) {
+    throw UsageError("--step-mm " + flags.text("step-mm") + " is below " +
+                     geometry::shortest_decimal(1000.0 * kLeastStep) + " mm");
+  }
   const fs::path path = flags.positional();
   for (const std::string flag : {"html", "gif", "png"}) {
     if (flags.has(flag)) require_parent_folder("--" + flag, flags.text(flag));
@@ -157,10 +177,13 @@ ExitCode run_motion(const std::vector<std::string>& arguments) {
   grasp::MotionFile file = grasp::read_motion(path);
   const fs::path meshes =
       flags.has("meshes") ? fs::path(flags.text("meshes")) : experiments::data_folder();
-  const viewer::MotionInput input{grasp::read_motion_scene(file, meshes), file};
+  viewer::MotionInput input{grasp::read_motion_scene(file, meshes), file};
   require_joints(input.file, input.scene.hand());
   progress.clear();
-  const bool is_free = flags.has("no-check") || check(input, step, progress);
+  if (!flags.has("no-check")) {
+    const bool is_free = check(input, step, progress);
+    input.check = is_free ? viewer::MotionCheck::Free : viewer::MotionCheck::NotFree;
+  }
   if (flags.has("html")) {
     viewer::write_motion_page(flags.text("html"), input);
     std::printf("written to %s\n", flags.text("html").c_str());
@@ -172,7 +195,7 @@ ExitCode run_motion(const std::vector<std::string>& arguments) {
     progress.clear();
     std::printf("written to %s\n", flags.text(flag).c_str());
   }
-  return is_free ? kSuccess : kDiffers;
+  return input.check == viewer::MotionCheck::NotFree ? kDiffers : kSuccess;
 }
 
 }  // namespace graspfit::app

@@ -45,6 +45,10 @@ class Motion(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count(" yes\n"), int(self.row["moves"]), done.stdout)
         self.assertIn("A flower pot past a bottle", page.read_text(encoding="utf-8"))
+        self.assertIn('"check":"free"', page.read_text(encoding="utf-8"))
+        done = run("motion", self.motion, "--no-check", "--html", page)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn('"check":"not_checked"', page.read_text(encoding="utf-8"))
 
         # Into the table: the pose in which the first object is put down, 5 mm deeper.
         motion = json.loads(self.motion.read_text())
@@ -52,9 +56,10 @@ class Motion(ProgramTest):
         for key in ("X_WO", "X_WH"):
             place[key]["translation_m"][2] -= 0.005
         changed = self.write("changed.json", json.dumps(motion))
-        done = run("motion", changed, "--step-mm", "50")
+        done = run("motion", changed, "--step-mm", "50", "--html", page)
         self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
         self.assertIn("and table", done.stdout)
+        self.assertIn('"check":"not_free"', page.read_text(encoding="utf-8"))
 
         # Another mesh than the one that was moved.
         folder = self.folder / "meshes/paper"
@@ -68,11 +73,17 @@ class Motion(ProgramTest):
 
 
 class BadFlags(ProgramTest):
+    def test_help_says_what_exit_code_4_means(self):
+        text = run("motion", "--help").stdout
+        self.assertIn("motion: not free of collisions", " ".join(text.split()))
+
     def test_refusals(self):
         self.assert_refused("motion", says=["MOTION.json"])
         self.assert_refused("motion", "none.json", says=["none.json"])
         self.assert_refused("motion", self.write("x.json", "{}"), says=["/format"])
-        self.assert_refused("motion", "x.json", "--step-mm", "0", says=["--step-mm"])
+        for step in ("0", "-5", "1e-300", "0.009"):
+            self.assert_refused("motion", "x.json", "--step-mm", step,
+                                says=[f"--step-mm {step} is below 0.01 mm"])
 
 
 if __name__ == "__main__":

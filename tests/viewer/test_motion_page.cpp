@@ -55,6 +55,21 @@ TEST_CASE("A motion's frames are as near as asked for and belong to one phase ea
   CHECK(data["unmoved"][0]["reason"] == "it is too flat");
 }
 
+TEST_CASE("A motion's page claims no more than was found", "[viewer][motion_page]") {
+  viewer::MotionInput input = sample_motion();
+  const auto check_of = [&] {
+    return nlohmann::json::parse(viewer::motion_scene_json(input))["check"].get<std::string>();
+  };
+  CHECK(check_of() == "not_checked");
+  input.check = viewer::MotionCheck::Free;
+  CHECK(check_of() == "free");
+  input.check = viewer::MotionCheck::NotFree;
+  CHECK(check_of() == "not_free");
+  for (const char* const finding : {"free", "not_free", "not_checked"}) {
+    CHECK_THAT(viewer::motion_page_html(input), Contains(std::string("  ") + finding + ": '"));
+  }
+}
+
 TEST_CASE("A motion's page refuses what does not fit together", "[viewer][motion_page]") {
   const auto refused = [](auto change) {
     viewer::MotionInput input = sample_motion();
@@ -72,6 +87,8 @@ TEST_CASE("A motion's page refuses what does not fit together", "[viewer][motion
              Contains("3 objects, the file 2"));
   CHECK_THAT(refused([](auto& input) { input.file.joints.pop_back(); }), Contains("joints"));
   CHECK_THAT(refused([](auto& input) { input.frame_step = 0.0; }), Contains("frame_step"));
+  CHECK_THAT(refused([](auto& input) { input.frame_step = 1e-300; }),
+             Contains("more than 100000 frames"));
   CHECK_THAT(refused([](auto& input) { input.largest_speed = std::nan(""); }),
              Contains("largest_speed"));
 }

@@ -138,16 +138,25 @@ function makeControls() {
       `${moves.length} moves · ${objects.length - data.unmoved.length} of ${objects.length} objects at their goals`;
 }
 
+// What the page may claim: only what was found when it was made.
+const kFindings = {
+  free: 'Every straight stretch between two keyframes was proven free of collisions, not sampled: ' +
+      'of hand, carried object, standing objects and table nothing touches anything else, and on ' +
+      'the way to the object, through the air and back everything keeps ' +
+      `${millimeters(data.proven_clearance, 1)} mm.`,
+  not_free: 'Not all of it is free of collisions: at least one stretch between two keyframes ' +
+      'touches something, keeps less than ' + `${millimeters(data.proven_clearance, 1)} mm` +
+      ' where it should, or could not be proven to. "graspfit motion" names each.',
+  not_checked: 'Whether it is free of collisions was not checked when this page was made.',
+};
+
 function showStory() {
   const stays = data.unmoved.map(
       (one) => element('li', {}, `${nameOf(one)}: ${one.reason}`));
   byId('right').replaceChildren(
       element('h2', {}, 'The motion'),
       element('p', {id: 'story'}, 'Each object is taken by a planned grasp, lifted, turned in the air, ' +
-          'put down and left. Every straight stretch between two keyframes was proven free of ' +
-          'collisions, not sampled: of hand, carried object, standing objects and table nothing touches ' +
-          'anything else, and on the way to the object, through the air and back everything keeps ' +
-          `${millimeters(data.proven_clearance, 1)} mm.`),
+          'put down and left. ' + kFindings[data.check]),
       element('p', {className: 'soft'}, 'Geometry alone: no arm, no forces, no times. What is shown ' +
           'takes as long as it looks well.'),
       ...(stays.length ? [element('h2', {}, 'Not moved'), element('ul', {}, ...stays)] : []));

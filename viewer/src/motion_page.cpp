@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -33,6 +34,32 @@ void validate(const MotionInput& input) {
   }
 }
 
+std::string_view name_of(MotionCheck check) {
+  switch (check) {
+    case MotionCheck::NotChecked:
+      return "not_checked";
+    case MotionCheck::Free:
+      return "free";
+    case MotionCheck::NotFree:
+      return "not_free";
+  }
+  return "";
+}
+
+/// Frames of a stretch on which a point travels that far [m].
+int num_frames(double travel, double frame_step) {
+  constexpr double kFewest = 4.0;  // so that a short approach can be seen
+  constexpr double kMost = 1e5;
+  const double frames = std::max(kFewest, std::ceil(travel / frame_step));
+  if (!(frames <= kMost)) {
+    throw geometry::InvalidInput("motion_scene_json: a stretch of " +
+                                 geometry::shortest_decimal(travel) + " m in frames of " +
+                                 geometry::shortest_decimal(frame_step) +
+                                 " m has more than 100000 frames");
+  }
+  return static_cast<int>(frames);
+}
+
 /// Poses of all bodies, frame by frame.
 class Frames {
  public:
@@ -62,9 +89,7 @@ Json add_move(const MotionInput& input, const grasp::RecordedMove& move,
               const std::vector<RigidTransform>& X_WO, Frames& frames) {
   Json phases = Json::array();
   for (const grasp::MotionStretch& stretch : move.stretches) {
-    constexpr double kFewest = 4.0;  // so that a short approach can be seen
-    const double travel = grasp::largest_travel(input.scene, stretch);
-    const int parts = static_cast<int>(std::max(kFewest, std::ceil(travel / input.frame_step)));
+    const int parts = num_frames(grasp::largest_travel(input.scene, stretch), input.frame_step);
     for (int i = 1; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
       frames.add(X_WO, move.object, grasp::state_at(input.scene, stretch, share));
@@ -112,6 +137,7 @@ std::string motion_scene_json(const MotionInput& input) {
                      {"num_frames", frames.count()},
                      {"object_poses", frames.objects()},
                      {"link_poses", frames.links()},
+                     {"check", name_of(input.check)},
                      {"proven_clearance", file.clearance},
                      {"moves", moves},
                      {"unmoved", unmoved}};
