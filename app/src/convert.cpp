@@ -65,7 +65,7 @@ Command convert_command() {
   add_option(general, "grasp", "N,...", std::nullopt, "these grasps only, by their ranks");
   add_option(
       general, "object", "FILE", std::nullopt,
-      "of isaac_grasp: the object, whose frame is the file's object frame; else the object's "
+      "of isaac_grasp: the object, whose frame is the file's object frame; to glb: the object's "
       "file, if it is no longer where the grasp file says");
   add_option(general, "body-file", "PATH", std::nullopt,
              "graspit: the object's body file below $GRASPIT, or a mesh in millimeters");
@@ -191,6 +191,11 @@ Source read_source(const Flags& flags, const Target& target) {
   if (!target.format) {
     throw UsageError("IN and OUT are both grasp files of graspfit; there is nothing to convert");
   }
+  if (flags.has("object") && target.format != ExchangeFormat::PosedGlb) {
+    throw UsageError("--object is for isaac_grasp files and for --format glb; " +
+                     std::string(exchange::name_of(*target.format)) +
+                     " has no mesh that it could say the file of");
+  }
   return {grasp::read_grasps(flags.positional()), {}, {}, {}};
 }
 
@@ -239,9 +244,11 @@ std::string file_name(std::size_t index, ExchangeFormat format) {
          std::string(exchange::extension_of(format));
 }
 
-bool is_convert_file(const std::string& name) {
-  static const std::regex pattern(R"(grasp_\d{3,}\.(xml|glb))");
-  return std::regex_match(name, pattern);
+/// What an earlier run left of the same format: files of the other one stay.
+bool is_convert_file(const std::string& name, ExchangeFormat format) {
+  static const std::regex pattern(R"(grasp_\d{3,}\.(.*))");
+  std::smatch match;
+  return std::regex_match(name, match, pattern) && match[1].str() == exchange::extension_of(format);
 }
 
 void write(const Flags& flags, const Target& target, const Source& source) {
@@ -261,7 +268,9 @@ void write(const Flags& flags, const Target& target, const Source& source) {
     geometry::write_file_atomically(target.path, content(flags, *target.format, file, mesh_O, 0));
     return;
   }
-  OutputFolder out(target.path, is_convert_file);
+  OutputFolder out(target.path, [format = *target.format](const std::string& name) {
+    return is_convert_file(name, format);
+  });
   for (std::size_t i = 0; i < file.grasps.size(); ++i) {
     geometry::write_file_atomically(out.staging() / file_name(i, *target.format),
                                     content(flags, *target.format, file, mesh_O, i));
@@ -309,6 +318,10 @@ ExitCode run_convert(const std::vector<std::string>& arguments) {
   }
   flags.positional();
   const Target target = read_target(flags);
+  std::error_code error;
+  if (fs::equivalent(flags.positional(), target.path, error)) {
+    throw UsageError("OUT \"" + target.path.string() + "\" is IN, which would be lost");
+  }
   Source source = read_source(flags, target);
   const std::size_t num_grasps_read = source.file.grasps.size();
   select(flags, source);

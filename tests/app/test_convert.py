@@ -314,6 +314,13 @@ class Written(ConvertTest):
         self.convert("out/grasps.json", "all", "--format", "glb", "--grasp", "3,1")
         self.assertEqual(sorted(path.name for path in (self.folder / "all").iterdir()),
                          ["grasp_001.glb", "grasp_002.glb"])
+        # In one folder two formats are beside each other, and files of others stay.
+        (self.folder / "all/grasp_009.glb.txt").write_text("mine")
+        self.convert("out/grasps.json", "all", "--format", "graspit")
+        self.convert("out/grasps.json", "all", "--format", "glb", "--grasp", "2")
+        self.assertEqual(sorted(path.name for path in (self.folder / "all").iterdir()),
+                         ["grasp_001.glb", "grasp_001.xml", "grasp_002.xml", "grasp_003.xml",
+                          "grasp_009.glb.txt"])
 
 
 class Imported(ConvertTest):
@@ -434,6 +441,10 @@ class BadInput(ConvertTest):
                 ((ours, "a.yaml", *hand), "--hand is for isaac_grasp files"),
                 ((ours, "a.yaml", "--longest", "0.1"), "--longest is for isaac_grasp files"),
                 ((ours, "a.yaml", "--robot-file", "x.xml"), "--robot-file is for --format graspit"),
+                ((ours, "a.yaml", "--object", "torus.off"), "--object is for isaac_grasp files"),
+                ((ours, "a.glb", "--object", "none.off"), "none.off"),
+                ((ours, ours, "--format", "isaac"), "is IN, which would be lost"),
+                ((theirs, "./" + theirs, *hand, *mesh, "--format", "moveit"), "is IN"),
                 ((ours, "a.glb", "--grasp", "4"), "there are 3 grasps"),
                 ((ours, "a.glb", "--grasp", "0"), "does not list ranks"),
                 ((ours, "no/where/a.yaml"), "no/where"),
