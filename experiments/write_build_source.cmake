@@ -12,12 +12,12 @@ if(GIT)
     set(commit "")
   else()
     # Published results may differ: publishing one experiment must not keep the next from it.
+    set(aside ":(exclude)notebooks-data" ":(exclude)paper-figures/data")
     execute_process(
-      COMMAND ${GIT} -C ${SOURCE_DIR} diff --quiet HEAD -- . ":(exclude)notebooks-data"
+      COMMAND ${GIT} -C ${SOURCE_DIR} diff --quiet HEAD -- . ${aside}
       RESULT_VARIABLE differs ERROR_QUIET)
     execute_process(
-      COMMAND ${GIT} -C ${SOURCE_DIR} ls-files --others --exclude-standard -- .
-              ":(exclude)notebooks-data"
+      COMMAND ${GIT} -C ${SOURCE_DIR} ls-files --others --exclude-standard -- . ${aside}
       OUTPUT_VARIABLE untracked ERROR_QUIET)
     if(NOT differs AND untracked STREQUAL "")
       set(is_clean true)

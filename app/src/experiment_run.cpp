@@ -87,8 +87,8 @@ Command verify_command() {
   return {"experiment verify", "SLUG",
           "Compares the tables of a run, perhaps with --set of fewer cells, with published ones, "
           "perhaps\nof another machine: rows of the same labels, numbers within a tolerance, all "
-          "else exactly.\nTimings are not compared. Exit code 4 if fields differ; which, is "
-          "printed.\n",
+          "else exactly.\nTimings are not compared. Exit code 4 if fields differ or rows of the "
+          "run's cells are missing;\nwhich, is printed.\n",
           options, ""};
 }
 
@@ -159,6 +159,20 @@ void print_comparison(const experiments::PublishedComparison& table) {
   if (found.differences.size() > kMostShown) {
     std::printf("  and %zu more\n", found.differences.size() - kMostShown);
   }
+  if (found.missing_rows.empty()) return;
+  std::printf("  %zu published rows of the run's cells are missing\n", found.missing_rows.size());
+  for (std::size_t i = 0; i < found.missing_rows.size() && i < kMostShown; ++i) {
+    std::printf("  %s: is missing\n", found.missing_rows[i].c_str());
+  }
+}
+
+/// "2 of these failed", and how many of them the next run tries again.
+std::string failures_text(const experiments::RunProgress& done) {
+  std::string text = std::to_string(done.num_failed) + " of these failed";
+  if (done.num_not_final > 0) {
+    text += " (" + std::to_string(done.num_not_final) + " to be tried again by the next run)";
+  }
+  return text;
 }
 
 }  // namespace
@@ -218,8 +232,8 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
     experiments::publish(experiment, config, options.folder, sources, published_folder());
   }
   if (!flags.has("quiet")) {
-    std::printf("%zu cells: %zu finished (%zu earlier), %zu of these failed, %zu skipped\n",
-                done.num_cells, done.num_done, done.num_resumed, done.num_failed, done.num_skipped);
+    std::printf("%zu cells: %zu finished (%zu earlier), %s, %zu skipped\n", done.num_cells,
+                done.num_done, done.num_resumed, failures_text(done).c_str(), done.num_skipped);
     const fs::path folder =
         options.shard ? experiments::shard_folder(options.folder, *options.shard) : options.folder;
     std::printf("written to %s\n", folder.c_str());
@@ -254,8 +268,8 @@ ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
     experiments::publish(experiment, config, folder, sources, published_folder());
   }
   if (!flags.has("quiet")) {
-    std::printf("%zu cells: %zu finished, %zu of these failed, %zu skipped\nwritten to %s\n",
-                done.num_cells, done.num_done, done.num_failed, done.num_skipped, folder.c_str());
+    std::printf("%zu cells: %zu finished, %s, %zu skipped\nwritten to %s\n", done.num_cells,
+                done.num_done, failures_text(done).c_str(), done.num_skipped, folder.c_str());
     if (flags.has("publish")) std::printf("published in notebooks-data\n");
   }
   return kSuccess;
@@ -273,7 +287,7 @@ ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
   for (const experiments::PublishedComparison& table :
        experiments::compare_with_published(experiment, results_folder(flags), published, options)) {
     print_comparison(table);
-    is_equal = is_equal && table.comparison.differences.empty();
+    is_equal = is_equal && table.comparison.is_equal();
   }
   return is_equal ? kSuccess : kDiffers;
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <thread>
 #include <tuple>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -130,8 +131,15 @@ CellJournal::~CellJournal() { ::close(descriptor_); }
 void CellJournal::open_and_lock() {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(std::strerror(errno));
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  // Who asks whether a run is going holds the lock for a moment, too: see is_journal_in_use.
+  constexpr int kMostTries = 50;
+  constexpr std::chrono::milliseconds kPause(10);
+  for (int tries = 1; ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++tries) {
     const int reason = errno;
+    if (reason == EWOULDBLOCK && tries < kMostTries) {
+      std::this_thread::sleep_for(kPause);
+      continue;
+    }
     ::close(descriptor_);
     fail(reason == EWOULDBLOCK ? "is in use by another run" : std::strerror(reason));
   }

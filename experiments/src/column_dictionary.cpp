@@ -41,7 +41,8 @@ std::string column_dictionary(const Experiment& experiment, const ExperimentConf
   std::vector<Column> axes;
   for (const Axis& axis : config.sweep.axes) axes.push_back(axis_column(axis, experiment));
   const std::vector<Column> cell = {
-      {"cell_seed", "1", "the planner's seed in this cell"},
+      {"cell_seed", "1",
+       "the cell's seed: its planner's, where it runs one and planner-seed is not set"},
       {"status", "", "ok, failed (the reason says why, results are empty) or skipped (no data)"},
       {"reason", "", "why the cell is not ok"}};
   const std::vector<Column> times = {{"wall_s", "s", "the cell by the clock"},

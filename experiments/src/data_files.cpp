@@ -65,11 +65,16 @@ fs::path data_file(const std::string& relative) {
 
 std::string name_of_input(const fs::path& file) {
   const fs::path path = fs::absolute(file).lexically_normal();
-  for (const fs::path& folder : {data_folder(), source_folder()}) {
-    const fs::path root = fs::absolute(folder).lexically_normal();
-    if (lies_in(path, root)) return path.lexically_relative(root).string();
-  }
-  return path.string();
+  const fs::path data = fs::absolute(data_folder()).lexically_normal();
+  const fs::path sources = fs::absolute(source_folder()).lexically_normal();
+  // In the root of a file system lies everything; elsewhere such names mean nothing.
+  const bool has_data = data != data.root_path();
+  if (has_data && lies_in(path, data)) return path.lexically_relative(data).string();
+  if (!lies_in(path, sources)) return path.string();
+  const fs::path relative = path.lexically_relative(sources);
+  std::error_code error;
+  const bool is_taken = has_data && fs::exists(data / relative, error);
+  return (is_taken ? "sources" / relative : relative).string();
 }
 
 }  // namespace internal

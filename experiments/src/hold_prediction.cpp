@@ -50,7 +50,7 @@ std::vector<Target> targets() {
 }
 
 std::optional<double> outcome(const std::string& field, RankStatistic statistic) {
-  if (statistic == RankStatistic::Spearman) return number(field);
+  if (statistic == RankStatistic::Spearman) return csv_number(field);
   if (field.empty()) return std::nullopt;
   return field == kHeldStage ? 1.0 : 0.0;
 }
@@ -65,7 +65,7 @@ std::vector<ScoredOutcomes> clusters_of(const std::vector<const FinishedCell*>& 
   for (const FinishedCell* cell : cells) {
     ScoredOutcomes cluster;
     for (const std::vector<std::string>& row : cell->details) {
-      const std::optional<double> score = number(row[score_at]);
+      const std::optional<double> score = csv_number(row[score_at]);
       const std::optional<double> value = outcome(row[outcome_at], target.statistic);
       if (!score || !value) continue;
       cluster.scores.push_back(*score);

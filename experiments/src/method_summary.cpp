@@ -1,7 +1,6 @@
 #include "internal/method_summary.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <utility>
@@ -36,17 +35,10 @@ std::size_t column_of(const std::vector<Column>& details, const std::string& nam
   return static_cast<std::size_t>(found - details.begin());
 }
 
-std::optional<double> number(const std::string& field) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
-
 std::vector<double> numbers_of(const FinishedCell& cell, std::size_t column) {
   std::vector<double> values;
   for (const std::vector<std::string>& row : cell.details) {
-    if (const auto value = number(row[column])) values.push_back(*value);
+    if (const auto value = csv_number(row[column])) values.push_back(*value);
   }
   return values;
 }
@@ -158,8 +150,8 @@ std::vector<ResultRow> correlations(const std::vector<std::string>& measures,
           if (group != kAll && label_of(cell, group_axis) != group) continue;
           ScoredOutcomes cluster;
           for (const std::vector<std::string>& row : cell.details) {
-            const auto x = number(row[a]);
-            const auto y = number(row[b]);
+            const auto x = csv_number(row[a]);
+            const auto y = csv_number(row[b]);
             if (!x || !y) continue;
             cluster.scores.push_back(*x);
             cluster.outcomes.push_back(*y);

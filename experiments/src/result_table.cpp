@@ -1,8 +1,10 @@
 #include "graspfit/experiments/result_table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
 
 #include "graspfit/geometry/atomic_file.hpp"
 
@@ -34,6 +36,14 @@ struct FieldText {
 }  // namespace
 
 std::string csv_field(const Value& value) { return std::visit(FieldText(), value); }
+
+std::optional<double> csv_number(const std::string& field) {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [last, error] = std::from_chars(field.data(), end, value);
+  if (error != std::errc() || last != end) return std::nullopt;
+  return value;
+}
 
 std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;

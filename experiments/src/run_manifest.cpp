@@ -12,6 +12,7 @@
 #include "build_source.hpp"
 #include "graspfit/experiments/column_dictionary.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "internal/sweep_tables.hpp"
 
 namespace graspfit::experiments {
 namespace {
@@ -70,21 +71,6 @@ GitAnswer git(const fs::path& repository, const std::string& arguments) {
   throw geometry::InvalidInput("results are not published: " + why);
 }
 
-/// Looks at the manifest of a finished run for what keeps it from being published.
-void require_publishable_manifest(const fs::path& manifest) {
-  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
-  if (json.is_discarded() || !json.contains("cells") || !json.contains("inputs_sha256")) {
-    refuse(manifest.string() + " is damaged");
-  }
-  if (const auto skipped = json.at("cells").value("skipped", std::size_t{0}); skipped > 0) {
-    refuse(std::to_string(skipped) + " cells were skipped for want of data");
-  }
-  for (const auto& [file, hash] : json.at("inputs_sha256").items()) {
-    if (!fs::path(file).is_absolute()) continue;
-    refuse("input " + file + " lies neither in the data folder nor among the sources");
-  }
-}
-
 }  // namespace
 
 BuildSource build_source() { return {kBuildCommit, kIsBuildClean}; }
@@ -130,6 +116,7 @@ std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
                {"versions", versions},
                {"machine", machine()},
                {"inputs_sha256", Json(manifest.inputs)}};
+  if (!manifest.tables.empty()) json["tables_sha256"] = Json(manifest.tables);
   for (const std::string& text : manifest.shards) {
     const Json shard = Json::parse(text);
     Json& part = json["shards"].emplace_back();
@@ -150,7 +137,8 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
   if (built.commit.empty() || !built.is_clean) {
     refuse("the program was not built from a clean commit; commit, build again and run again");
   }
-  constexpr const char* kAside = " -- . ':(exclude)notebooks-data'";
+  // As write_build_source.cmake: what publishing itself writes.
+  constexpr const char* kAside = " -- . ':(exclude)notebooks-data' ':(exclude)paper-figures/data'";
   const GitAnswer untracked =
       git(sources, std::string("ls-files --others --exclude-standard") + kAside);
   if (!untracked.is_success) refuse(sources.string() + " is not under version control");
@@ -166,20 +154,49 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
   }
 }
 
+void require_publishable_manifest(const fs::path& manifest) {
+  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
+  if (json.is_discarded() || !json.contains("cells") || !json.contains("inputs_sha256")) {
+    refuse(manifest.string() + " is damaged");
+  }
+  if (const auto skipped = json.at("cells").value("skipped", std::size_t{0}); skipped > 0) {
+    refuse(std::to_string(skipped) + " cells were skipped for want of data");
+  }
+  if (const auto count = json.at("cells").value("not_final", std::size_t{0}); count > 0) {
+    refuse(std::to_string(count) + " cells failed for a reason that may pass (files, memory); " +
+           "run the experiment again");
+  }
+  for (const auto& [file, hash] : json.at("inputs_sha256").items()) {
+    if (!fs::path(file).is_absolute()) continue;
+    refuse("input " + file + " lies neither in the data folder nor among the sources");
+  }
+}
+
+void require_tables_of_manifest(const fs::path& manifest) {
+  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
+  if (json.is_discarded()) throw geometry::InvalidInput(manifest.string() + ": is damaged");
+  if (!json.contains("tables_sha256")) return;
+  for (const auto& [name, hash] : json.at("tables_sha256").items()) {
+    const fs::path table = manifest.parent_path() / name;
+    if (geometry::sha256_hex(geometry::read_file(table)) == hash) continue;
+    throw geometry::InvalidInput(table.string() + ": is not the table that " +
+                                 manifest.filename().string() +
+                                 " was written for (tables_sha256); run or publish it again");
+  }
+}
+
 void publish(const Experiment& experiment, const ExperimentConfig& config, const fs::path& folder,
              const fs::path& sources, const fs::path& published) {
   require_publishable(config, sources);
-  require_publishable_manifest(folder / (experiment.slug + ".manifest.json"));
+  const fs::path manifest = folder / (experiment.slug + ".manifest.json");
+  require_publishable_manifest(manifest);
+  require_tables_of_manifest(manifest);
   std::error_code error;
   fs::create_directories(published, error);
   if (error) throw geometry::IoError(published.string() + ": " + error.message());
-  std::vector<std::string> endings = {".csv", ".timing.csv", ".manifest.json"};
-  if (!experiment.details.empty()) endings.push_back(".details.csv");
-  for (const SummaryTable& summary : experiment.summaries) {
-    endings.push_back('.' + summary.name + ".csv");
-  }
-  for (const std::string& ending : endings) {
-    const std::string name = experiment.slug + ending;
+  std::vector<std::string> names = internal::table_names(experiment);
+  names.push_back(manifest.filename().string());
+  for (const std::string& name : names) {
     geometry::write_file_atomically(published / name, geometry::read_file(folder / name));
   }
   geometry::write_file_atomically(published / (experiment.slug + ".columns.json"),

@@ -76,7 +76,15 @@ class Run {
 
   RunProgress work() {
     std::vector<std::thread> threads;
-    for (int i = 1; i < jobs_; ++i) threads.emplace_back([this] { work_until_done(); });
+    try {
+      for (int i = 1; i < jobs_; ++i) threads.emplace_back([this] { work_until_done(); });
+    } catch (const std::system_error& error) {
+      const std::lock_guard lock(mutex_);
+      is_stopped_ = true;
+      error_ = std::make_exception_ptr(geometry::IoError(
+          "a run of " + std::to_string(jobs_) + " jobs: thread " +
+          std::to_string(threads.size() + 1) + " cannot be started: " + error.what()));
+    }
     work_until_done();
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
@@ -114,6 +122,7 @@ class Run {
     if (is_skipped) ++progress_.num_skipped;
     if (!is_skipped) ++progress_.num_done;
     if (record.status == "failed") ++progress_.num_failed;
+    if (record.status == "failed" && !record.is_final) ++progress_.num_not_final;
     if (callback_) callback_(progress_);
   }
 
@@ -161,8 +170,10 @@ void require_unchanged(const std::map<std::string, std::string>& before,
 
 void RunOptions::validate() const {
   if (folder.empty()) throw geometry::InvalidInput("RunOptions: folder is empty");
-  if (jobs < 1) {
-    throw geometry::InvalidInput("RunOptions: jobs = " + std::to_string(jobs) + ", must be >= 1");
+  constexpr int kMostJobs = 1024;
+  if (jobs < 1 || jobs > kMostJobs) {
+    throw geometry::InvalidInput("RunOptions: jobs = " + std::to_string(jobs) +
+                                 ", must be in [1, " + std::to_string(kMostJobs) + "]");
   }
   if (shard) shard->validate();
 }

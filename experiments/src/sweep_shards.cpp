@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using internal::CellJournal;
+using internal::CellRecord;
 using internal::JournalContent;
 
 /// The shard that a folder is named after; none if it is named otherwise.
@@ -76,10 +77,11 @@ RunProgress counts_of(const CellJournal& journal) {
   RunProgress counts;
   counts.num_cells = journal.num_cells();
   for (std::size_t i = 0; i < counts.num_cells; ++i) {
-    const std::string status = journal.read(i).status;
-    if (status == "skipped") ++counts.num_skipped;
-    if (status != "skipped") ++counts.num_done;
-    if (status == "failed") ++counts.num_failed;
+    const CellRecord record = journal.read(i);
+    if (record.status == "skipped") ++counts.num_skipped;
+    if (record.status != "skipped") ++counts.num_done;
+    if (record.status == "failed") ++counts.num_failed;
+    if (record.status == "failed" && !record.is_final) ++counts.num_not_final;
   }
   counts.num_resumed = counts.num_done;
   return counts;

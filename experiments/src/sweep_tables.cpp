@@ -55,6 +55,16 @@ void write_cell_tables(const Experiment& experiment, const ParameterSweep& sweep
   if (details) details->commit();
 }
 
+/// SHA-256 of all tables, by file name.
+std::map<std::string, std::string> table_hashes(const Experiment& experiment,
+                                                const fs::path& folder) {
+  std::map<std::string, std::string> hashes;
+  for (const std::string& name : table_names(experiment)) {
+    hashes[name] = geometry::sha256_hex(geometry::read_file(folder / name));
+  }
+  return hashes;
+}
+
 void write_summaries(const Experiment& experiment, const ParameterSweep& sweep,
                      const CellJournal& journal, const fs::path& folder) {
   if (experiment.summaries.empty()) return;
@@ -76,6 +86,15 @@ fs::path journal_file(const fs::path& folder, const std::string& slug) {
   return folder / (slug + ".cells");
 }
 
+std::vector<std::string> table_names(const Experiment& experiment) {
+  std::vector<std::string> names = {experiment.slug + ".csv", experiment.slug + ".timing.csv"};
+  if (!experiment.details.empty()) names.push_back(experiment.slug + ".details.csv");
+  for (const SummaryTable& summary : experiment.summaries) {
+    names.push_back(experiment.slug + '.' + summary.name + ".csv");
+  }
+  return names;
+}
+
 JournalIdentity journal_identity(const ExperimentConfig& config, const RunManifest& manifest) {
   return {{"configuration", geometry::sha256_hex(config.identity())},
           {"build of the program", manifest.program}};
@@ -92,16 +111,18 @@ void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,
   const nlohmann::ordered_json json = {{"total", counts.num_cells},
                                        {"finished", counts.num_done},
                                        {"failed", counts.num_failed},
-                                       {"skipped", counts.num_skipped}};
+                                       {"skipped", counts.num_skipped},
+                                       {"not_final", counts.num_not_final}};
   geometry::write_file_atomically(folder / (config.sweep.experiment + ".manifest.json"),
                                   to_json(manifest, config, json.dump()));
 }
 
 void write_tables(const Experiment& experiment, const ExperimentConfig& config,
-                  const RunManifest& manifest, const RunProgress& counts,
-                  const CellJournal& journal, const fs::path& folder) {
+                  RunManifest manifest, const RunProgress& counts, const CellJournal& journal,
+                  const fs::path& folder) {
   write_cell_tables(experiment, config.sweep, journal, folder);
   write_summaries(experiment, config.sweep, journal, folder);
+  manifest.tables = table_hashes(experiment, folder);
   write_manifest(config, manifest, counts, folder);
 }
 

@@ -1,13 +1,14 @@
 #include "graspfit/experiments/table_comparison.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <tuple>
 
+#include "graspfit/experiments/run_manifest.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 
@@ -15,14 +16,6 @@ namespace graspfit::experiments {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) { throw geometry::InvalidInput(what); }
-
-std::optional<double> number_of(const std::string& text) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || last != end) return std::nullopt;
-  return value;
-}
 
 bool is_integer(const std::string& text) {
   return text.find_first_not_of("-0123456789") == std::string::npos;
@@ -68,12 +61,37 @@ std::vector<std::string> row_names(const CsvTable& table, std::size_t num_labels
   return names;
 }
 
-/// Of a run, from its manifest: as many of its tables' first columns are labels.
-std::size_t num_axes_of(const std::filesystem::path& manifest) {
+/// What a comparison needs of a run's manifest.
+struct RunFacts {
+  std::size_t num_axes = 0;   ///< As many of its tables' first columns are labels.
+  std::size_t num_cells = 0;  ///< Rows of its table of cells.
+};
+
+RunFacts run_facts(const std::filesystem::path& manifest) {
   const auto json = nlohmann::json::parse(geometry::read_file(manifest), nullptr, false);
   const nlohmann::json::json_pointer axes("/config/as_run/axes");
-  if (json.is_discarded() || !json.contains(axes)) fail(manifest.string() + ": is damaged");
-  return json.at(axes).size();
+  const nlohmann::json::json_pointer cells("/cells/total");
+  if (json.is_discarded() || !json.contains(axes) || !json.contains(cells)) {
+    fail(manifest.string() + ": is damaged");
+  }
+  return {json.at(axes).size(), json.at(cells).get<std::size_t>()};
+}
+
+/// Notes the rows of theirs that we lack although they are of a cell that the run has: one of
+/// `cells`, told by the first fields. Without `cells` we should have all.
+void note_missing_rows(const CsvTable& ours, const CsvTable& theirs, std::size_t num_labels,
+                       const std::optional<std::set<std::vector<std::string>>>& cells,
+                       TableComparison& result) {
+  const std::vector<std::string> our_names = row_names(ours, num_labels);
+  const std::set<std::string> known(our_names.begin(), our_names.end());
+  const std::vector<std::string> names = row_names(theirs, num_labels);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (known.count(names[i]) > 0) continue;
+    const auto labels_end = theirs.rows[i].begin() + static_cast<std::ptrdiff_t>(num_labels);
+    if (cells && cells->count({theirs.rows[i].begin(), labels_end}) == 0) continue;
+    result.missing_rows.push_back(names[i]);
+    result.are_same_bytes = false;
+  }
 }
 
 class Comparer {
@@ -90,9 +108,11 @@ class Comparer {
 
  private:
   bool are_near(const std::string& ours, const std::string& theirs) {
-    const std::optional<double> a = number_of(ours);
-    const std::optional<double> b = number_of(theirs);
-    if (!a || !b || (is_integer(ours) && is_integer(theirs))) return false;
+    const std::optional<double> a = csv_number(ours);
+    const std::optional<double> b = csv_number(theirs);
+    if (!a || !b) return false;
+    if (*a == 0.0 && *b == 0.0) return true;  // "-0" and "0", which look like integers
+    if (is_integer(ours) && is_integer(theirs)) return false;
     const double magnitude = std::max(std::abs(*a), std::abs(*b));
     if (magnitude <= options_.absolute) return true;
     const double relative = std::abs(*a - *b) / magnitude;
@@ -170,20 +190,41 @@ std::vector<PublishedComparison> compare_with_published(const Experiment& experi
                                                         const std::filesystem::path& folder,
                                                         const std::filesystem::path& published,
                                                         const ComparisonOptions& options) {
-  const auto compare = [&](const std::string& ending, std::size_t num_labels) {
-    const std::string file = experiment.slug + ending;
-    const CsvTable ours = parse_csv(geometry::read_file(folder / file), (folder / file).string());
-    const CsvTable theirs =
-        parse_csv(geometry::read_file(published / file), (published / file).string());
-    return PublishedComparison{file, compare_tables(ours, theirs, num_labels, options)};
+  const std::string manifest = experiment.slug + ".manifest.json";
+  const RunFacts facts = run_facts(folder / manifest);
+  require_tables_of_manifest(folder / manifest);
+  if (std::filesystem::exists(published / manifest)) {
+    require_tables_of_manifest(published / manifest);
+  }
+  const auto read = [](const std::filesystem::path& file) {
+    return parse_csv(geometry::read_file(file), file.string());
   };
-  const std::size_t num_axes = num_axes_of(folder / (experiment.slug + ".manifest.json"));
-  std::vector<PublishedComparison> tables = {compare(".csv", num_axes)};
+  std::vector<PublishedComparison> tables;
+  const auto compare = [&](const std::string& ending, std::size_t num_labels,
+                           const std::optional<std::set<std::vector<std::string>>>& cells) {
+    const std::string file = experiment.slug + ending;
+    const CsvTable ours = read(folder / file);
+    const CsvTable theirs = read(published / file);
+    tables.push_back({file, compare_tables(ours, theirs, num_labels, options)});
+    note_missing_rows(ours, theirs, num_labels, cells, tables.back().comparison);
+  };
+
+  const std::filesystem::path table_of_cells = folder / (experiment.slug + ".csv");
+  const CsvTable run = read(table_of_cells);
+  if (run.rows.size() != facts.num_cells) {
+    fail(table_of_cells.string() + ": has " + std::to_string(run.rows.size()) + " rows for " +
+         std::to_string(facts.num_cells) + " cells; run the experiment again");
+  }
+  std::set<std::vector<std::string>> cells;
+  for (const std::vector<std::string>& row : run.rows) {
+    cells.emplace(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(facts.num_axes));
+  }
+  compare(".csv", facts.num_axes, cells);
   const bool is_whole = tables.front().comparison.num_not_ours == 0;
-  if (!experiment.details.empty()) tables.push_back(compare(".details.csv", num_axes));
+  if (!experiment.details.empty()) compare(".details.csv", facts.num_axes, cells);
   if (is_whole) {
     for (const SummaryTable& summary : experiment.summaries) {
-      tables.push_back(compare('.' + summary.name + ".csv", 0));
+      compare('.' + summary.name + ".csv", 0, std::nullopt);
     }
   }
   return tables;

@@ -78,6 +78,9 @@ TableSettings table_settings(const Cell& cell) {
   for (const char* key : {"table", "approach"}) {
     if (json.contains(key)) throw SettingError(key, "is set by the experiment itself");
   }
+  if (json.contains("rotation_deg")) {
+    throw SettingError("rotation_deg", "means nothing here: start and goal say how objects lie");
+  }
   const auto value = [&](const char* key) { return SettingValue(key, json.at(key)); };
   TableSettings settings;
   settings.title = value("title").text();

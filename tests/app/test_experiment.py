@@ -114,6 +114,17 @@ class Shards(ProgramTest):
         self.assertEqual((done.returncode, done.stdout),
                          (0, f"{self.SLUG}.csv: 6 rows compared, the same bytes\n"))
         table = other / f"{self.SLUG}.csv"
+        whole = table.read_text()
+        table.write_text(whole.replace("shape", "form"))
+        done = run(*verify)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn(f"{table}: is not the table that", done.stderr)
+        table.write_text(whole)
+        for folder in (out, other):  # as published before manifests named their tables
+            manifest = folder / f"{self.SLUG}.manifest.json"
+            content = json.loads(manifest.read_text())
+            self.assertEqual(len(content.pop("tables_sha256")), 2)
+            manifest.write_text(json.dumps(content))
         rows = rows_of(table)
         row = next(row for row in rows if row["mean_m"])
         value = float(row["mean_m"])
@@ -398,8 +409,23 @@ class Refusals(ProgramTest):
         self.assert_refused(*experiment, "force_closure", "--set", "colour=red",
                             says=["--set colour", "is no setting; there are"])
         self.assert_refused(*experiment, "force_closure", "--jobs", "0", says="jobs = 0")
+        self.assert_refused(*experiment, "force_closure", "--jobs", "100000",
+                            says="jobs = 100000, must be in [1, 1024]")
+        self.assert_refused(*experiment, "fitting_stages", "--quick", "--set", "planner=gs",
+                            says="must be fitting: only its grasps have targets")
         self.assert_refused(*experiment, "force_closure", "--quick", "--publish",
                             says="results are not published: --quick")
+
+    def test_objects_of_a_table_lie_as_start_and_goal_say(self):
+        folder = self.folder / "configs"
+        folder.mkdir()
+        config = json.loads((SOURCE_DIR / "experiments/configs/table_tidying.json").read_text())
+        config.setdefault("settings", {})["rotation_deg"] = [90, 0, 0]
+        (folder / "table_tidying.json").write_text(json.dumps(config))
+        done = run("experiment", "describe", "table_tidying",
+                   env=dict(os.environ, GRASPFIT_EXPERIMENTS=str(folder)))
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("/settings/rotation_deg: means nothing here", done.stderr)
 
     def test_a_broken_configuration_names_file_and_key(self):
         folder = self.folder / "configs"

@@ -22,6 +22,12 @@ TEST_CASE("CSV fields read back as what they are", "[experiments][result_table]"
   CHECK(csv_line({"a", "", "b"}) == "a,,b\n");
 }
 
+TEST_CASE("A field is a number as a whole or not at all", "[experiments][result_table]") {
+  CHECK(csv_number("-2.5e-3") == -2.5e-3);
+  CHECK(csv_number("7") == 7.0);
+  for (const char* const field : {"", "7 m", "m", "7,", "\"7\""}) CHECK_FALSE(csv_number(field));
+}
+
 TEST_CASE("A row knows its columns", "[experiments][result_table]") {
   ResultRow row({{"a", "", ""}, {"b_m", "m", ""}});
   row.set("b_m", 0.5);

@@ -3,7 +3,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
+#include <map>
+#include <new>
 #include <sstream>
 #include <thread>
 
@@ -231,6 +234,35 @@ TEST_CASE("Data that is missing is skipped, said, and tried again", "[experiment
   CHECK(read_file(out / "counting.csv") == expected);
 }
 
+TEST_CASE("Cells that failed for a reason that may pass are counted, not published, tried again",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "results";
+  Experiment crowded = counting_experiment();
+  crowded.run = [run = crowded.run](const Cell& cell, const fs::path& cells) -> CellResult {
+    if (cell.labels[0] == "a") throw std::bad_alloc();
+    if (cell.labels[0] == "b") throw graspfit::geometry::IoError("no space left");
+    return run(cell, cells);
+  };
+  const RunProgress first = run_sweep(crowded, config, {}, {out, 2});
+  CHECK(first.num_failed == 18);  // 8 and 8, and 2 for good
+  CHECK(first.num_not_final == 16);
+  const fs::path manifest = out / "counting.manifest.json";
+  CHECK(nlohmann::json::parse(read_file(manifest)).at("cells").at("not_final") == 16);
+  CHECK_THROWS_WITH(require_publishable_manifest(manifest),
+                    Catch::Contains("16 cells failed for a reason that may pass"));
+  const RunProgress second = run_sweep(counting_experiment(), config, {}, {out, 1});
+  CHECK(second.num_resumed == 8);
+  CHECK(second.num_failed == 2);
+  CHECK(second.num_not_final == 0);
+  CHECK_NOTHROW(require_publishable_manifest(manifest));
+  // Manifests from before that do not count them.
+  auto json = nlohmann::json::parse(read_file(manifest));
+  json.at("cells").erase("not_final");
+  CHECK_NOTHROW(require_publishable_manifest(folder.write("old.json", json.dump())));
+}
+
 TEST_CASE("Results of another configuration or another run's folder are not touched",
           "[experiments][sweep_runner]") {
   const TemporaryFolder folder;
@@ -243,8 +275,10 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
   rebuilt.program = "another";
   CHECK_THROWS_WITH(run_sweep(counting_experiment(), config_in(folder), rebuilt, {out, 1}),
                     Catch::Contains("holds results of another build"));
-  CHECK_THROWS_AS(run_sweep(counting_experiment(), config_in(folder), {}, {out, 0}),
-                  graspfit::geometry::InvalidInput);
+  for (const int jobs : {0, -1, 1025, 2000000000}) {
+    CHECK_THROWS_WITH(run_sweep(counting_experiment(), config_in(folder), {}, {out, jobs}),
+                      Catch::Contains("must be in [1, 1024]"));
+  }
   CHECK(read_file(out / "counting.csv") == expected);
 
   // A second run in the same folder while the first is at work.
@@ -282,6 +316,37 @@ TEST_CASE("A recorded command is quoted for a shell and names no folder of resul
   CHECK(recorded_command({"run", "--out=/home/me", "--jobs", "2", "--out"}) == "run --jobs 2");
   CHECK(recorded_command({"--set", "a=1,0.5", "it's", "", "a b", "$HOME", "*"}) ==
         "--set a=1,0.5 'it'\\''s' '' 'a b' '$HOME' '*'");
+}
+
+TEST_CASE("Inputs of one name in the data folder and among the sources are told apart",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const auto inputs_with = [&](const std::string& data, const std::vector<fs::path>& files) {
+    const char* const setting = std::getenv("GRASPFIT_DATA");
+    const std::string before = setting != nullptr ? setting : "";
+    ::setenv("GRASPFIT_DATA", data.c_str(), 1);
+    Experiment experiment = counting_experiment();
+    experiment.inputs = [files](const Cell&) { return files; };
+    const fs::path out = folder.path() / ("out" + std::to_string(data.size()));
+    run_sweep(experiment, config_in(folder), {}, {out, 1});
+    if (setting != nullptr) ::setenv("GRASPFIT_DATA", before.c_str(), 1);
+    if (setting == nullptr) ::unsetenv("GRASPFIT_DATA");
+    const auto manifest = nlohmann::json::parse(read_file(out / "counting.manifest.json"));
+    return manifest.at("inputs_sha256").get<std::map<std::string, std::string>>();
+  };
+  const fs::path data = folder.write("LICENSE", "of meshes");
+  const fs::path own = source_folder() / "LICENSE";
+  const fs::path other = source_folder() / "CITATION.cff";
+  const auto inputs = inputs_with(folder.path().string(), {data, own, other});
+  CHECK(inputs.size() == 3);
+  CHECK(inputs.at("LICENSE") == graspfit::geometry::sha256_hex("of meshes"));
+  CHECK(inputs.at("sources/LICENSE") == graspfit::geometry::sha256_hex(read_file(own)));
+  CHECK(inputs.count("CITATION.cff") == 1);
+
+  // Everything lies in the root of the file system: that is no data folder that others have.
+  const auto at_root = inputs_with("/", {data, other});
+  CHECK(at_root.count(data.string()) == 1);
+  CHECK(at_root.count("CITATION.cff") == 1);
 }
 
 TEST_CASE("Inputs are hashed before the first cell and checked after the last",

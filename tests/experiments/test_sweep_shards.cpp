@@ -1,9 +1,13 @@
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <map>
+#include <thread>
 
 #include "counting_experiment.hpp"
 #include "graspfit/experiments/sweep_shards.hpp"
@@ -153,6 +157,21 @@ TEST_CASE("A killed shard continues", "[experiments][shards]") {
   CHECK(results_in(out) == results_in(folder.path() / "whole"));
 }
 
+TEST_CASE("A merge counts cells that failed for a reason that may pass", "[experiments][shards]") {
+  const TemporaryFolder folder;
+  const ExperimentConfig config = config_in(folder);
+  Experiment crowded = counting_experiment();
+  crowded.run = [run = crowded.run](const Cell& cell, const fs::path& cells) -> CellResult {
+    if (cell.labels[0] == "a") throw graspfit::geometry::IoError("no space left");
+    return run(cell, cells);
+  };
+  const fs::path out = folder.path() / "out";
+  run_shards(crowded, config, out, 2);
+  CHECK(merge_shards(crowded, config, {}, out).num_not_final == 8);
+  CHECK_THROWS_WITH(require_publishable_manifest(out / "counting.manifest.json"),
+                    Catch::Contains("8 cells failed for a reason that may pass"));
+}
+
 TEST_CASE("Shards that do not belong together are not merged", "[experiments][shards]") {
   const TemporaryFolder folder;
   const ExperimentConfig config = config_in(folder);
@@ -226,6 +245,30 @@ TEST_CASE("Status counts each cell once and tells what runs", "[experiments][sha
   CHECK(after[0].num_tried_again == 5);
   CHECK(after[0].num_failed == 2);  // 20 and 21
   CHECK_FALSE(after[0].is_running);
+}
+
+TEST_CASE("A run that starts while its status is asked for is not refused",
+          "[experiments][shards]") {
+  const TemporaryFolder folder;
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "out";
+  run_sweep(counting_experiment(), config, {}, {out, 1});
+  // Who asks has a shared lock for a moment; this one takes 0.1 s.
+  const int descriptor = ::open((out / "counting.cells").c_str(), O_RDONLY | O_CLOEXEC);
+  REQUIRE(descriptor >= 0);
+  REQUIRE(::flock(descriptor, LOCK_SH | LOCK_NB) == 0);
+  std::thread asking([descriptor] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    ::close(descriptor);
+  });
+  std::string refusal;
+  try {
+    run_sweep(counting_experiment(), config, {}, {out, 1});
+  } catch (const graspfit::geometry::IoError& error) {
+    refusal = error.what();
+  }
+  asking.join();
+  CHECK(refusal.empty());
 }
 
 TEST_CASE("A shard is written I/N", "[experiments][shards]") {

@@ -1,4 +1,5 @@
 #include "counting_experiment.hpp"
+#include "graspfit/experiments/run_manifest.hpp"
 #include "graspfit/experiments/sweep_runner.hpp"
 #include "graspfit/experiments/table_comparison.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
@@ -16,6 +17,44 @@ CsvTable table(const std::string& text) { return parse_csv(text, "table.csv"); }
 TableComparison compare(const std::string& ours, const std::string& theirs,
                         const ComparisonOptions& options = {}) {
   return compare_tables(table("name,value\n" + ours), table("name,value\n" + theirs), 1, options);
+}
+
+/// The counting experiment with three rows of details a cell and a summary of two rows.
+Experiment detailed_experiment() {
+  Experiment experiment = graspfit::testing::counting_experiment();
+  experiment.details = {{"part", "1", "its number"}};
+  experiment.run = [run = experiment.run, columns = experiment.details](
+                       const Cell& cell, const std::filesystem::path& folder) {
+    CellResult result = run(cell, folder);
+    for (std::int64_t part = 0; part < 3; ++part) {
+      result.details.emplace_back(columns);
+      result.details.back().set("part", part);
+    }
+    return result;
+  };
+  const std::vector<Column> summary = {{"half", "1", "its number"}};
+  experiment.summaries.push_back(
+      {"summary", summary, [summary](const ParameterSweep&, const std::vector<FinishedCell>&) {
+         std::vector<ResultRow> rows(2, ResultRow(summary));
+         for (std::size_t i = 0; i < rows.size(); ++i) {
+           rows[i].set("half", static_cast<std::int64_t>(i));
+         }
+         return rows;
+       }});
+  return experiment;
+}
+
+/// Takes the last lines from a table, and its hash from the manifest beside it.
+void cut(const std::filesystem::path& table, int num_lines) {
+  using graspfit::geometry::read_file;
+  using graspfit::geometry::write_file_atomically;
+  std::string text = read_file(table);
+  for (int i = 0; i < num_lines; ++i) text.erase(text.rfind('\n', text.size() - 2) + 1);
+  write_file_atomically(table, text);
+  const auto manifest = table.parent_path() / "counting.manifest.json";
+  auto json = nlohmann::json::parse(read_file(manifest));
+  json.erase("tables_sha256");
+  write_file_atomically(manifest, json.dump());
 }
 
 bool are_near(const std::string& ours, const std::string& theirs) {
@@ -47,6 +86,8 @@ TEST_CASE("Numbers are compared relatively, counts, seeds and texts exactly",
   CHECK_FALSE(are_near("5805151507310987", "5805151507310988"));  // a seed
   CHECK(are_near("1e-17", "-3e-16"));                             // zeros but for rounding
   CHECK_FALSE(are_near("1e-17", "1e-11"));
+  CHECK(are_near("-0", "0"));  // look like integers, and are one number
+  CHECK_FALSE(are_near("9007199254740993", "9007199254740992"));  // are not, but as doubles
   CHECK_FALSE(are_near("", "0"));
   CHECK_FALSE(are_near("true", "false"));
   CHECK_FALSE(are_near("index 0.02; palm", "index 0.03; palm"));
@@ -99,9 +140,80 @@ TEST_CASE("A run of fewer cells is compared with all that is published",
   CHECK(compared[0].comparison.num_rows == 8);
   CHECK(compared[0].comparison.num_not_ours == 16);
   CHECK(compared[0].comparison.are_same_bytes);
+  CHECK(compared[0].comparison.is_equal());
   const auto other = folder.path() / "other";
   run_sweep(experiment, config({false, {{"letter", {"a"}}, {"step", {"0"}}, {"seed", {"1", "3"}}}}),
             {}, {other, 1});
   CHECK_THROWS_WITH(compare_with_published(experiment, other, published),
                     "row letter=a step=0 seed=3 is not in the published table");
+}
+
+TEST_CASE("Rows of a run's own cells are not missed in silence",
+          "[experiments][table_comparison]") {
+  const TemporaryFolder folder;
+  const Experiment experiment = detailed_experiment();
+  const auto run_into = [&](const std::string& name, const ConfigRequest& request) {
+    const auto out = folder.path() / name;
+    run_sweep(
+        experiment,
+        read_config(experiment, folder.write("counting.json", graspfit::testing::kCountingConfig),
+                    request),
+        {}, {out, 1});
+    return out;
+  };
+  const auto missing_in = [&](const std::vector<PublishedComparison>& tables) {
+    std::vector<std::size_t> counts;
+    for (const PublishedComparison& table : tables) {
+      CHECK(table.comparison.differences.empty());
+      CHECK(table.comparison.is_equal() == table.comparison.missing_rows.empty());
+      counts.push_back(table.comparison.missing_rows.size());
+    }
+    return counts;
+  };
+  using Counts = std::vector<std::size_t>;
+  const auto published = run_into("published", {});
+  const auto whole = run_into("whole", {});
+  const auto some = run_into("some", {false, {{"letter", {"b"}}}});
+  CHECK(missing_in(compare_with_published(experiment, whole, published)) == Counts{0, 0, 0});
+  // Cells that the run does not have need not be there, and then there is no summary to compare.
+  CHECK(missing_in(compare_with_published(experiment, some, published)) == Counts{0, 0});
+
+  cut(some / "counting.details.csv", 4);
+  const auto compared = compare_with_published(experiment, some, published);
+  CHECK(missing_in(compared) == Counts{0, 4});
+  CHECK(compared[1].comparison.missing_rows[0] == "letter=b step=2 seed=1 row 3");
+  CHECK_FALSE(compared[1].comparison.are_same_bytes);
+  cut(whole / "counting.details.csv", 1);
+  cut(whole / "counting.summary.csv", 1);
+  CHECK(missing_in(compare_with_published(experiment, whole, published)) == Counts{0, 1, 1});
+  cut(whole / "counting.csv", 1);
+  CHECK_THROWS_WITH(compare_with_published(experiment, whole, published),
+                    Catch::Contains("counting.csv: has 23 rows for 24 cells"));
+}
+
+TEST_CASE("A table that is not the one its manifest was written for is named",
+          "[experiments][table_comparison]") {
+  const TemporaryFolder folder;
+  const Experiment experiment = detailed_experiment();
+  const auto config = read_config(
+      experiment, folder.write("counting.json", graspfit::testing::kCountingConfig), {});
+  for (const char* const name : {"run", "published"}) {
+    run_sweep(experiment, config, {}, {folder.path() / name, 1});
+  }
+  const auto compare_both = [&] {
+    return compare_with_published(experiment, folder.path() / "run", folder.path() / "published");
+  };
+  CHECK(compare_both().size() == 3);
+  for (const char* const name : {"run", "published"}) {
+    const auto table = folder.path() / name / "counting.details.csv";
+    const std::string text = graspfit::geometry::read_file(table);
+    graspfit::geometry::write_file_atomically(table, text + "a,0,1,3\n");
+    CHECK_THROWS_WITH(compare_both(), Catch::Contains(table.string() + ": is not the table"));
+    CHECK_THROWS_WITH(require_tables_of_manifest(folder.path() / name / "counting.manifest.json"),
+                      Catch::Contains("tables_sha256"));
+    graspfit::geometry::write_file_atomically(table, text);
+  }
+  // Manifests from before that say nothing of tables.
+  cut(folder.path() / "published/counting.timing.csv", 1);
+  CHECK(compare_both().size() == 3);
 }

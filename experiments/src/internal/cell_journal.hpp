@@ -43,7 +43,7 @@ struct JournalContent {
 };
 
 /// Reads a journal that another process may be writing. Lines whose checksum is wrong and what a
-/// kill cut short at the end are passed over. @throws InvalidInput if it is no journal.
+/// kill cut short at the end are passed over. @throws IoError if it is no journal.
 JournalContent read_journal(const std::filesystem::path& file);
 
 /// Whether a process has the journal open for writing.
@@ -55,8 +55,9 @@ bool is_journal_in_use(const std::filesystem::path& file);
 /// where each line starts.
 class CellJournal {
  public:
-  /// @throws InvalidInput if the file was begun with another identity, IoError if another process
-  /// has it open or it cannot be read or written.
+  /// @throws InvalidInput if the file was begun with another identity; IoError if it is no journal,
+  /// another process keeps it open (waited for half a second: `is_journal_in_use` locks it for a
+  /// moment) or it cannot be read or written.
   CellJournal(const std::filesystem::path& file, const JournalIdentity& identity,
               std::size_t num_cells);
   ~CellJournal();

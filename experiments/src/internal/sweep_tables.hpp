@@ -21,10 +21,13 @@ JournalIdentity journal_identity(const ExperimentConfig& config, const RunManife
 void make_folder(const std::filesystem::path& folder);
 
 /// The files of `run_sweep` from a journal that knows all cells: tables, then the manifest. Memory
-/// holds one row, but for details that a summary is made of.
+/// holds one row, but for details that a summary is made of. `manifest` gets the tables' hashes.
 void write_tables(const Experiment& experiment, const ExperimentConfig& config,
-                  const RunManifest& manifest, const RunProgress& counts,
-                  const CellJournal& journal, const std::filesystem::path& folder);
+                  RunManifest manifest, const RunProgress& counts, const CellJournal& journal,
+                  const std::filesystem::path& folder);
+
+/// File names of all tables of an experiment.
+std::vector<std::string> table_names(const Experiment& experiment);
 
 /// Only the manifest.
 void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,

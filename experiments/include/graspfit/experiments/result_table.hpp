@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -22,6 +23,9 @@ using Value = std::variant<std::monostate, bool, std::int64_t, double, std::stri
 /// needs it, with line breaks turned into blanks. Numbers that are not finite are empty: nothing is
 /// known.
 std::string csv_field(const Value& value);
+
+/// The number that a field is, all of it; none for an empty field or a text.
+std::optional<double> csv_number(const std::string& field);
 
 /// Fields joined by commas, with a line break.
 std::string csv_line(const std::vector<std::string>& fields);

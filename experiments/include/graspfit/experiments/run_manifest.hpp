@@ -32,11 +32,12 @@ struct RunManifest {
   std::string program = program_sha256();
   /// SHA-256 by file: relative to the data folder or to the sources for files in them.
   std::map<std::string, std::string> inputs;
+  std::map<std::string, std::string> tables = {};  ///< SHA-256 of the tables by file name.
   std::vector<std::string> shards = {};  ///< Texts of the manifests of shards that were merged.
 };
 
 /// The manifest's text: JSON with command, configuration, its hash, seed, commit, versions,
-/// machine, inputs, numbers of cells.
+/// machine, inputs, tables, numbers of cells.
 std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
                     const std::string& status_counts_json);
 
@@ -44,12 +45,21 @@ std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
 /// writes the dictionary of their columns beside them.
 ///
 /// @throws InvalidInput, saying which, for a quick or modified configuration, cells that were
-/// skipped, inputs outside the data folder and the sources (their names mean nothing elsewhere), a
-/// program that was not built from a clean tree, and a tree at `sources` that is not,
-/// `published` aside, the one that the program was built from.
+/// skipped or failed for a reason that may pass, inputs outside the data folder and the sources
+/// (their names mean nothing elsewhere), tables that are not the manifest's, a program that was not
+/// built from a clean tree, and a tree at `sources` that is not, `published` and the figures' data
+/// aside, the one that the program was built from.
 void publish(const Experiment& experiment, const ExperimentConfig& config,
              const std::filesystem::path& folder, const std::filesystem::path& sources,
              const std::filesystem::path& published);
+
+/// Checks that the tables beside a manifest are those that it was written for. Manifests written
+/// before they named tables pass.
+/// @throws IoError if a table cannot be read, InvalidInput that names one that is another.
+void require_tables_of_manifest(const std::filesystem::path& manifest);
+
+/// Only the check of `publish` that looks at the manifest of a finished run.
+void require_publishable_manifest(const std::filesystem::path& manifest);
 
 /// Only the check of `publish` that can be made before the work.
 void require_publishable(const ExperimentConfig& config, const std::filesystem::path& sources);

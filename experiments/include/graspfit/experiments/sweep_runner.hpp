@@ -18,6 +18,8 @@ struct RunProgress {
   std::size_t num_resumed = 0;  ///< Of these in an earlier one.
   std::size_t num_failed = 0;   ///< Of these with a reason instead of results.
   std::size_t num_skipped = 0;  ///< Data that is not there; not among `num_done`.
+  /// Of `num_failed` those with a reason that may pass (files, memory): the next run tries again.
+  std::size_t num_not_final = 0;
 };
 
 /// One of `count` parts of a sweep: the cells number index − 1, index − 1 + count, ...
@@ -36,7 +38,7 @@ Shard parse_shard(const std::string& text);
 /// How to run.
 struct RunOptions {
   std::filesystem::path folder;     ///< Of the results; made if need be.
-  int jobs = 1;                     ///< Cells at once, ≥ 1. Timings are honest with one.
+  int jobs = 1;                     ///< Cells at once, in [1, 1024]. Timings are honest with one.
   std::optional<Shard> shard = {};  ///< Only this part of the sweep, into a folder of its own.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
@@ -62,8 +64,8 @@ struct RunOptions {
 /// rest.
 ///
 /// @throws InvalidInput if the folder holds results of another configuration, another build or
-/// other inputs; IoError if it is in use by another run or cannot be written, or if an input
-/// changes during the run.
+/// other inputs; IoError if it is in use by another run or cannot be written, if threads for `jobs`
+/// cannot be started, or if an input changes during the run.
 RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& config,
                       RunManifest manifest, const RunOptions& options,
                       const std::function<void(const RunProgress&)>& progress = {});

@@ -40,13 +40,17 @@ struct TableComparison {
   bool are_same_bytes = true;                ///< All compared fields, as texts.
   double largest_relative = 0.0;             ///< Difference of numbers that are near enough.
   std::vector<FieldDifference> differences;  ///< In the order of our rows.
+  /// Names of rows of theirs that we should have, found by `compare_with_published`.
+  std::vector<std::string> missing_rows = {};
+
+  bool is_equal() const { return differences.empty() && missing_rows.empty(); }
 };
 
 /// Compares our rows with those of the same labels in their table. The first `num_labels` columns
 /// are labels; rows with the same labels are told apart by their order.
 ///
-/// Fields are equal if their texts are; or if both are numbers, not both integers, and near enough.
-/// So counts and seeds are compared exactly.
+/// Fields are equal if their texts are; or if both are numbers, not both integers, and near enough;
+/// zeros whatever their signs. So counts and seeds are compared exactly.
 /// @throws InvalidInput, naming it, if a column is missing or we have a row that they do not have.
 TableComparison compare_tables(const CsvTable& ours, const CsvTable& theirs, std::size_t num_labels,
                                const ComparisonOptions& options = {});
@@ -59,7 +63,10 @@ struct PublishedComparison {
 
 /// Compares the results of a finished run with published ones, perhaps of another machine: rows of
 /// cells, details, and, if the run is of the whole sweep, its summary. Timings are not compared.
-/// @throws IoError if a file is missing, InvalidInput as `compare_tables`.
+/// The run may lack published cells, but of its own cells no row of the details and, if it has all,
+/// none of the summary.
+/// @throws IoError if a file is missing; InvalidInput as `compare_tables`, if the run's table has
+/// not a row for each of its cells, and as `require_tables_of_manifest` for both folders.
 std::vector<PublishedComparison> compare_with_published(const Experiment& experiment,
                                                         const std::filesystem::path& folder,
                                                         const std::filesystem::path& published,
