@@ -255,6 +255,20 @@ class Help(program.ProgramTest):
         for library in ("graspfit", "CGAL", "Eigen", "assimp", "Boost", "compiler"):
             self.assertRegex(done.stdout, rf"(?m)^{library} +\S*\d+\.\d+|^{library} +\S+ \d+\.\d+")
 
+    def test_readme_names_flags_and_commands_that_exist(self):
+        page = (program.SOURCE_DIR / "app/README.md").read_text()
+        section = page.partition("## What to ask of `plan`")[2].partition("\n## ")[0]
+        text = program.run("plan", "--help").stdout
+        for flag in set(re.findall(r"--[a-z][a-z0-9-]+", section)):
+            self.assertRegex(text, rf"(?m)^  {flag}\b")
+        for flag in ("--planner", "--gs-samples", "--ma-samples", "--missing-contact",
+                     "--contact-score-threshold", "--export-guidance"):
+            self.assertIn(f"`{flag}", page)
+        commands = re.findall(r"(?m)^  graspfit (\w+) ", program.run("--help").stdout)
+        self.assertIn("experiment", commands)
+        for command in commands:
+            self.assertIn(f"| `graspfit {command} ", page)
+
     def test_reproduction_page_names_flags_and_fields_that_exist(self):
         page = (program.SOURCE_DIR / "REPRODUCTION.md").read_text()
         other_programs = r"`(?:graspfit (?!plan)|paper-figures/)[^`]*`"
