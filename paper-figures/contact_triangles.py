@@ -26,7 +26,7 @@ def draw(source):
         f"Of the first {len(record['grasps'])} valid grasps those with the smallest and the largest M3 = R - 0.3 D.\n"
         "Right: regularity R, M3, and D: how far the polygon's centroid is from the center of mass (black),\n"
         "over half the diagonal of the object's bounding box.",
-        head=0.42, foot=0.36, hspace=0.05,
+        head=0.42, foot=0.24, hspace=0.05,
     )  # fmt: skip
     for row, (index, words) in enumerate(zip(by_shape(record), ("irregular or off center", "regular and centered"))):
         grasp = record["grasps"][index]

@@ -1,8 +1,8 @@
 #include "internal/hold_cell.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
+#include <optional>
 
 #include "graspfit/hold_test/hold_protocol.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
@@ -294,13 +294,6 @@ std::vector<Column> margin_columns() {
     }
   }
   return columns;
-}
-
-std::optional<double> number(const std::string& field) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
 }
 
 std::size_t column_index(const std::vector<Column>& columns, const std::string& name) {

@@ -48,7 +48,8 @@ ResultRow summary_row(const std::string& grip, const std::vector<const FinishedC
         }
       }
       for (std::size_t i = 0; i < margins.size(); ++i) {
-        if (const auto margin = number(field_of(kMarginColumns[i]))) margins[i].push_back(*margin);
+        if (const auto margin = csv_number(field_of(kMarginColumns[i])))
+          margins[i].push_back(*margin);
       }
     }
   }

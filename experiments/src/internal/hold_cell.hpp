@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,9 +30,6 @@ inline constexpr std::array<std::pair<const char*, double>, 3> kQuartiles = {
 
 /// Columns of the number of margins and of their quartiles.
 std::vector<Column> margin_columns();
-
-/// A number as tables write it; empty for an empty field.
-std::optional<double> number(const std::string& field);
 
 /// Index of the column of that name, which there is.
 std::size_t column_index(const std::vector<Column>& columns, const std::string& name);
