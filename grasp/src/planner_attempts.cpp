@@ -8,6 +8,7 @@
 
 #include "graspfit/grasp/wrench_convention.hpp"
 #include "internal/object_size.hpp"
+#include "internal/palm_pose.hpp"
 #include "internal/stopwatch.hpp"
 
 namespace graspfit::grasp::internal {
@@ -303,10 +304,8 @@ double PlannerAttempts::ideal_m(const TargetContacts& targets) const {
 
 /// Between the palm's direction and the one asked for [rad]; 0 if none is.
 double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& configuration) const {
-  if (!options_.approach_O) return 0.0;
-  const Eigen::Vector3d palm = configuration.X_OH.linear() * hand_.palm.direction_H;
-  const Eigen::Vector3d& wanted = *options_.approach_O;
-  return std::atan2(palm.cross(wanted).norm(), palm.dot(wanted));
+  return internal::angle_from_approach(configuration.X_OH.linear() * hand_.palm.direction_H,
+                                       options_.approach_O);
 }
 
 /// Fingers miss their targets, so a target's score says little about the contact's.
