@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "graspfit/geometry/used_vertices.hpp"
 #include "internal/box_tree.hpp"
 #include "internal/crossing_faces.hpp"
 #include "internal/disjoint_sets.hpp"
@@ -107,12 +108,7 @@ MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& option
   analysis.num_faces = mesh.faces.size();
   analysis.box = bounding_box(mesh);
 
-  std::vector<bool> is_used(mesh.vertices.size(), false);
-  for (const Face& face : mesh.faces) {
-    for (const std::int32_t vertex : face) is_used[vertex] = true;
-  }
-  analysis.num_unused_vertices =
-      static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), false));
+  analysis.num_unused_vertices = mesh.vertices.size() - used_vertices(mesh).size();
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     if (internal::is_degenerate(mesh, face)) ++analysis.num_degenerate_faces;
   }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/dyadic_grid.hpp"
 #include "graspfit/geometry/errors.hpp"
 
 namespace graspfit::geometry {
@@ -37,15 +38,9 @@ std::vector<MatrixXd> on_common_grid(std::span<const MatrixXd> summands, const c
     }
     largest = std::max(largest, summand.cwiseAbs().maxCoeff());
   }
-  std::vector<MatrixXd> rounded(summands.begin(), summands.end());
-  if (largest == 0.0) return rounded;
-  int exponent = 0;
-  std::frexp(largest * static_cast<double>(summands.size()), &exponent);
-  for (MatrixXd& summand : rounded) {
-    for (double& x : summand.reshaped()) {
-      x = std::ldexp(std::nearbyint(std::ldexp(x, 53 - exponent)), exponent - 53);
-    }
-  }
+  const int power = power_above(largest * static_cast<double>(summands.size())) - 53;
+  std::vector<MatrixXd> rounded;
+  for (const MatrixXd& summand : summands) rounded.push_back(rounded_to_grid(summand, power));
   return rounded;
 }
 
@@ -166,7 +161,8 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
       // Out of the hull's span, either way.
       const MatrixXd centered = points.columns().colwise() - points.columns().col(0);
       const MatrixXd basis = Eigen::FullPivHouseholderQR<MatrixXd>(centered).matrixQ();
-      has_grown = look(basis.rightCols(1)) | look(-basis.rightCols(1));
+      has_grown = look(basis.rightCols(1));
+      has_grown = look(-basis.rightCols(1)) || has_grown;
     } else {
       std::vector<Index> nearest(static_cast<std::size_t>(hull.num_facets()));
       std::iota(nearest.begin(), nearest.end(), Index{0});

@@ -9,6 +9,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/used_vertices.hpp"
 
 namespace graspfit::geometry {
 
@@ -16,6 +17,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
+
+template <class Vector>
+void require_finite(const char* what, const Vector& vector) {
+  if (vector.allFinite()) return;
+  std::string text;
+  for (const double x : vector) text += (text.empty() ? "(" : ", ") + shortest_decimal(x);
+  throw InvalidInput(std::string(what) + " = " + text + "), must be finite");
+}
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -81,15 +90,17 @@ std::vector<RestPose> rest_poses(const TriangleMesh& mesh, const Vector3d& cente
                                  const RestPoseOptions& options) {
   options.validate();
   if (mesh.faces.empty()) throw InvalidInput("rest_poses: the mesh has no faces");
-  const ConvexHull3 hull = convex_hull(mesh.vertices);
+  require_finite("rest_poses: center_of_mass", center_of_mass);
+  const std::vector<Vector3d> surface = used_vertices(mesh);
+  const ConvexHull3 hull = convex_hull(surface);
   if (hull.rank != 3) throw DegenerateGeometry("rest_poses: the mesh spans no volume");
   std::vector<Vector3d> corners;
-  for (const std::size_t i : hull.vertices) corners.push_back(mesh.vertices[i]);
+  for (const std::size_t i : hull.vertices) corners.push_back(surface[i]);
 
   std::vector<RestPose> poses;
   for (const HullFacet& facet : hull.facets) {
-    const std::array<Vector3d, 3> triangle = {mesh.vertices[facet[0]], mesh.vertices[facet[1]],
-                                              mesh.vertices[facet[2]]};
+    const std::array<Vector3d, 3> triangle = {surface[facet[0]], surface[facet[1]],
+                                              surface[facet[2]]};
     const Vector3d across = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     if (!(across.norm() > 0.0)) continue;  // thinner than rounding: a neighbor is plumb as well
     const Vector3d normal = across.normalized();
@@ -127,6 +138,12 @@ const RestPose& nearest_rest_pose(const std::vector<RestPose>& poses, const Vect
 
 RigidTransform standing_pose(const TriangleMesh& mesh, const Vector3d& up_O, double turn,
                              const Vector3d& center_O, const Vector2d& place_W) {
+  if (mesh.faces.empty()) throw InvalidInput("standing_pose: the mesh has no faces");
+  require_finite("standing_pose: up_O", up_O);
+  if (!(up_O.norm() > 0.0)) throw InvalidInput("standing_pose: up_O has no length");
+  require_finite("standing_pose: turn", Eigen::Matrix<double, 1, 1>(turn));
+  require_finite("standing_pose: center_O", center_O);
+  require_finite("standing_pose: place_W", place_W);
   const Vector3d axis = up_O.cross(Vector3d::UnitZ());
   const double angle = angle_between(up_O, Vector3d::UnitZ());
   const Vector3d unit_axis = axis.norm() > 0.0 ? Vector3d(axis.normalized()) : Vector3d::UnitX();
@@ -134,7 +151,7 @@ RigidTransform standing_pose(const TriangleMesh& mesh, const Vector3d& up_O, dou
   X_WO.linear() = (Eigen::AngleAxisd(turn, Vector3d::UnitZ()) * Eigen::AngleAxisd(angle, unit_axis))
                       .toRotationMatrix();
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vector3d& vertex : mesh.vertices) {
+  for (const Vector3d& vertex : used_vertices(mesh)) {
     lowest = std::min(lowest, X_WO.linear().row(2).dot(vertex));
   }
   const Vector3d center = X_WO.linear() * center_O;

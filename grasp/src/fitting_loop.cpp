@@ -73,7 +73,10 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
   const double step = rule.step.value_or(voxel_size_);
   // Past the object, whose normalizing radius is half its diagonal, and the hand's own length.
   const double far = 2.0 * (object_.normalizing_radius + hands::largest_reach(model_));
-  const int most_steps = rule.most_steps.value_or(static_cast<int>(std::ceil(far / step)));
+  // No more than an int holds, were the step that short.
+  const int steps_to_far = static_cast<int>(
+      std::min(std::ceil(far / step), static_cast<double>(std::numeric_limits<int>::max())));
+  const int most_steps = rule.most_steps.value_or(steps_to_far);
   if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
   seat_palm(0.0);
   return run();

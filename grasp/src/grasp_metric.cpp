@@ -29,10 +29,11 @@ bool is_spread(std::span<const Contact> contacts) {
 }  // namespace
 
 const std::optional<WrenchConvention>& GraspMetricInput::convention() const {
-  if (!std::exchange(has_asked_for_convention_, true) && !contacts().empty() &&
-      (facts_.tool != WrenchTool::DexGraspBench || is_spread(contacts()))) {
+  if (has_asked_for_convention_) return convention_;
+  if (!contacts().empty() && (facts_.tool != WrenchTool::DexGraspBench || is_spread(contacts()))) {
     convention_ = wrench_convention(facts_.tool, facts_.object, contacts(), facts_.friction);
   }
+  has_asked_for_convention_ = true;  // not before: what is refused is refused again
   return convention_;
 }
 

@@ -13,6 +13,7 @@
 #include "graspfit/hands/hand_model.hpp"
 #include "internal/object_size.hpp"
 #include "internal/planner_attempts.hpp"
+#include "internal/sized_planning.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -24,8 +25,9 @@ using Clock = std::chrono::steady_clock;
 class Run {
  public:
   Run(const ObjectModel& object, const hands::HandModel& hand, const PlannerOptions& options,
-      const Surroundings& surroundings, const PlannerProgress& progress)
-      : attempts_(object, hand, options, surroundings),
+      const Surroundings& surroundings, internal::SizeCheck size_check,
+      const PlannerProgress& progress)
+      : attempts_(object, hand, options, surroundings, size_check),
         hand_(hand),
         options_(options),
         progress_(progress) {
@@ -188,6 +190,13 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
   options.validate();
   internal::check_object_size(mesh, hand, requested_parts(hand, options).fingers,
                               2.0 * hands::largest_reach(hand));
+  return internal::prepare_sized_object(mesh, options, timings, cache);
+}
+
+ObjectModel internal::prepare_sized_object(const geometry::TriangleMesh& mesh,
+                                           const PlannerOptions& options,
+                                           ObjectModelTimings* timings,
+                                           const geometry::ContentCache& cache) {
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
   object_options.averaging = options.averaging;
@@ -199,7 +208,14 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
                           const PlannerOptions& options, const Surroundings& surroundings,
                           int num_threads, const PlannerProgress& progress) {
-  return Run(object, hand, options, surroundings, progress)(num_threads);
+  return Run(object, hand, options, surroundings, internal::SizeCheck::Due, progress)(num_threads);
+}
+
+PlannerResult internal::plan_sized_grasps(const ObjectModel& object, const hands::HandModel& hand,
+                                          const PlannerOptions& options,
+                                          const Surroundings& surroundings, int num_threads) {
+  const PlannerProgress silent;
+  return Run(object, hand, options, surroundings, SizeCheck::Done, silent)(num_threads);
 }
 
 }  // namespace graspfit::grasp

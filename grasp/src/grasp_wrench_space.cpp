@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graspfit/geometry/dyadic_grid.hpp"
 #include "internal/contact_check.hpp"
 
 namespace graspfit::grasp {
@@ -18,16 +19,6 @@ constexpr double kProductError = 8.0 * 0x1p-53;
 
 bool has_origin_inside(const ConvexPolytope& hull) {
   return hull.containment(Wrench::Zero()) == Containment::Inside;
-}
-
-/// Rounds to multiples of the last bit of the largest entry.
-void round_to_grid(Wrenches& wrenches) {
-  if (wrenches.cols() == 0) return;
-  int exponent = 0;
-  std::frexp(wrenches.cwiseAbs().maxCoeff(), &exponent);
-  for (double& x : wrenches.reshaped()) {
-    x = std::ldexp(std::nearbyint(std::ldexp(x, 52 - exponent)), exponent - 52);
-  }
 }
 
 }  // namespace
@@ -49,8 +40,10 @@ Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvent
                                       convention.reference_point_O, options.torque_scale);
     }
   }
-  round_to_grid(wrenches);
-  return wrenches;
+  if (wrenches.cols() == 0) return wrenches;
+  // To multiples of the last bit of the largest entry.
+  const double largest = wrenches.cwiseAbs().maxCoeff();
+  return geometry::rounded_to_grid(wrenches, geometry::power_above(largest) - 52);
 }
 
 GraspWrenchSpace grasp_wrench_space(std::span<const Contact> contacts,

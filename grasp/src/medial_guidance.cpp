@@ -7,7 +7,6 @@
 // attempt up where it is not.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -27,15 +26,11 @@ constexpr int kPublishedSteps = 5;
 std::vector<MedialCandidate> shuffled_candidates(const std::vector<MedialSymmetry>& symmetries,
                                                  const PlannerOptions& options) {
   std::vector<MedialCandidate> candidates = medial_candidates(symmetries, options.seed);
-  if (options.approach_O) {
-    const Vector3d& wanted = *options.approach_O;
-    std::erase_if(candidates, [&](const MedialCandidate& candidate) {
-      const Vector3d direction = -candidate.outward_O;
-      return !(std::atan2(direction.cross(wanted).norm(), direction.dot(wanted)) <=
-               options.approach_angle);
-    });
-  }
-  // A stream that no attempt uses.
+  std::erase_if(candidates, [&](const MedialCandidate& candidate) {
+    return !(angle_from_approach(-candidate.outward_O, options.approach_O) <=
+             options.approach_angle);
+  });
+  // A stream that neither samples nor balls use: theirs are counted from zero.
   geometry::Random random =
       geometry::Random::stream(options.seed, std::numeric_limits<std::uint64_t>::max());
   for (std::size_t i = candidates.size(); i > 1; --i) {

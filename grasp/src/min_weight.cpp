@@ -1,8 +1,8 @@
 #include "graspfit/grasp/min_weight.hpp"
 
 #include <Eigen/SVD>
-#include <cmath>
 
+#include "graspfit/geometry/dyadic_grid.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/linear_program.hpp"
 
@@ -16,13 +16,8 @@ constexpr double kRankTolerance = 1e-9;
 
 /// To a grid on which sums of all columns are exact.
 Wrenches on_grid_of_sums(const Wrenches& wrenches) {
-  int exponent = 0;
-  std::frexp(wrenches.cwiseAbs().maxCoeff() * static_cast<double>(wrenches.cols()), &exponent);
-  Wrenches rounded = wrenches;
-  for (double& x : rounded.reshaped()) {
-    x = std::ldexp(std::nearbyint(std::ldexp(x, 52 - exponent)), exponent - 52);
-  }
-  return rounded;
+  const double bound = wrenches.cwiseAbs().maxCoeff() * static_cast<double>(wrenches.cols());
+  return geometry::rounded_to_grid(wrenches, geometry::power_above(bound) - 52);
 }
 
 }  // namespace

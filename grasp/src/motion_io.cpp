@@ -1,5 +1,7 @@
 #include "graspfit/grasp/motion_io.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -11,6 +13,7 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "internal/json_node.hpp"
 #include "internal/json_text.hpp"
+#include "internal/option_check.hpp"
 #include "internal/record_json.hpp"
 
 namespace graspfit::grasp {
@@ -72,7 +75,55 @@ hands::HandConfiguration hand_at(const JsonNode& node, std::size_t num_joints) {
   return hand;
 }
 
-RecordedMove read_move(const JsonNode& node, const MotionFile& file) {
+/// Poses and positions that differ by no more than this are the same but for rounding [m, rad].
+constexpr double kSame = 1e-9;
+
+bool are_same(const RigidTransform& a, const RigidTransform& b) {
+  return (a.matrix() - b.matrix()).norm() <= kSame;
+}
+
+bool are_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).norm() <= kSame;
+}
+
+/// What a stretch says of the object must be true of the phase that it calls itself.
+void require_possible(const JsonNode& end, const MotionStretch& stretch) {
+  const std::string phase = phase_name(stretch.phase);
+  if (!is_carrying(stretch.phase)) {
+    if (are_same(stretch.X_WO_from, stretch.X_WO_to)) return;
+    end.at("X_WO").fail("is not where the object stood, which no hand carries in phase " + phase);
+  }
+  if (!are_same(stretch.from.q, stretch.to.q)) {
+    end.at("q").fail("is not as before, and joints do not move in phase " + phase);
+  }
+  if (!are_same(stretch.X_WO_from.inverse() * stretch.from.X_OH,
+                stretch.X_WO_to.inverse() * stretch.to.X_OH)) {
+    end.at("X_WH").fail("is not the hand's place against the object, which it keeps in phase " +
+                        phase);
+  }
+}
+
+/// Where the moves before have left hand and objects.
+struct Whereabouts {
+  std::optional<hands::HandConfiguration> hand;
+  std::vector<RigidTransform> X_WO;
+};
+
+/// A move must begin where things are.
+void require_there(const JsonNode& from, const MotionStretch& first, const Whereabouts& now) {
+  if (!are_same(first.X_WO_from, now.X_WO[static_cast<std::size_t>(first.object)])) {
+    from.at("X_WO").fail("is not where the object stands then");
+  }
+  if (!now.hand) return;
+  if (!are_same(first.from.X_OH, now.hand->X_OH)) {
+    from.at("X_WH").fail("is not where the move before has left the hand");
+  }
+  if (!are_same(first.from.q, now.hand->q)) {
+    from.at("q").fail("is not as the move before has left the joints");
+  }
+}
+
+RecordedMove read_move(const JsonNode& node, const MotionFile& file, Whereabouts& now) {
   RecordedMove move{object_index(node.at("object"), file.objects),
                     node.at("grasp_m").number(),
                     node.at("num_contacts").small_integer(),
@@ -85,9 +136,13 @@ RecordedMove read_move(const JsonNode& node, const MotionFile& file) {
     move.stretches.push_back({*value, move.object, hand_at(before, file.joints.size()),
                               hand_at(after, file.joints.size()), before.at("X_WO").pose(),
                               after.at("X_WO").pose()});
+    if (move.stretches.size() == 1) require_there(before, move.stretches.front(), now);
+    require_possible(after, move.stretches.back());
     before = after;
   }
   if (move.stretches.empty()) node.at("to").fail("is empty");
+  now.hand = move.stretches.back().to;
+  now.X_WO[static_cast<std::size_t>(move.object)] = move.stretches.back().X_WO_to;
   return move;
 }
 
@@ -95,6 +150,35 @@ void require_hash(const std::string& what, const std::string& found, const std::
   if (found == recorded) return;
   throw geometry::IoError(what + " is not the one recorded: its SHA-256 is " + found + ", not " +
                           recorded);
+}
+
+/// The joints must be the hand's, and where it can have them.
+void require_joints(const MotionFile& file, const hands::HandModel& hand) {
+  std::vector<std::string> names;
+  for (const hands::Joint& joint : hand.joints) names.push_back(joint.name);
+  const auto differs =
+      std::mismatch(names.begin(), names.end(), file.joints.begin(), file.joints.end());
+  if (differs.first != names.end() || differs.second != file.joints.end()) {
+    const auto name = [](const auto& at, const auto& end) { return at == end ? "none" : *at; };
+    throw geometry::IoError("/hand/joints/" + std::to_string(differs.first - names.begin()) +
+                            ": is " + name(differs.second, file.joints.end()) + ", of hand " +
+                            hand.name + " it is " + name(differs.first, names.end()));
+  }
+  for (std::size_t m = 0; m < file.moves.size(); ++m) {
+    const std::string move = "/moves/" + std::to_string(m);
+    const std::vector<MotionStretch>& stretches = file.moves[m].stretches;
+    const auto check = [&](const hands::HandConfiguration& configuration, const std::string& at) {
+      try {
+        hands::validate(hand, configuration);
+      } catch (const geometry::InvalidInput& error) {
+        throw geometry::IoError(move + at + "/q: " + error.what());
+      }
+    };
+    if (!stretches.empty()) check(stretches.front().from, "/from");
+    for (std::size_t s = 0; s < stretches.size(); ++s) {
+      check(stretches[s].to, "/to/" + std::to_string(s));
+    }
+  }
 }
 
 geometry::TriangleMesh mesh_of(const MotionObject& object, const fs::path& mesh_folder) {
@@ -117,6 +201,11 @@ geometry::TriangleMesh mesh_of(const MotionObject& object, const fs::path& mesh_
 MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> objects,
                             const std::vector<RigidTransform>& X_WO_goal,
                             const TidyingResult& result, const TidyingOptions& options) {
+  const std::size_t num_objects = scene.objects().size();
+  for (const std::size_t size : {objects.size(), X_WO_goal.size(), result.X_WO_start.size()}) {
+    internal::require(size == num_objects, "make_motion_file", "number of objects", size,
+                      "that of the scene, " + std::to_string(num_objects));
+  }
   MotionFile file;
   file.hand = scene.hand().description_file;
   file.description_sha256 = scene.hand().description_sha256;
@@ -124,8 +213,8 @@ MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> o
   file.clearance = options.move.clearance;
   file.objects = std::move(objects);
   for (std::size_t i = 0; i < file.objects.size(); ++i) {
-    file.objects[i].X_WO_start = result.X_WO_start.at(i);
-    file.objects[i].X_WO_goal = X_WO_goal.at(i);
+    file.objects[i].X_WO_start = result.X_WO_start[i];
+    file.objects[i].X_WO_goal = X_WO_goal[i];
   }
   for (const PlannedMove& move : result.moves) {
     file.moves.push_back({move.object, move.grasp.quality.m,
@@ -196,8 +285,10 @@ MotionFile read_motion(const fs::path& path) {
                             object.at("meters_per_file_unit").positive_number(),
                             object.at("X_WO_start").pose(), object.at("X_WO_goal").pose()});
   }
+  Whereabouts now;
+  for (const MotionObject& object : file.objects) now.X_WO.push_back(object.X_WO_start);
   for (const JsonNode& move : root.at("moves").items()) {
-    file.moves.push_back(read_move(move, file));
+    file.moves.push_back(read_move(move, file, now));
   }
   for (const JsonNode& object : root.at("unmoved").items()) {
     file.unmoved.push_back(
@@ -211,6 +302,7 @@ TableScene read_motion_scene(const MotionFile& file, const fs::path& mesh_folder
   hands::HandModel hand = hands::read_hand_model(is_in_folder ? mesh_folder / file.hand
                                                               : hands::find_hand_file(file.hand));
   require_hash("hand " + file.hand, hand.description_sha256, file.description_sha256);
+  require_joints(file, hand);
   std::vector<SceneObject> objects;
   for (const MotionObject& object : file.objects) {
     geometry::TriangleMesh mesh = mesh_of(object, mesh_folder);

@@ -54,20 +54,26 @@ double widest_opening(const PartDistances& distances, const RequestedParts& part
   return widest;
 }
 
-void check_object_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                       const std::vector<int>& fingers, double widest) {
+std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
+                                        const hands::HandModel& hand,
+                                        const std::vector<int>& fingers, double widest) {
   const std::string advice =
       "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
   if (geometry::bounding_box(mesh).sizes().minCoeff() > widest) {
-    throw InvalidInput("the object measures " + extents_of(mesh) + ", hand " + hand.name +
-                       " spans at most " + in_tenths_of_millimeters(widest) + advice);
+    return "the object measures " + extents_of(mesh) + ", hand " + hand.name + " spans at most " +
+           in_tenths_of_millimeters(widest) + advice;
   }
   const double smallest = fingertip_width(hand, fingers);
   if (geometry::longest_extent(mesh) < smallest) {
-    throw InvalidInput("the object measures " + extents_of(mesh) +
-                       ", less than one fingertip of hand " + hand.name + " (" +
-                       in_tenths_of_millimeters(smallest) + ")" + advice);
+    return "the object measures " + extents_of(mesh) + ", less than one fingertip of hand " +
+           hand.name + " (" + in_tenths_of_millimeters(smallest) + ")" + advice;
   }
+  return std::nullopt;
+}
+
+void check_object_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
+                       const std::vector<int>& fingers, double widest) {
+  if (const auto refusal = size_refusal(mesh, hand, fingers, widest)) throw InvalidInput(*refusal);
 }
 
 }  // namespace graspfit::grasp::internal

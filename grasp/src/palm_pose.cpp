@@ -77,6 +77,11 @@ geometry::RigidTransform palm_pose(const hands::HandModel& hand, const Vector3d&
   return X_OH;
 }
 
+double angle_from_approach(const Vector3d& direction_O, const std::optional<Vector3d>& approach_O) {
+  if (!approach_O) return 0.0;
+  return std::atan2(direction_O.cross(*approach_O).norm(), direction_O.dot(*approach_O));
+}
+
 hands::HandConfiguration open_hand_spread_by(const hands::HandModel& hand, double share) {
   hands::HandConfiguration open = hands::open_configuration(hand);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {

@@ -8,7 +8,9 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/option_names.hpp"
+#include "internal/object_size.hpp"
 #include "internal/option_check.hpp"
+#include "internal/sized_planning.hpp"
 
 namespace graspfit::grasp {
 
@@ -23,12 +25,14 @@ RigidTransform raised(RigidTransform X, double height) {
   return X;
 }
 
-/// The table below z = 0 of W as a body, for who sees it from another frame.
-geometry::TriangleMesh table_body() {
+/// The table below z = 0 of W as a body, for who sees it from another frame: as much of it as a
+/// hand reaches at `goal_W`. By whole meters, so that it is the same body for all goals near each
+/// other.
+geometry::TriangleMesh table_body(const Vector3d& goal_W) {
   constexpr double kEdge = 4.0;
   constexpr double kThickness = 0.5;
   RigidTransform X_WB = RigidTransform::Identity();
-  X_WB.translation().z() = -0.5 * kThickness;
+  X_WB.translation() << std::round(goal_W.x()), std::round(goal_W.y()), -0.5 * kThickness;
   return geometry::transformed(geometry::box({kEdge, kEdge, kThickness}), X_WB);
 }
 
@@ -45,18 +49,19 @@ class MoveSearch {
         options_(options) {}
 
   MoveAttempt operator()() {
-    if (!is_goal_free()) return attempt_;
+    if (!is_goal_free() || !is_size_possible()) return attempt_;
     const geometry::TriangleMesh mesh_W =
         geometry::transformed(scene_.object(object_).surface_O.mesh(), X_WO_start_);
     const ObjectModel model =
-        prepare_object(mesh_W, scene_.hand(), options_.planner, nullptr, options_.cache);
+        internal::prepare_sized_object(mesh_W, options_.planner, nullptr, options_.cache);
     const Surroundings surroundings = surroundings_at_both_ends();
     for (const Vector3d& approach_W : approaches()) {
       PlannerOptions planner = options_.planner;
       planner.approach_O = approach_W;
       // Fingers that open just enough still stand around the object when the palm withdraws.
       planner.pre_grasp.opening_steps = 1;
-      const PlannerResult planned = plan_grasps(model, scene_.hand(), planner, surroundings, 1);
+      const PlannerResult planned =
+          internal::plan_sized_grasps(model, scene_.hand(), planner, surroundings, 1);
       attempt_.planner_attempts += planned.statistics.attempts;
       if (planned.grasps.empty()) note_no_grasp(planned.statistics);
       for (const Grasp& grasp : planned.grasps) {
@@ -95,6 +100,16 @@ class MoveSearch {
     return attempt_.failures.empty();
   }
 
+  /// By the object's own frame, not by how it stands; what is too large is a reason, not an error.
+  bool is_size_possible() {
+    const RequestedParts parts = requested_parts(scene_.hand(), options_.planner);
+    const auto refusal = internal::size_refusal(
+        scene_.object(object_).surface_O.mesh(), scene_.hand(), parts.fingers,
+        internal::widest_opening(part_distances(scene_.hand()), parts));
+    if (refusal) ++attempt_.failures[*refusal];
+    return !refusal;
+  }
+
   /// What the hand must keep clear of, in W with the object at its start: the table and what
   /// stands there, and the same as the object sees them at its goal. Objects as their convex hulls,
   /// which have fewer faces: a hand clear of those is clear of them.
@@ -103,8 +118,12 @@ class MoveSearch {
     around.table_z_O = 0.0;
     const RigidTransform X_from_goal = X_WO_start_ * X_WO_goal_.inverse();
     const bool turns_over = X_from_goal.linear()(2, 2) < 1.0 - 1e-12;
+    constexpr double kLevel = 1e-9;  // [m] start and goal on one table, but for rounding
     if (turns_over) {
-      around.obstacles.emplace_back(geometry::transformed(table_body(), X_from_goal));
+      around.obstacles.emplace_back(
+          geometry::transformed(table_body(X_WO_goal_.translation()), X_from_goal));
+    } else if (const double goal_table_z = X_from_goal.translation().z(); goal_table_z > kLevel) {
+      around.table_z_O = goal_table_z;  // nearer to the object there, which goes down
     }
     const Eigen::AlignedBox3d object_W = box_of(object_, X_WO_start_);
     // A hand that touches the object reaches no farther, its retreat to the pre-grasp included.
@@ -127,19 +146,32 @@ class MoveSearch {
   }
 
   std::vector<Vector3d> approaches() const {
-    if (!options_.approaches_W.empty()) return options_.approaches_W;
-    const Vector3d palm_W = options_.home.X_OH * scene_.hand().palm.center_H;
-    const Vector3d center_W = X_WO_start_ * scene_.object(object_).center_of_mass_O;
-    return {(center_W - palm_W).normalized(), -Vector3d::UnitZ()};
+    std::vector<Vector3d> directions = options_.approaches_W;
+    if (directions.empty()) {
+      const Vector3d palm_W = options_.home.X_OH * scene_.hand().palm.center_H;
+      const Vector3d center_W = X_WO_start_ * scene_.object(object_).center_of_mass_O;
+      directions = {center_W - palm_W, -Vector3d::UnitZ()};
+      // From a palm at the center of mass, no direction leads there.
+      if (!(directions.front().norm() > 0.0)) directions.erase(directions.begin());
+    }
+    for (Vector3d& direction : directions) direction.normalize();
+    return directions;
   }
 
   void note_no_grasp(const PlannerStatistics& statistics) {
-    const auto worst =
-        std::max_element(statistics.outcomes.begin(), statistics.outcomes.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most_frequent = [](const auto& counts) {
+      return std::max_element(counts.begin(), counts.end(),
+                              [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
+    };
+    std::string why;
+    if (statistics.attempts > 0) {
+      why = std::string(" (most often ") + outcome_name(most_frequent(statistics.outcomes)) + ")";
+    } else if (!statistics.target_failures.empty()) {
+      why = " (" + most_frequent(statistics.target_failures) + ")";
+    }
     ++attempt_.failures["no valid grasp with room at start and goal in " +
-                        std::to_string(statistics.attempts) + " attempts (most often " +
-                        outcome_name(worst->first) + ")"];
+                        std::to_string(statistics.attempts) + " attempts" + why];
   }
 
   /// Whether a stretch is free; else the reason is counted.

@@ -8,6 +8,7 @@
 
 #include "graspfit/grasp/wrench_convention.hpp"
 #include "internal/object_size.hpp"
+#include "internal/palm_pose.hpp"
 #include "internal/stopwatch.hpp"
 
 namespace graspfit::grasp::internal {
@@ -29,7 +30,7 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
   // Refinement moves the palm too, and would undo what settling did.
   options.fitting.settle = options.fitting.settle && !options.refine;
   // Where other contacts may do, fingers close however far one of them has stopped.
-  if (options.missing_contact == MissingContact::Measured && !options.refine) {
+  if (options.missing_contact == MissingContact::Measured) {
     options.fitting.give_up_distance = std::numeric_limits<double>::max();
   }
   return options;
@@ -118,7 +119,8 @@ int stage_of(AttemptOutcome outcome) {
 }
 
 PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandModel& hand,
-                                 const PlannerOptions& options, const Surroundings& surroundings)
+                                 const PlannerOptions& options, const Surroundings& surroundings,
+                                 SizeCheck size_check)
     : object_(object),
       hand_(hand),
       options_(with_planner_rules(object, hand, options)),
@@ -127,8 +129,10 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       surroundings_(hand, surroundings),
       scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
       claimed_pads_(requested_pads(hand, parts_)) {
-  check_object_size(object.mesh(), hand, parts_.fingers,
-                    widest_opening(part_distances(hand), parts_));
+  if (size_check == SizeCheck::Due) {
+    check_object_size(object.mesh(), hand, parts_.fingers,
+                      widest_opening(part_distances(hand), parts_));
+  }
   const PlanningMethod& method = find_planning_method(options_.planner);
   const Stopwatch watch(guidance_s_);
   guidance_ = method.make({.object = object_,
@@ -176,7 +180,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   if (is_refinable) failure = refine(start.targets, configuration, result);
   const bool is_measured =
       !failure ||
-      (!options_.refine && options_.missing_contact == MissingContact::Measured &&
+      (options_.missing_contact == MissingContact::Measured &&
        (*failure == AttemptOutcome::BlockedFinger || *failure == AttemptOutcome::MissedContact));
   if (!is_measured) {
     result.outcome = *failure;
@@ -300,10 +304,8 @@ double PlannerAttempts::ideal_m(const TargetContacts& targets) const {
 
 /// Between the palm's direction and the one asked for [rad]; 0 if none is.
 double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& configuration) const {
-  if (!options_.approach_O) return 0.0;
-  const Eigen::Vector3d palm = configuration.X_OH.linear() * hand_.palm.direction_H;
-  const Eigen::Vector3d& wanted = *options_.approach_O;
-  return std::atan2(palm.cross(wanted).norm(), palm.dot(wanted));
+  return internal::angle_from_approach(configuration.X_OH.linear() * hand_.palm.direction_H,
+                                       options_.approach_O);
 }
 
 /// Fingers miss their targets, so a target's score says little about the contact's.

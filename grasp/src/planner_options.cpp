@@ -7,6 +7,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/option_names.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -56,6 +57,8 @@ void PlannerOptions::validate() const {
   require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
   require(squeeze_friction >= 0.0 && std::isfinite(squeeze_friction), "squeeze_friction",
           squeeze_friction, "finite and >= 0");
+  require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
+          name_of(missing_contact), "fails with refine, which accepts no part without contact");
   score.validate();
   if (weak) weak->validate();
   targets.validate();

@@ -11,10 +11,16 @@ namespace {
 
 using geometry::shortest_decimal;
 
-/// Whether a reading is about scores, targets or the posture at them, which only fitting has.
+/// Whether a reading is about scores.
+bool is_about_scores(std::string_view number) {
+  constexpr std::array about = {"A1", "A2", "A3", "A4", "A5"};
+  return std::find(about.begin(), about.end(), number) != about.end();
+}
+
+/// Whether a reading is about targets or the posture at them, which only fitting has.
 bool is_about_targets(std::string_view number) {
-  constexpr std::array about = {"A1",  "A2",  "A3",  "A4",  "A5",  "A17", "A18", "A19", "A20",
-                                "A21", "A22", "A23", "A24", "A25", "A26", "A28", "A47", "A48"};
+  constexpr std::array about = {"A17", "A18", "A19", "A20", "A21", "A22",
+                                "A23", "A24", "A25", "A26", "A28", "A48"};
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
@@ -78,7 +84,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
                   shortest_decimal(fitting.small_step)},
-      {"A31", options.missing_contact == MissingContact::Fails || options.refine
+      {"A31", options.missing_contact == MissingContact::Fails
                   ? text("a part without contact fails the attempt")
                   : text("the contacts that there are count")},
       {"A32", std::string("small steps until contact or penetration; guard on ") +
@@ -117,7 +123,12 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
   };
   if (options.planner != "fitting") {
     for (auto& [number, reading] : readings) {
-      if (is_about_targets(number)) reading = "not used by planner " + options.planner;
+      const bool is_score_unused = is_about_scores(number) && !options.contact_score_threshold;
+      if (is_score_unused || is_about_targets(number)) {
+        reading = "not used by planner " + options.planner;
+      }
+      if (number == "A47")
+        reading = "of the measure alone: planner " + options.planner + " has no targets";
     }
   }
   return readings;

@@ -24,9 +24,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostSteps = 1000;
 
-/// Share of a distance that a proof is content with: the rest costs more than steps more do.
-constexpr double kNearEnough = 0.6;
-
 struct LinkPair {
   int a;
   int b;
@@ -185,7 +182,7 @@ class PreGraspSearch {
   static double clearance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                           const RigidTransform& X_AB, double enough,
                           geometry::ProximitySeed& seed) {
-    const auto found = geometry::surface_clearance(a, b, X_AB, enough, kNearEnough, seed);
+    const auto found = geometry::surface_clearance(a, b, X_AB, enough, internal::kNearEnough, seed);
     seed = found.nearest;
     return found.at_least;
   }

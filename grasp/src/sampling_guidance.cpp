@@ -4,7 +4,6 @@
 // random, at the sample or a little before it; the hand backs off until it is clear and closes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "graspfit/geometry/random.hpp"
@@ -44,9 +43,12 @@ class SamplingGuidance : public GraspGuidance {
   GuidedStarts starts(std::int64_t number) const override {
     GuidedStarts result;
     if (usable_.empty()) {
+      result.is_exhausted = true;
       result.failure = kNoSample;
       return result;
     }
+    // Sample k was drawn from the stream (seed, k), so an attempt begins with the numbers that
+    // placed the sample of its own number.
     geometry::Random random =
         geometry::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number));
     const geometry::SurfaceSample& sample = samples_[usable_[random.index(usable_.size())]];
@@ -95,9 +97,7 @@ class SamplingGuidance : public GraspGuidance {
   static constexpr const char* kNoSample = "no sample";
 
   bool is_approached(const Vector3d& direction_O) const {
-    if (!scene_.options.approach_O) return true;
-    const Vector3d& wanted = *scene_.options.approach_O;
-    return std::atan2(direction_O.cross(wanted).norm(), direction_O.dot(wanted)) <=
+    return angle_from_approach(direction_O, scene_.options.approach_O) <=
            scene_.options.approach_angle;
   }
 

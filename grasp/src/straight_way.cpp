@@ -15,11 +15,6 @@ namespace {
 /// Room for the rounding of distances and bounds of a hand's size [m]; they are off by 1e-14.
 constexpr double kTouching = 1e-8;
 
-/// Least angle between two orientations [rad].
-double turn_between(const RigidTransform& from, const RigidTransform& to) {
-  return Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
-}
-
 /// Largest distance of a link's frame from its parent's while its joint goes from `from` to `to`:
 /// at one of the ends, for the distance is convex.
 double offset_of(const hands::HandModel& hand, const hands::Link& link, const Eigen::VectorXd& from,
@@ -34,6 +29,10 @@ double offset_of(const hands::HandModel& hand, const hands::Link& link, const Ei
 }
 
 }  // namespace
+
+double turn_between(const RigidTransform& from, const RigidTransform& to) {
+  return Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
+}
 
 StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfiguration& from,
                          const hands::HandConfiguration& to)
@@ -95,7 +94,9 @@ double StraightWay::relative_speed(int link_a, int link_b) const {
 
 bool are_apart_on_way(double relative_speed, double tolerance, const DistanceOnWay& distance) {
   constexpr int kMostDistances = 500;
-  if (relative_speed <= tolerance) return true;  // nothing but the last stretch
+  if (tolerance > 0.0 && relative_speed <= tolerance) return true;  // nothing but the last stretch
+  // As good as at rest: where they are, they are all the way.
+  if (relative_speed <= kTouching) return distance(0.0, 8.0 * kTouching) > 2.0 * kTouching;
   const double share_per_meter = 1.0 / relative_speed;
   const auto covered = [&](double d) { return (d - kTouching) * share_per_meter; };
   const double at_start = distance(0.0, relative_speed);

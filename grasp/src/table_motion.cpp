@@ -14,6 +14,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
+#include "graspfit/geometry/used_vertices.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/straight_way.hpp"
@@ -31,9 +32,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Depth to which an object that rests on the table may be in it [m]: rounding of its pose.
 constexpr double kRestTolerance = 1e-9;
 
-/// Share of a distance that a proof is content with: the rest costs more than steps more do.
-constexpr double kNearEnough = 0.6;
-
 constexpr std::array<std::pair<MotionPhase, const char*>, 7> kPhases = {
     {{MotionPhase::Reach, "reach"},
      {MotionPhase::Approach, "approach"},
@@ -44,12 +42,13 @@ constexpr std::array<std::pair<MotionPhase, const char*>, 7> kPhases = {
      {MotionPhase::Retreat, "retreat"}}};
 
 geometry::TriangleMesh hull_mesh(const geometry::TriangleMesh& mesh) {
-  const geometry::ConvexHull3 hull = geometry::convex_hull(mesh.vertices);
+  const std::vector<Vector3d> corners = geometry::used_vertices(mesh);
+  const geometry::ConvexHull3 hull = geometry::convex_hull(corners);
   geometry::TriangleMesh result;
-  std::vector<std::int32_t> index_of(mesh.vertices.size(), -1);
+  std::vector<std::int32_t> index_of(corners.size(), -1);
   for (const std::size_t i : hull.vertices) {
     index_of[i] = static_cast<std::int32_t>(result.vertices.size());
-    result.vertices.push_back(mesh.vertices[i]);
+    result.vertices.push_back(corners[i]);
   }
   for (const geometry::HullFacet& facet : hull.facets) {
     result.faces.push_back({index_of[facet[0]], index_of[facet[1]], index_of[facet[2]]});
@@ -67,10 +66,6 @@ bool is_resting(MotionPhase phase) {
   return phase == MotionPhase::Lift || phase == MotionPhase::Place;
 }
 
-double turn_between(const RigidTransform& from, const RigidTransform& to) {
-  return Eigen::Quaterniond(from.linear()).angularDistance(Eigen::Quaterniond(to.linear()));
-}
-
 /// Bounds of how far the points of every body go on a stretch.
 class Travel {
  public:
@@ -86,7 +81,7 @@ class Travel {
     const SceneObject& object = scene.object(stretch.object);
     const Vector3d& pivot_O = object.center_of_mass_O;
     const double path = (stretch.X_WO_to * pivot_O - stretch.X_WO_from * pivot_O).norm();
-    const double turn = turn_between(stretch.X_WO_from, stretch.X_WO_to);
+    const double turn = internal::turn_between(stretch.X_WO_from, stretch.X_WO_to);
     object_ = path + turn * geometry::largest_radius(object.surface_O.mesh(), pivot_O);
     const auto X_WL = hands::forward_kinematics(scene.hand(), stretch.from);
     const Vector3d pivot_W = stretch.X_WO_from * pivot_O;
@@ -166,11 +161,11 @@ class StretchProof {
  private:
   using Distance = std::function<double(const Posed&, double enough)>;
 
-  /// Whether two bodies stay more than `clearance` apart; the end at which the hand touches counts
-  /// as the way's end.
-  bool stay_apart(double travel, double clearance, const Distance& distance) const {
+  /// Whether two bodies stay more than `clearance` apart but for a way of `tolerance` at the end at
+  /// which the hand touches, which counts as the way's end.
+  bool stay_apart(double travel, double clearance, double tolerance,
+                  const Distance& distance) const {
     const bool is_backward = stretch_.phase == MotionPhase::Release;
-    const double tolerance = is_touching(stretch_.phase) ? kTouchTolerance : 0.0;
     return internal::are_apart_on_way(travel, tolerance, [&](double share, double enough) {
       const Posed at = posed(scene_, stretch_, is_backward ? 1.0 - share : share);
       return std::clamp(distance(at, enough + clearance) - clearance, 0.0, enough);
@@ -181,7 +176,7 @@ class StretchProof {
   static double surface_distance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                                  const RigidTransform& X_AB, double enough, double clearance,
                                  geometry::ProximitySeed& seed) {
-    auto found = geometry::surface_clearance(a, b, X_AB, enough, kNearEnough, seed);
+    auto found = geometry::surface_clearance(a, b, X_AB, enough, internal::kNearEnough, seed);
     if (clearance > 0.0 && found.at_least < enough && found.at_least < 2.0 * clearance) {
       found = geometry::surface_clearance(a, b, X_AB, enough, 1.0, found.nearest);
     }
@@ -193,7 +188,7 @@ class StretchProof {
     const auto height = [&](const Posed& at, double enough) {
       return scene_.height_of_link(link, at.X_WL[static_cast<std::size_t>(link)], enough);
     };
-    if (!only_translates_) return stay_apart(travel_.link(link), clearance_, height);
+    if (!only_translates_) return stay_apart(travel_.link(link), clearance_, 0.0, height);
     const double enough = clearance_ + 1.0;
     return height(posed(scene_, stretch_, 0.0), enough) > clearance_ &&
            height(posed(scene_, stretch_, 1.0), enough) > clearance_;
@@ -203,7 +198,7 @@ class StretchProof {
     const auto height = [&](const Posed& at, double) {
       return std::max(0.0, scene_.height_of_object(stretch_.object, at.state.X_WO));
     };
-    if (!only_translates_) return stay_apart(travel_.object(), clearance_, height);
+    if (!only_translates_) return stay_apart(travel_.object(), clearance_, 0.0, height);
     const double start = scene_.height_of_object(stretch_.object, stretch_.X_WO_from);
     const double end = scene_.height_of_object(stretch_.object, stretch_.X_WO_to);
     if (is_resting(stretch_.phase)) return std::min(start, end) >= -kRestTolerance;
@@ -216,13 +211,14 @@ class StretchProof {
     const auto index = static_cast<std::size_t>(other);
     const RigidTransform X_OW = (is_handled ? stretch_.X_WO_from : X_WO_[index]).inverse();
     const SceneObject& object = scene_.object(other);
+    const double tolerance = is_handled && is_touching(stretch_.phase) ? kTouchTolerance : 0.0;
     const auto is_apart = [&](const geometry::MeshQuery& body, double travel, const auto& X_WB) {
       for (const double end : {0.0, 1.0}) {
         const RigidTransform X_OB = X_OW * X_WB(posed(scene_, stretch_, end));
         if (geometry::do_intersect(object.surface_O, body, X_OB)) return false;
       }
       geometry::ProximitySeed seed;
-      return stay_apart(travel, clearance_, [&](const Posed& at, double enough) {
+      return stay_apart(travel, clearance_, tolerance, [&](const Posed& at, double enough) {
         return surface_distance(object.surface_O, body, X_OW * X_WB(at), enough, clearance_, seed);
       });
     };
@@ -247,7 +243,7 @@ class StretchProof {
         const double travel = travel_.links_apart(a, b);
         if (!(travel > 0.0)) continue;
         geometry::ProximitySeed seed;
-        const bool is_apart = stay_apart(travel, 0.0, [&](const Posed& at, double enough) {
+        const bool is_apart = stay_apart(travel, 0.0, 0.0, [&](const Posed& at, double enough) {
           const RigidTransform& X_WA = at.X_WL[static_cast<std::size_t>(a)];
           const RigidTransform& X_WB = at.X_WL[static_cast<std::size_t>(b)];
           return surface_distance(*scene_.collision().link_solid(a),

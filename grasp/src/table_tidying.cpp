@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/rest_pose.hpp"
@@ -103,7 +104,15 @@ class TidyingSearch {
       return std::nullopt;
     }
     ++result_.moves_tried;
-    MoveAttempt attempt = plan_move(scene_, at_, object, X_WO_to, options_.move);
+    // Moves of two objects in either order lead to one arrangement.
+    const auto known = std::find_if(refused_.begin(), refused_.end(), [&](const Refused& refused) {
+      return refused.object == object && is_same(refused.X_WO_to, X_WO_to) &&
+             std::equal(at_.begin(), at_.end(), refused.at.begin(), is_same);
+    });
+    const bool is_known = known != refused_.end();
+    MoveAttempt attempt =
+        is_known ? known->attempt : plan_move(scene_, at_, object, X_WO_to, options_.move);
+    if (!is_known && !attempt.move) refused_.push_back({at_, object, X_WO_to, attempt});
     result_.stretches_tried += attempt.stretches_tried;
     result_.planner_attempts += attempt.planner_attempts;
     result_.grasps_tried += attempt.grasps_tried;
@@ -145,12 +154,21 @@ class TidyingSearch {
     return poses;
   }
 
+  /// A move that was found impossible in an arrangement.
+  struct Refused {
+    std::vector<RigidTransform> at;
+    int object = -1;
+    RigidTransform X_WO_to;
+    MoveAttempt attempt;
+  };
+
   const TableScene& scene_;
   const std::vector<RigidTransform>& goal_;
   const TidyingOptions& options_;
   std::vector<RigidTransform> at_;
   std::vector<bool> was_put_down_;
   std::vector<PlannedMove> moves_;
+  std::vector<Refused> refused_;
   int best_num_home_ = -1;
   TidyingResult result_;
 };
@@ -160,7 +178,10 @@ class TidyingSearch {
 void TidyingOptions::validate() const {
   move.validate();
   for (const Eigen::Vector2d& place : resting_places_W) {
-    internal::require(place.allFinite(), "TidyingOptions", "resting_places_W", place.x(), "finite");
+    internal::require(
+        place.allFinite(), "TidyingOptions", "resting_places_W",
+        geometry::shortest_decimal(place.x()) + ", " + geometry::shortest_decimal(place.y()),
+        "finite");
   }
   internal::require(max_rest_poses >= 1, "TidyingOptions", "max_rest_poses", max_rest_poses,
                     ">= 1");

@@ -185,4 +185,42 @@ TEST_CASE("The rest pose nearest to a direction is found, impossible requests ar
   flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   flat.faces = {{0, 1, 2}, {0, 2, 1}};
   CHECK_THROWS_AS(rest_poses(flat, Vector3d::Zero()), DegenerateGeometry);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(rest_poses(box({1, 1, 1}), {0, nan, 0}),
+                    Catch::Contains("center_of_mass = (0, nan, 0)"));
+}
+
+TEST_CASE("Nothing stands without a face, a finite place or an up with a length",
+          "[geometry][rest_pose]") {
+  const TriangleMesh mesh = box({1, 1, 1});
+  const Vector3d zero = Vector3d::Zero();
+  const Vector3d up = Vector3d::UnitZ();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_NOTHROW(standing_pose(mesh, 3.0 * up, 0.0, zero, {0, 0}));
+  CHECK_THROWS_WITH(standing_pose(mesh, zero, 0.0, zero, {0, 0}), Catch::Contains("up_O"));
+  CHECK_THROWS_AS(standing_pose({}, up, 0.0, zero, {0, 0}), InvalidInput);
+  CHECK_THROWS_AS(standing_pose(mesh, {0, nan, 1}, 0.0, zero, {0, 0}), InvalidInput);
+  CHECK_THROWS_AS(standing_pose(mesh, up, nan, zero, {0, 0}), InvalidInput);
+  CHECK_THROWS_AS(standing_pose(mesh, up, 0.0, {nan, 0, 0}, {0, 0}), InvalidInput);
+  CHECK_THROWS_AS(standing_pose(mesh, up, 0.0, zero, {0, nan}), InvalidInput);
+}
+
+TEST_CASE("A vertex of no face neither stands nor supports", "[geometry][rest_pose]") {
+  const TriangleMesh mesh = box({0.2, 0.1, 0.06});
+  TriangleMesh stray = mesh;
+  stray.vertices.insert(stray.vertices.begin(), {0.0, 0.0, -1.0});
+  for (Face& face : stray.faces) {
+    for (std::int32_t& vertex : face) ++vertex;
+  }
+  const auto plain = rest_poses(mesh, Vector3d::Zero());
+  const auto poses = rest_poses(stray, Vector3d::Zero());
+  REQUIRE(poses.size() == plain.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    CHECK(poses[i].up_O == plain[i].up_O);
+    CHECK(poses[i].height == plain[i].height);
+    CHECK(poses[i].margin == plain[i].margin);
+  }
+  const RigidTransform X_WO =
+      standing_pose(stray, Vector3d::UnitZ(), 0.0, Vector3d::Zero(), {0.0, 0.0});
+  CHECK(X_WO.translation().z() == Approx(0.03));
 }

@@ -113,7 +113,9 @@ inline std::string all_fields(const PlannerResult& result) {
   for (const auto& [name, count] : result.statistics.target_failures) {
     out << name << ' ' << count << '\n';
   }
-  out << result.statistics.seeds_tried << ' ' << result.statistics.fitting_iterations << '\n';
+  for (const auto& [name, count] : result.statistics.guidance) out << name << ' ' << count << '\n';
+  out << result.statistics.seeds_tried << ' ' << result.statistics.fitting_iterations << ' '
+      << result.statistics.refinement_iterations << ' ' << result.statistics.duplicates << '\n';
   for (const Grasp& grasp : result.grasps) out << all_fields(grasp) << '\n';
   return out.str();
 }
@@ -283,7 +285,8 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     // Acceptance.
     if (!(g.quality.m > 0.0) || !g.is_usable()) wrong("not usable");
     if (options.acceptance == Acceptance::Valid && !g.is_valid()) wrong("not valid");
-    if (options.acceptance == Acceptance::Quality && g.quality.m < std::min(0.5 * g.ideal_m, 0.6)) {
+    const double least_m = has_targets ? std::min(0.5 * g.ideal_m, 0.6) : 0.6;
+    if (options.acceptance == Acceptance::Quality && g.quality.m < least_m) {
       wrong("M ", g.quality.m, " with ideal ", g.ideal_m);
     }
     if (has_targets ? !(g.ideal_m > 0.0) : g.ideal_m != 0.0) wrong("ideal M ", g.ideal_m);

@@ -148,6 +148,8 @@ TEST_CASE("Attempts of GS keep to the cone of approach", "[grasp][approach_sampl
   const Guided none(geometry::ball(0.04), options);
   CHECK(none.guidance->starts(0).starts.empty());
   CHECK(none.guidance->starts(0).failure == "no sample");
+  CHECK(none.guidance->starts(0).is_exhausted);
+  CHECK_FALSE(guided.guidance->starts(0).is_exhausted);
 }
 
 TEST_CASE("A box of too many rays is refused", "[grasp][approach_sampling]") {

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/epsilon_linf.hpp"
+#include "graspfit/grasp/grasp_matrix_quality.hpp"
 #include "graspfit/grasp/grasp_metric.hpp"
 #include "known_grasps.hpp"
 #include "support/catch.hpp"
@@ -155,6 +157,44 @@ TEST_CASE("Areas and gaps are those of the contacts", "[grasp][grasp_metric]") {
   CHECK(*value_of("contact_gap_max", input) == 0.0011);
   CHECK(*value_of("claimed_gap_max", input) == 0.0004);
   CHECK(*value_of("num_contacts", input) == 4.0);
+}
+
+TEST_CASE(
+    "Min-weight, singular values and epsilon, L-infinity, are those of the library's functions",
+    "[grasp][grasp_metric]") {
+  const double mu = 0.5;
+  const GraspMetricInput cube = input_of(on_cube(), mu);
+  // The known min-weight of case F is 1/48 for its 48 edges.
+  CHECK(*value_of("min_weight", cube) == Approx(1.0).epsilon(1e-9));
+  // Six contacts on a ball: three singular values are the root of 6, three are 2.
+  CHECK(*value_of("sigma_min", cube) == Approx(2.0).epsilon(kRounding));
+  CHECK(*value_of("sigma_product", cube) ==
+        Approx(std::pow(2.0 * std::sqrt(6.0), 3)).epsilon(kRounding));
+  CHECK(*value_of("sigma_ratio", cube) == Approx(2.0 / std::sqrt(6.0)).epsilon(kRounding));
+
+  // Two opposite contacts balance evenly without closure: rank 5 has no min-weight.
+  const GraspMetricInput two = input_of(antipodal(), mu);
+  CHECK_FALSE(value_of("min_weight", two).has_value());
+  CHECK(*value_of("sigma_min", two) == Approx(0.0).margin(1e-15));
+  CHECK(*value_of("epsilon_linf", two) == 0.0);
+
+  const GraspMetricInput four = input_of(on_tetrahedron(), mu);
+  const WrenchConvention& convention = *four.convention();
+  const GraspMatrixQuality matrix = grasp_matrix_quality(
+      on_tetrahedron(), convention.reference_point_O, convention.options.torque_scale);
+  CHECK(*value_of("sigma_min", four) == matrix.smallest());
+  CHECK(*value_of("sigma_ratio", four) == matrix.ratio());
+  const GraspMetricValue linf = evaluate(grasp_metrics().at("epsilon_linf"), four);
+  CHECK(*linf.value == epsilon_linf(on_tetrahedron(), convention).lower);
+  CHECK(*linf.value > *value_of("epsilon", four));
+  CHECK_THAT(linf.convention, Catch::EndsWith("certified lower bound"));
+}
+
+TEST_CASE("Bad facts are refused every time that they are asked for", "[grasp][grasp_metric]") {
+  const GraspMetricInput bad = input_of(on_cube(), -0.5);
+  CHECK_THROWS_AS(bad.convention(), InvalidInput);
+  CHECK_THROWS_AS(bad.convention(), InvalidInput);
+  CHECK_THROWS_AS(value_of("epsilon", bad), InvalidInput);
 }
 
 TEST_CASE("Metrics of a measured grasp are its own numbers", "[grasp][grasp_metric]") {

@@ -141,6 +141,19 @@ TEST_CASE("A palm that is requested moves on to the surface", "[grasp][hand_clos
                     [&](const auto& contact) { return contact.pad == scene.hand.palm.pad; }));
 }
 
+TEST_CASE("A palm that is requested goes on by four voxels at most", "[grasp][hand_closing]") {
+  grasp::PlannerOptions options;
+  options.palm = true;
+  const Scene scene(geometry::ball(0.045), "barrett", options);
+  const hands::HandConfiguration start = above(scene, 0.045 + 10.0 * scene.voxel_size());
+  const FittingResult result = grasp::close_hand(
+      scene.fitting_hand, scene.object, scene.nothing, grasp::GraspStyle::Power, scene.parts, start,
+      {}, scene.contact_options, options_at(grasp::PenetrationGuard::Meshes));
+  const double down =
+      result.initial.X_OH.translation().z() - result.configuration.X_OH.translation().z();
+  CHECK(down == Approx(4.0 * scene.voxel_size()).epsilon(0.02));
+}
+
 TEST_CASE("Closing a hand refuses what makes no sense", "[grasp][hand_closing]") {
   const Scene scene(geometry::ball(0.045));
   const auto message = [&](const grasp::RequestedParts& parts, const RetreatRule& retreat) {

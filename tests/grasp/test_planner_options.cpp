@@ -57,6 +57,13 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
   CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "planner", "none") == "");
   CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "fitting|gs|ma",
                "ma-full-retreat") == "");
+  // Refined grasps touch with every part.
+  const auto measured = [](auto& o) { o.missing_contact = grasp::MissingContact::Measured; };
+  CHECK(unsaid(message_after(measured), "missing_contact", "measured", "refine") == "");
+  CHECK(message_after([&](auto& o) {
+          measured(o);
+          o.refine = false;
+        }) == "nothing thrown");
   CHECK(unsaid(message_after([](auto& o) { o.contact_score_threshold = 1.0; }),
                "contact_score_threshold", "1") == "");
   // Options inside options.

@@ -55,6 +55,21 @@ TEST_CASE("Usable grasps of every method that starts clear keep every promise",
   CHECK_FALSE(result.grasps.empty());
 }
 
+TEST_CASE("Grasps of high quality of a method without targets have M of 0.6 at least",
+          "[grasp][planning_methods]") {
+  PlannerOptions options = at_voxel_level("gs");
+  options.acceptance = Acceptance::Quality;
+  options.max_attempts = 60;
+  options.count = 1000;
+  options.distinct = {0.0, 0.0, 0.0};
+  const Run run(geometry::capsule(0.03, 0.08), options);
+  const PlannerResult result = run.plan();
+  CHECK(broken_promises(run, result) == kNothing);
+  // Some usable grasps are not good enough.
+  CHECK(static_cast<std::int64_t>(result.grasps.size()) < result.statistics.usable());
+  for (const Grasp& grasp : result.grasps) CHECK(grasp.quality.m >= 0.6);
+}
+
 TEST_CASE("Same seed, same bytes, for every method and any number of threads",
           "[grasp][planning_methods]") {
   PlannerOptions options = at_voxel_level(some_method());
@@ -94,6 +109,19 @@ TEST_CASE("An object on which MA has no candidate ends without an attempt, and s
   CHECK(result.stop == PlannerStop::Exhausted);
   CHECK(result.statistics.attempts == 0);
   CHECK(result.statistics.target_failures.at("no candidate") == 1);
+}
+
+TEST_CASE("GS without a sample in the cone of approach ends at once, and says why",
+          "[grasp][planning_methods]") {
+  PlannerOptions options = at_voxel_level("gs");
+  options.approach_O = Vector3d::UnitZ();
+  options.approach_angle = 1e-6;  // between the normals of the facets
+  options.max_attempts = 1000;
+  const Run run(geometry::ball(0.04), options);
+  const PlannerResult result = run.plan();
+  CHECK(result.stop == PlannerStop::Exhausted);
+  CHECK(result.statistics.attempts == 0);
+  CHECK(result.statistics.target_failures.at("no sample") == 1);
 }
 
 TEST_CASE("Attempts with a missing contact count where they are asked to",

@@ -4,6 +4,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_metric.hpp"
+#include "graspfit/hands/hand_library.hpp"
 #include "known_grasps.hpp"
 #include "support/catch.hpp"
 
@@ -82,6 +83,37 @@ TEST_CASE("A pad meets a face as often as Gaussian noise leaves it over that fac
   CHECK(found.mean_num_contacts ==
         Approx(expected).margin(4.0 * std::sqrt(expected * (1.0 - expected) / kSamples)));
   CHECK(found.closed_share == 0.0);
+}
+
+TEST_CASE("Poses are usable where the paper's measure of what is met is positive",
+          "[grasp][pose_robustness]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  Contacts contacts = testing::on_cube();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts[i].finger = static_cast<int>(i % 2);  // opposite contacts are of different fingers
+    contacts[i].pad = hand.fingers[i % 2].tip_pad;
+    contacts[i].area = 1e-4;
+    contacts[i].pad_boundary_distance = 0.004;
+  }
+  GraspMetricFacts facts = on_ball(contacts, 0.5);
+  facts.quality_context = QualityContext{
+      .center_of_mass_O = Vector3d::Zero(), .normalizing_radius = 1.0, .hand = &hand};
+  const auto share = [&](double deviation) {
+    return *pose_robustness(facts, {.num_samples = 40,
+                                    .translation_deviation = deviation,
+                                    .rotation_deviation = 0.0,
+                                    .reach = 0.2})
+                .usable_share;
+  };
+  CHECK(share(0.0) == 1.0);
+  CHECK(share(50.0) == 0.0);  // nothing is met
+  // In between some poses lose their stable pairs: half a radius aside, normals are 30 degrees off.
+  const double some = share(0.5);
+  CHECK(some > 0.0);
+  CHECK(some < 1.0);
+  const GraspMetricInput input(facts);
+  CHECK(*evaluate(grasp_metrics().at("robust_usable_share"), input).value ==
+        *pose_robustness(facts)->usable_share);
 }
 
 TEST_CASE("The same seed gives the same numbers, and noise costs closure",

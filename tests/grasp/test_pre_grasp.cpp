@@ -241,6 +241,11 @@ TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp]
   CHECK(proven(1e-5, [](double) { return 0.01; }));
   // A body that does not move stays where it is.
   CHECK(are_apart_on_way(0.0, 1e-5, [](double, double) { return 0.0; }));
+  // Without a tolerance it has to be apart there; rounding is no motion.
+  for (const double speed : {0.0, 1e-17}) {
+    CHECK_FALSE(are_apart_on_way(speed, 0.0, [](double, double) { return 0.0; }));
+    CHECK(are_apart_on_way(speed, 0.0, [](double, double enough) { return enough; }));
+  }
 }
 
 TEST_CASE("Jaws open as little as the clearance asks, by the step", "[grasp][pre_grasp]") {

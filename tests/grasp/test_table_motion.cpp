@@ -6,6 +6,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "random_contacts.hpp"
 #include "support/catch.hpp"
@@ -147,6 +148,75 @@ TEST_CASE("An approach may touch what it approaches, a reach may not", "[grasp][
   approach.phase = MotionPhase::Approach;
   approach.to.q.setConstant(0.018);
   CHECK(find_encounter(held.scene, X_WO, approach, 0.0));
+}
+
+TEST_CASE("A hand that stays where it is keeps its distance, or does not",
+          "[grasp][table_motion]") {
+  // A wall 50 mm thick far away in x; block elsewhere.
+  const HeldBlock held({0.05, 0.4, 0.4});
+  std::vector<RigidTransform> X_WO = {at({2, 2, 0.015}), at({1, 0, 0.2})};
+  HandConfiguration hand = held.holding(at({0, 0, 0.5}));
+  const auto resting = [&] {
+    return MotionStretch{MotionPhase::Reach, kBlock, hand, hand, X_WO[kBlock], X_WO[kBlock]};
+  };
+  CHECK(largest_travel(held.scene, resting()) < 1e-15);
+  // One millimeter over the table.
+  hand.X_OH.translation().z() -= clearance_at(held.scene, X_WO, resting(), 0.0).hand - 0.001;
+  CHECK(clearance_at(held.scene, X_WO, resting(), 0.0).hand == Approx(0.001).epsilon(1e-9));
+  CHECK_FALSE(find_encounter(held.scene, X_WO, resting(), 0.0005));
+  const auto met = find_encounter(held.scene, X_WO, resting(), 0.003);
+  REQUIRE(met);
+  CHECK(met->second == "table");
+  // The same beside the wall, high over the table.
+  hand.X_OH.translation().z() += 0.3;
+  const double gap = clearance_at(held.scene, X_WO, resting(), 0.0).hand;
+  X_WO[kWall].translation().x() -= 1.0;
+  CHECK(find_encounter(held.scene, X_WO, resting(), 0.0));  // in the wall
+  X_WO[kWall].translation().x() += 1.0;
+  X_WO[kWall].translation().z() = 5.0;
+  CHECK_FALSE(find_encounter(held.scene, X_WO, resting(), 0.5 * gap));
+  // And with the block in hand.
+  const RigidTransform X_WB = at({0, 0, 0.5});
+  X_WO[kWall] = at({0.02 + 0.002 + 0.025, 0, 0.5 - 0.013 - 0.2});
+  const MotionStretch carried = held.carry(MotionPhase::Transport, X_WB, X_WB);
+  CHECK(clearance_at(held.scene, X_WO, carried, 0.0).object == Approx(0.002).epsilon(1e-9));
+  CHECK(find_encounter(held.scene, X_WO, carried, 0.003));
+  CHECK_FALSE(find_encounter(held.scene, X_WO, carried, 0.001));
+}
+
+TEST_CASE("The end of an approach may be near the object alone, not the table",
+          "[grasp][table_motion]") {
+  // Straight down beside the block, until the jaws are 4 um in the table.
+  const HeldBlock held({0.01, 0.01, 0.01});
+  const RigidTransform X_WB = at({0, 0.3, 0.015});
+  const std::vector<RigidTransform> X_WO = {X_WB, at({1, 1, 1})};
+  HandConfiguration high = held.holding(at({0, 0, 0.3}));
+  MotionStretch approach{MotionPhase::Approach, kBlock, high, high, X_WB, X_WB};
+  const double height = held.scene.height_of_link(
+      held.scene.hand().fingers[0].links.back(),
+      hands::forward_kinematics(
+          held.scene.hand(),
+          high)[static_cast<std::size_t>(held.scene.hand().fingers[0].links.back())],
+      1.0);
+  approach.to.X_OH.translation().z() -= height - 0.0001;
+  CHECK_FALSE(find_encounter(held.scene, X_WO, approach, 0.0));
+  approach.to.X_OH.translation().z() -= 0.000104;
+  const auto met = find_encounter(held.scene, X_WO, approach, 0.0);
+  REQUIRE(met);
+  CHECK(met->second == "table");
+  MotionStretch release = approach;
+  release.phase = MotionPhase::Release;
+  std::swap(release.from, release.to);
+  CHECK(find_encounter(held.scene, X_WO, release, 0.0));
+}
+
+TEST_CASE("Hulls of objects are those of their surfaces", "[grasp][table_motion]") {
+  geometry::TriangleMesh stray = geometry::box({0.04, 0.04, 0.04});
+  stray.vertices.push_back({0, 0, -3.0});  // of no face
+  const TableScene scene(hands::find_hand("parallel_gripper"),
+                         {testing::scene_object("box", stray)});
+  CHECK(scene.hull_O(0).vertices.size() == 8);
+  CHECK(scene.height_of_object(0, at({0, 0, 0.02})) == Approx(0.0).margin(1e-15));
 }
 
 TEST_CASE("Ends of a stretch are kept to the last digit, and what is carried stays in the hand",

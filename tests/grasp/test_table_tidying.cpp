@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/grasp/motion_io.hpp"
 #include "graspfit/grasp/table_tidying.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -118,6 +119,129 @@ TEST_CASE("A move is refused with its reason where there is none", "[grasp][pick
   }
 }
 
+TEST_CASE("Whether an object fits the hand does not depend on how it is turned",
+          "[grasp][pick_and_place]") {
+  // 40 mm thick, but 170 mm in both directions of the table where it stands turned by 45 degrees.
+  const TableScene scene(hands::find_hand("parallel_gripper"),
+                         {testing::scene_object("board", geometry::box({0.04, 0.2, 0.25}))});
+  PickAndPlaceOptions options = options_for(scene.hand());
+  options.planner.max_attempts = 40;
+  options.home.X_OH.translation().z() = 0.7;
+  const std::vector<RigidTransform> start = {at({-0.1, 0, 0.125}, 0.25 * std::numbers::pi)};
+  const MoveAttempt attempt = plan_move(scene, start, 0, at({0.2, 0, 0.125}, 0.5), options);
+  INFO(attempt.reason());
+  CHECK(attempt.planner_attempts > 0);
+  for (const auto& [reason, count] : attempt.failures) {
+    CHECK(reason.find("measures") == std::string::npos);
+  }
+}
+
+TEST_CASE("An object of impossible size stays, and the others are moved all the same",
+          "[grasp][table_tidying]") {
+  const TableScene scene(hands::find_hand("parallel_gripper"),
+                         {testing::scene_object("chest", geometry::box({0.2, 0.2, 0.2})),
+                          testing::scene_object("crumb", geometry::box({0.004, 0.004, 0.004})),
+                          testing::scene_object("red", geometry::box({0.04, 0.05, 0.06}))});
+  TidyingOptions options;
+  options.move = options_for(scene.hand());
+  const std::vector<RigidTransform> start = {at({-0.3, 0, 0.1}), at({0.2, 0.2, 0.002}),
+                                             at({0.1, 0, 0.03})};
+  const std::vector<RigidTransform> goal = {at({-0.3, 0.3, 0.1}), at({0.2, 0.3, 0.002}),
+                                            at({0.1, 0.15, 0.03})};
+  const TidyingResult result = tidy_table(scene, start, goal, options);
+  REQUIRE(result.moves.size() == 1);
+  CHECK(result.moves[0].object == 2);
+  REQUIRE(result.unmoved.size() == 2);
+  CHECK(result.unmoved[0].object == 0);
+  CHECK(result.unmoved[0].reason.find("the object measures 0.2 x 0.2 x 0.2 m, hand "
+                                      "parallel_gripper spans at most") == 0);
+  CHECK(result.unmoved[1].object == 1);
+  CHECK(result.unmoved[1].reason.find("less than one fingertip") != std::string::npos);
+}
+
+TEST_CASE("A grasp has room over the table at the goal too, lower, upside down or far away",
+          "[grasp][pick_and_place]") {
+  // A flat block that stands 0.1 m high is grasped from the side by a hand thicker than the block;
+  // on the table there is no room for that.
+  const TableScene scene(hands::find_hand("parallel_gripper"),
+                         {testing::scene_object("tile", geometry::box({0.05, 0.04, 0.012}))});
+  PickAndPlaceOptions options = options_for(scene.hand());
+  options.planner.max_attempts = 40;
+  options.planner.approach_angle = 0.1;
+  options.approaches_W = {Vector3d(2.0, 0.0, 0.0)};
+  const RigidTransform high = at({0, 0, 0.3});
+  const MoveAttempt level = plan_move(scene, std::vector{high}, 0, at({0, 0.2, 0.3}), options);
+  INFO(level.reason());
+  CHECK(level.grasps_tried > 0);
+  if (level.move) CHECK(level.move->approach_W == Vector3d::UnitX());
+
+  RigidTransform over = at({2.7, -2.2, 0.006});
+  over.linear() = Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
+  for (const RigidTransform& goal : {at({0, 0.2, 0.006}), over}) {
+    const MoveAttempt attempt = plan_move(scene, std::vector{high}, 0, goal, options);
+    INFO(attempt.reason());
+    CHECK(attempt.planner_attempts > 0);
+    CHECK(attempt.grasps_tried == 0);
+  }
+}
+
+TEST_CASE("A hand whose palm is in the object goes straight down, and none is said to have failed",
+          "[grasp][pick_and_place]") {
+  const TableScene scene = two_blocks();
+  PickAndPlaceOptions options = options_for(scene.hand());
+  options.planner.max_attempts = 4;
+  const std::vector<RigidTransform> start = {at({-0.1, 0, 0.03}), at({0.1, 0, 0.03})};
+  // The palm center at the block's center, exactly.
+  options.home.X_OH = RigidTransform::Identity();
+  options.home.X_OH.translation() = start[0].translation() - scene.hand().palm.center_H;
+  REQUIRE(options.home.X_OH * scene.hand().palm.center_H == start[0].translation());
+  CHECK_NOTHROW(plan_move(scene, start, 0, at({0.0, 0.15, 0.03}), options));
+
+  // Without a candidate there is no outcome to name.
+  options = options_for(scene.hand());
+  options.planner.planner = "ma";
+  options.planner.medial_symmetry.samples = 1;
+  const MoveAttempt none = plan_move(scene, start, 0, at({0.0, 0.15, 0.03}), options);
+  CHECK(none.planner_attempts == 0);
+  CHECK(none.reason() ==
+        "no valid grasp with room at start and goal in 0 attempts (no candidate) (2)");
+}
+
+TEST_CASE("Pick-and-place options out of range are refused by name", "[grasp][pick_and_place]") {
+  const PickAndPlaceOptions good = options_for(hands::find_hand("parallel_gripper"));
+  CHECK_NOTHROW(good.validate());
+  const auto refusal = [&](const auto& change) {
+    PickAndPlaceOptions options = good;
+    change(options);
+    try {
+      options.validate();
+    } catch (const geometry::InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing thrown");
+  };
+  const auto starts = [](const std::string& field) { return Catch::StartsWith(field); };
+  CHECK_THAT(refusal([](auto& o) { o.lifts.clear(); }), starts("PickAndPlaceOptions: lifts = 0"));
+  CHECK_THAT(refusal([](auto& o) {
+               o.lifts = {0.1, -0.2};
+             }),
+             starts("PickAndPlaceOptions: lifts = -0.2"));
+  CHECK_THAT(refusal([](auto& o) { o.withdrawals.clear(); }),
+             starts("PickAndPlaceOptions: withdrawals = 0"));
+  CHECK_THAT(refusal([](auto& o) { o.withdrawals = {0.0}; }),
+             starts("PickAndPlaceOptions: withdrawals = 0"));
+  CHECK_THAT(refusal([](auto& o) {
+               o.approaches_W = {Vector3d::UnitX(), Vector3d::Zero()};
+             }),
+             starts("PickAndPlaceOptions: approaches_W = 0"));
+  CHECK_THAT(refusal([](auto& o) { o.planner.acceptance = Acceptance::Usable; }),
+             starts("PickAndPlaceOptions: planner.acceptance = usable"));
+  CHECK_THAT(refusal([](auto& o) { o.planner.pre_grasps = false; }),
+             starts("PickAndPlaceOptions: planner.pre_grasps = false"));
+  CHECK_THAT(refusal([](auto& o) { o.clearance = -0.001; }),
+             starts("PickAndPlaceOptions: clearance = -0.001"));
+}
+
 TEST_CASE("Two blocks that change places need a third place, and one that is in the way goes first",
           "[grasp][table_tidying]") {
   const TableScene scene = two_blocks();
@@ -168,6 +292,10 @@ TEST_CASE("Two blocks that change places need a third place, and one that is in 
     CHECK_THROWS_AS(tidy_table(scene, {left}, {left, right}, options), geometry::InvalidInput);
     CHECK_THROWS_AS(tidy_table(scene, {left, at({0.12, 0, 0.02})}, {left, right}, options),
                     geometry::InvalidInput);
+    options.resting_places_W = {{0.1, std::nan("")}};
+    CHECK_THROWS_WITH(tidy_table(scene, {left, right}, {left, right}, options),
+                      Catch::Contains("resting_places_W = 0.1, nan"));
+    options.resting_places_W.clear();
     options.move.clearance = options.move.planner.pre_grasp.clearance;
     CHECK_THROWS_AS(tidy_table(scene, {left, right}, {left, right}, options),
                     geometry::InvalidInput);
@@ -232,4 +360,88 @@ TEST_CASE("Motion files are the same bytes for the same table and are read back"
   CHECK(refused("\"version\": 1", "\"version\": 7").find("/version") != std::string::npos);
   CHECK(refused("\"description_sha256\": \"", "\"description_sha256\": \"0").find("SHA-256") !=
         std::string::npos);
+  CHECK_THROWS_AS(make_motion_file(scene, {{"red", "shape box", "", 1.0, {}, {}}}, goal,
+                                   tidy_table(scene, start, start, options), options),
+                  geometry::InvalidInput);
+}
+
+TEST_CASE("A motion file that contradicts itself, its hand or its objects is refused",
+          "[grasp][motion_io]") {
+  // The file of a hand that takes a box from the shape library 50 mm aside.
+  const hands::HandModel hand = hands::find_hand("parallel_gripper");
+  const testing::TemporaryFolder folder;
+  const auto mesh = folder.path() / "block.off";
+  geometry::write_mesh(mesh, geometry::box({0.04, 0.05, 0.06}));
+  MotionFile file;
+  file.title = "By hand";
+  file.hand = "parallel_gripper";
+  file.description_sha256 = hand.description_sha256;
+  for (const hands::Joint& joint : hand.joints) file.joints.push_back(joint.name);
+  const RigidTransform start = at({0, 0, 0.03});
+  const RigidTransform goal = at({0.05, 0, 0.03}, 0.4);
+  file.objects = {
+      {"block", "block.off", geometry::sha256_hex(geometry::read_file(mesh)), 1.0, start, goal}};
+  const auto holding = [&](const RigidTransform& X_WO, double q) {
+    hands::HandConfiguration configuration = hands::open_configuration(hand);
+    configuration.q.setConstant(q);
+    configuration.X_OH = X_WO * at({0.0, 0.01, 0.2}, 0.3);
+    return configuration;
+  };
+  RigidTransform high = start;
+  high.translation().z() += 0.1;
+  const auto home = holding(high, 0.04);
+  const auto move = [&](const RigidTransform& from, const RigidTransform& to) {
+    return RecordedMove{
+        0,
+        0.5,
+        2,
+        {{MotionPhase::Reach, 0, home, holding(from, 0.03), from, from},
+         {MotionPhase::Approach, 0, holding(from, 0.03), holding(from, 0.02), from, from},
+         {MotionPhase::Transport, 0, holding(from, 0.02), holding(to, 0.02), from, to},
+         {MotionPhase::Release, 0, holding(to, 0.02), holding(to, 0.03), to, to},
+         {MotionPhase::Retreat, 0, holding(to, 0.03), home, to, to}}};
+  };
+  file.moves = {move(start, high), move(high, goal)};
+  const auto path = folder.path() / "motion.json";
+  const auto refusal = [&](const auto& change) {
+    MotionFile changed = file;
+    change(changed);
+    geometry::write_file_atomically(path, to_json(changed));
+    try {
+      read_motion_scene(read_motion(path), folder.path());
+    } catch (const geometry::IoError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  // Stretches share their keyframes: what one is changed to, the next begins with.
+  const auto moved = [](MotionFile & changed, std::size_t at_move, std::size_t stretch) -> auto& {
+    return changed.moves[at_move].stretches[stretch];
+  };
+  using Catch::Contains;
+  CHECK(refusal([](MotionFile&) {}) == "accepted");
+  CHECK(refusal([&](auto& f) { moved(f, 0, 2).to.q[0] += 1e-11; }) == "accepted");
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 0, 0).X_WO_to.translation().x() += 2e-9; }),
+             Contains("motion.json: /moves/0/to/0/X_WO: is not where the object stood"));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 1, 2).to.q[0] += 2e-9; }),
+             Contains("/moves/1/to/2/q: is not as before") && Contains("transport"));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 1, 2).to.X_OH.translation().y() += 2e-9; }),
+             Contains("/moves/1/to/2/X_WH: is not the hand's place against the object"));
+  CHECK_THAT(refusal([&](auto& f) { f.objects[0].X_WO_start = goal; }),
+             Contains("/moves/0/from/X_WO: is not where the object stands then"));
+  CHECK_THAT(refusal([&](auto& f) { f.moves[1] = f.moves[0]; }),
+             Contains("/moves/1/from/X_WO: is not where the object stands then"));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 1, 0).from.X_OH.translation().z() += 0.01; }),
+             Contains("/moves/1/from/X_WH: is not where the move before has left the hand"));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 1, 0).from.q[0] += 0.01; }),
+             Contains("/moves/1/from/q: is not as the move before"));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 0, 0).to.q[0] = 1.0; }),
+             Contains("/moves/0/to/0/q: ") && Contains(" at 1 is outside "));
+  CHECK_THAT(refusal([&](auto& f) { moved(f, 0, 0).from.q[0] = 1.0; }),
+             Contains("/moves/0/from/q: ") && Contains(" at 1 is outside "));
+  CHECK_THAT(
+      refusal([&](auto& f) { f.joints[0] = "elbow"; }),
+      Contains("/hand/joints/0: is elbow, of hand parallel_gripper it is " + hand.joints[0].name));
+  CHECK_THAT(refusal([&](auto& f) { f.objects[0].sha256[0] = 'x'; }),
+             Contains("object block.off is not the one recorded") && Contains("SHA-256"));
 }

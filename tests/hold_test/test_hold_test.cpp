@@ -198,19 +198,30 @@ TEST_CASE("A simulation that diverges is a grasp that fails, and says so", "[hol
 TEST_CASE("Links that are said to have mass and no inertia are as inert as their solid",
           "[hold_test]") {
   // As the fingertips of the Shadow hand's description, which the engine alone would refuse.
-  hands::HandModel described = testing::two_jaws();
-  hands::HandModel silent = described;
-  for (std::size_t link = 1; link < described.links.size(); ++link) {
-    described.links[link].inertia = {0.0064, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
-  }
   const HoldObject cube = testing::convex_object(geometry::box({0.04, 0.04, 0.04}));
-  // Boxes of 20 mm and 800 kg/m3 have just that mass.
+  const auto jaws = [](double mass, const Eigen::Matrix3d& inertia) {
+    hands::HandModel hand = testing::two_jaws();
+    for (std::size_t link = 1; link < hand.links.size(); ++link) {
+      hand.links[link].inertia = {mass, Eigen::Vector3d::Zero(), inertia};
+    }
+    return hand;
+  };
+  const auto verdict_of = [&](const hands::HandModel& hand, const HoldProtocol& protocol) {
+    return HoldTest(testing::convex_hand(hand), cube, protocol).test(pinch(5.0));
+  };
+  // Twice what the boxes have by the protocol's density, so that the mass described is seen.
+  HoldProtocol twice_as_dense = bench();
+  twice_as_dense.link_density *= 2.0;
+  const double volume = geometry::mass_properties(testing::two_jaws().links[1].mesh_L).volume;
   const HoldVerdict verdict =
-      HoldTest(testing::convex_hand(described), cube, bench()).test(pinch(5.0));
+      verdict_of(jaws(twice_as_dense.link_density * volume, Eigen::Matrix3d::Zero()), bench());
+  const HoldVerdict dense = verdict_of(testing::two_jaws(), twice_as_dense);
+  const HoldVerdict light = verdict_of(testing::two_jaws(), bench());
   CHECK(verdict.held());
-  CHECK(verdict.squeeze_force ==
-        Approx(HoldTest(testing::convex_hand(silent), cube, bench()).test(pinch(5.0)).squeeze_force)
-            .epsilon(1e-6));
+  CHECK(verdict.squeeze_force == Approx(dense.squeeze_force).epsilon(1e-6));
+  const auto shift = [](const HoldVerdict& of) { return of.directions.at(2).largest_shift; };
+  CHECK(shift(verdict) == Approx(shift(dense)).epsilon(1e-6));
+  CHECK_FALSE(shift(verdict) == Approx(shift(light)).epsilon(1e-5));
 }
 
 TEST_CASE("Joint positions that are not the hand's are refused", "[hold_test]") {

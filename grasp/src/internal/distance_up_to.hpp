@@ -10,8 +10,8 @@ namespace graspfit::grasp::internal {
 /// object, below 1e-14.
 inline constexpr double kBoxSlack = 1e-9;
 
-/// `geometry::distance` where it is at most `enough` [m]; infinite, without points, where it is
-/// more. Bodies whose boxes are farther apart cost next to nothing.
+/// `geometry::distance` where it is below `enough` [m]; infinite, without points, where it is not.
+/// Bodies whose boxes are farther apart cost next to nothing.
 geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                                       const geometry::RigidTransform& X_AB, double enough);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "graspfit/geometry/triangle_mesh.hpp"
@@ -14,8 +16,13 @@ double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fin
 /// Largest distance between two of the parts [m].
 double widest_opening(const PartDistances& distances, const RequestedParts& parts);
 
-/// Refuses objects that could not be held whatever their pose: smaller than one fingertip, or
-/// thicker than `widest` in every direction. @throws InvalidInput with the extents.
+/// Why an object could not be held whatever its pose, with its extents: smaller than one fingertip,
+/// or thicker than `widest`, both along the axes of the mesh's own frame. Empty: it may be.
+std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
+                                        const hands::HandModel& hand,
+                                        const std::vector<int>& fingers, double widest);
+
+/// @throws InvalidInput with `size_refusal`, if there is one.
 void check_object_size(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
                        const std::vector<int>& fingers, double widest);
 

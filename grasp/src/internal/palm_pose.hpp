@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -29,6 +30,11 @@ geometry::RigidTransform palm_pose(const hands::HandModel& hand, const Eigen::Ve
 /// The open hand with every independent joint that neither opens nor closes (spread, abduction) at
 /// a share of its range.
 hands::HandConfiguration open_hand_spread_by(const hands::HandModel& hand, double share);
+
+/// Angle between a direction of the palm and the one asked for [rad]; 0 where none is. Lengths do
+/// not matter.
+double angle_from_approach(const Eigen::Vector3d& direction_O,
+                           const std::optional<Eigen::Vector3d>& approach_O);
 
 /// A unit vector normal to a unit vector.
 Eigen::Vector3d any_normal(const Eigen::Vector3d& direction);

@@ -23,12 +23,16 @@ struct AttemptResult {
   PlannerTimings timings;
 };
 
+/// Whether the size of the object was looked at before (internal/sized_planning.hpp).
+enum class SizeCheck { Due, Done };
+
 /// The attempts of one run of the planner: what stays the same over all of them. An attempt depends
 /// on its number alone, so they can be made in any order and by several threads.
 class PlannerAttempts {
  public:
   PlannerAttempts(const ObjectModel& object, const hands::HandModel& hand,
-                  const PlannerOptions& options, const Surroundings& surroundings);
+                  const PlannerOptions& options, const Surroundings& surroundings,
+                  SizeCheck size_check = SizeCheck::Due);
 
   AttemptResult make(std::int64_t number) const;
 

@@ -8,6 +8,12 @@
 
 namespace graspfit::grasp::internal {
 
+/// Share of a distance that a proof is content with: the rest costs more than steps more do.
+inline constexpr double kNearEnough = 0.6;
+
+/// Least angle between two orientations [rad].
+double turn_between(const hands::RigidTransform& from, const hands::RigidTransform& to);
+
 /// The straight way of a hand from one configuration to another (`interpolated`), and how far its
 /// links go on it: upper bounds of the speeds of all their points per unit of the way's share.
 class StraightWay {
@@ -41,7 +47,8 @@ using DistanceOnWay = std::function<double(double share, double enough)>;
 /// Whether two bodies are surely apart on the whole way from share 0 to 1, by conservative
 /// advancement from both ends and by halves in between: a distance d at one share keeps bodies of
 /// relative speed v apart up to d / v before and after it. Over the last stretch, in which no point
-/// moves by more than `tolerance`, they may be as near as they like.
+/// moves by more than `tolerance`, they may be as near as they like; without a tolerance, bodies
+/// that do not move are apart if they are apart where they stand.
 ///
 /// False: they touch (come within 1e-8 m, which is not told from touching), or it could not be
 /// proven in 500 distances, as where bodies slide along each other without a gap to speak of.

@@ -14,7 +14,8 @@ std::vector<GraspMetric> epsilon_linf_metrics() {
              return epsilon_linf(input.contacts(), *input.convention()).lower;
            },
            .convention = [](const GraspMetricInput& input) -> std::string {
-             return input.convention() ? describe_linf(*input.convention()) : std::string();
+             if (!input.convention()) return {};
+             return describe_linf(*input.convention()) + ", certified lower bound";
            }}};
 }
 

@@ -20,8 +20,9 @@ struct LinearProgramSolution {
 
 /// The largest value of objectiveᵀ x subject to a x = b, x ≥ 0.
 ///
-/// Exact for the numbers as they are: the outcome, and the sign of the value; value and x are
-/// rounded once. Which optimal vertex is found is not specified, but the same for the same input.
+/// Exact for the numbers as they are: the outcome, and the sign of the value; value and x are good
+/// to a few units in the last place. Which optimal vertex is found is not specified, but the same
+/// for the same input.
 /// By CGAL's simplex method with exact arithmetic [Gärtner & Schönherr 2000] and Bland's rule, with
 /// which it always ends: for few constraints, milliseconds for seven of them and fifty unknowns.
 /// @throws InvalidInput unless `a` has as many rows as `b` and as many columns, one or more, as

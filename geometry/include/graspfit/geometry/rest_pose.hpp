@@ -29,8 +29,9 @@ struct RestPoseOptions {
 /// hull's surface has a local minimum just there; from any other facet the solid rolls on.) A
 /// cylinder's side is as many rest poses as its mesh has facets there.
 ///
-/// The hull is exact, the rest rounded. @throws InvalidInput for bad options and a mesh without
-/// faces, DegenerateGeometry for a mesh that spans no volume.
+/// The hull is exact, the rest rounded; vertices of no face do not count. @throws InvalidInput for
+/// bad options, a mesh without faces and a center that is not finite, DegenerateGeometry for a mesh
+/// that spans no volume.
 std::vector<RestPose> rest_poses(const TriangleMesh& mesh, const Eigen::Vector3d& center_of_mass,
                                  const RestPoseOptions& options = {});
 
@@ -41,7 +42,9 @@ const RestPose& nearest_rest_pose(const std::vector<RestPose>& poses,
 
 /// The pose in W of a solid that stands on z = 0 with `up_O` up: its lowest vertex at height zero
 /// up to rounding, `center_O` plumb over `place_W`; turned by the least rotation that brings up_O
-/// up (about x where it points down), then by `turn` about z [rad].
+/// up (about x where it points down), then by `turn` about z [rad]. `up_O` need not be unit;
+/// vertices of no face do not count. @throws InvalidInput for a mesh without faces, an up without
+/// length, and numbers that are not finite.
 RigidTransform standing_pose(const TriangleMesh& mesh, const Eigen::Vector3d& up_O, double turn,
                              const Eigen::Vector3d& center_O, const Eigen::Vector2d& place_W);
 

@@ -62,7 +62,7 @@ class GraspGuidance {
   virtual ~GraspGuidance() = default;
 
   /// The starts of attempt `number`, ≥ 0. They depend on the number alone (random numbers are of
-  /// the stream (seed, number)), not on the order or the thread in which attempts are made.
+  /// the stream (seed, number), as may be those of the preparation), not on order or threads.
   virtual GuidedStarts starts(std::int64_t number) const = 0;
 
   /// Its intermediate model, for pictures.

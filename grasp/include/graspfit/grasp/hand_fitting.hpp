@@ -163,10 +163,10 @@ struct RetreatRule {
 };
 
 /// Closes the fingers of a hand that stands somewhere, open: the methods without target contacts.
-/// The hand backs off until it is clear; the palm, if it is requested, moves on to the surface;
-/// then the requested fingers (of power grasps all) close joint by joint, proximal to distal,
-/// under the same guard, contact tests and budget as in `fit_hand`, until each touches, is stopped
-/// or is at its limits.
+/// The hand backs off until it is clear; the palm, if it is requested, moves on to the surface, by
+/// four voxels at most; then the requested fingers (of power grasps all) close joint by joint,
+/// proximal to distal, under the same guard, contact tests and budget as in `fit_hand`, until each
+/// touches, is stopped or is at its limits.
 ///
 /// @throws InvalidInput for options out of range, no finger, or one without a fingertip pad.
 FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,

@@ -23,8 +23,8 @@ struct MinWeight {
 /// The min-weight of any wrenches, by linear programming. ε (L1) is at least ½ l* σ_min.
 ///
 /// The wrenches are rounded to multiples of a power of two, 2^-52 of the largest component times
-/// their number; for these the sign of l* is exact and its value rounded once
-/// (`geometry::maximize_linear`). The rank is decided in doubles, because wrenches that are
+/// their number; for these the sign of l* is exact and its value good to a few units in the last
+/// place (`geometry::maximize_linear`). The rank is decided in doubles, because wrenches that are
 /// dependent but for rounding have one more dimension in exact arithmetic, and an l* that means
 /// nothing. @throws InvalidInput for numbers that are not finite.
 MinWeight min_weight(const Wrenches& wrenches);

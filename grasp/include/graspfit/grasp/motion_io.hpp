@@ -41,7 +41,8 @@ struct MotionFile {
   std::vector<UnmovedObject> unmoved;
 };
 
-/// The record of a result. `objects` says where they are from; poses are filled in.
+/// The record of a result. `objects` says where they are from, in the scene's order; poses are
+/// filled in. @throws InvalidInput unless there is one for each object of the scene, and a goal.
 MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> objects,
                             const std::vector<geometry::RigidTransform>& X_WO_goal,
                             const TidyingResult& result, const TidyingOptions& options);
@@ -51,12 +52,16 @@ MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> o
 /// about 1e-15.
 std::string to_json(const MotionFile& file);
 
-/// Reads a motion file. @throws IoError (file, JSON path, what).
+/// Reads a motion file. @throws IoError (file, JSON path, what), also for a motion that contradicts
+/// itself by more than 1e-9: an object that moves while the hand is free; a hand that changes its
+/// joints, or its place against the object, while it carries; a move that begins elsewhere than
+/// where the object stands and the hand was left.
 MotionFile read_motion(const std::filesystem::path& path);
 
 /// Hand and objects of a motion file, from the files that it names; `mesh_folder` is what relative
 /// names of object files, and of hands that are not shipped, are relative to.
-/// @throws IoError if one is missing or not the one recorded (SHA-256); as `read_object_file`.
+/// @throws IoError if one is missing or not the one recorded (SHA-256), or if the hand has other
+/// joints or cannot have them where a keyframe does (JSON path); as `read_object_file`.
 TableScene read_motion_scene(const MotionFile& file, const std::filesystem::path& mesh_folder);
 
 /// Poses of all objects before each move, and after the last one.

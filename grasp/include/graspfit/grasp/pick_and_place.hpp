@@ -21,9 +21,10 @@ struct PickAndPlaceOptions {
                            ///< be Valid with pre-grasps. `approach_O` is set here, and pre-grasps
                            ///< are fully open (`pre_grasp.opening_steps` 1).
   hands::HandConfiguration home;  ///< Where every move begins and ends; `X_OH` is X_WH.
-  /// Wanted palm directions in W, tried in order until a grasp can be used. Empty: from the palm
-  /// center at home to the object's center of mass [P: "from the hand's initial pose toward the
-  /// object's initial pose"], then straight down.
+  /// Wanted palm directions in W, tried in order until a grasp can be used; their lengths, > 0, do
+  /// not matter. Empty: from the palm center at home to the object's center of mass [P: "from the
+  /// hand's initial pose toward the object's initial pose"], where the two differ, then straight
+  /// down.
   std::vector<Eigen::Vector3d> approaches_W;
   double clearance = 0.003;  ///< Kept by hand and carried object from everything while they travel
                              ///< [m], ≥ 0 and below `planner.pre_grasp.clearance`.
@@ -70,7 +71,10 @@ struct MoveAttempt {
 /// best that can be carried on a tried way is taken. Ways: straight up by one of `lifts`, then
 /// straight, or turning first, or turning last, then straight down; the free hand comes and goes
 /// over points behind the pre-grasp (`withdrawals`) and above those. Deterministic in its input.
-/// @throws InvalidInput for bad options, an object that is not there, and as `plan_grasps`.
+///
+/// An object too large or too small for the hand, by the box around it in its own frame however it
+/// stands, has that as its reason. @throws InvalidInput for bad options and an object that is not
+/// there; else as `plan_grasps`.
 MoveAttempt plan_move(const TableScene& scene, std::span<const geometry::RigidTransform> X_WO,
                       int object, const geometry::RigidTransform& X_WO_goal,
                       const PickAndPlaceOptions& options);

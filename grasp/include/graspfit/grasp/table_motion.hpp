@@ -103,8 +103,8 @@ struct Encounter {
   std::string text() const { return first + " and " + second; }
 };
 
-/// Over so much of the end of an approach (the start of a release) bodies may be as near each other
-/// as they like [m]; as `PreGraspOptions::way_tolerance`.
+/// Over so much of the end of an approach (the start of a release) hand and handled object may be
+/// as near each other as they like [m]; as `PreGraspOptions::way_tolerance`.
 inline constexpr double kTouchTolerance = 1e-5;
 
 /// The first two bodies that are not proven to stay more than `clearance` [m] ≥ 0 apart on the
@@ -115,12 +115,12 @@ inline constexpr double kTouchTolerance = 1e-5;
 /// at one place of the stretch, and of which no point goes faster than v per unit of its share,
 /// keep their clearance c for (d − c) / v of the share before and after it; the stretch is free
 /// when such intervals cover it. Bodies are all links, and the carried object; each is held against
-/// the table and the objects that stand, links also against each other where joints move. That no
-/// body starts inside another is decided exactly at both ends. Exceptions, each of them by meaning:
+/// the table and the objects that stand, links also against each other where joints move. That none
+/// is inside an object is decided exactly at both ends. Exceptions, each of them by meaning:
 ///
 /// - Lift, Place: a carried object may rest on the table at the end that is on it, 1e-9 m deep at
 ///   most (rounding of its pose). Without turning, a body is lowest at one of the ends, exactly.
-/// - Approach, Release: the last (first) `kTouchTolerance` of the way, for there the hand touches.
+/// - Approach, Release: hand and object over the last (first) `kTouchTolerance`: there they touch.
 /// - Carrying: hand and object keep their places against each other, so that nothing is looked at.
 ///
 /// Like `find_pre_grasp` it never says free wrongly, up to the rounding of distances. It may say

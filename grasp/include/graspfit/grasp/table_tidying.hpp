@@ -45,7 +45,8 @@ struct TidyingResult {
 /// down at a resting place in between (each object once), upright as at its goal, as it lay, or in
 /// another of its rest poses, by quarter turns. What cannot be done within `max_moves_tried` is
 /// left out: the result is then the longest sequence met (most objects at their goals), with the
-/// reason for each object that stays. So an empty `unmoved` is a proof and the converse is not.
+/// reason for each object that stays. So an empty `unmoved` is a proof and the converse is not. A
+/// move refused before in the same arrangement is not planned anew, but counts as if it were.
 /// @throws InvalidInput for bad options, unlike numbers, and objects that start inside each other
 /// or the table.
 TidyingResult tidy_table(const TableScene& scene,

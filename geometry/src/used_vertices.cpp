@@ -1,0 +1,17 @@
+#include "graspfit/geometry/used_vertices.hpp"
+
+namespace graspfit::geometry {
+
+std::vector<Eigen::Vector3d> used_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> is_used(mesh.vertices.size(), false);
+  for (const Face& face : mesh.faces) {
+    for (const std::int32_t vertex : face) is_used[static_cast<std::size_t>(vertex)] = true;
+  }
+  std::vector<Eigen::Vector3d> used;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (is_used[i]) used.push_back(mesh.vertices[i]);
+  }
+  return used;
+}
+
+}  // namespace graspfit::geometry
