@@ -234,6 +234,8 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   if (!flags.has("quiet")) {
     std::printf("%zu cells: %zu finished (%zu earlier), %s, %zu skipped\n", done.num_cells,
                 done.num_done, done.num_resumed, failures_text(done).c_str(), done.num_skipped);
+    if (!done.first_reason.empty())
+      std::printf("first without result: %s\n", done.first_reason.c_str());
     const fs::path folder =
         options.shard ? experiments::shard_folder(options.folder, *options.shard) : options.folder;
     std::printf("written to %s\n", folder.c_str());

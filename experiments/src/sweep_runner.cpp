@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <new>
 #include <set>
@@ -50,6 +51,26 @@ CellRecord run_cell(const Experiment& experiment, const Cell& cell, const fs::pa
   } catch (const std::exception& error) {
     return without_results(experiment, "failed", error.what(), true);
   }
+}
+
+/// "object=bunny hand=barrett".
+std::string labels_text(const ParameterSweep& sweep, const Cell& cell) {
+  std::string text;
+  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
+    text += (text.empty() ? "" : " ") + sweep.axes[a].name + '=' + cell.labels[a];
+  }
+  return text;
+}
+
+/// The text of a CSV field.
+std::string text_of(const std::string& field) {
+  if (!field.starts_with('"')) return field;
+  std::string text;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
+    text += field[i];
+    if (field[i] == '"') ++i;  // quotes are doubled
+  }
+  return text;
 }
 
 /// A run in progress.
@@ -123,6 +144,10 @@ class Run {
     if (!is_skipped) ++progress_.num_done;
     if (record.status == "failed") ++progress_.num_failed;
     if (record.status == "failed" && !record.is_final) ++progress_.num_not_final;
+    if ((is_skipped || record.status == "failed") && index < first_without_result_) {
+      first_without_result_ = index;
+      progress_.first_reason = labels_text(sweep_, cell) + ": " + text_of(record.reason);
+    }
     if (callback_) callback_(progress_);
   }
 
@@ -134,6 +159,7 @@ class Run {
   const std::function<void(const RunProgress&)>& callback_;
   CellJournal& journal_;
   RunProgress progress_;
+  std::size_t first_without_result_ = std::numeric_limits<std::size_t>::max();
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> is_stopped_{false};
   std::exception_ptr error_;

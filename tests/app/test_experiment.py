@@ -9,9 +9,6 @@ from program import SOURCE_DIR, ProgramTest, main, run
 
 SLUGS = sorted(path.stem for path in (SOURCE_DIR / "experiments/configs").glob("*.json"))
 
-# Experiments whose quick part reads no mesh of an object.
-WITHOUT_MESHES = {"measured_contacts", "parameter_sweeps"}
-
 
 def data_folder():
     return pathlib.Path(os.environ.get("GRASPFIT_DATA", SOURCE_DIR.parent / "shared"))
@@ -34,12 +31,12 @@ class Quick(ProgramTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 rows = rows_of(out / f"{slug}.csv")
                 self.assertGreater(len(rows), 0)
-                needs_data = slug not in WITHOUT_MESHES
+                manifest = json.loads((out / f"{slug}.manifest.json").read_text())
+                needs_data = "meshes/" in json.dumps(manifest["config"]["as_run"])
                 can_run = (has_data or not needs_data) and "no physics engine" not in rows[0]["reason"]
                 self.assertEqual({row["status"] for row in rows},
                                  {"ok" if can_run else "skipped"}, rows)
                 self.assertEqual(len(rows_of(out / f"{slug}.timing.csv")), len(rows))
-                manifest = json.loads((out / f"{slug}.manifest.json").read_text())
                 self.assertTrue(manifest["config"]["is_quick"])
                 self.assertEqual(manifest["cells"]["total"], len(rows))
                 if needs_data and has_data:
@@ -58,12 +55,19 @@ class Quick(ProgramTest):
         self.assertEqual(texts[0], texts[1])
         self.assertEqual(texts[0], texts[2])
 
+    def test_a_run_says_why_its_first_cell_failed(self):
+        done = run("experiment", "run", "parameter_sweeps", "--quick", "--set", "hand=barett",
+                   "--out", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "first without result: [^\\n]* hand=barett: no hand barett: ")
+
     def test_missing_data_is_skipped_and_said(self):
         out = self.folder / "out"
         environment = dict(os.environ, GRASPFIT_DATA=str(self.folder))
         done = run("experiment", "run", "special_cases", "--quick", "--out", out, env=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("2 skipped", done.stdout)
+        self.assertRegex(done.stdout, "first without result: case=[a-z0-9_]+ seed=1: .*set GRASPFIT_DATA")
         for row in rows_of(out / "special_cases.csv"):
             self.assertEqual(row["status"], "skipped")
             self.assertIn("set GRASPFIT_DATA", row["reason"])

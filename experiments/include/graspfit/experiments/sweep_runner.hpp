@@ -20,6 +20,9 @@ struct RunProgress {
   std::size_t num_skipped = 0;  ///< Data that is not there; not among `num_done`.
   /// Of `num_failed` those with a reason that may pass (files, memory): the next run tries again.
   std::size_t num_not_final = 0;
+  /// Of the first cell in sweep order that failed or was skipped in this run: its labels and the
+  /// reason; empty if there is none.
+  std::string first_reason;
 };
 
 /// One of `count` parts of a sweep: the cells number index − 1, index − 1 + count, ...
