@@ -99,11 +99,11 @@ TEST_CASE("Poses are usable where the paper's measure of what is met is positive
   facts.quality_context = QualityContext{
       .center_of_mass_O = Vector3d::Zero(), .normalizing_radius = 1.0, .hand = &hand};
   const auto share = [&](double deviation) {
-    return *pose_robustness(facts, {.num_samples = 40,
-                                    .translation_deviation = deviation,
-                                    .rotation_deviation = 0.0,
-                                    .reach = 0.2})
-                .usable_share;
+    const auto found = pose_robustness(facts, {.num_samples = 40,
+                                               .translation_deviation = deviation,
+                                               .rotation_deviation = 0.0,
+                                               .reach = 0.2});
+    return found->usable_share.value();
   };
   CHECK(share(0.0) == 1.0);
   CHECK(share(50.0) == 0.0);  // nothing is met
