@@ -59,7 +59,7 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
                "ma-full-retreat") == "");
   // Refined grasps touch with every part.
   const auto measured = [](auto& o) { o.missing_contact = grasp::MissingContact::Measured; };
-  CHECK(unsaid(message_after(measured), "missing_contact", "measured", "refine") == "");
+  CHECK(unsaid(message_after(measured), "missing_contact", "refine") == "");
   CHECK(message_after([&](auto& o) {
           measured(o);
           o.refine = false;
