@@ -2,9 +2,9 @@
 // paper leaves open about M were read in another way?
 //
 // Answered as table1 at one size, once per reading. Readings of M alone find the same grasps, but
-// for those with M > 0; `plain` and `no_weak` change the score map, and so targets, too. The summary
-// shows the order of methods under each reading, `correlations` how the readings' M agrees with the
-// other measures.
+// for those with M > 0; `plain` and `no_weak` change the score map, and so targets, too. The
+// summary shows the order of methods under each reading, `correlations` how the readings' M agrees
+// with the other measures.
 #include "internal/experiment_list.hpp"
 #include "internal/method_table.hpp"
 

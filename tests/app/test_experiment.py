@@ -59,7 +59,7 @@ class Quick(ProgramTest):
         done = run("experiment", "run", "parameter_sweeps", "--quick", "--set", "hand=barett",
                    "--out", self.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, "first without result: [^\\n]* hand=barett: no hand barett: ")
+        self.assertRegex(done.stdout, "first without result: [^\\n]* hand=barett seed=1: no hand barett: ")
 
     def test_missing_data_is_skipped_and_said(self):
         out = self.folder / "out"
@@ -309,7 +309,7 @@ class Hold(ProgramTest):
         for row in rows_of(self.out / "hold_prediction.summary.csv"):
             if row["scope"] != "all":
                 continue
-            own = [d for d in details if row["grip"] in ("all", d["grip"])]
+            own = [d for d in details if row["grip"] in ("all", d["grip"]) and d[row["measure"]]]
             if row["statistic"] == "auc":
                 column = row["target"].replace("held", "stage")
                 scores = {held: [float(d[row["measure"]]) for d in own

