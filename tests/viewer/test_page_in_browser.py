@@ -463,6 +463,26 @@ class ReplayInBrowser(PageInBrowser):
         self.assertIn("64.0 mm", self.text("value-shift"))
         self.assertIn("9.2 °", self.text("value-turn"))
 
+    def test_axis_labels_stay_at_their_axes_while_the_window_grows(self):
+        # Observers are called in the order in which they were made, the page's first: what this one finds is what
+        # is painted next.
+        canvas, stage, tops = self.browser.execute_async_script(
+            "const done = arguments[0];"
+            "const stage = document.getElementById('stage'), canvas = document.getElementById('scene');"
+            "const tops = () => [...document.querySelectorAll('#labels .axis')].map("
+            "    (label) => label.getBoundingClientRect().top - stage.getBoundingClientRect().bottom);"
+            "const before = tops();"
+            "let calls = 0;"
+            "new ResizeObserver(() => {"
+            "  if (++calls === 1) { stage.style.height = `${stage.clientHeight + 150}px`; return; }"
+            "  done([canvas.height, canvas.clientHeight, tops().map((top, i) => top - before[i])]);"
+            "}).observe(stage);"
+        )
+        self.assertEqual(canvas, stage)  # one pixel of the picture each
+        self.assertEqual(len(tops), 3)
+        for moved in tops:  # distances from the lower edge, where the axes are
+            self.assertLess(abs(moved), 0.2)
+
     def test_slider_moves_hand_and_object_and_back(self):
         self.set_time(0)
         self.assertIn("closing", self.text("phase"))

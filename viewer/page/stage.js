@@ -825,9 +825,11 @@ function startStage(view, views) {
     updateMarks();
     draw();
   });
+  // At once: in the next animation frame the old picture would have been shown stretched, its labels
+  // where they no longer belong, and a screenshot may keep that.
   new ResizeObserver(() => {
     if (camera.isFitted) fit();
-    draw();
+    if (!gl.isContextLost()) render();
   }).observe(byId('stage'));
   for (const button of document.querySelectorAll('#views button')) {
     button.addEventListener('click', () => view(button.dataset.view));
