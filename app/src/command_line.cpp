@@ -10,6 +10,8 @@
 #include <sstream>
 #include <system_error>
 
+#include "graspfit/geometry/nearest_name.hpp"
+
 namespace graspfit::app {
 namespace {
 
@@ -39,13 +41,15 @@ Number parse_number(const std::string& name, const std::string& text, const char
   return value;
 }
 
-std::vector<std::string> split_at_commas(const std::string& text) {
+std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  if (!text.empty() && text.back() == ',') parts.emplace_back();
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  if (!text.empty() && text.back() == separator) parts.emplace_back();
   return parts;
 }
+
+std::vector<std::string> split_at_commas(const std::string& text) { return split(text, ','); }
 
 }  // namespace
 
@@ -74,6 +78,11 @@ void add_switch(po::options_description& options, const std::string& name,
   options.add_options()(name.c_str(), description.c_str());
 }
 
+void fail_choice(const std::string& flag, const std::string& text, const std::string& choices) {
+  throw UsageError("--" + flag + " \"" + text + "\" is not one of " + choices +
+                   geometry::did_you_mean(text, split(choices, '|')));
+}
+
 Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
     : positional_name_(command.positional), second_positional_name_(command.second_positional) {
   po::options_description all;
@@ -90,7 +99,12 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
         po::command_line_parser(arguments).options(all).positional(positional).style(style).run(),
         values_);
   } catch (const po::unknown_option& error) {
-    throw UsageError("unknown option " + error.get_option_name());
+    const std::string& name = error.get_option_name();
+    std::vector<std::string> known = {"--help"};
+    for (const auto& option : command.options.options()) {
+      known.push_back("--" + option->long_name());
+    }
+    throw UsageError("unknown option " + name + geometry::did_you_mean(name, known));
   } catch (const po::too_many_positional_options_error&) {
     throw UsageError(positional_name_.empty() ? "takes no argument without a flag"
                      : second_positional_name_.empty()
@@ -130,6 +144,14 @@ std::optional<double> Flags::optional_number(const std::string& name) const {
 
 int Flags::integer(const std::string& name) const {
   return parse_number<int>(name, text(name), "an integer");
+}
+
+double Flags::number(const std::string& name, const geometry::NumberRange& range) const {
+  return range.checked("--" + name, number(name));
+}
+
+int Flags::integer(const std::string& name, const geometry::NumberRange& range) const {
+  return static_cast<int>(range.checked("--" + name, integer(name)));
 }
 
 bool Flags::either(const std::string& name, const char* yes, const char* no) const {

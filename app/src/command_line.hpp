@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exit_codes.hpp"
+#include "graspfit/geometry/number_range.hpp"
 #include "graspfit/grasp/option_names.hpp"
 
 namespace graspfit::app {
@@ -40,6 +41,11 @@ void add_repeatable_option(boost::program_options::options_description& options,
 void add_switch(boost::program_options::options_description& options, const std::string& name,
                 const std::string& description);
 
+/// @throws UsageError `--FLAG "TEXT" is not one of CHOICES`, with the nearest of them; the choices
+/// are separated by |.
+[[noreturn]] void fail_choice(const std::string& flag, const std::string& text,
+                              const std::string& choices);
+
 /// The values of a command's options as texts, converted when asked for.
 ///
 /// Numbers are read in the C locale to their last character: "abc", "1.5x" and "1,5" are errors,
@@ -61,6 +67,8 @@ class Flags {
   double number(const std::string& name) const;
   std::optional<double> optional_number(const std::string& name) const;
   int integer(const std::string& name) const;
+  double number(const std::string& name, const geometry::NumberRange& range) const;
+  int integer(const std::string& name, const geometry::NumberRange& range) const;
   /// Whether the text is `yes`, not `no`.
   bool either(const std::string& name, const char* yes, const char* no) const;
   bool yes_or_no(const std::string& name) const { return either(name, "yes", "no"); }
@@ -78,8 +86,7 @@ class Flags {
   Enum choice(const std::string& name) const {
     const auto value = grasp::value_named<Enum>(text(name));
     if (!value) {
-      throw UsageError("--" + name + " \"" + text(name) + "\" is not one of " +
-                       grasp::names_of<Enum>());
+      fail_choice(name, text(name), grasp::names_of<Enum>());
     }
     return *value;
   }

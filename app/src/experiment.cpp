@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "command_table.hpp"
 #include "commands.hpp"
 #include "experiment_commands.hpp"
 #include "graspfit/experiments/column_dictionary.hpp"
@@ -34,8 +35,6 @@ const char* const kUsage =
     "  graspfit experiment schema          the JSON Schema of configurations\n"
     "\n"
     "graspfit experiment COMMAND --help lists a command's options with their defaults.\n";
-
-const char* const kCommandNames = "list, describe, run, status, merge, verify, columns and schema";
 
 Command list_command() {
   return {"experiment list", "", "Lists the experiments.\n", option_group("Options"), ""};
@@ -138,39 +137,23 @@ ExitCode run_schema(const std::vector<std::string>& arguments) {
   return kSuccess;
 }
 
-using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 8> kCommands = {
-    {{"list", run_list},
-     {"describe", run_describe},
-     {"run", run_experiment_run},
-     {"status", run_experiment_status},
-     {"merge", run_experiment_merge},
-     {"verify", run_experiment_verify},
-     {"columns", run_columns},
-     {"schema", run_schema}}};
+constexpr std::array<NamedCommand, 8> kCommands = {{{"list", run_list},
+                                                    {"describe", run_describe},
+                                                    {"run", run_experiment_run},
+                                                    {"status", run_experiment_status},
+                                                    {"merge", run_experiment_merge},
+                                                    {"verify", run_experiment_verify},
+                                                    {"columns", run_columns},
+                                                    {"schema", run_schema}}};
 
 }  // namespace
 
 bool is_experiment_command(const std::string& name) {
-  for (const auto& [command, run] : kCommands) {
-    if (name == command) return true;
-  }
-  return false;
+  return find_command(kCommands, name) != nullptr;
 }
 
 ExitCode run_experiment(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) {
-    throw UsageError(std::string("no command given; there are ") + kCommandNames +
-                     " (see experiment --help)");
-  }
-  for (const auto& [name, run] : kCommands) {
-    if (arguments[0] == name) return run({arguments.begin() + 1, arguments.end()});
-  }
-  if (arguments[0] == "--help" || arguments[0] == "-h" || arguments[0] == "help") {
-    std::fputs(kUsage, stdout);
-    return kSuccess;
-  }
-  throw UsageError("unknown command \"" + arguments[0] + "\"; there are " + kCommandNames);
+  return run_command(kCommands, "experiment", kUsage, arguments);
 }
 
 }  // namespace graspfit::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "command_line.hpp"
+#include "command_table.hpp"
 #include "commands.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -38,13 +39,11 @@ const char* const kUsage =
     "\n"
     "graspfit hand COMMAND --help lists a command's options with their defaults and units.\n";
 
-using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 5> kCommands = {{{"list", run_hand_list},
-                                                                   {"show", run_hand_show},
-                                                                   {"check", run_hand_check},
-                                                                   {"derive", run_hand_derive},
-                                                                   {"export", run_hand_export}}};
-const char* const kCommandNames = "list, show, check, derive and export";
+constexpr std::array<NamedCommand, 5> kCommands = {{{"list", run_hand_list},
+                                                    {"show", run_hand_show},
+                                                    {"check", run_hand_check},
+                                                    {"derive", run_hand_derive},
+                                                    {"export", run_hand_export}}};
 
 Command list_command() {
   return {"hand list", "", "Lists the shipped hands with what they have and where they are.\n",
@@ -53,24 +52,10 @@ Command list_command() {
 
 }  // namespace
 
-bool is_hand_command(const std::string& name) {
-  return std::any_of(kCommands.begin(), kCommands.end(),
-                     [&](const auto& command) { return name == command.first; });
-}
+bool is_hand_command(const std::string& name) { return find_command(kCommands, name) != nullptr; }
 
 ExitCode run_hand(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) {
-    throw UsageError(std::string("no command given; there are ") + kCommandNames +
-                     " (see hand --help)");
-  }
-  for (const auto& [name, run] : kCommands) {
-    if (arguments[0] == name) return run({arguments.begin() + 1, arguments.end()});
-  }
-  if (arguments[0] == "--help" || arguments[0] == "-h" || arguments[0] == "help") {
-    std::fputs(kUsage, stdout);
-    return kSuccess;
-  }
-  throw UsageError("unknown command \"" + arguments[0] + "\"; there are " + kCommandNames);
+  return run_command(kCommands, "hand", kUsage, arguments);
 }
 
 ExitCode run_hand_list(const std::vector<std::string>& arguments) {

@@ -102,8 +102,8 @@ Request read_request(const Flags& flags) {
   if (request.run.num_threads < 0) {
     throw UsageError("--jobs " + flags.text("jobs") + " is not a number from 0");
   }
-  request.pieces.max_pieces = flags.integer("pieces");
-  request.pieces.largest_deviation = flags.number("deviation");
+  request.pieces.max_pieces = flags.integer("pieces", geometry::at_least(1));
+  request.pieces.largest_deviation = flags.number("deviation", geometry::above(0));
   request.pieces.validate();
   request.replays = flags.indices("replay");
   request.gif = flags.has("gif");

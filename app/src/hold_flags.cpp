@@ -1,6 +1,11 @@
 #include "hold_flags.hpp"
 
+#include <algorithm>
+#include <string_view>
+
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
 
@@ -8,11 +13,59 @@ namespace graspfit::app {
 namespace {
 
 namespace po = boost::program_options;
+using geometry::shortest_decimal;
 
 std::string joined(const std::vector<std::string>& words, const std::string& separator) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
   return text;
+}
+
+/// A flag that changes a knob.
+struct KnobChange {
+  std::string flag;  ///< As it was given: "--set step_s=0.001".
+  std::string knob;
+  std::string value;
+};
+
+void apply(const KnobChange& change, hold_test::HoldProtocol& protocol) {
+  const std::vector<std::string> names = hold_test::knob_names();
+  try {
+    hold_test::set_knob(protocol, change.knob, change.value);
+  } catch (const geometry::InvalidInput& error) {
+    const bool is_known = std::find(names.begin(), names.end(), change.knob) != names.end();
+    throw UsageError(change.flag + ": " + error.what() +
+                     (is_known ? "" : geometry::did_you_mean(change.knob, names)));
+  }
+}
+
+/// What is wrong with a protocol, without the type that its check names; empty: nothing.
+std::string fault_of(const hold_test::HoldProtocol& protocol) {
+  try {
+    protocol.validate();
+    return "";
+  } catch (const geometry::InvalidInput& error) {
+    constexpr std::string_view kType = "HoldProtocol: ";
+    const std::string what = error.what();
+    return what.starts_with(kType) ? what.substr(kType.size()) : what;
+  }
+}
+
+/// Blames the first change that alone makes the protocol unusable, else all of them.
+void require_usable(const hold_test::HoldProtocol& named, const std::vector<KnobChange>& changes,
+                    const hold_test::HoldProtocol& protocol) {
+  const std::string fault = fault_of(protocol);
+  if (fault.empty()) return;
+  std::string all;
+  for (const KnobChange& change : changes) {
+    hold_test::HoldProtocol alone = named;
+    apply(change, alone);
+    if (const std::string own = fault_of(alone); !own.empty()) {
+      throw UsageError(change.flag + ": " + own);
+    }
+    all += (all.empty() ? "" : " ") + change.flag;
+  }
+  throw UsageError(all + ": " + fault);
 }
 
 }  // namespace
@@ -34,18 +87,35 @@ po::options_description hold_protocol_options() {
   return options;
 }
 
+hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::string& name) {
+  const std::vector<std::string> names = hold_test::hold_protocol_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    fail_choice(flag, name, joined(names, "|"));
+  }
+  return hold_test::hold_protocol(name);
+}
+
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
-  hold_test::HoldProtocol protocol = hold_test::hold_protocol(flags.text("protocol"));
-  if (flags.has("squeeze")) hold_test::set_knob(protocol, "squeeze", flags.text("squeeze"));
-  if (const auto step = flags.optional_number("step")) protocol.step = *step;
+  const hold_test::HoldProtocol named = hold_protocol_named("protocol", flags.text("protocol"));
+  hold_test::HoldProtocol protocol = named;
+  std::vector<KnobChange> changes;
+  if (flags.has("squeeze")) {
+    const std::string& rule = flags.text("squeeze");
+    changes.push_back({"--squeeze " + rule, "squeeze", rule});
+  }
+  if (flags.has("step")) {
+    const std::string seconds = shortest_decimal(flags.number("step", geometry::above(0)));
+    changes.push_back({"--step " + seconds, "step_s", seconds});
+  }
   for (const std::string& setting : flags.texts("set")) {
     const std::size_t sign = setting.find('=');
     if (sign == std::string::npos || sign == 0) {
       throw UsageError("--set \"" + setting + "\" is not KNOB=VALUE");
     }
-    hold_test::set_knob(protocol, setting.substr(0, sign), setting.substr(sign + 1));
+    changes.push_back({"--set " + setting, setting.substr(0, sign), setting.substr(sign + 1)});
   }
-  protocol.validate();
+  for (const KnobChange& change : changes) apply(change, protocol);
+  require_usable(named, changes, protocol);
   return protocol;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_table.hpp"
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "graspfit/geometry/errors.hpp"
@@ -38,47 +39,27 @@ void print_error(const std::string& command, const std::string& what) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-using Run = ExitCode (*)(const std::vector<std::string>&);
-constexpr std::array<std::pair<const char*, Run>, 9> kCommands = {{{"plan", run_plan},
-                                                                   {"inspect", run_inspect},
-                                                                   {"evaluate", run_evaluate},
-                                                                   {"hold", run_hold},
-                                                                   {"convert", run_convert},
-                                                                   {"motion", run_motion},
-                                                                   {"shape", run_shape},
-                                                                   {"hand", run_hand},
-                                                                   {"experiment", run_experiment}}};
-const char* const kCommandNames =
-    "plan, inspect, evaluate, hold, convert, motion, shape, hand and experiment";
-
-const std::pair<const char*, Run>* find_command(const std::string& name) {
-  const auto found = std::find_if(kCommands.begin(), kCommands.end(),
-                                  [&](const auto& command) { return name == command.first; });
-  return found == kCommands.end() ? nullptr : &*found;
-}
+constexpr std::array<NamedCommand, 9> kCommands = {{{"plan", run_plan},
+                                                    {"inspect", run_inspect},
+                                                    {"evaluate", run_evaluate},
+                                                    {"hold", run_hold},
+                                                    {"convert", run_convert},
+                                                    {"motion", run_motion},
+                                                    {"shape", run_shape},
+                                                    {"hand", run_hand},
+                                                    {"experiment", run_experiment}}};
 
 ExitCode run(const std::vector<std::string>& arguments) {
-  if (arguments.empty()) {
-    throw UsageError(std::string("no command given; there are ") + kCommandNames + " (see --help)");
-  }
-  const std::string& name = arguments[0];
-  if (const auto* command = find_command(name)) {
-    return command->second({arguments.begin() + 1, arguments.end()});
-  }
-  if (name == "--help" || name == "-h" || name == "help") {
-    std::fputs(kUsage, stdout);
-    return kSuccess;
-  }
-  if (name == "--version") {
+  if (!arguments.empty() && arguments[0] == "--version") {
     std::fputs(version_text().c_str(), stdout);
     return kSuccess;
   }
-  throw UsageError("unknown command \"" + name + "\"; there are " + kCommandNames);
+  return run_command(kCommands, "", kUsage, arguments);
 }
 
 /// "hand show" for messages; empty where there is no such command.
 std::string name_for_messages(const std::vector<std::string>& arguments) {
-  if (arguments.empty() || find_command(arguments[0]) == nullptr) return "";
+  if (arguments.empty() || find_command(kCommands, arguments[0]) == nullptr) return "";
   const bool has_subcommand =
       arguments.size() > 1 &&
       ((arguments[0] == "hand" && is_hand_command(arguments[1])) ||

@@ -20,7 +20,7 @@ double meters_per(const Flags& flags, const std::string& flag) {
   for (const auto& [name, meters] : kMeshUnits) {
     if (unit == name) return meters;
   }
-  throw UsageError("--" + flag + " \"" + unit + "\" is not one of m|cm|mm|in");
+  fail_choice(flag, unit, "m|cm|mm|in");
 }
 
 }  // namespace
@@ -68,13 +68,14 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags) {
     throw UsageError("--longest " + flags.text("longest") + " is not a length above 0 m");
   }
   options.repair.mode = flags.choice<geometry::RepairMode>("repair");
-  options.repair.max_hole_extent_rel = flags.number("max-hole");
-  options.repair.weld_distance_rel = flags.number("weld");
+  options.repair.max_hole_extent_rel = flags.number("max-hole", geometry::between(0, 1));
+  options.repair.weld_distance_rel = flags.number("weld", geometry::between(0, 0.01));
   options.repair.self_intersections =
       flags.choice<geometry::SelfIntersections>("self-intersections");
   if (flags.has("wrap")) {
-    options.repair.wrap = geometry::AlphaWrap{.alpha_rel = flags.number("wrap-alpha"),
-                                              .offset_rel = flags.number("wrap-offset")};
+    options.repair.wrap = geometry::AlphaWrap{
+        .alpha_rel = flags.number("wrap-alpha", geometry::between(0.001, 1)),
+        .offset_rel = flags.number("wrap-offset", geometry::between(0.0001, 1))};
   }
   for (const char* flag : {"wrap-alpha", "wrap-offset"}) {
     if (!flags.has("wrap") && !flags.is_default(flag)) {

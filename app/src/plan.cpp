@@ -265,7 +265,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   require_means_of_output(flags);
   std::optional<hold_test::HoldProtocol> protocol;
   if (flags.has("hold")) {
-    protocol = hold_test::hold_protocol(flags.text("hold"));
+    protocol = hold_protocol_named("hold", flags.text("hold"));
     require_physics("--hold");
   }
   warn_of_findings("plan", reading);

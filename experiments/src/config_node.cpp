@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 
 namespace graspfit::experiments::internal {
 
@@ -17,11 +18,12 @@ void ConfigNode::require_members(const std::vector<std::string>& required,
   };
   for (const auto& [key, node] : members()) {
     if (is_in(required, key) || is_in(optional, key)) continue;
+    std::vector<std::string> known = required;
+    known.insert(known.end(), optional.begin(), optional.end());
     std::string allowed;
-    for (const auto* names : {&required, &optional}) {
-      for (const std::string& name : *names) allowed += (allowed.empty() ? "" : ", ") + name;
-    }
-    node.fail("is not a member that is known here; there are " + allowed);
+    for (const std::string& name : known) allowed += (allowed.empty() ? "" : ", ") + name;
+    node.fail("is not a member that is known here; there are " + allowed +
+              geometry::did_you_mean(key, known));
   }
   for (const std::string& key : required) at(key);
 }

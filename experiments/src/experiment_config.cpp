@@ -6,7 +6,9 @@
 #include <map>
 #include <set>
 
+#include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "internal/config_node.hpp"
 
 namespace graspfit::experiments {
@@ -47,10 +49,15 @@ std::string plain_label(const Json& value) {
   return geometry::shortest_decimal(value.get<double>());
 }
 
-std::string labels_text(const Axis& axis) {
+/// "there are a, b, c", and which of these labels an unknown one is near to.
+std::string labels_text(const Axis& axis, const std::string& unknown) {
+  std::vector<std::string> labels;
   std::string text;
-  for (const AxisValue& value : axis.values) text += (text.empty() ? "" : ", ") + value.label;
-  return text;
+  for (const AxisValue& value : axis.values) {
+    labels.push_back(value.label);
+    text += (text.empty() ? "there are " : ", ") + value.label;
+  }
+  return text + geometry::did_you_mean(unknown, labels);
 }
 
 AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
@@ -91,8 +98,7 @@ void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
     const std::string name = label.json().is_primitive() ? plain_label(Json(label.json())) : "";
     const std::ptrdiff_t index = find_value(placed.axis, name);
     if (index < 0) {
-      label.fail("is no value of axis " + placed.axis.name + "; there are " +
-                 labels_text(placed.axis));
+      label.fail("is no value of axis " + placed.axis.name + "; " + labels_text(placed.axis, name));
     }
     kept.insert(index);
   }
@@ -203,7 +209,11 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
   if (!quick.has("axes")) return;
   for (const auto& [name, labels] : quick.at("axes").members()) {
     PlacedAxis* const placed = find_axis(draft, name);
-    if (placed == nullptr) labels.fail("there is no axis of that name");
+    if (placed == nullptr) {
+      std::vector<std::string> names;
+      for (const PlacedAxis& axis : draft.axes) names.push_back(axis.axis.name);
+      labels.fail("there is no axis of that name" + geometry::did_you_mean(name, names));
+    }
     keep_values(labels, *placed);
   }
 }
@@ -245,6 +255,21 @@ bool has_plain_values(const Axis& axis) {
   });
 }
 
+/// Refuses a name that is near to that of an axis or setting, but is neither. The experiment itself
+/// refuses what is near to nothing.
+void refuse_mistyped(const Experiment& experiment, const AxisChange& change, const Draft& draft) {
+  std::vector<std::string> known = {"seed"};
+  for (const PlacedAxis& placed : draft.axes) known.push_back(placed.axis.name);
+  for (const auto* const settings : {&experiment.settings, &planning_setting_names()}) {
+    for (const Column& setting : *settings) known.push_back(setting.name);
+  }
+  if (std::find(known.begin(), known.end(), change.axis) != known.end()) return;
+  const std::string meant = geometry::did_you_mean(change.axis, known);
+  if (meant.empty()) return;
+  throw geometry::InvalidInput("--set " + change.axis + ": " + experiment.slug +
+                               " has no axis or setting of that name" + meant);
+}
+
 void apply_change(const AxisChange& change, Draft& draft) {
   PlacedAxis changed;
   changed.axis.name = change.axis;
@@ -258,8 +283,7 @@ void apply_change(const AxisChange& change, Draft& draft) {
       changed.axis.values.push_back(changed_value(change, text));
     } else {
       throw geometry::InvalidInput("--set " + change.axis + ": \"" + text +
-                                   "\" is no value of that axis; there are " +
-                                   labels_text(old->axis));
+                                   "\" is no value of that axis; " + labels_text(old->axis, text));
     }
     changed.places.push_back("--set " + change.axis);
     if (!labels.insert(changed.axis.values.back().label).second) {
@@ -306,7 +330,8 @@ std::string place_of(const Draft& draft, const Cell& cell, const std::string& ke
     return key == axis.name ? place : place + '/' + key;
   }
   const auto found = draft.setting_places.find(key);
-  return found == draft.setting_places.end() ? "cell " + cell.key : found->second;
+  if (found != draft.setting_places.end()) return found->second;
+  return "cell " + cell.key + (key.empty() ? "" : ": " + key);
 }
 
 void check_cells(const Experiment& experiment, const Draft& draft, const ParameterSweep& sweep) {
@@ -403,7 +428,10 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
     if (!root.has("quick")) root.at("quick");
     apply_quick(root.at("quick"), draft);
   }
-  for (const AxisChange& change : request.changes) apply_change(change, draft);
+  for (const AxisChange& change : request.changes) {
+    refuse_mistyped(experiment, change, draft);
+    apply_change(change, draft);
+  }
   require_separate_axes(draft);
 
   config.is_quick = request.is_quick;

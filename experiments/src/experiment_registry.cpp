@@ -1,4 +1,5 @@
 #include "graspfit/experiments/experiment.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "internal/experiment_list.hpp"
 
 namespace graspfit::experiments {
@@ -19,12 +20,15 @@ const std::vector<Experiment>& all_experiments() {
 }
 
 const Experiment& find_experiment(const std::string& slug) {
+  std::vector<std::string> slugs;
   std::string names;
   for (const Experiment& experiment : all_experiments()) {
     if (experiment.slug == slug) return experiment;
+    slugs.push_back(experiment.slug);
     names += (names.empty() ? "" : ", ") + experiment.slug;
   }
-  throw geometry::InvalidInput("no experiment named " + slug + "; there are " + names);
+  throw geometry::InvalidInput("no experiment named " + slug + "; there are " + names +
+                               geometry::did_you_mean(slug, slugs));
 }
 
 }  // namespace graspfit::experiments

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "graspfit/experiments/experiment.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 
 namespace graspfit::experiments::internal {
 
@@ -81,8 +82,8 @@ void SettingValue::require_members_among(const std::vector<std::string>& allowed
     if (std::find(allowed.begin(), allowed.end(), member) != allowed.end()) continue;
     std::string names;
     for (const std::string& name : allowed) names += (names.empty() ? "" : ", ") + name;
-    throw SettingError(key_ + '/' + member,
-                       "is not a member that is known here; there are " + names);
+    throw SettingError(key_ + '/' + member, "is not a member that is known here; there are " +
+                                                names + geometry::did_you_mean(member, allowed));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/everyday_shapes.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "internal/shape_dimensions.hpp"
 
@@ -120,14 +121,18 @@ TriangleMesh named_shape(const std::string& name, const std::vector<ShapeDimensi
   const auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const NamedShape& candidate) {
     return candidate.description.name == name;
   });
-  const auto listed = [](const auto& items) {
+  const auto listed = [](const std::string& unknown, const auto& items) {
+    std::vector<std::string> names;
     std::string text;
-    for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
-    return text;
+    for (const auto& item : items) {
+      names.push_back(item.name);
+      text += (text.empty() ? "" : ", ") + item.name;
+    }
+    return text + did_you_mean(unknown, names);
   };
   if (shape == shapes.end()) {
     throw InvalidInput("there is no shape \"" + name + "\"; there are " +
-                       listed(shape_descriptions()));
+                       listed(name, shape_descriptions()));
   }
   const std::vector<ShapeDimension>& known = shape->description.dimensions;
   Values values;
@@ -139,7 +144,7 @@ TriangleMesh named_shape(const std::string& name, const std::vector<ShapeDimensi
     });
     if (place == known.end()) {
       throw InvalidInput(name + ": has no dimension \"" + dimension.name + "\"; there are " +
-                         listed(known));
+                         listed(dimension.name, known));
     }
     const std::size_t i = place - known.begin();
     if (is_given[i]) throw InvalidInput(name + ": " + dimension.name + " is given twice");

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "internal/metric_list.hpp"
 #include "internal/option_check.hpp"
@@ -87,12 +88,14 @@ const GraspMetric& GraspMetrics::at(std::string_view name) const {
   const auto found = std::find_if(metrics_.begin(), metrics_.end(),
                                   [&](const GraspMetric& metric) { return metric.name == name; });
   if (found != metrics_.end()) return *found;
+  std::vector<std::string> names;
   std::string known;
   for (const GraspMetric& metric : metrics_) {
+    names.push_back(metric.name);
     known.append(known.empty() ? "" : ", ").append(metric.name);
   }
   throw geometry::InvalidInput("there is no metric \"" + std::string(name) + "\"; there are " +
-                               known);
+                               known + geometry::did_you_mean(name, names));
 }
 
 GraspMetrics GraspMetrics::selected(std::span<const std::string> names) const {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "internal/description_package.hpp"
 
@@ -72,7 +73,8 @@ fs::path shipped_hand_file(const std::string& name) {
   const fs::path folder = library_folder();
   const std::vector<std::string> names = hands_in(folder);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw geometry::InvalidInput("no shipped hand named " + name + "; there are " + list(names));
+    throw geometry::InvalidInput("no shipped hand named " + name + "; there are " + list(names) +
+                                 geometry::did_you_mean(name, names));
   }
   return folder / name / (name + ".urdf");
 }
@@ -89,7 +91,8 @@ fs::path find_hand_file(const std::string& name_or_file) {
     if (!fs::exists(path, error)) {
       throw geometry::InvalidInput("no hand " + name_or_file + ": shipped hands are " +
                                    list(names) +
-                                   "; or give the path of a URDF, MJCF or GraspIt! XML file");
+                                   "; or give the path of a URDF, MJCF or GraspIt! XML file" +
+                                   geometry::did_you_mean(name_or_file, names));
     }
   }
   return path;

@@ -9,6 +9,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/nearest_name.hpp"
 
 namespace graspfit::hands {
 
@@ -31,8 +32,10 @@ int index_of(const HandModel& model, const Items& items, const std::string& name
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (items[i].name == name) return static_cast<int>(i);
   }
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
   throw InvalidInput("hand " + model.name + ": no " + kind + " named " + name + "; there are " +
-                     names_of(items));
+                     names_of(items) + geometry::did_you_mean(name, names));
 }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

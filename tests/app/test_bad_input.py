@@ -169,13 +169,27 @@ class BadFlags(program.ProgramTest):
                 ("distinct-rotation-deg", "-1"), ("distinct-joints", "-1"), ("seed", "-1", "18446744073709551616")):
             for value in values:
                 with self.subTest(flag=flag, value=value):
-                    self.refuse(f"--{flag}", value)
+                    line = self.assert_refused("plan", self.object, f"--{flag}", value,
+                                               says=[f"graspfit plan: --{flag} ", value])
+                    self.assertNotRegex(line, "Options|[a-z]_[a-z]")  # names of C++
+        self.refuse("--clearance-mm", "1e30", says="--clearance-mm is 1e+30, must be in [0, 10000]")
+        self.refuse("--approach", "0,0,0", says="--approach is a direction without length")
+        self.refuse("--fingers", "thumb", says="--fingers asks for 1 finger, must be at least two")
+        self.refuse("--missing-contact", "measured", says=["--missing-contact is measured", "refine off"])
+        self.refuse("--largest-gap-mm", "0.01", says=["--wanted-gap-mm is ", "below largest-gap-mm, which is 0.01"])
+        for planner in ("gs", "ma"):
+            self.refuse("--planner", planner, f"--{planner}-samples", "0",
+                        says=f"--{planner}-samples is 0, must be in [1, 1000000]")
+        for flag, value, says in (("resolution", "3", "in [4, 512]"), ("weld", "-1", "in [0, 0.01]"),
+                                  ("weak-thickness-mm", "0", "> 0"), ("mean-filter-radius", "32", "in [0, 31]")):
+            self.assert_refused("inspect", self.object, f"--{flag}", value,
+                                says=f"graspfit inspect: --{flag} is {value}, must be {says}")
 
     def test_wrap_out_of_range(self):
         for flag, *values in (("wrap-alpha", "0", "0.0009", "1.1"), ("wrap-offset", "0", "2")):
             for value in values:
                 with self.subTest(flag=flag, value=value):
-                    self.refuse("--wrap", f"--{flag}", value, says="wrap")
+                    self.refuse("--wrap", f"--{flag}", value, says=f"--{flag} is {value}, must be in [")
             self.refuse(f"--{flag}", "0.1", says=["without --wrap"])
 
     def test_text_that_is_not_a_number(self):
@@ -201,6 +215,25 @@ class BadFlags(program.ProgramTest):
                      "settle", "guard-self", "pre-grasp-open-neutral", "prefer-balanced"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
+
+    def test_a_mistyped_name_is_told_from_its_nearest_known_one(self):
+        self.assert_refused("plam", says='did you mean "plan"?')
+        self.assert_refused("hand", "shwo", says='did you mean "show"?')
+        self.assert_refused("shape", "toru", "--out", self.folder / "x.obj", says='did you mean "torus"?')
+        self.assert_refused("evaluate", self.object, "--metrics", "epsilonn",
+                            says='did you mean "epsilon"?')
+        self.assert_refused("hold", self.object, "--protocol", "dexonomy",
+                            says=["--protocol", 'did you mean "dexonomy-hard"?'])
+        self.assert_refused("hold", self.object, "--set", "forceN=1", says='did you mean "force_N"?')
+        self.refuse("--resolutoin", "20", says='unknown option --resolutoin; did you mean "--resolution"?')
+        self.refuse("--hand", "barett", says='did you mean "barrett"?')
+        self.refuse("--fingers", "thumb,finger1", says='did you mean "finger_1"?')
+        self.refuse("--style", "presicion", says='did you mean "precision"?')
+        self.refuse("--planner", "fiting", says='did you mean "fitting"?')
+        self.refuse("--hold", "tabletop-lfit", says=["--hold", 'did you mean "tabletop-lift"?'])
+        # What is near to nothing is not guessed at.
+        self.assertNotIn("mean", self.assert_refused("grab", self.object))
+        self.assertNotIn("mean", self.assert_refused("plan", self.object, "--fastest"))
 
     def test_flags_that_do_not_exist_or_fit(self):
         self.refuse("--fastest", says="--fastest")

@@ -153,7 +153,7 @@ class Shards(ProgramTest):
 
     def test_shards_that_cannot_be_are_refused(self):
         part = ("experiment", "run", self.SLUG, "--out", "out", "--shard")
-        self.assert_refused(*part, "3/2", says="Shard: index = 3, must be in [1, 2]")
+        self.assert_refused(*part, "3/2", says=["--shard", "3/2", "1 <= I <= N"])
         self.assert_refused(*part, "two", says="--shard \"two\" is not I/N")
         self.assert_refused(*part, "1/2", "--publish", says="merge has it")
         self.assert_refused("experiment", "merge", self.SLUG, "--out", self.folder / "none",
@@ -412,13 +412,44 @@ class Refusals(ProgramTest):
                             says=["--set regularity", "combined|angle-only"])
         self.assert_refused(*experiment, "force_closure", "--set", "colour=red",
                             says=["--set colour", "is no setting; there are"])
-        self.assert_refused(*experiment, "force_closure", "--jobs", "0", says="jobs = 0")
+        self.assert_refused(*experiment, "force_closure", "--jobs", "0", says="--jobs is 0, must be in [1, 1024]")
         self.assert_refused(*experiment, "force_closure", "--jobs", "100000",
-                            says="jobs = 100000, must be in [1, 1024]")
+                            says="--jobs is 100000, must be in [1, 1024]")
         self.assert_refused(*experiment, "fitting_stages", "--quick", "--set", "planner=gs",
                             says="must be fitting: only its grasps have targets")
         self.assert_refused(*experiment, "force_closure", "--quick", "--publish",
                             says="results are not published: --quick")
+
+    def test_a_value_out_of_range_is_refused_in_the_words_of_its_setting(self):
+        for change, says in (("resolution=3", "--set resolution: is 3, must be in [4, 512]"),
+                             ("friction=-1", "--set friction: is -1, must be >= 0"),
+                             ("wanted-gap-mm=0", "--set wanted-gap-mm: is 0, must be > 0 [mm]"),
+                             ("wanted-gap-mm=9", "--set wanted-gap-mm: is 9, must be below largest-gap-mm"),
+                             ("theta-max-deg=90", "--set theta-max-deg: is 90, must be in (0, 90) [deg]"),
+                             ("contacts=1", "contacts: asks for 1 finger"),
+                             ("neighborhood=4", "--set neighborhood: is 4, must be odd")):
+            with self.subTest(change):
+                line = self.assert_refused("experiment", "run", "force_closure", "--quick",
+                                           "--set", change, says=says)
+                self.assertNotRegex(line, "[a-z]Options|[a-z]+_[a-z_]+ = ")
+        for change in ("travel_clearance_mm=-1", "max_moves=0", "frame_step_mm=0"):
+            line = self.assert_refused("experiment", "run", "table_tidying", "--set", change,
+                                       says=["--set " + change.split("=")[0] + ": is ", "must be "])
+            self.assertNotIn("Options", line)
+        self.assert_refused("experiment", "verify", "table1", "--relative", "-1",
+                            says="--relative is -1, must be >= 0")
+
+    def test_a_mistyped_name_is_told_from_its_nearest_known_one(self):
+        experiment = ("experiment", "run")
+        self.assert_refused("experiment", "rnu", says='did you mean "run"?')
+        self.assert_refused(*experiment, "tabel1", says='did you mean "table1"?')
+        self.assert_refused(*experiment, "table1", "--sett", "object=kitten", says='did you mean "--set"?')
+        self.assert_refused(*experiment, "table1", "--set", "objet=kitten",
+                            says=["--set objet", "no axis or setting", 'did you mean "object"?'])
+        self.assert_refused(*experiment, "table1", "--set", "object=kiten",
+                            says=["--set object", 'did you mean "kitten"?'])
+        self.assert_refused(*experiment, "table1", "--set", "resolutoin=20",
+                            says='did you mean "resolution"?')
 
     def test_objects_of_a_table_lie_as_start_and_goal_say(self):
         folder = self.folder / "configs"

@@ -171,7 +171,9 @@ class BadFlags(PhysicsTest):
                 (("--set", "force_N=much"), ["force_N", "much"]),
                 (("--set", "hand_solref=1"), ["hand_solref", "2 numbers"]),
                 (("--set", "multi_point_contacts=1"), ["multi_point_contacts", "yes"]),
-                (("--step", "0"), ["step"]),
+                (("--step", "0"), ["--step is 0, must be > 0"]),
+                (("--set", "object_mass_kg=-1"), ["--set object_mass_kg=-1: object_mass is -1; it must be"]),
+                (("--set", "lift_time_s=2", "--set", "step_s=0.5"), ["--set step_s=0.5: approach_time"]),
                 (("--step", "x"), ["--step"]),
                 (("--grasp", "0"), ["--grasp", "ranks from 1"]),
                 (("--grasp", "1.5"), ["ranks from 1"]),
@@ -180,8 +182,8 @@ class BadFlags(PhysicsTest):
                 (("--replay", "1"), ["--out"]),
                 (("--gif", "--out", out), ["--replay"]),
                 (("--jobs", "-1"), ["--jobs"]),
-                (("--pieces", "0"), ["max_pieces"]),
-                (("--deviation", "0"), ["largest_deviation"]),
+                (("--pieces", "0"), ["--pieces is 0, must be >= 1"]),
+                (("--deviation", "0"), ["--deviation is 0, must be > 0"]),
                 (("--protocol", "tabletop-lift", "--margin"), ["--margin", "tabletop-lift"])):
             with self.subTest(flags=flags):
                 self.assert_refused("hold", self.file, *flags, says=says, cwd=self.folder_of_plan)
