@@ -108,7 +108,7 @@ Target read_target(const Flags& flags) {
     const std::string& name = flags.text("format");
     target.format = exchange::format_named(name);
     if (!target.format && name != kOurs) {
-      throw UsageError("--format \"" + name + "\" is not one of " + kFormatNames);
+      fail_choice("format", name, kFormatNames);
     }
   } else if (extension != ".json") {
     target.format = exchange::format_of(extension.empty() ? fs::path() : fs::path("a" + extension));
@@ -152,7 +152,7 @@ Source import_isaac(const Flags& flags) {
       exchange::read_isaac_grasps(flags.positional(), reading.model);
   grasp::PlannerOptions options;
   if (flags.has("fingers")) options.fingers = flags.words("fingers");
-  options.num_contacts = flags.integer("contacts");
+  options.num_contacts = flags.integer("contacts", geometry::at_least(1));
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts =
         std::min(options.num_contacts, static_cast<int>(reading.model.fingers.size()));

@@ -214,7 +214,7 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   if (flags.has("publish")) experiments::require_publishable(config, sources);
 
   experiments::RunOptions options;
-  options.jobs = flags.integer("jobs");
+  options.jobs = flags.integer("jobs", geometry::between(1, experiments::RunOptions::kMostJobs));
   options.folder = results_folder(flags);
   if (flags.has("shard")) options.shard = experiments::parse_shard(flags.text("shard"));
   const experiments::RunManifest manifest = manifest_of("run", arguments);
@@ -284,7 +284,8 @@ ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
   const Experiment& experiment = experiments::find_experiment(flags.positional());
   const fs::path published =
       flags.has("against") ? fs::path(flags.text("against")) : published_folder();
-  const experiments::ComparisonOptions options{flags.number("relative"), flags.number("absolute")};
+  const experiments::ComparisonOptions options{flags.number("relative", geometry::at_least(0)),
+                                               flags.number("absolute", geometry::at_least(0))};
   bool is_equal = true;
   for (const experiments::PublishedComparison& table :
        experiments::compare_with_published(experiment, results_folder(flags), published, options)) {

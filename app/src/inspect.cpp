@@ -275,10 +275,10 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   grasp::PlannerOptions options;
+  require_ranges(flags);
   read_score_map_flags(flags, options);
-  options.validate();
   geometry::WeakRegionOptions weak_options;
-  weak_options.weak_thickness = 1e-3 * flags.number("weak-thickness-mm");
+  weak_options.weak_thickness = 1e-3 * flags.number("weak-thickness-mm", geometry::above(0));
   weak_options.validate();
   std::optional<hands::HandModel> hand;
   if (flags.has("hand")) hand = hands::find_hand(flags.text("hand"));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 
@@ -296,6 +297,13 @@ po::options_description planner_options() {
   return all;
 }
 
+void require_ranges(const Flags& flags) {
+  for (const auto& setting : experiments::planning_setting_descriptions()) {
+    const std::string& name = setting.name.name;
+    if (setting.range && flags.has(name)) flags.number(name, *setting.range);
+  }
+}
+
 void read_score_map_flags(const Flags& flags, PlannerOptions& options) {
   options.resolution = flags.integer("resolution");
   options.averaging = flags.choice<geometry::PatchAveraging>("averaging");
@@ -332,16 +340,12 @@ void read_approach_flags(const Flags& flags, PlannerOptions& options) {
     throw UsageError("--approach \"" + flags.text("approach") + "\" is not three numbers X,Y,Z");
   }
   options.approach_O = Eigen::Vector3d(approach[0], approach[1], approach[2]);
-  const double angle_deg = flags.number("approach-angle-deg");
-  if (!(angle_deg > 0.0 && angle_deg <= 180.0)) {
-    throw UsageError("--approach-angle-deg " + flags.text("approach-angle-deg") +
-                     " is not above 0 and at most 180 degrees");
-  }
   read_angle(flags, "approach-angle-deg", options.approach_angle);
 }
 
 void read_weak_flags(const Flags& flags, PlannerOptions& options) {
   options.targets.exclude_weak = flags.yes_or_no("exclude-weak");
+  flags.number("weak-thickness-mm", geometry::above(0));  // of settings 0 means --no-weak
   read_millimeters(flags, "weak-thickness-mm", options.weak->weak_thickness);
   if (!flags.has("no-weak")) return;
   for (const char* flag : {"exclude-weak", "weak-thickness-mm"}) {
@@ -407,7 +411,9 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
   if (flags.has("max-iterations")) options.max_iterations = flags.integer("max-iterations");
-  options.wall_clock_limit_s = flags.optional_number("wall-clock-limit-s");
+  if (flags.has("wall-clock-limit-s")) {
+    options.wall_clock_limit_s = flags.number("wall-clock-limit-s", geometry::above(0));
+  }
 }
 
 /// Which method, and what it alone has.
@@ -416,8 +422,7 @@ void read_method_flags(const Flags& flags, PlannerOptions& options) {
   const auto& methods = grasp::planning_methods();
   if (std::none_of(methods.begin(), methods.end(),
                    [&](const auto& method) { return method.name == options.planner; })) {
-    throw UsageError("--planner \"" + options.planner + "\" is not one of " +
-                     grasp::planning_method_names());
+    fail_choice("planner", options.planner, grasp::planning_method_names());
   }
   for (const auto& [flag, prefix] : {std::pair("gs-sampling", "gs"), std::pair("gs-samples", "gs"),
                                      std::pair("ma-samples", "ma")}) {
@@ -430,15 +435,7 @@ void read_method_flags(const Flags& flags, PlannerOptions& options) {
 }
 
 void read_target_flags(const Flags& flags, PlannerOptions& options) {
-  const double theta_max_deg = flags.number("theta-max-deg");
-  if (!(theta_max_deg > 0.0 && theta_max_deg < 90.0)) {
-    throw UsageError("--theta-max-deg " + flags.text("theta-max-deg") +
-                     " is not between 0 and 90 degrees");
-  }
-  // The default angle keeps its bits on the way through degrees.
-  if (!flags.is_default("theta-max-deg")) {
-    options.quality.theta_max = theta_max_deg * kRadiansPerDegree;
-  }
+  read_angle(flags, "theta-max-deg", options.quality.theta_max);
   options.targets.theta_max = options.quality.theta_max;
   options.targets.pair_rule = flags.choice<grasp::PairRule>("pair-rule");
   options.targets.edge_tolerance_rel = flags.number("edge-tolerance");
@@ -471,9 +468,19 @@ void read_measure_flags(const Flags& flags, PlannerOptions& options) {
   options.quality.centroid = flags.choice<grasp::HullCentroid>("centroid");
 }
 
+void validate_flags(const PlannerOptions& options) {
+  try {
+    experiments::require_compatible(options);
+  } catch (const experiments::SettingError& error) {
+    throw UsageError("--" + error.key() + ' ' + error.what());
+  }
+  options.validate();
+}
+
 }  // namespace
 
 PlannerOptions read_planner_flags(const Flags& flags) {
+  require_ranges(flags);
   PlannerOptions options;
   read_score_map_flags(flags, options);
   read_request_flags(flags, options);
@@ -483,7 +490,7 @@ PlannerOptions read_planner_flags(const Flags& flags) {
   read_weak_flags(flags, options);
   read_contact_flags(flags, options);
   read_measure_flags(flags, options);
-  options.validate();
+  validate_flags(options);
   return options;
 }
 

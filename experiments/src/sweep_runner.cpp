@@ -196,7 +196,6 @@ void require_unchanged(const std::map<std::string, std::string>& before,
 
 void RunOptions::validate() const {
   if (folder.empty()) throw geometry::InvalidInput("RunOptions: folder is empty");
-  constexpr int kMostJobs = 1024;
   if (jobs < 1 || jobs > kMostJobs) {
     throw geometry::InvalidInput("RunOptions: jobs = " + std::to_string(jobs) +
                                  ", must be in [1, " + std::to_string(kMostJobs) + "]");
@@ -211,7 +210,6 @@ std::size_t Shard::num_cells(std::size_t of_sweep) const {
 std::string Shard::name() const { return std::to_string(index) + "-of-" + std::to_string(count); }
 
 void Shard::validate() const {
-  constexpr std::size_t kMostShards = 100000;
   if (count < 1 || count > kMostShards) {
     throw geometry::InvalidInput("Shard: count = " + std::to_string(count) + ", must be in [1, " +
                                  std::to_string(kMostShards) + "]");
@@ -231,7 +229,12 @@ Shard parse_shard(const std::string& text) {
   if (!has_slash || count.ec != std::errc() || count.ptr != end) {
     throw geometry::InvalidInput("--shard \"" + text + "\" is not I/N, such as 2/7");
   }
-  shard.validate();
+  try {
+    shard.validate();
+  } catch (const geometry::InvalidInput&) {
+    throw geometry::InvalidInput("--shard \"" + text + "\": I and N must be in 1 <= I <= N <= " +
+                                 std::to_string(Shard::kMostShards));
+  }
   return shard;
 }
 

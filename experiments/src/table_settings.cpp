@@ -109,13 +109,23 @@ TableSettings table_settings(const Cell& cell) {
     tidying.resting_places_W.push_back(place_of(place));
   }
   tidying.move.clearance = value("travel_clearance_mm").number() * kMetersPerMillimeter;
+  const double kept = tidying.move.planner.pre_grasp.clearance / kMetersPerMillimeter;
+  const geometry::NumberRange clearances{.least = 0, .most = kept, .has_most = false};
+  if (!clearances.contains(value("travel_clearance_mm").number())) {
+    value("travel_clearance_mm")
+        .fail("must be " + clearances.text() + ", below pre-grasp-clearance-mm");
+  }
+  const grasp::PlannerOptions& planner = tidying.move.planner;
+  if (planner.acceptance != grasp::Acceptance::Valid) {
+    throw SettingError("accept", "must be valid: objects are moved by valid grasps");
+  }
+  if (!planner.pre_grasps) {
+    throw SettingError("pre-grasps", "must be true: objects are approached from pre-grasps");
+  }
   tidying.move.cache = {.is_on = true};
   tidying.max_moves_tried = value("max_moves").integer();
-  try {
-    tidying.validate();
-  } catch (const geometry::InvalidInput& error) {
-    throw SettingError("", error.what());
-  }
+  if (tidying.max_moves_tried < 1) value("max_moves").fail("must be >= 1");
+  tidying.validate();
   return settings;
 }
 

@@ -426,10 +426,9 @@ class Refusals(ProgramTest):
                              ("wanted-gap-mm=0", "--set wanted-gap-mm: is 0, must be > 0 [mm]"),
                              ("wanted-gap-mm=9", "--set wanted-gap-mm: is 9, must be below largest-gap-mm"),
                              ("theta-max-deg=90", "--set theta-max-deg: is 90, must be in (0, 90) [deg]"),
-                             ("contacts=1", "contacts: asks for 1 finger"),
                              ("neighborhood=4", "--set neighborhood: is 4, must be odd")):
             with self.subTest(change):
-                line = self.assert_refused("experiment", "run", "force_closure", "--quick",
+                line = self.assert_refused("experiment", "run", "planner_everyday",
                                            "--set", change, says=says)
                 self.assertNotRegex(line, "[a-z]Options|[a-z]+_[a-z_]+ = ")
         for change in ("travel_clearance_mm=-1", "max_moves=0", "frame_step_mm=0"):

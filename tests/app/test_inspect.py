@@ -63,7 +63,7 @@ class Inspect(InspectTest):
         self.assertEqual(self.row(text, "weak"), "0.0% of the surface; thin regions: 0")
         self.assertIn("thinner than that everywhere",
                       self.row(self.inspect(path, "--weak-thickness-mm", 50), "weak"))
-        self.assert_refused("inspect", path, "--weak-thickness-mm", 0, says="weak_thickness")
+        self.assert_refused("inspect", path, "--weak-thickness-mm", 0, says="--weak-thickness-mm is 0, must be > 0")
         plain = self.inspect(path, "--no-thickness")
         self.assertEqual(plain.splitlines(), [line for line in done.stdout.splitlines()
                                               if not line.startswith(("thickness", "weak"))])

@@ -4,6 +4,7 @@
 
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
+#include "internal/planning_setting_list.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::experiments;
@@ -76,7 +77,11 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       {R"(, "styles": "power")", {"styles", "is no setting; there are file, shape"}},
       {R"(, "style": "pinch")", {"style", "is \"pinch\", must be one of precision|power"}},
       {R"(, "resolution": 20.5)", {"resolution", "must be an integer"}},
-      {R"(, "resolution": 1)", {"", "resolution = 1"}},
+      {R"(, "resolution": 1)", {"resolution", "is 1, must be in [4, 512]"}},
+      {R"(, "least-distance-mm": 5)", {"least-distance-mm", "is 5, must be at most wanted-gap-mm"}},
+      {R"(, "contacts": 1)", {"contacts", "asks for 1 finger"}},
+      {R"(, "approach": [0, 0, 0])", {"approach", "without length"}},
+      {R"(, "missing-contact": "measured")", {"missing-contact", "turn refine off"}},
       {R"(, "size_m": 0)", {"size_m", "is 0, must be > 0"}},
       {R"(, "size_axis": "w")", {"size_axis", "must be one of x|y|z"}},
       {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
@@ -92,6 +97,70 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       CHECK(error.key() == expected[0]);
       CHECK_THAT(error.what(), Catch::Contains(expected[1]));
     }
+  }
+}
+
+TEST_CASE("Ranges of settings end where the planner's own checks do",
+          "[experiments][planning_settings]") {
+  constexpr double kJustInside = 1e-9;  // in the setting's unit, beside a bound that is outside
+  // Whether the planner's check accepts the value; all else is so that only it can be wrong.
+  const auto is_accepted = [](const internal::PlanningSetting& setting, double value) {
+    const bool is_integer = setting.schema.at("type") == "integer";
+    const nlohmann::json json =
+        is_integer ? nlohmann::json(static_cast<int>(value)) : nlohmann::json(value);
+    PlanningSettings settings;
+    settings.options.palm = true;
+    settings.options.refinement.least_distance = 1e-13;
+    settings.options.refinement.wanted_gap =
+        setting.name.name == "least-distance-mm" ? 1e-5 : 5e-13;
+    setting.apply(settings, internal::SettingValue(setting.name.name, json));
+    try {
+      settings.options.validate();
+      return true;
+    } catch (const graspfit::geometry::InvalidInput&) {
+      return false;
+    }
+  };
+  int num_checked = 0;
+  for (const internal::PlanningSetting& setting : internal::planning_setting_list()) {
+    const std::string& name = setting.name.name;
+    if (!setting.range || name == "size_m" || name == "largest_thickness_m") continue;
+    INFO(name);
+    const bool is_integer = setting.schema.at("type") == "integer";
+    const double step = is_integer ? 1.0 : 1e-3;
+    const auto& range = *setting.range;
+    CHECK(is_accepted(setting, range.has_least ? range.least : range.least + kJustInside));
+    CHECK_FALSE(is_accepted(setting, range.has_least ? range.least - step : range.least));
+    ++num_checked;
+    if (!std::isfinite(range.most)) continue;
+    CHECK(is_accepted(setting, range.has_most ? range.most : range.most - kJustInside));
+    // The planner takes any clearance; farther than 10 m no hand comes back in finite time.
+    const bool is_ours_alone = name == "clearance-mm";
+    CHECK(is_accepted(setting, range.has_most ? range.most + step : range.most) == is_ours_alone);
+  }
+  CHECK(num_checked > 45);
+}
+
+TEST_CASE("Defaults of settings are those of the planner", "[experiments][planning_settings]") {
+  for (const SettingDescription& setting : planning_setting_descriptions()) {
+    INFO(setting.name.name << " = " << setting.fallback);
+    CHECK_FALSE(setting.allowed.empty());
+    if (setting.fallback.empty() || setting.name.name == "size_axis") continue;
+    if (setting.range) CHECK(setting.range->contains(std::stod(setting.fallback)));
+    // Given as it stands there, a default changes nothing: conversions of units keep 12 digits.
+    const nlohmann::json parsed = nlohmann::json::parse(setting.fallback, nullptr, false);
+    const std::string value = parsed.is_discarded() ? '"' + setting.fallback + '"' : parsed.dump();
+    const PlanningSettings given = settings_with(", \"" + setting.name.name + "\": " + value);
+    const PlanningSettings plain = settings_with("");
+    CHECK(given.options.quality.theta_max ==
+          Approx(plain.options.quality.theta_max).epsilon(1e-11));
+    CHECK(given.options.refinement.wanted_gap ==
+          Approx(plain.options.refinement.wanted_gap).epsilon(1e-11));
+    CHECK(given.options.weak->weak_thickness ==
+          Approx(plain.options.weak->weak_thickness).epsilon(1e-11));
+    CHECK(given.options.resolution == plain.options.resolution);
+    CHECK(given.options.style == plain.options.style);
+    CHECK(given.options.num_contacts == plain.options.num_contacts);
   }
 }
 

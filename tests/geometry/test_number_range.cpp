@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/number_range.hpp"
@@ -23,6 +24,19 @@ TEST_CASE("A range ends where its text says", "[geometry][number_range]") {
   CHECK(between(4, 512).contains(512.0));
   CHECK(NumberRange{.most = 90, .has_most = false}.text() == "< 90");
   CHECK(NumberRange{}.text() == "finite");
+}
+
+TEST_CASE("Plain decimals have an exponent only where they are huge or tiny",
+          "[geometry][number_range]") {
+  CHECK(plain_decimal(100000) == "100000");
+  CHECK(plain_decimal(0.0009) == "0.0009");
+  CHECK(plain_decimal(-0.1) == "-0.1");
+  CHECK(plain_decimal(0) == "0");
+  CHECK(plain_decimal(1e30) == "1e+30");
+  CHECK(plain_decimal(2.5e-7) == "2.5e-07");
+  CHECK(plain_decimal(1e-6).size() <= 30);
+  CHECK(std::stod(plain_decimal(999999999999999.9)) == 999999999999999.9);
+  CHECK(between(1, 1000000).text() == "in [1, 1000000]");
 }
 
 TEST_CASE("Nothing that is not finite is in a range", "[geometry][number_range]") {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "graspfit/experiments/experiment.hpp"
+#include "graspfit/geometry/number_range.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
 
@@ -45,6 +46,21 @@ struct PlanningSettings {
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.
 const std::vector<Column>& planning_setting_names();
+
+/// What there is to know about a setting.
+struct SettingDescription {
+  Column name;
+  std::string allowed;   ///< For people: "a|b", "true|false", "in [4, 512]", "> 0", "text".
+  std::string fallback;  ///< Its value where it is not given; empty: none.
+  std::optional<geometry::NumberRange> range;  ///< Of numbers, in `name.unit`.
+};
+
+/// All settings of `planning_setting_names`, in that order.
+const std::vector<SettingDescription>& planning_setting_descriptions();
+
+/// Checks what settings that are allowed one by one must be together, before `PlannerOptions`
+/// itself, which speaks of its members. @throws SettingError in the words of the settings.
+void require_compatible(const grasp::PlannerOptions& options);
 
 /// The settings of a cell; its seed becomes the planner's. `others` are names that belong to the
 /// experiment itself and are passed over. @throws SettingError for unknown names and values that

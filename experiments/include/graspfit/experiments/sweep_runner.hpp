@@ -27,8 +27,9 @@ struct RunProgress {
 
 /// One of `count` parts of a sweep: the cells number index − 1, index − 1 + count, ...
 struct Shard {
+  static constexpr std::size_t kMostShards = 100000;
   std::size_t index = 1;  ///< In [1, count].
-  std::size_t count = 1;  ///< At least 1.
+  std::size_t count = 1;  ///< In [1, kMostShards].
 
   std::size_t num_cells(std::size_t of_sweep) const;
   std::string name() const;  ///< "2-of-7": of its folder.
@@ -40,8 +41,9 @@ Shard parse_shard(const std::string& text);
 
 /// How to run.
 struct RunOptions {
-  std::filesystem::path folder;     ///< Of the results; made if need be.
-  int jobs = 1;                     ///< Cells at once, in [1, 1024]. Timings are honest with one.
+  static constexpr int kMostJobs = 1024;
+  std::filesystem::path folder;  ///< Of the results; made if need be.
+  int jobs = 1;                  ///< Cells at once, in [1, kMostJobs]. Timings are honest with one.
   std::optional<Shard> shard = {};  ///< Only this part of the sweep, into a folder of its own.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };

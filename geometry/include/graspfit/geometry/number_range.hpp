@@ -5,6 +5,9 @@
 
 namespace graspfit::geometry {
 
+/// A number as people write it: shortest round-trip digits, without an exponent from 1e-6 to 1e15.
+std::string plain_decimal(double value);
+
 /// The numbers that a setting may have, for checks and for the messages about them.
 struct NumberRange {
   double least = -std::numeric_limits<double>::infinity();
