@@ -253,6 +253,7 @@ RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& conf
                       RunManifest manifest, const RunOptions& options,
                       const std::function<void(const RunProgress&)>& progress) {
   options.validate();
+  internal::require_own_folder(options.folder, experiment.slug);
   const fs::path folder =
       options.shard ? shard_folder(options.folder, *options.shard) : options.folder;
   internal::make_folder(folder);

@@ -127,6 +127,7 @@ void add_to(JournalContent& whole, const JournalContent& content, const fs::path
 
 RunProgress merge_shards(const Experiment& experiment, const ExperimentConfig& config,
                          RunManifest manifest, const fs::path& folder) {
+  internal::require_own_folder(folder, experiment.slug);
   const std::vector<Shard> shards = shards_in(folder, experiment.slug);
   if (shards.empty()) {
     throw geometry::InvalidInput(folder.string() + ": has no shards of " + experiment.slug);

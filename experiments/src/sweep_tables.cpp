@@ -1,6 +1,8 @@
 #include "internal/sweep_tables.hpp"
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string_view>
 #include <system_error>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -98,6 +100,28 @@ std::vector<std::string> table_names(const Experiment& experiment) {
 JournalIdentity journal_identity(const ExperimentConfig& config, const RunManifest& manifest) {
   return {{"configuration", geometry::sha256_hex(config.identity())},
           {"build of the program", manifest.program}};
+}
+
+void require_own_folder(const fs::path& folder, const std::string& slug) {
+  std::vector<fs::path> places = {folder};
+  std::error_code error;
+  for (const fs::directory_entry& shard : fs::directory_iterator(folder / "shards", error)) {
+    places.push_back(shard.path());
+  }
+  std::set<std::string> others;  // the first by name: folders have no order
+  for (const fs::path& place : places) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
+      const std::string name = entry.path().filename().string();
+      for (const std::string_view ending : {".cells", ".manifest.json"}) {
+        if (!name.ends_with(ending)) continue;
+        const std::string owner = name.substr(0, name.size() - ending.size());
+        if (!owner.empty() && owner != slug) others.insert(owner);
+      }
+    }
+  }
+  if (others.empty()) return;
+  throw geometry::InvalidInput(folder.string() + ": holds results of " + *others.begin() +
+                               "; give " + slug + " another folder (--out)");
 }
 
 void make_folder(const fs::path& folder) {

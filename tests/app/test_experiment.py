@@ -4,6 +4,8 @@ import csv
 import json
 import os
 import pathlib
+import re
+import shutil
 
 from program import SOURCE_DIR, ProgramTest, main, run
 
@@ -150,6 +152,18 @@ class Shards(ProgramTest):
         self.assertIn("1 fields differ", done.stdout)
         self.assertIn(f"object={row['object']} option={row['option']} seed={row['seed']}: "
                       f"mean_m is \"{value!r}\"", done.stdout)
+
+    def test_a_folder_of_another_experiment_is_refused(self):
+        out = self.folder / "out"
+        self.run_part(out, "--shard", "1/2")
+        for command in (("run", "--quick"), ("run", "--quick", "--shard", "1/2"), ("merge", "--quick")):
+            self.assert_refused("experiment", command[0], "measured_contacts", *command[1:], "--out", out,
+                                says=["holds results of parameter_sweeps", "--out"])
+        other = self.folder / "other"
+        self.run_part(other)
+        self.assert_refused("experiment", "run", "measured_contacts", "--quick", "--out", other,
+                            says="holds results of parameter_sweeps")
+        self.run_part(other)  # its own may go on
 
     def test_shards_that_cannot_be_are_refused(self):
         part = ("experiment", "run", self.SLUG, "--out", "out", "--shard")
@@ -399,6 +413,7 @@ class Describe(ProgramTest):
             self.assertIn(text, done.stdout)
         done = run("experiment", "describe", "special_cases", "--set", "seed=1,2")
         self.assertIn("32 cells", done.stdout)
+
 
 
 class Refusals(ProgramTest):

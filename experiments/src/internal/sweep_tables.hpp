@@ -17,6 +17,10 @@ std::filesystem::path journal_file(const std::filesystem::path& folder, const st
 /// What the cells of a journal must have in common.
 JournalIdentity journal_identity(const ExperimentConfig& config, const RunManifest& manifest);
 
+/// Refuses a folder that holds results, or shards of them, of another experiment: cells of both
+/// keep files under the same names. @throws InvalidInput that names that experiment.
+void require_own_folder(const std::filesystem::path& folder, const std::string& slug);
+
 /// Makes a folder. @throws IoError.
 void make_folder(const std::filesystem::path& folder);
 
