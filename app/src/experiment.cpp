@@ -10,7 +10,6 @@
 #include "experiment_commands.hpp"
 #include "graspfit/experiments/column_dictionary.hpp"
 #include "graspfit/experiments/experiment_config.hpp"
-#include "graspfit/experiments/planning_settings.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -26,7 +25,7 @@ const char* const kUsage =
     "Experiments: tables of results over sweeps of objects, hands and options of the planner.\n"
     "\n"
     "  graspfit experiment list            the experiments and their questions\n"
-    "  graspfit experiment describe SLUG   axes, settings and columns of one\n"
+    "  graspfit experiment describe SLUG   axes, settings with their values, columns\n"
     "  graspfit experiment run SLUG        runs it, or what is left of it\n"
     "  graspfit experiment status SLUG     how far a run and its shards are\n"
     "  graspfit experiment merge SLUG      makes one run of all shards\n"
@@ -38,28 +37,6 @@ const char* const kUsage =
 
 Command list_command() {
   return {"experiment list", "", "Lists the experiments.\n", option_group("Options"), ""};
-}
-
-Command describe_command() {
-  Command command{"experiment describe", "SLUG",
-                  "Shows an experiment's question, axes, settings and columns.\n", option_group(),
-                  ""};
-  command.options.add(config_change_options());
-  return command;
-}
-
-std::string columns_text(const std::vector<experiments::Column>& columns) {
-  constexpr std::size_t kNameWidth = 27;
-  constexpr std::size_t kUnitWidth = 5;
-  std::string text;
-  for (const experiments::Column& column : columns) {
-    std::string line = "  " + column.name;
-    line.resize(std::max(line.size() + 1, kNameWidth), ' ');
-    line += column.unit.empty() ? "-" : column.unit;
-    line.resize(std::max(line.size() + 1, kNameWidth + kUnitWidth), ' ');
-    text += line + column.meaning + '\n';
-  }
-  return text;
 }
 
 ExitCode run_list(const std::vector<std::string>& arguments) {
@@ -75,54 +52,15 @@ ExitCode run_list(const std::vector<std::string>& arguments) {
   return kSuccess;
 }
 
-ExitCode run_describe(const std::vector<std::string>& arguments) {
-  const Command command = describe_command();
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
-  const ExperimentConfig config = load_experiment_config(experiment, flags);
-  std::printf("%s\n\nquestion  %s\ncell      %s\nconfig    %s\n\n%zu cells:\n",
-              experiment.slug.c_str(), config.question.c_str(), config.cell.c_str(),
-              config.file.c_str(), config.sweep.num_cells());
-  for (const experiments::Axis& axis : config.sweep.axes) {
-    std::printf("  %s:", axis.name.c_str());
-    for (const experiments::AxisValue& value : axis.values) {
-      std::printf(" %s", value.label.c_str());
-    }
-    std::printf("\n");
-  }
-  std::printf("  settings of all: %s\n", config.sweep.settings.c_str());
-  std::printf("\nColumns of %s.csv after the axes, cell_seed, status and reason:\n%s",
-              experiment.slug.c_str(), columns_text(experiment.columns).c_str());
-  std::printf("\nColumns of %s.timing.csv after the axes, wall_s and cpu_s:\n%s",
-              experiment.slug.c_str(), columns_text(experiment.timings).c_str());
-  if (!experiment.details.empty()) {
-    std::printf("\nColumns of %s.details.csv after the axes:\n%s", experiment.slug.c_str(),
-                columns_text(experiment.details).c_str());
-  }
-  for (const experiments::SummaryTable& summary : experiment.summaries) {
-    std::printf("\nColumns of %s.%s.csv:\n%s", experiment.slug.c_str(), summary.name.c_str(),
-                columns_text(summary.columns).c_str());
-  }
-  std::vector<experiments::Column> settings = experiment.settings;
-  const auto& common = experiments::planning_setting_names();
-  settings.insert(settings.end(), common.begin(), common.end());
-  std::printf("\nSettings, each of which can be an axis:\n%s", columns_text(settings).c_str());
-  return kSuccess;
-}
-
 ExitCode run_columns(const std::vector<std::string>& arguments) {
   const Command command{"experiment columns", "SLUG",
                         "Prints every column of an experiment's tables with unit and meaning, as "
                         "JSON: what --publish\nwrites into SLUG.columns.json.\n",
                         option_group("Options"), ""};
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
-  const fs::path file = experiments::config_folder() / (experiment.slug + ".json");
-  std::fputs(experiments::column_dictionary(experiment, experiments::read_config(experiment, file))
-                 .c_str(),
-             stdout);
+  const std::optional<ExperimentCall> call = experiment_call(command, arguments);
+  if (!call) return kSuccess;
+  const ExperimentConfig config = load_experiment_config(call->experiment, call->flags);
+  std::fputs(experiments::column_dictionary(call->experiment, config).c_str(), stdout);
   return kSuccess;
 }
 
@@ -138,7 +76,7 @@ ExitCode run_schema(const std::vector<std::string>& arguments) {
 }
 
 constexpr std::array<NamedCommand, 8> kCommands = {{{"list", run_list},
-                                                    {"describe", run_describe},
+                                                    {"describe", run_experiment_describe},
                                                     {"run", run_experiment_run},
                                                     {"status", run_experiment_status},
                                                     {"merge", run_experiment_merge},

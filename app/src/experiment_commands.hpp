@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace graspfit::app {
 
-/// The commands of `graspfit experiment` that work on results.
+/// The commands of `graspfit experiment` on one experiment.
+ExitCode run_experiment_describe(const std::vector<std::string>& arguments);
 ExitCode run_experiment_run(const std::vector<std::string>& arguments);
 ExitCode run_experiment_status(const std::vector<std::string>& arguments);
 ExitCode run_experiment_merge(const std::vector<std::string>& arguments);
@@ -21,6 +23,16 @@ boost::program_options::options_description config_change_options();
 /// The configuration of an experiment with these changes.
 experiments::ExperimentConfig load_experiment_config(const experiments::Experiment& experiment,
                                                      const Flags& flags);
+
+/// What a command on one experiment was called with.
+struct ExperimentCall {
+  Flags flags;
+  const experiments::Experiment& experiment;  ///< The one that SLUG names.
+};
+
+/// None if the command's help was asked for; it is printed then.
+std::optional<ExperimentCall> experiment_call(const Command& command,
+                                              const std::vector<std::string>& arguments);
 
 /// Prints a command's help if that is asked for.
 bool is_help_printed(const Command& command, const Flags& flags);

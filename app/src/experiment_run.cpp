@@ -21,9 +21,21 @@ namespace po = boost::program_options;
 using experiments::Experiment;
 using experiments::ExperimentConfig;
 
-void add_out(po::options_description& options) {
+const char* const kQuickMeaning = "a few cells only, in seconds";
+
+/// --out, and of commands that read results alone which of the two there are.
+void add_results_flags(po::options_description& options, bool has_quick) {
   add_option(options, "out", "DIR", std::nullopt,
              "folder of the results; without it results/SLUG, with --quick results/SLUG_quick");
+  if (has_quick) add_switch(options, "quick", std::string("of a run with ") + kQuickMeaning);
+}
+
+/// --publish and --quiet of commands that write tables.
+void add_table_flags(po::options_description& options, const std::string& quiet_meaning) {
+  add_switch(options, "publish",
+             "afterwards copy the tables into notebooks-data; refused for --quick, --set, missing "
+             "data and sources that are not committed");
+  add_switch(options, "quiet", quiet_meaning);
 }
 
 Command run_command() {
@@ -31,11 +43,8 @@ Command run_command() {
   add_option(how, "jobs", "J", "1", "cells at once; timings are honest with one");
   add_option(how, "shard", "I/N", std::nullopt,
              "only every N-th cell, from the I-th on, into DIR/shards/I-of-N; then merge");
-  add_out(how);
-  add_switch(how, "publish",
-             "afterwards copy the tables into notebooks-data; refused for --quick, --set, missing "
-             "data and sources that are not committed");
-  add_switch(how, "quiet", "no progress bar and no summary");
+  add_results_flags(how, false);
+  add_table_flags(how, "no progress bar and no summary");
   Command command{
       "experiment run", "SLUG",
       "Runs an experiment: SLUG.csv, SLUG.timing.csv and SLUG.manifest.json. Cells "
@@ -50,8 +59,7 @@ Command run_command() {
 
 Command status_command() {
   po::options_description options = option_group("Options");
-  add_out(options);
-  add_switch(options, "quick", "of a quick run");
+  add_results_flags(options, true);
   return {"experiment status", "SLUG",
           "Says how many cells of a run and of its shards are done, failed and left, and how fast "
           "those\nare that are running. Does not disturb them.\n",
@@ -60,9 +68,8 @@ Command status_command() {
 
 Command merge_command() {
   po::options_description how = option_group("How");
-  add_out(how);
-  add_switch(how, "publish", "afterwards copy the tables into notebooks-data; see run");
-  add_switch(how, "quiet", "no summary");
+  add_results_flags(how, false);
+  add_table_flags(how, "no summary");
   Command command{
       "experiment merge", "SLUG",
       "Takes the cells of all shards in DIR/shards over into DIR and writes the tables: "
@@ -76,8 +83,7 @@ Command merge_command() {
 Command verify_command() {
   const experiments::ComparisonOptions defaults;
   po::options_description options = option_group("Options");
-  add_out(options);
-  add_switch(options, "quick", "of a quick run");
+  add_results_flags(options, true);
   add_option(options, "against", "DIR", std::nullopt,
              "folder of the published tables; without it notebooks-data");
   add_option(options, "relative", "NUMBER", geometry::shortest_decimal(defaults.relative),
@@ -179,7 +185,7 @@ std::string failures_text(const experiments::RunProgress& done) {
 
 po::options_description config_change_options() {
   po::options_description options = option_group("What of it");
-  add_switch(options, "quick", "a few cells only, in seconds");
+  add_switch(options, "quick", kQuickMeaning);
   add_repeatable_option(options, "set", "AXIS=A,B,...",
                         "other values for an axis, by their names or, for a plain setting, any; "
                         "the name of a setting makes a new axis; may be given several times");
@@ -201,14 +207,22 @@ bool is_help_printed(const Command& command, const Flags& flags) {
   return flags.wants_help();
 }
 
+std::optional<ExperimentCall> experiment_call(const Command& command,
+                                              const std::vector<std::string>& arguments) {
+  Flags flags(command, arguments);
+  if (is_help_printed(command, flags)) return std::nullopt;
+  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  return ExperimentCall{std::move(flags), experiment};
+}
+
 ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   const Command command = run_command();
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
+  const std::optional<ExperimentCall> call = experiment_call(command, arguments);
+  if (!call) return kSuccess;
+  const auto& [flags, experiment] = *call;
   if (flags.has("publish") && flags.has("shard")) {
     throw UsageError("--publish means nothing with --shard; merge has it");
   }
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
   const ExperimentConfig config = load_experiment_config(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
@@ -246,9 +260,9 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
 
 ExitCode run_experiment_status(const std::vector<std::string>& arguments) {
   const Command command = status_command();
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const std::optional<ExperimentCall> call = experiment_call(command, arguments);
+  if (!call) return kSuccess;
+  const auto& [flags, experiment] = *call;
   for (const auto& status : experiments::sweep_status(experiment.slug, results_folder(flags))) {
     std::printf("%-16s %s\n", status.name.c_str(), status_text(status).c_str());
   }
@@ -257,9 +271,9 @@ ExitCode run_experiment_status(const std::vector<std::string>& arguments) {
 
 ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
   const Command command = merge_command();
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const std::optional<ExperimentCall> call = experiment_call(command, arguments);
+  if (!call) return kSuccess;
+  const auto& [flags, experiment] = *call;
   const ExperimentConfig config = load_experiment_config(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
@@ -279,9 +293,9 @@ ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
 
 ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
   const Command command = verify_command();
-  const Flags flags(command, arguments);
-  if (is_help_printed(command, flags)) return kSuccess;
-  const Experiment& experiment = experiments::find_experiment(flags.positional());
+  const std::optional<ExperimentCall> call = experiment_call(command, arguments);
+  if (!call) return kSuccess;
+  const auto& [flags, experiment] = *call;
   const fs::path published =
       flags.has("against") ? fs::path(flags.text("against")) : published_folder();
   const experiments::ComparisonOptions options{flags.number("relative", geometry::at_least(0)),

@@ -25,7 +25,7 @@ struct Sampling {
 };
 
 std::vector<Column> own_settings() {
-  return {{"sample", "1", "grasps looked at, the first ones found"},
+  return {{"sample", "1", "grasps looked at, the first ones found; from 1, at most count"},
           {"least_epsilon", "1", "epsilon from which a grasp is among the selected ones"}};
 }
 

@@ -197,7 +197,7 @@ std::vector<PlanningSetting> score_settings() {
           "averaging", "how pieces of surface are averaged",
           [](PlannerOptions & o) -> auto& { return o.averaging; }),
       integer(
-          "neighborhood", "edge of the score's window in voxels", between(3, 63),
+          "neighborhood", "edge of the score's window in voxels, odd", between(3, 63),
           [](PlannerOptions & o) -> auto& { return o.score.neighborhood; }),
       choice<grasp::ScoreNormalization>(
           "score-normalization", "how raw scores become comparable with the threshold",

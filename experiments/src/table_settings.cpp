@@ -65,9 +65,11 @@ std::vector<Column> table_setting_names() {
        "{palm_m, direction, turn_deg}: palm center and palm direction in the world, where every "
        "move begins and ends"},
       {"resting_places_m", "m", "array of [x, y] where an object may be put down in between"},
-      {"travel_clearance_mm", "mm", "kept from everything while hand and object travel"},
-      {"frame_step_mm", "mm", "largest motion of any point between two frames that are measured"},
-      {"max_moves", "1", "moves planned at most, failures included"}};
+      {"travel_clearance_mm", "mm",
+       "kept from everything while hand and object travel; from 0, below pre-grasp-clearance-mm"},
+      {"frame_step_mm", "mm",
+       "largest motion of any point between two frames that are measured; above 0"},
+      {"max_moves", "1", "moves planned at most, failures included; from 1"}};
 }
 
 TableSettings table_settings(const Cell& cell) {

@@ -414,6 +414,41 @@ class Describe(ProgramTest):
         done = run("experiment", "describe", "special_cases", "--set", "seed=1,2")
         self.assertIn("32 cells", done.stdout)
 
+    def settings_of(self, slug, *arguments):
+        """What describe says of each setting: default, unit, allowed, meaning."""
+        done = run("experiment", "describe", slug, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.split("\nSettings, ")[1].splitlines()[1:]
+        rows = [re.split("  +", line.strip(), maxsplit=4) for line in lines]
+        self.assertEqual(rows[0], ["name", "default", "unit", "allowed", "meaning"])
+        self.assertEqual({len(row) for row in rows}, {5})
+        return {row[0]: row[1:] for row in rows[1:]}
+
+    def test_describe_says_what_every_setting_is_there_and_may_be(self):
+        properties = json.loads((SOURCE_DIR / "experiments/config.schema.json").read_text())[
+            "$defs"]["known_settings"]["properties"]
+        config = json.loads((SOURCE_DIR / "experiments/configs/table1.json").read_text())
+        settings = self.settings_of("table1")
+        for name, value in config["settings"].items():
+            shown = value if isinstance(value, str) else json.dumps(value)
+            self.assertEqual(settings[name][0], shown, name)
+        self.assertEqual(settings["planner"][0], "axis planner")
+        self.assertEqual(settings["size_m"][:3], ["axis size", "m", "> 0"])
+        self.assertEqual(settings["resolution"][:3], ["30", "1", "in [4, 512]"])
+        self.assertEqual(settings["theta-max-deg"][:3], ["45", "deg", "in (0, 90)"])
+        self.assertEqual(settings["style"][:3], ["precision", "-", "precision|power"])
+        self.assertEqual(settings["refine"][:3], ["false", "-", "true|false"])
+        self.assertEqual(settings["max-iterations"][:2], ["-", "1"])
+        for name, (_, unit, allowed, meaning) in settings.items():
+            described = properties[name]["description"]
+            self.assertTrue(described.startswith(meaning), name)
+            if "enum" in properties[name]:
+                self.assertEqual(allowed, "|".join(properties[name]["enum"]), name)
+        changed = self.settings_of("table1", "--set", "resolution=20,40", "--set", "alpha=3")
+        self.assertEqual(changed["resolution"][0], "axis resolution")
+        self.assertEqual(self.settings_of("table1", "--quick")["count"][0],
+                         json.dumps(config["quick"]["settings"]["count"]))
+
 
 
 class Refusals(ProgramTest):
