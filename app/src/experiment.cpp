@@ -43,13 +43,22 @@ ExitCode run_list(const std::vector<std::string>& arguments) {
   const Command command = list_command();
   const Flags flags(command, arguments);
   if (is_help_printed(command, flags)) return kSuccess;
+  const fs::path folder = experiments::config_folder();
+  ExitCode code = kSuccess;
   for (const Experiment& experiment : experiments::all_experiments()) {
-    const fs::path file = experiments::config_folder() / (experiment.slug + ".json");
-    const ExperimentConfig config = experiments::read_config(experiment, file);
-    std::printf("%s: %zu cells\n  %s\n", experiment.slug.c_str(), config.sweep.num_cells(),
-                config.question.c_str());
+    try {
+      const ExperimentConfig config =
+          experiments::read_config(experiment, folder / (experiment.slug + ".json"));
+      std::printf("%s: %zu cells\n  %s\n", experiment.slug.c_str(), config.sweep.num_cells(),
+                  config.question.c_str());
+    } catch (const geometry::Error& error) {
+      // The others are listed all the same.
+      std::fprintf(stderr, "graspfit experiment list: %s: %s\n", experiment.slug.c_str(),
+                   error.what());
+      code = kBadInput;
+    }
   }
-  return kSuccess;
+  return code;
 }
 
 ExitCode run_columns(const std::vector<std::string>& arguments) {

@@ -449,6 +449,20 @@ class Describe(ProgramTest):
         self.assertEqual(self.settings_of("table1", "--quick")["count"][0],
                          json.dumps(config["quick"]["settings"]["count"]))
 
+    def test_list_names_a_bad_configuration_and_lists_the_others(self):
+        folder = self.folder / "configs"
+        shutil.copytree(SOURCE_DIR / "experiments/configs", folder)
+        config = folder / "force_closure.json"
+        config.write_text(config.read_text().replace('"first"', '"fast"'))
+        (folder / "measured_contacts.json").unlink()
+        done = run("experiment", "list", env=dict(os.environ, GRASPFIT_EXPERIMENTS=str(folder)))
+        self.assertEqual(done.returncode, 2)
+        errors = done.stderr.splitlines()
+        self.assertEqual(len(errors), 2, done.stderr)
+        self.assertRegex(errors[0], "^graspfit experiment list: force_closure: .*/settings/search: is \"fast\"")
+        self.assertRegex(errors[1], "^graspfit experiment list: measured_contacts: ")
+        for slug in SLUGS:
+            self.assertEqual(f"\n{slug}: " in "\n" + done.stdout, slug not in ("force_closure", "measured_contacts"))
 
 
 class Refusals(ProgramTest):
