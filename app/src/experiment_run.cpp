@@ -300,9 +300,13 @@ ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
       flags.has("against") ? fs::path(flags.text("against")) : published_folder();
   const experiments::ComparisonOptions options{flags.number("relative", geometry::at_least(0)),
                                                flags.number("absolute", geometry::at_least(0))};
+  const fs::path folder = results_folder(flags);
+  const std::string otherwise = experiments::published_otherwise(experiment, folder, published);
+  // Before the tables are compared, which it may explain.
+  if (!otherwise.empty()) std::printf("%s: %s\n", published.c_str(), otherwise.c_str());
   bool is_equal = true;
   for (const experiments::PublishedComparison& table :
-       experiments::compare_with_published(experiment, results_folder(flags), published, options)) {
+       experiments::compare_with_published(experiment, folder, published, options)) {
     print_comparison(table);
     is_equal = is_equal && table.comparison.is_equal();
   }

@@ -153,6 +153,32 @@ class Shards(ProgramTest):
         self.assertIn(f"object={row['object']} option={row['option']} seed={row['seed']}: "
                       f"mean_m is \"{value!r}\"", done.stdout)
 
+    def test_verify_says_that_the_published_tables_were_made_otherwise(self):
+        out, other = self.folder / "out", self.folder / "other"
+        self.run_part(out)
+        done = run("experiment", "run", self.SLUG, "--quick", "--set", "seed=1,2",
+                   "--set", "angle-weight=0.5", "--out", other)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        verify = ("experiment", "verify", self.SLUG, "--out", out, "--against", other)
+        manifest = other / f"{self.SLUG}.manifest.json"
+        content = json.loads(manifest.read_text())
+        as_run = content["config"]["as_run"]
+        as_run["axes"] = [axis for axis in as_run["axes"] if axis["name"] != "angle-weight"]
+        as_run["settings"]["max-attempts"] = 77
+        as_run["axes"][0]["values"][0]["settings"]["size_m"] = 0.5
+        manifest.write_text(json.dumps(content))
+        first = run(*verify).stdout.splitlines()[0]
+        ours = json.loads((out / f"{self.SLUG}.manifest.json").read_text())["config"]["as_run"]
+        shape = ours["axes"][0]["values"][0]
+        self.assertEqual(first, f"{other}: published with other settings: max-attempts 77, here "
+                                f"{ours['settings']['max-attempts']}; object={shape['label']} size_m 0.5, here "
+                                f"{shape['settings'].get('size_m', 'not given')}")
+        content["config"]["as_run"] = ours
+        content.update(commit="0123456789", is_commit_clean=True, program_sha256="")
+        manifest.write_text(json.dumps(content))
+        self.assertRegex(run(*verify).stdout.splitlines()[0],
+                         "published by other code: commit 0123456, here ")
+
     def test_a_folder_of_another_experiment_is_refused(self):
         out = self.folder / "out"
         self.run_part(out, "--shard", "1/2")

@@ -72,4 +72,15 @@ std::vector<PublishedComparison> compare_with_published(const Experiment& experi
                                                         const std::filesystem::path& published,
                                                         const ComparisonOptions& options = {});
 
+/// In what the run in `folder` and the published one differ beside their results, by their
+/// manifests: the base seed, settings of all cells and of axes' values that both have, and the
+/// code. One line for people; empty if nothing does or one of them has no manifest.
+///
+///     published with other settings: max-attempts 200, here 5; by other code: commit a7a0195,
+///     here 44d19b0
+///
+/// @throws InvalidInput if a manifest is damaged.
+std::string published_otherwise(const Experiment& experiment, const std::filesystem::path& folder,
+                                const std::filesystem::path& published);
+
 }  // namespace graspfit::experiments
