@@ -7,6 +7,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/atomic_file_writer.hpp"
+#include "graspfit/geometry/file_hash.hpp"
 
 namespace graspfit::experiments::internal {
 namespace {
@@ -62,7 +63,7 @@ std::map<std::string, std::string> table_hashes(const Experiment& experiment,
                                                 const fs::path& folder) {
   std::map<std::string, std::string> hashes;
   for (const std::string& name : table_names(experiment)) {
-    hashes[name] = geometry::sha256_hex(geometry::read_file(folder / name));
+    hashes[name] = geometry::sha256_of_file(folder / name);
   }
   return hashes;
 }

@@ -11,6 +11,7 @@
 
 #include "graspfit/geometry/atomic_file_writer.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "internal/hexadecimal.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -59,13 +60,7 @@ std::string sha256_hex(std::string_view bytes) {
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
     throw std::bad_alloc();  // The only way in which hashing memory fails.
   }
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 15];
-  }
-  return text;
+  return internal::hexadecimal({digest.data(), size});
 }
 
 std::string shortest_decimal(double value) {
