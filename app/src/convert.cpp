@@ -36,8 +36,8 @@ constexpr const char* kOurs = "graspfit";
 constexpr const char* kFormatNames = "graspfit|isaac|dexgraspbench|moveit|graspit|glb";
 
 /// Flags for grasps that come with neither hand nor object.
-constexpr std::array<const char*, 6> kImportFlags = {"hand", "fingers",   "contacts",
-                                                     "palm", "mesh-unit", "longest"};
+/// Flags of imports alone; with them go all of `object_options`.
+constexpr std::array<const char*, 4> kImportFlags = {"hand", "fingers", "contacts", "palm"};
 
 Command convert_command() {
   const grasp::PlannerOptions defaults;
@@ -182,11 +182,13 @@ Source read_source(const Flags& flags, const Target& target) {
                      std::string(exchange::name_of(*format)) +
                      " are written, not read; grasps.json and isaac_grasp (.yaml) are");
   }
-  for (const char* flag : kImportFlags) {
-    if (flags.has(flag) && !flags.is_default(flag)) {
-      throw UsageError("--" + std::string(flag) +
-                       " is for isaac_grasp files; a grasp file of graspfit says it itself");
-    }
+  std::vector<std::string> import_flags(kImportFlags.begin(), kImportFlags.end());
+  const boost::program_options::options_description of_objects = object_options();
+  for (const auto& option : of_objects.options()) import_flags.push_back(option->long_name());
+  for (const std::string& flag : import_flags) {
+    if (!flags.has(flag) || flags.is_default(flag)) continue;
+    throw UsageError("--" + flag +
+                     " is for isaac_grasp files; a grasp file of graspfit says it itself");
   }
   if (!target.format) {
     throw UsageError("IN and OUT are both grasp files of graspfit; there is nothing to convert");
