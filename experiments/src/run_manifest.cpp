@@ -12,6 +12,7 @@
 #include "build_source.hpp"
 #include "graspfit/experiments/column_dictionary.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/file_hash.hpp"
 #include "internal/sweep_tables.hpp"
 
 namespace graspfit::experiments {
@@ -79,7 +80,7 @@ std::string program_sha256() {
   static const std::string hash = [] {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? "" : geometry::sha256_hex(geometry::read_file(program));
+    return error ? "" : geometry::sha256_of_file(program);
   }();
   return hash;
 }
@@ -156,7 +157,10 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
 
 void require_publishable_manifest(const fs::path& manifest) {
   const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
-  if (json.is_discarded() || !json.contains("cells") || !json.contains("inputs_sha256")) {
+  const auto has_object = [&](const char* name) {
+    return json.is_object() && json.contains(name) && json.at(name).is_object();
+  };
+  if (!has_object("cells") || !has_object("inputs_sha256")) {
     refuse(manifest.string() + " is damaged");
   }
   if (const auto skipped = json.at("cells").value("skipped", std::size_t{0}); skipped > 0) {
@@ -174,11 +178,11 @@ void require_publishable_manifest(const fs::path& manifest) {
 
 void require_tables_of_manifest(const fs::path& manifest) {
   const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
-  if (json.is_discarded()) throw geometry::InvalidInput(manifest.string() + ": is damaged");
+  if (!json.is_object()) throw geometry::InvalidInput(manifest.string() + ": is damaged");
   if (!json.contains("tables_sha256")) return;
   for (const auto& [name, hash] : json.at("tables_sha256").items()) {
     const fs::path table = manifest.parent_path() / name;
-    if (geometry::sha256_hex(geometry::read_file(table)) == hash) continue;
+    if (geometry::sha256_of_file(table) == hash) continue;
     throw geometry::InvalidInput(table.string() + ": is not the table that " +
                                  manifest.filename().string() +
                                  " was written for (tables_sha256); run or publish it again");
@@ -194,13 +198,13 @@ void publish(const Experiment& experiment, const ExperimentConfig& config, const
   std::error_code error;
   fs::create_directories(published, error);
   if (error) throw geometry::IoError(published.string() + ": " + error.message());
-  std::vector<std::string> names = internal::table_names(experiment);
-  names.push_back(manifest.filename().string());
-  for (const std::string& name : names) {
+  const auto copy = [&](const std::string& name) {
     geometry::write_file_atomically(published / name, geometry::read_file(folder / name));
-  }
+  };
+  for (const std::string& name : internal::table_names(experiment)) copy(name);
   geometry::write_file_atomically(published / (experiment.slug + ".columns.json"),
                                   column_dictionary(experiment, config));
+  copy(manifest.filename().string());  // last: until then its hashes are not those of the tables
 }
 
 }  // namespace graspfit::experiments

@@ -8,10 +8,10 @@
 #include <mutex>
 #include <new>
 #include <set>
-#include <system_error>
 #include <thread>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/file_hash.hpp"
 #include "internal/cell_journal.hpp"
 #include "internal/data_files.hpp"
 #include "internal/sweep_tables.hpp"
@@ -99,7 +99,7 @@ class Run {
     std::vector<std::thread> threads;
     try {
       for (int i = 1; i < jobs_; ++i) threads.emplace_back([this] { work_until_done(); });
-    } catch (const std::system_error& error) {
+    } catch (const std::exception& error) {  // of the system, or no memory
       const std::lock_guard lock(mutex_);
       is_stopped_ = true;
       error_ = std::make_exception_ptr(geometry::IoError(
@@ -176,7 +176,7 @@ std::map<std::string, std::string> input_hashes(const Experiment& experiment,
   std::error_code error;
   for (const fs::path& file : files) {
     if (!fs::is_regular_file(file, error)) continue;
-    hashes[internal::name_of_input(file)] = geometry::sha256_hex(geometry::read_file(file));
+    hashes[internal::name_of_input(file)] = geometry::sha256_of_file(file);
   }
   return hashes;
 }

@@ -71,7 +71,8 @@ RunFacts run_facts(const std::filesystem::path& manifest) {
   const auto json = nlohmann::json::parse(geometry::read_file(manifest), nullptr, false);
   const nlohmann::json::json_pointer axes("/config/as_run/axes");
   const nlohmann::json::json_pointer cells("/cells/total");
-  if (json.is_discarded() || !json.contains(axes) || !json.contains(cells)) {
+  if (!json.is_object() || !json.contains(axes) || !json.at(axes).is_array() ||
+      !json.contains(cells) || !json.at(cells).is_number_unsigned()) {
     fail(manifest.string() + ": is damaged");
   }
   return {json.at(axes).size(), json.at(cells).get<std::size_t>()};

@@ -174,6 +174,14 @@ class Shards(ProgramTest):
                                 f"{ours['settings']['max-attempts']}; object={shape['label']} size_m 0.5, here "
                                 f"{shape['settings'].get('size_m', 'not given')}")
         content["config"]["as_run"] = ours
+        for damage in ({"cells": 5}, {"cells": {"total": "six"}}, {"config": {"as_run": {"axes": 3}}}):
+            damaged = self.folder / "damaged"
+            shutil.copytree(out, damaged, dirs_exist_ok=True)
+            file = damaged / f"{self.SLUG}.manifest.json"
+            file.write_text(json.dumps({**json.loads((out / file.name).read_text()), **damage}))
+            done = run("experiment", "verify", self.SLUG, "--out", damaged, "--against", other)
+            self.assertEqual(done.returncode, 2, f"{damage} {done.stdout}{done.stderr}")
+            self.assertIn("damaged", done.stderr)
         content.update(commit="0123456789", is_commit_clean=True, program_sha256="")
         manifest.write_text(json.dumps(content))
         self.assertRegex(run(*verify).stdout.splitlines()[0],
