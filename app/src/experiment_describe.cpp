@@ -6,6 +6,7 @@
 
 #include "experiment_commands.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "text_table.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -24,24 +25,6 @@ Command describe_command() {
   return command;
 }
 
-/// Rows of aligned fields, each with two blanks before it.
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      text += "  " + row[i];
-      if (i + 1 < row.size()) text += std::string(widths[i] - row[i].size(), ' ');
-    }
-    text += '\n';
-  }
-  return text;
-}
-
 std::string unit_text(const Column& column) { return column.unit.empty() ? "-" : column.unit; }
 
 std::string columns_text(const std::vector<Column>& columns) {
@@ -49,7 +32,7 @@ std::string columns_text(const std::vector<Column>& columns) {
   for (const Column& column : columns) {
     rows.push_back({column.name, unit_text(column), column.meaning});
   }
-  return aligned(rows);
+  return indented_table(rows);
 }
 
 /// "barrett", "0.5", "[1, 2]"; of what is nested further only that it is there.
@@ -90,7 +73,7 @@ std::string settings_text(const Experiment& experiment, const ExperimentConfig& 
     rows.push_back({name, value_in(config, name, setting.fallback), unit_text(setting.name),
                     setting.allowed, setting.name.meaning});
   }
-  return aligned(rows);
+  return indented_table(rows);
 }
 
 }  // namespace

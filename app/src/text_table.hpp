@@ -9,6 +9,9 @@ namespace graspfit::app {
 /// spaces apart.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
+/// The same with fields that start below one another, two blanks before each: for words.
+std::string indented_table(const std::vector<std::vector<std::string>>& rows);
+
 /// `value` with `decimals` digits after the point, in the C locale. Not for files.
 std::string fixed_decimal(double value, int decimals);
 

@@ -10,15 +10,10 @@
 #include <new>
 
 #include "graspfit/geometry/atomic_file_writer.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "internal/hexadecimal.hpp"
+#include "internal/input_file.hpp"
 
 namespace graspfit::geometry {
-namespace {
-
-std::string reason() { return std::strerror(errno); }
-
-}  // namespace
 
 void write_file_atomically(const std::filesystem::path& file, std::string_view content) {
   AtomicFileWriter writer(file);
@@ -27,22 +22,15 @@ void write_file_atomically(const std::filesystem::path& file, std::string_view c
 }
 
 std::string read_file(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& what) {
-    throw IoError("cannot read " + file.string() + ": " + what);
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) fail("no such file");
-  if (std::filesystem::is_directory(status)) fail("it is a folder");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(reason());
+  std::ifstream stream = internal::open_input_file(file);
   std::string content;
+  std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   if (!error) {
     content.resize(size);
     stream.read(content.data(), static_cast<std::streamsize>(size));
     content.resize(static_cast<std::size_t>(stream.gcount()));
-    if (stream.bad()) fail(reason());
+    if (stream.bad()) internal::fail_to_read(file, std::strerror(errno));
     if (stream.eof()) return content;
   }
   // Pipes and files that grow have no size to trust.
@@ -50,7 +38,7 @@ std::string read_file(const std::filesystem::path& file) {
   while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
     content.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
-  if (stream.bad()) fail(reason());
+  if (stream.bad()) internal::fail_to_read(file, std::strerror(errno));
   return content;
 }
 

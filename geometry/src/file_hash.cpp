@@ -9,22 +9,13 @@
 #include <memory>
 #include <new>
 
-#include "graspfit/geometry/errors.hpp"
 #include "internal/hexadecimal.hpp"
+#include "internal/input_file.hpp"
 
 namespace graspfit::geometry {
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-  const auto fail = [&](const std::string& what) {
-    throw IoError("cannot read " + file.string() + ": " + what);
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) fail("no such file");
-  if (std::filesystem::is_directory(status)) fail("it is a folder");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(std::strerror(errno));
-
+  std::ifstream stream = internal::open_input_file(file);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(),
                                                                      EVP_MD_CTX_free);
   // Hashing memory fails for want of memory alone.
@@ -34,7 +25,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
     const auto size = static_cast<std::size_t>(stream.gcount());
     if (EVP_DigestUpdate(hash.get(), block.data(), size) != 1) throw std::bad_alloc();
   }
-  if (stream.bad()) fail(std::strerror(errno));
+  if (stream.bad()) internal::fail_to_read(file, std::strerror(errno));
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
   unsigned int size = 0;
   if (EVP_DigestFinal_ex(hash.get(), digest.data(), &size) != 1) throw std::bad_alloc();

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "graspfit/geometry/errors.hpp"
+
+namespace graspfit::geometry::internal {
+
+[[noreturn]] inline void fail_to_read(const std::filesystem::path& file, const std::string& why) {
+  throw IoError("cannot read " + file.string() + ": " + why);
+}
+
+/// A file opened for reading its bytes. @throws IoError if it is not there or a folder.
+inline std::ifstream open_input_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) fail_to_read(file, "no such file");
+  if (std::filesystem::is_directory(status)) fail_to_read(file, "it is a folder");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail_to_read(file, std::strerror(errno));
+  return stream;
+}
+
+}  // namespace graspfit::geometry::internal
