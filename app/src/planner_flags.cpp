@@ -175,17 +175,19 @@ po::options_description target_options() {
              "pad's width makes ranked searches for four and more targets short");
   add_number(target, "palm-reach-tolerance-mm", targets.palm_reach_tolerance * 1000.0,
              "with the palm: how far a target may lie from where its fingertip gets [R]");
-  add_integer(target, "max-placements", static_cast<std::uint64_t>(defaults.max_placements),
-              "sides of one target set that are fitted, those that suit the fingertips best first "
-              "[R, A23]");
+  add_integer(
+      target, "max-placements", static_cast<std::uint64_t>(defaults.max_placements),
+      "sides that are fitted, those that suit the fingertips best first: of one target set, "
+      "with --attempt-choice strongest of all sets drawn [R, A23]");
   add_integer(
       target, "target-draws", static_cast<std::uint64_t>(defaults.target_draws),
       "target sets drawn per attempt; the one that suits the fingertips' directions best is "
       "fitted [R]; 1: the paper's random set");
-  add_option(target, "prefer-balanced", "yes|no", defaults.prefer_balanced ? "yes" : "no",
-             "of the sets drawn take first those whose targets balance one another at "
-             "--squeeze-friction, then at --friction, and try all sides until a grasp's squeeze "
-             "balances [R]");
+  add_choice(target, "attempt-choice", defaults.attempt_choice,
+             "which of the sides an attempt tries is kept: the first that is accepted; the first "
+             "accepted one whose squeeze balances, target sets that balance at --squeeze-friction "
+             "first; or, of sides of all sets drawn, the one with the largest epsilon at "
+             "--squeeze-friction [R]");
   add_integer(target, "max-seeds", static_cast<std::uint64_t>(targets.max_seeds),
               "seeds tried per target set [R, A20]");
   add_number(target, "clearance-mm", defaults.fitting.clearance * 1000.0,
@@ -407,7 +409,7 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.missing_contact = flags.choice<grasp::MissingContact>("missing-contact");
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
-  options.prefer_balanced = flags.yes_or_no("prefer-balanced");
+  options.attempt_choice = flags.choice<grasp::AttemptChoice>("attempt-choice");
   options.max_placements = flags.integer("max-placements");
   options.max_attempts = flags.integer("max-attempts");
   if (flags.has("max-iterations")) options.max_iterations = flags.integer("max-iterations");

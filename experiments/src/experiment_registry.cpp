@@ -6,15 +6,25 @@ namespace graspfit::experiments {
 
 const std::vector<Experiment>& all_experiments() {
   static const std::vector<Experiment> experiments = {
-      internal::contacts_and_time(),  internal::fitting_stages(),
-      internal::force_closure(),      internal::guidance_models(),
-      internal::hold_prediction(),    internal::hold_rates(),
-      internal::measured_contacts(),  internal::object_voxels(),
-      internal::paper_grasps(),       internal::parameter_sweeps(),
-      internal::planner_everyday(),   internal::planner_paper_objects(),
-      internal::special_cases(),      internal::table1(),
-      internal::table1_all_objects(), internal::table1_readings(),
-      internal::table1_refined(),     internal::table_tidying(),
+      internal::contacts_and_time(),
+      internal::fitting_stages(),
+      internal::force_closure(),
+      internal::guidance_models(),
+      internal::hold_choices(),
+      internal::hold_prediction(),
+      internal::hold_rates(),
+      internal::measured_contacts(),
+      internal::object_voxels(),
+      internal::paper_grasps(),
+      internal::parameter_sweeps(),
+      internal::planner_everyday(),
+      internal::planner_paper_objects(),
+      internal::special_cases(),
+      internal::table1(),
+      internal::table1_all_objects(),
+      internal::table1_readings(),
+      internal::table1_refined(),
+      internal::table_tidying(),
   };
   return experiments;
 }

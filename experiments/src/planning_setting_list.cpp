@@ -269,8 +269,8 @@ std::vector<PlanningSetting> target_settings() {
           at_least(0), [](PlannerOptions & o) -> auto& { return o.targets.palm_reach_tolerance; },
           kMetersPerMillimeter),
       integer(
-          "max-placements", "sides of one target set that are fitted", at_least(1),
-          [](PlannerOptions & o) -> auto& { return o.max_placements; }),
+          "max-placements", "sides of one target set, or of all sets drawn, that are fitted",
+          at_least(1), [](PlannerOptions & o) -> auto& { return o.max_placements; }),
       number(
           "edge-tolerance", "1", "largest difference of target distances over the first one",
           at_least(0), [](PlannerOptions & o) -> auto& { return o.targets.edge_tolerance_rel; }),
@@ -288,9 +288,9 @@ std::vector<PlanningSetting> target_settings() {
       integer(
           "target-draws", "target sets drawn per attempt", at_least(1),
           [](PlannerOptions & o) -> auto& { return o.target_draws; }),
-      yes_or_no(
-          "prefer-balanced", "sets and sides are looked for whose squeeze balances",
-          [](PlannerOptions & o) -> auto& { return o.prefer_balanced; }),
+      choice<grasp::AttemptChoice>(
+          "attempt-choice", "which of the starts that an attempt has is kept",
+          [](PlannerOptions & o) -> auto& { return o.attempt_choice; }),
       integer(
           "max-seeds", "seeds tried per target set", at_least(1),
           [](PlannerOptions & o) -> auto& { return o.targets.max_seeds; })};

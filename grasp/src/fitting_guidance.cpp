@@ -1,8 +1,9 @@
 // Hand-object geometric fitting, the paper's method: contacts to reach are chosen on the object by
 // their scores and the hand's kinematics, and the hand is fitted to them.
 #include <algorithm>
-#include <limits>
+#include <iterator>
 #include <mutex>
+#include <tuple>
 #include <utility>
 
 #include "graspfit/geometry/mass_properties.hpp"
@@ -36,12 +37,16 @@ const char* failure_name(TargetFailure failure) {
 struct Side {
   TargetContacts targets;
   PalmPlacement placement;
+  int imbalance = 0;  ///< Of its set, where that counts.
   double misfit = 0.0;
   bool do_fingers_cross = false;  ///< Where that counts: at the start from this side.
 };
 
-/// What fingers can do about a side, those that need not cross first.
-std::pair<bool, double> misfit_of(const Side& side) { return {side.do_fingers_cross, side.misfit}; }
+/// Sides of sets that balance first where that counts, then those from which fingers need not
+/// cross, then those that suit the fingertips.
+std::tuple<int, bool, double> misfit_of(const Side& side) {
+  return {side.imbalance, side.do_fingers_cross, side.misfit};
+}
 
 bool by_misfit(const Side& a, const Side& b) { return misfit_of(a) < misfit_of(b); }
 
@@ -124,16 +129,13 @@ class FittingGuidance : public GraspGuidance {
     return sides;
   }
 
-  /// Of several random sets the one whose targets suit the fingertips best.
+  /// Of several random sets the one whose best side goes first, or those of all of them.
   std::vector<Side> drawn_sides(std::int64_t number, GuidedStarts& result) const {
     const PlannerOptions& options = scene_.options;
     geometry::Random random =
         geometry::Random::stream(options.seed, static_cast<std::uint64_t>(number));
     std::vector<Side> best;
     TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
-    // Sets that balance first where that counts, then those that suit the fingertips.
-    auto best_rank = std::make_pair(std::numeric_limits<int>::max(),
-                                    std::make_pair(true, std::numeric_limits<double>::infinity()));
     int num_judged = 0;
     // Where sets are rare, the seeds of one search are the budget of all draws together.
     const auto may_draw = [&](int draw) {
@@ -151,14 +153,18 @@ class FittingGuidance : public GraspGuidance {
       if (sides.empty()) continue;
       num_judged += static_cast<int>(sides.size());
       if (options.target_draws == 1) return sides;
-      const auto misfit = misfit_of(*std::min_element(sides.begin(), sides.end(), by_misfit));
-      const auto rank =
-          std::make_pair(options.prefer_balanced ? imbalance(*selection.targets) : 0, misfit);
-      if (rank >= best_rank) continue;
-      best_rank = rank;
+      if (options.attempt_choice != AttemptChoice::First) {
+        const int set_imbalance = imbalance(*selection.targets);
+        for (Side& side : sides) side.imbalance = set_imbalance;
+      }
       std::stable_sort(sides.begin(), sides.end(), by_misfit);
-      best = std::move(sides);
+      if (options.attempt_choice == AttemptChoice::Strongest) {
+        std::move(sides.begin(), sides.end(), std::back_inserter(best));
+      } else if (best.empty() || by_misfit(sides.front(), best.front())) {
+        best = std::move(sides);
+      }
     }
+    std::stable_sort(best.begin(), best.end(), by_misfit);
     if (best.empty()) result.failure = failure_name(failure);
     return best;
   }

@@ -49,6 +49,15 @@ std::span<const NamedValue<SearchRule>> named_values<SearchRule>() {
 }
 
 template <>
+std::span<const NamedValue<AttemptChoice>> named_values<AttemptChoice>() {
+  static constexpr std::array names = {
+      NamedValue<AttemptChoice>{AttemptChoice::First, "first"},
+      NamedValue<AttemptChoice>{AttemptChoice::Balanced, "balanced"},
+      NamedValue<AttemptChoice>{AttemptChoice::Strongest, "strongest"}};
+  return names;
+}
+
+template <>
 std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>() {
   static constexpr std::array names = {
       NamedValue<PenetrationGuard>{PenetrationGuard::Voxels, "voxels"},

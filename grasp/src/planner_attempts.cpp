@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
+#include "graspfit/grasp/grasp_wrench_space.hpp"
 #include "graspfit/grasp/wrench_convention.hpp"
 #include "internal/object_size.hpp"
 #include "internal/palm_pose.hpp"
@@ -77,14 +77,20 @@ bool is_balanced(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
 }
 
-/// An accepted grasp before any other, then the later stage, then, if that counts, the squeeze that
-/// leaves less over.
-bool is_better(const AttemptResult& a, const AttemptResult& b, bool prefer_balanced) {
-  const auto rank = [&](const AttemptResult& result) {
-    return std::make_tuple(result.is_accepted, stage_of(result.outcome),
-                           prefer_balanced ? -squeeze_residual(result) : 0.0);
-  };
-  return rank(a) > rank(b);
+/// ε of the contacts that touch, within the cones of the squeeze, negative where those do not
+/// close; least possible without any.
+double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
+  std::vector<Contact> contacts;
+  if (result.grasp) contacts = result.grasp->contacts;
+  if (scene.largest_gap) {
+    std::erase_if(contacts,
+                  [&](const Contact& contact) { return contact.gap > *scene.largest_gap; });
+  }
+  if (contacts.empty()) return -std::numeric_limits<double>::infinity();
+  WrenchConvention convention =
+      wrench_convention(WrenchTool::House, scene.wrench_object, contacts, friction);
+  convention.options.outside = OutsideValue::Signed;
+  return epsilon_quality(grasp_wrench_space(contacts, convention));
 }
 
 }  // namespace
@@ -154,13 +160,18 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
   work.is_exhausted = guided.is_exhausted;
   work.seeds_tried = guided.seeds_tried;
   std::optional<AttemptResult> best;
+  std::optional<StartRank> best_rank;
   for (const GuidedStart& start : guided.starts) {
     AttemptResult tried = try_start(start, number);
     work.fitting_iterations += tried.fitting_iterations;
     work.refinement_iterations += tried.refinement_iterations;
     work.timings += tried.timings;
-    if (!best || is_better(tried, *best, options_.prefer_balanced)) best = std::move(tried);
-    if (best->is_accepted && (!options_.prefer_balanced || is_balanced(*best))) break;
+    const StartRank rank = rank_of(tried);
+    if (!best || rank > *best_rank) {
+      best_rank = rank;
+      best = std::move(tried);
+    }
+    if (is_enough(*best)) break;
   }
   if (best) {
     work.outcome = best->outcome;
@@ -168,6 +179,36 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
     work.is_accepted = best->is_accepted;
   }
   return work;
+}
+
+/// An accepted grasp before any other, then the later stage, then what the choice asks for.
+PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result) const {
+  StartRank rank{result.is_accepted, stage_of(result.outcome), false, 0.0};
+  switch (options_.attempt_choice) {
+    case AttemptChoice::First:
+      break;
+    case AttemptChoice::Balanced:
+      std::get<3>(rank) = -squeeze_residual(result);
+      break;
+    case AttemptChoice::Strongest:
+      std::get<2>(rank) = is_balanced(result);
+      std::get<3>(rank) = strength(result, scene_, options_.squeeze_friction);
+      break;
+  }
+  return rank;
+}
+
+/// Whether no further start can be kept instead of this one.
+bool PlannerAttempts::is_enough(const AttemptResult& result) const {
+  switch (options_.attempt_choice) {
+    case AttemptChoice::First:
+      return result.is_accepted;
+    case AttemptChoice::Balanced:
+      return result.is_accepted && is_balanced(result);
+    case AttemptChoice::Strongest:
+      break;
+  }
+  return false;
 }
 
 /// One hand closed from one start.

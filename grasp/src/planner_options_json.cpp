@@ -244,7 +244,7 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("missing_contact", options.missing_contact);
   at("search", options.search);
   at("target_draws", options.target_draws);
-  at("prefer_balanced", options.prefer_balanced);
+  at("attempt_choice", options.attempt_choice);
   at("max_placements", options.max_placements);
   at("approach_O", options.approach_O);
   at("approach_angle_rad", options.approach_angle);

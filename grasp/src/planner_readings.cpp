@@ -24,6 +24,19 @@ bool is_about_targets(std::string_view number) {
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
+/// What an attempt does beyond taking one set, after "N sets".
+std::string choice_reading(AttemptChoice choice) {
+  switch (choice) {
+    case AttemptChoice::First:
+      break;
+    case AttemptChoice::Balanced:
+      return ", those that balance first";
+    case AttemptChoice::Strongest:
+      return ", of whose sides the strongest grasp is kept";
+  }
+  return "";
+}
+
 std::string text(std::string_view name) { return std::string(name); }
 
 }  // namespace
@@ -67,7 +80,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   " seeds per set; the second of three or more from all; fitted: the flattest for "
                   "the fingertip pads of " +
                   std::to_string(options.target_draws) + " sets" +
-                  (options.prefer_balanced ? ", those that balance first" : "")},
+                  choice_reading(options.attempt_choice)},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23",

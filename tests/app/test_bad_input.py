@@ -212,7 +212,7 @@ class BadFlags(program.ProgramTest):
         for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
-                     "settle", "guard-self", "pre-grasp-open-neutral", "prefer-balanced"):
+                     "settle", "guard-self", "pre-grasp-open-neutral", "attempt-choice"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

@@ -25,6 +25,7 @@ namespace graspfit::testing {
 
 using Eigen::Vector3d;
 using grasp::Acceptance;
+using grasp::AttemptChoice;
 using grasp::AttemptOutcome;
 using grasp::Grasp;
 using grasp::PlannerOptions;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "grasp/planner_promises.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_wrench_space.hpp"
 #include "support/catch.hpp"
 
 namespace {
@@ -114,9 +116,9 @@ TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and l
   std::ptrdiff_t num_preferring = 0;
   for (const geometry::TriangleMesh& mesh :
        {geometry::ball(0.045), geometry::box({0.06, 0.08, 0.1}), geometry::torus(0.05, 0.02)}) {
-    options.prefer_balanced = false;
+    options.attempt_choice = AttemptChoice::First;
     const PlannerResult any = Run(mesh, options).plan();
-    options.prefer_balanced = true;
+    options.attempt_choice = AttemptChoice::Balanced;
     const Run run(mesh, options);
     const PlannerResult balanced = run.plan();
     CHECK(broken_promises(run, balanced) == kNothing);
@@ -126,6 +128,48 @@ TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and l
     num_preferring += num_balanced(balanced);
   }
   CHECK(num_preferring > num_any);
+}
+
+TEST_CASE("Attempts that keep the strongest grasp keep the one that trying all sides would show",
+          "[grasp][grasp_planner]") {
+  // Oracle: epsilon within the squeeze's cones, from the contacts that the grasps report.
+  const auto strength = [](const Run& run, const Grasp& grasp) {
+    std::vector<grasp::Contact> touching;
+    for (const grasp::Contact& contact : grasp.contacts) {
+      if (contact.gap <= run.options.refinement.largest_gap) touching.push_back(contact);
+    }
+    grasp::WrenchConvention convention = grasp::wrench_convention(
+        grasp::WrenchTool::House,
+        grasp::wrench_object(run.object.mesh(), run.object.mass.center_of_mass), touching,
+        run.options.squeeze_friction);
+    convention.options.outside = grasp::OutsideValue::Signed;
+    return std::make_pair(grasp.squeeze->is_balanced,
+                          grasp::epsilon_quality(grasp::grasp_wrench_space(touching, convention)));
+  };
+  PlannerOptions options = collecting(Acceptance::Valid, 1000, 4);
+  options.attempt_choice = AttemptChoice::Strongest;
+  std::int64_t num_stronger = 0;
+  for (const geometry::TriangleMesh& mesh :
+       {geometry::ball(0.045), geometry::box({0.06, 0.08, 0.1})}) {
+    std::map<std::int64_t, std::pair<bool, double>> fewer;
+    for (const int placements : {1, 4, 12}) {
+      options.max_placements = placements;
+      const Run run(mesh, options);
+      const PlannerResult result = run.plan();
+      CHECK(broken_promises(run, result) == kNothing);
+      std::map<std::int64_t, std::pair<bool, double>> found;
+      for (const Grasp& grasp : result.grasps) found[grasp.attempt] = strength(run, grasp);
+      for (const auto& [attempt, least] : fewer) {
+        // More of the same sides, in the same order: never weaker, and none is lost.
+        REQUIRE(found.count(attempt) == 1);
+        CHECK(found[attempt] >= least);
+        num_stronger += found[attempt] > least;
+      }
+      fewer = found;
+    }
+    CHECK(fewer.size() == 4);
+  }
+  CHECK(num_stronger > 0);
 }
 
 TEST_CASE("Progress is told after every attempt", "[grasp][grasp_planner]") {

@@ -11,6 +11,7 @@ Experiment contacts_and_time();
 Experiment fitting_stages();
 Experiment force_closure();
 Experiment guidance_models();
+Experiment hold_choices();
 Experiment hold_prediction();
 Experiment hold_rates();
 Experiment parameter_sweeps();

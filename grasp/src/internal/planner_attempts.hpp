@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "graspfit/grasp/grasp_guidance.hpp"
@@ -40,6 +41,9 @@ class PlannerAttempts {
   double guidance_s() const { return guidance_s_; }  ///< What it took to prepare.
 
  private:
+  /// Accepted, stage, and what the choice of an attempt asks for: balanced, and a number.
+  using StartRank = std::tuple<bool, int, bool, double>;
+
   AttemptResult try_start(const GuidedStart& start, std::int64_t number) const;
   std::optional<AttemptOutcome> close(const GuidedStart& start,
                                       hands::HandConfiguration& configuration,
@@ -52,6 +56,8 @@ class PlannerAttempts {
   double angle_from_approach(const hands::HandConfiguration& configuration) const;
   bool are_scores_high(const std::vector<Contact>& contacts) const;
   bool is_accepted(const Grasp& grasp) const;
+  StartRank rank_of(const AttemptResult& result) const;
+  bool is_enough(const AttemptResult& result) const;
 
   const ObjectModel& object_;
   const hands::HandModel& hand_;

@@ -46,6 +46,21 @@ enum class MissingContact {
              ///< refined grasps have all their contacts. For tables over all attempts with M > 0.
 };
 
+/// Which of the starts that one attempt has is kept: each a side of a set of targets from which a
+/// hand is fitted [R]. The first two know one set per attempt.
+enum class AttemptChoice {
+  First,      ///< The first whose grasp is accepted. Sets on which the pads would lie flattest.
+  Balanced,   ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
+              ///< grasp of least residual. Of the sets drawn those go first whose targets balance
+              ///< one another (within the squeeze's largest residual) at `squeeze_friction`, then
+              ///< those that do at `friction`.
+  Strongest,  ///< All are tried; of the accepted grasps the strongest one with a balanced squeeze,
+              ///< else the strongest: largest ε, signed, within cones of `squeeze_friction`, of the
+              ///< contacts that touch (with refinement: within its largest gap), torques over the
+              ///< object's largest radius. The sides of all sets drawn are starts, in the order of
+              ///< `Balanced`; of a ranked search those of its next set.
+};
+
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
 struct PlannerOptions {
   /// The method that guides hands to the object, by its name in `planning_methods`; "fitting" is
@@ -86,13 +101,10 @@ struct PlannerOptions {
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, the side with more room first.
   int target_draws = 32;
-  /// Whether attempts look for grasps whose squeeze balances [R]: of the sets drawn, those whose
-  /// targets balance one another (within the squeeze's largest residual) at `squeeze_friction` go
-  /// first, then those that do at `friction`; and sides are tried until a grasp is accepted and its
-  /// squeeze balances, else the one of least residual is kept. Without: until one is accepted.
-  bool prefer_balanced = false;
-  int max_placements = 4;  ///< Sides of one target set that are fitted, the flattest first, ≥ 1
-                           ///< (A23) [R]. Three and more targets have two, two have sixteen.
+  AttemptChoice attempt_choice = AttemptChoice::First;
+  int max_placements = 4;  ///< Sides that are fitted, ≥ 1: of one target set, the flattest first
+                           ///< (A23) [R], of which three and more targets have two, two have
+                           ///< sixteen; of all sets drawn where the strongest grasp is kept.
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
   MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.

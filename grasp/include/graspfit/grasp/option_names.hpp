@@ -42,6 +42,8 @@ std::span<const NamedValue<ApproachSource>> named_values<ApproachSource>();
 template <>
 std::span<const NamedValue<SearchRule>> named_values<SearchRule>();
 template <>
+std::span<const NamedValue<AttemptChoice>> named_values<AttemptChoice>();
+template <>
 std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>();
 template <>
 std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
