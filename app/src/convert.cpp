@@ -35,8 +35,7 @@ using exchange::ExchangeFormat;
 constexpr const char* kOurs = "graspfit";
 constexpr const char* kFormatNames = "graspfit|isaac|dexgraspbench|moveit|graspit|glb";
 
-/// Flags for grasps that come with neither hand nor object.
-/// Flags of imports alone; with them go all of `object_options`.
+/// Flags for grasps that come with neither hand nor object; with them go all of `object_options`.
 constexpr std::array<const char*, 4> kImportFlags = {"hand", "fingers", "contacts", "palm"};
 
 Command convert_command() {
