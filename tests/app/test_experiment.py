@@ -338,7 +338,7 @@ class Hold(ProgramTest):
 
     def test_the_dictionary_has_the_columns_of_all_tables(self):
         slug = "hold_prediction"
-        self.run_quick(slug, "--set", "margins=0")
+        self.run_quick(slug)
         tables = json.loads(run("experiment", "columns", slug).stdout)["tables"]
         self.assertEqual(len(tables), 4)
         for name, columns in tables.items():
