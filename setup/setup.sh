@@ -2,9 +2,14 @@
 # Safe to repeat: what is there already is found in a second and left alone.
 
 export LC_ALL=C.UTF-8
+# Another checkout of the same sources may use what the compiler cache holds.
+export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_COMPILERCHECK=content
 
 readonly log_directory=build/logs
 mkdir -p "$log_directory"
+
+# "LABEL: N s" of each step that run_with_progress has finished.
+steps_taken=()
 
 say() { printf '%s\n' "$*"; }
 
@@ -52,29 +57,41 @@ run_with_progress() {
     return "$code"
   fi
   say "$label: done in $((SECONDS - start)) s"
+  steps_taken+=("$label: $((SECONDS - start)) s")
+}
+
+# Whether as_root would work. A password is asked for here, where somebody can see the question.
+can_be_root() {
+  if [ "$(id -u)" -eq 0 ]; then return; fi
+  command -v sudo >/dev/null || return
+  sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }
 }
 
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then
     "$@"
-  elif command -v sudo >/dev/null; then
-    sudo "$@"
   else
-    fail "must run as root, or with sudo installed, to do: $*"
+    sudo "$@"
   fi
 }
 
-# Packages of the given groups that are not installed, one per line.
+# missing_packages KIND GROUP...: packages of these groups that are not installed, one per line.
+# KIND is needed, or optional (a question mark behind the group's name).
 missing_packages() {
-  local package wanted
+  local kind=$1 mark= package wanted
+  shift
+  if [ "$kind" = optional ]; then mark='?'; fi
   wanted=$(for group in "$@"; do
-    awk -v group="$group" '$1 == group { print $2 }' setup/debian-packages.txt
+    awk -v group="$group$mark" '$1 == group { print $2 }' setup/debian-packages.txt
   done)
   for package in $wanted; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       printf '%s\n' "$package"
   done
 }
+
+# Whether apt has a version of the package to install.
+is_available() { apt-cache policy "$1" 2>/dev/null | grep -q '^  Candidate: [^(]'; }
 
 # An apt-get or dpkg that was interrupted, perhaps in an earlier run of this script, leaves packages
 # half installed and refuses all work until this is called.
@@ -87,25 +104,41 @@ apt_get() {
 # install_packages GROUP...
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    say "packages: not a Debian system, so nothing is installed; README.md lists what is needed"
+    say "packages: not a Debian system, so nothing is installed; docs/building.md lists what is needed"
     return
   fi
-  local missing
-  missing=$(missing_packages "$@")
-  if [ -z "$missing" ]; then
+  local missing optional package
+  missing=$(missing_packages needed "$@")
+  optional=$(missing_packages optional "$@")
+  if [ -z "$missing$optional" ]; then
     say "packages: all installed"
     return
   fi
-  say "packages: installing" $missing
-  as_root true # asks for a password here, not behind the progress line
-  run_with_progress "packages: index" apt-update.log apt_get update ||
+  if ! can_be_root; then
+    if [ -n "$missing" ]; then
+      fail "these packages are missing, and only root or sudo can install them:" \
+        "apt-get install --no-install-recommends" $missing $optional
+    fi
+    say "packages: all installed, but for optional ones:" $optional
+    return
+  fi
+  run_with_progress "package index" apt-update.log apt_get update ||
     fail "apt-get update failed"
+  for package in $optional; do
+    if is_available "$package"; then
+      missing+=" $package"
+    else
+      say "packages: this system offers no $package, so we do without"
+    fi
+  done
+  if [ -z "$missing" ]; then return; fi
+  say "packages: installing" $missing
   if [ -n "$(dpkg --audit)" ]; then
     run_with_progress "packages: finish what was interrupted" dpkg-configure.log \
       finish_interrupted_install || fail "dpkg --configure -a failed"
   fi
   # shellcheck disable=SC2086
-  run_with_progress "packages: install" apt-install.log \
+  run_with_progress "packages" apt-install.log \
     apt_get install -y --no-install-recommends $missing || fail "apt-get install failed"
 }
 
@@ -119,7 +152,7 @@ unpack_meshes() {
   cd "$1" || return
   if ! download_demo; then
     echo "the package index may be missing or old: updating it"
-    apt_get update && download_demo || return
+    can_be_root && apt_get update && download_demo || return
   fi
   dpkg-deb -x libcgal-demo_*.deb unpacked && mkdir meshes || return
   archive=$(find unpacked -name 'data.tar.gz' | head -n 1)
@@ -151,8 +184,9 @@ fetch_meshes() {
   work=$(mktemp -d "$cache/unpacking.XXXXXX")
   # shellcheck disable=SC2064
   trap "rm -rf '$work'" EXIT
-  run_with_progress "meshes: libcgal-demo (24 MB)" meshes.log unpack_meshes "$work" ||
-    fail "the meshes of libcgal-demo could not be fetched"
+  run_with_progress "meshes of libcgal-demo" meshes.log unpack_meshes "$work" ||
+    fail "libcgal-demo could not be downloaded (apt-get update, as root, may help);" \
+      "GRASPFIT_PACKAGED_MESHES can name a folder with the meshes of its data.tar.gz"
   [ -f "$work/meshes/bunny00.off" ] || fail "libcgal-demo holds no bunny00.off"
   rm -rf "$cache/meshes"
   mv -T "$work/meshes" "$cache/meshes"
@@ -171,11 +205,12 @@ build_jobs() {
   echo "${GRASPFIT_JOBS:-$jobs}"
 }
 
-# configure PRESET [CMAKE OPTION...]
+# configure PRESET [CMAKE OPTION...]: with CI set, warnings are errors.
 configure() {
-  local preset=$1
-  run_with_progress "configure $preset" "configure-$preset.log" cmake --preset "$@" ||
-    fail "cmake --preset $preset failed"
+  local preset=$1 warnings_as_errors=OFF
+  if [ -n "${CI:-}" ]; then warnings_as_errors=ON; fi
+  run_with_progress "configure" "configure-$preset.log" cmake --preset "$@" \
+    -DGRASPFIT_WARNINGS_AS_ERRORS=$warnings_as_errors || fail "cmake --preset $preset failed"
 }
 
 # build PRESET TARGET...
@@ -183,7 +218,7 @@ build() {
   local preset=$1
   shift
   export NINJA_STATUS='[%f/%t] '
-  run_with_progress "build $preset" "build-$preset.log" \
+  run_with_progress "build" "build-$preset.log" \
     cmake --build --preset "$preset" --parallel "$(build_jobs)" --target "$@" ||
     fail "the build failed"
 }

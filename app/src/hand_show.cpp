@@ -44,17 +44,12 @@ Command show_command() {
   return command;
 }
 
-void print_row(const std::string& name, const std::string& value) {
+void print_fact(const std::string& name, const std::string& value) {
   std::printf("%-12s%s\n", name.c_str(), value.c_str());
 }
 
 void print_table(const std::string& name, const std::vector<std::vector<std::string>>& rows) {
   std::printf("\n%s\n%s", name.c_str(), text_table(rows).c_str());
-}
-
-std::string vector_text(const Eigen::Vector3d& v) {
-  return '(' + fixed_decimal(v.x(), 4) + ", " + fixed_decimal(v.y(), 4) + ", " +
-         fixed_decimal(v.z(), 4) + ')';
 }
 
 template <class Items>
@@ -183,16 +178,17 @@ void print_overlaps(const HandModel& hand, const std::vector<viewer::HandPose>& 
 
 void print_tables(const viewer::HandScene& scene) {
   const HandModel& hand = scene.hand;
-  print_row("hand", hand.name);
-  if (!scene.description.empty()) print_row("what", scene.description);
-  print_row("file", hand.description_file);
-  print_row("sidecar", hand.sidecar_file.empty() ? "none: derived" : hand.sidecar_file);
-  print_row("joints", std::to_string(hand.joints.size()) + ", independent " +
-                          std::to_string(hand.num_intrinsic_dof()));
-  print_row("palm", "link " + hand.links[0].name + ", center " + vector_text(hand.palm.center_H) +
-                        " m, direction " + vector_text(hand.palm.direction_H) + ", pad " +
-                        name_or_dash(hand.pads, hand.palm.pad));
-  print_row("exclusions", std::to_string(hand.exclusions.size()) + " pairs of links");
+  print_fact("hand", hand.name);
+  if (!scene.description.empty()) print_fact("what", scene.description);
+  print_fact("file", hand.description_file);
+  print_fact("sidecar", hand.sidecar_file.empty() ? "none: derived" : hand.sidecar_file);
+  print_fact("joints", std::to_string(hand.joints.size()) + ", independent " +
+                           std::to_string(hand.num_intrinsic_dof()));
+  print_fact("palm", "link " + hand.links[0].name + ", center " +
+                         vector_text(hand.palm.center_H, 4) + " m, direction " +
+                         vector_text(hand.palm.direction_H, 4) + ", pad " +
+                         name_or_dash(hand.pads, hand.palm.pad));
+  print_fact("exclusions", std::to_string(hand.exclusions.size()) + " pairs of links");
   print_links(hand);
   print_joints(hand, scene.poses);
   print_fingers(hand);

@@ -50,11 +50,6 @@ void print_row(const std::string& name, const std::string& value) {
   std::printf("%-20s%s\n", name.c_str(), value.c_str());
 }
 
-std::string vector_text(const Eigen::Vector3d& v) {
-  return '(' + fixed_decimal(v.x(), 6) + ", " + fixed_decimal(v.y(), 6) + ", " +
-         fixed_decimal(v.z(), 6) + ')';
-}
-
 /// Four significant digits.
 std::string rounded_text(double value) {
   std::array<char, 32> text;
@@ -106,8 +101,8 @@ void print_mesh(const grasp::ObjectFile& object) {
   if (record.repairs.empty()) print_row("repair", "nothing changed");
   print_row("after repair", analysis_text(record.analysis));
   print_row("extents", extents_text(object.mesh));
-  print_row("box", vector_text(record.analysis.box.min()) + " to " +
-                       vector_text(record.analysis.box.max()) + " m");
+  print_row("box", vector_text(record.analysis.box.min(), 6) + " to " +
+                       vector_text(record.analysis.box.max(), 6) + " m");
 }
 
 void print_mass(const grasp::ObjectModel& object) {
@@ -115,7 +110,7 @@ void print_mass(const grasp::ObjectModel& object) {
       "volume",
       shortest_decimal(object.mass.volume) + " m3" +
           (object.mass.method == geometry::MassMethod::SolidBoundary ? ", parts united" : ""));
-  print_row("center of mass", vector_text(object.mass.center_of_mass) + " m");
+  print_row("center of mass", vector_text(object.mass.center_of_mass, 6) + " m");
   print_row("normalizing radius", fixed_decimal(object.normalizing_radius, 6) + " m");
 }
 

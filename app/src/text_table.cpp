@@ -61,4 +61,9 @@ std::string significant_decimal(double value, int digits) {
   return {text.data(), end};
 }
 
+std::string vector_text(const Eigen::Vector3d& v, int decimals) {
+  return '(' + fixed_decimal(v.x(), decimals) + ", " + fixed_decimal(v.y(), decimals) + ", " +
+         fixed_decimal(v.z(), decimals) + ')';
+}
+
 }  // namespace graspfit::app

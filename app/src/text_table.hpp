@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,8 @@ std::string fixed_decimal(double value, int decimals);
 
 /// `value` with at most `digits` significant digits, in the C locale. Not for files.
 std::string significant_decimal(double value, int digits);
+
+/// (x, y, z), each as `fixed_decimal` writes it.
+std::string vector_text(const Eigen::Vector3d& v, int decimals);
 
 }  // namespace graspfit::app

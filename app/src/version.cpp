@@ -9,7 +9,7 @@ std::vector<std::pair<std::string, std::string>> version_rows() {
           {"Eigen", kEigen},       {"assimp", kAssimp},
           {"Boost", kBoost},       {"nlohmann-json", kNlohmannJson},
           {"tinyxml2", kTinyxml2}, {"yaml-cpp", kYamlCpp},
-          {"OpenSSL", kOpenSsl}};
+          {"OpenSSL", kOpenSsl},   {"MuJoCo", kMujoco}};
 }
 
 std::string version_text() {

@@ -19,7 +19,7 @@
 namespace graspfit::experiments::internal {
 namespace {
 
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
 constexpr std::size_t kChecksumDigits = 16;
 
@@ -28,24 +28,24 @@ std::string checked_line(const std::string& content) {
 }
 
 /// The content of a line without its line break, if its checksum is right.
-std::optional<Json> checked_content(const std::string& line) {
+std::optional<SortedJson> checked_content(const std::string& line) {
   if (line.size() <= kChecksumDigits + 1) return std::nullopt;
   const std::string content = line.substr(kChecksumDigits + 1);
   if (checked_line(content) != line + '\n') return std::nullopt;
-  Json json = Json::parse(content, nullptr, false);
+  SortedJson json = SortedJson::parse(content, nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   return json;
 }
 
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string text_of(const SortedJson& json) {
+  return json.dump(-1, ' ', false, SortedJson::error_handler_t::replace);
 }
 
 double unix_time_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-void read_header(const std::filesystem::path& file, const std::optional<Json>& header,
+void read_header(const std::filesystem::path& file, const std::optional<SortedJson>& header,
                  JournalContent& content) {
   if (!header || !header->contains("identity") || !header->contains("num_cells")) {
     throw geometry::IoError(file.string() + ": is no file of finished cells; remove it");
@@ -55,7 +55,7 @@ void read_header(const std::filesystem::path& file, const std::optional<Json>& h
   content.has_header = true;
 }
 
-void note_cell(const Json& line, std::int64_t offset, JournalContent& content) {
+void note_cell(const SortedJson& line, std::int64_t offset, JournalContent& content) {
   const auto cell = line.at("cell").get<std::size_t>();
   if (cell >= content.cells.size()) return;
   content.last_cell_s = line.at("at").get<double>();
@@ -65,7 +65,7 @@ void note_cell(const Json& line, std::int64_t offset, JournalContent& content) {
   content.cells[cell] = {offset, is_final, line.at("status") == "failed"};
 }
 
-void note_start(const Json& line, JournalContent& content) {
+void note_start(const SortedJson& line, JournalContent& content) {
   content.last_start_s = line.at("at").get<double>();
   content.num_cells_since_start = 0;
   for (const auto& [name, hash] : line.at("inputs").items()) content.inputs[name] = hash;
@@ -81,7 +81,7 @@ JournalContent read_journal(const std::filesystem::path& file) {
   while (std::getline(stream, line) && !stream.eof()) {
     const std::int64_t offset = content.size;
     content.size += static_cast<std::int64_t>(line.size()) + 1;
-    const std::optional<Json> json = checked_content(line);
+    const std::optional<SortedJson> json = checked_content(line);
     if (!content.has_header) {
       read_header(file, json, content);
     } else if (json && json->contains("cell")) {
@@ -117,7 +117,7 @@ CellJournal::CellJournal(const std::filesystem::path& file, const JournalIdentit
     } else {
       content_.identity = identity;
       content_.cells.resize(num_cells);
-      write_line(Json{{"identity", identity}, {"num_cells", num_cells}}.dump());
+      write_line(SortedJson{{"identity", identity}, {"num_cells", num_cells}}.dump());
       flush_to_disk();
     }
   } catch (...) {
@@ -180,21 +180,21 @@ void CellJournal::start_run(const std::map<std::string, std::string>& inputs) {
                                  name + ", which has changed since; remove the folder or choose " +
                                  "another with --out");
   }
-  const Json line = {{"inputs", inputs}, {"at", unix_time_s()}};
+  const SortedJson line = {{"inputs", inputs}, {"at", unix_time_s()}};
   write_line(text_of(line));
   flush_to_disk();
   note_start(line, content_);
 }
 
 void CellJournal::append(std::size_t cell, const std::string& key, const CellRecord& record) {
-  Json line = {{"cell", cell},
-               {"key", key},
-               {"status", record.status},
-               {"is_final", record.is_final},
-               {"reason", record.reason},
-               {"fields", record.fields},
-               {"timings", record.timings},
-               {"details", record.details}};
+  SortedJson line = {{"cell", cell},
+                     {"key", key},
+                     {"status", record.status},
+                     {"is_final", record.is_final},
+                     {"reason", record.reason},
+                     {"fields", record.fields},
+                     {"timings", record.timings},
+                     {"details", record.details}};
   const std::lock_guard lock(mutex_);
   line["at"] = unix_time_s();
   const std::int64_t offset = content_.size;
@@ -213,7 +213,7 @@ std::string CellJournal::line_of(std::size_t cell) const {
 }
 
 CellRecord CellJournal::read(std::size_t cell) const {
-  const Json line = Json::parse(line_of(cell));
+  const SortedJson line = SortedJson::parse(line_of(cell));
   return {line.at("status").get<std::string>(),
           line.at("reason").get<std::string>(),
           line.at("fields").get<std::vector<std::string>>(),
@@ -232,13 +232,13 @@ void CellJournal::absorb(const CellJournal& other) {
           std::tie(theirs.status, theirs.reason, theirs.fields, theirs.details)) {
         throw geometry::InvalidInput(
             file_.string() + " and " + other.file_.string() + ": have different results of cell " +
-            Json::parse(line_of(i)).at("key").get<std::string>() + "; they must be the same");
+            SortedJson::parse(line_of(i)).at("key").get<std::string>() + "; they must be the same");
       }
     } else if (other.has(i) || (other.is_known(i) && !is_known(i))) {
       const std::string line = other.line_of(i);
       const std::int64_t offset = content_.size;
       write_line(line);
-      note_cell(Json::parse(line), offset, content_);
+      note_cell(SortedJson::parse(line), offset, content_);
     }
   }
   flush_to_disk();

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using internal::ConfigNode;
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
 constexpr std::size_t kMostCells = 1000000;  // A sweep beyond that is a mistake in its axes.
 
@@ -29,7 +29,7 @@ struct PlacedAxis {
 /// The configuration while it is put together.
 struct Draft {
   std::string file;
-  Json settings = Json::object();
+  SortedJson settings = SortedJson::object();
   std::map<std::string, std::string> setting_places;
   std::vector<PlacedAxis> axes;
 };
@@ -42,7 +42,7 @@ bool is_label(const std::string& text) {
   });
 }
 
-std::string plain_label(const Json& value) {
+std::string plain_label(const SortedJson& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   if (value.is_number_integer()) return value.dump();
@@ -62,19 +62,19 @@ std::string labels_text(const Axis& axis, const std::string& unknown) {
 
 AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
   AxisValue value;
-  Json settings = Json::object();
+  SortedJson settings = SortedJson::object();
   if (node.json().is_object()) {
     value.label = node.at("name").text();
     for (const auto& [key, member] : node.members()) {
       if (key == "note") member.text();
-      if (key != "name" && key != "note") settings[key] = Json(member.json());
+      if (key != "name" && key != "note") settings[key] = SortedJson(member.json());
     }
   } else {
     if (!node.json().is_primitive() || node.json().is_null()) {
       node.fail("is " + node.json().dump() +
                 "; a value is a number, a text, true, false, or an object with a name");
     }
-    settings[axis] = Json(node.json());
+    settings[axis] = SortedJson(node.json());
     value.label = plain_label(settings[axis]);
   }
   if (!is_label(value.label)) {
@@ -95,7 +95,8 @@ std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
 void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
   std::set<std::ptrdiff_t> kept;
   for (const ConfigNode& label : labels.items()) {
-    const std::string name = label.json().is_primitive() ? plain_label(Json(label.json())) : "";
+    const std::string name =
+        label.json().is_primitive() ? plain_label(SortedJson(label.json())) : "";
     const std::ptrdiff_t index = find_value(placed.axis, name);
     if (index < 0) {
       label.fail("is no value of axis " + placed.axis.name + "; " + labels_text(placed.axis, name));
@@ -171,7 +172,7 @@ PlacedAxis read_axis(const std::string& name, const ConfigNode& node, const fs::
 
 void read_settings(const ConfigNode& node, Draft& draft) {
   for (const auto& [key, value] : node.members()) {
-    draft.settings[key] = Json(value.json());
+    draft.settings[key] = SortedJson(value.json());
     draft.setting_places[key] = value.place();
   }
 }
@@ -219,8 +220,8 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
 }
 
 /// A value of the command line: a number, true or false as in JSON, else a text.
-Json parsed_value(const std::string& text) {
-  Json value = Json::parse(text, nullptr, false);
+SortedJson parsed_value(const std::string& text) {
+  SortedJson value = SortedJson::parse(text, nullptr, false);
   if (value.is_discarded() || !value.is_primitive() || value.is_null()) value = text;
   return value;
 }
@@ -230,15 +231,15 @@ AxisValue changed_value(const AxisChange& change, const std::string& text) {
   AxisValue value;
   value.label = text;
   if (change.axis == "seed") {
-    const Json seed = parsed_value(text);
+    const SortedJson seed = parsed_value(text);
     if (!seed.is_number_unsigned()) {
       throw geometry::InvalidInput("--set seed: \"" + text + "\" is not an integer from 0");
     }
     value.settings = "{}";
   } else {
-    const Json parsed = parsed_value(text);
+    const SortedJson parsed = parsed_value(text);
     value.label = plain_label(parsed);
-    value.settings = Json{{change.axis, parsed}}.dump();
+    value.settings = SortedJson{{change.axis, parsed}}.dump();
   }
   if (!is_label(value.label)) {
     throw geometry::InvalidInput("--set " + change.axis + ": \"" + text +
@@ -250,7 +251,7 @@ AxisValue changed_value(const AxisChange& change, const std::string& text) {
 /// Whether all values of an axis set what the axis is called, as plain values do.
 bool has_plain_values(const Axis& axis) {
   return std::all_of(axis.values.begin(), axis.values.end(), [&](const AxisValue& value) {
-    const Json settings = Json::parse(value.settings);
+    const SortedJson settings = SortedJson::parse(value.settings);
     return axis.name == "seed" || (settings.size() == 1 && settings.contains(axis.name));
   });
 }
@@ -307,7 +308,7 @@ void require_separate_axes(const Draft& draft) {
   for (const PlacedAxis& placed : draft.axes) {
     std::set<std::string> keys;
     for (const AxisValue& value : placed.axis.values) {
-      const Json settings = Json::parse(value.settings);
+      const SortedJson settings = SortedJson::parse(value.settings);
       for (const auto& [key, setting] : settings.items()) keys.insert(key);
     }
     for (const std::string& key : keys) {
@@ -325,7 +326,7 @@ std::string place_of(const Draft& draft, const Cell& cell, const std::string& ke
   for (std::size_t i = 0; i < draft.axes.size(); ++i) {
     const Axis& axis = draft.axes[i].axis;
     const auto index = static_cast<std::size_t>(find_value(axis, cell.labels[i]));
-    if (!Json::parse(axis.values[index].settings).contains(key)) continue;
+    if (!SortedJson::parse(axis.values[index].settings).contains(key)) continue;
     const std::string& place = draft.axes[i].places[index];
     return key == axis.name ? place : place + '/' + key;
   }
@@ -385,18 +386,18 @@ AxisChange parse_axis_change(const std::string& text) {
 }
 
 std::string ExperimentConfig::identity() const {
-  Json axes = Json::array();
+  SortedJson axes = SortedJson::array();
   for (const Axis& axis : sweep.axes) {
-    Json values = Json::array();
+    SortedJson values = SortedJson::array();
     for (const AxisValue& value : axis.values) {
-      values.push_back({{"label", value.label}, {"settings", Json::parse(value.settings)}});
+      values.push_back({{"label", value.label}, {"settings", SortedJson::parse(value.settings)}});
     }
     axes.push_back({{"name", axis.name}, {"values", values}});
   }
-  const Json identity = {{"experiment", sweep.experiment},
-                         {"seed", sweep.base_seed},
-                         {"settings", Json::parse(sweep.settings)},
-                         {"axes", axes}};
+  const SortedJson identity = {{"experiment", sweep.experiment},
+                               {"seed", sweep.base_seed},
+                               {"settings", SortedJson::parse(sweep.settings)},
+                               {"axes", axes}};
   return identity.dump();
 }
 

@@ -9,37 +9,38 @@ namespace graspfit::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
-Json read_manifest(const fs::path& file) {
+SortedJson read_manifest(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return {};
-  Json json = Json::parse(geometry::read_file(file), nullptr, false);
+  SortedJson json = SortedJson::parse(geometry::read_file(file), nullptr, false);
   if (!json.is_object()) throw geometry::InvalidInput(file.string() + ": is damaged");
   return json;
 }
 
 /// A member as an object; empty if there is none.
-Json object_at(const Json& json, const char* pointer) {
-  const Json::json_pointer place(pointer);
-  return json.contains(place) && json.at(place).is_object() ? json.at(place) : Json::object();
+SortedJson object_at(const SortedJson& json, const char* pointer) {
+  const SortedJson::json_pointer place(pointer);
+  return json.contains(place) && json.at(place).is_object() ? json.at(place) : SortedJson::object();
 }
 
-std::string text_of(const Json& value) {
+std::string text_of(const SortedJson& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 /// Differences of settings as "name theirs, here ours".
 class Differences {
  public:
-  void compare(const std::string& name, const Json* ours, const Json* theirs) {
+  void compare(const std::string& name, const SortedJson* ours, const SortedJson* theirs) {
     if (ours != nullptr && theirs != nullptr && *ours == *theirs) return;
     text_ += (text_.empty() ? "" : "; ") + name + ' ' + value(theirs) + ", here " + value(ours);
   }
 
   /// All members that one of two objects has.
-  void compare_members(const std::string& prefix, const Json& ours, const Json& theirs) {
-    Json all = ours;
+  void compare_members(const std::string& prefix, const SortedJson& ours,
+                       const SortedJson& theirs) {
+    SortedJson all = ours;
     all.update(theirs);
     for (const auto& [name, value] : all.items()) {
       compare(prefix + name, find(ours, name), find(theirs, name));
@@ -49,39 +50,41 @@ class Differences {
   const std::string& text() const { return text_; }
 
  private:
-  static const Json* find(const Json& object, const std::string& name) {
+  static const SortedJson* find(const SortedJson& object, const std::string& name) {
     const auto found = object.find(name);
     return found == object.end() ? nullptr : &*found;
   }
-  static std::string value(const Json* value) { return value ? text_of(*value) : "not given"; }
+  static std::string value(const SortedJson* value) {
+    return value ? text_of(*value) : "not given";
+  }
 
   std::string text_;
 };
 
 /// Label -> settings of each axis's values, by the axis's name.
-Json values_by_label(const Json& as_run) {
-  Json axes = Json::object();
+SortedJson values_by_label(const SortedJson& as_run) {
+  SortedJson axes = SortedJson::object();
   if (!as_run.contains("axes")) return axes;
-  for (const Json& axis : as_run.at("axes")) {
-    Json& values = axes[axis.at("name").get<std::string>()] = Json::object();
-    for (const Json& value : axis.at("values")) {
+  for (const SortedJson& axis : as_run.at("axes")) {
+    SortedJson& values = axes[axis.at("name").get<std::string>()] = SortedJson::object();
+    for (const SortedJson& value : axis.at("values")) {
       values[value.at("label").get<std::string>()] = value.at("settings");
     }
   }
   return axes;
 }
 
-std::string other_settings(const Json& ours, const Json& theirs) {
+std::string other_settings(const SortedJson& ours, const SortedJson& theirs) {
   Differences differences;
-  const auto seed_of = [](const Json& as_run) {
-    return as_run.contains("seed") ? as_run.at("seed") : Json();
+  const auto seed_of = [](const SortedJson& as_run) {
+    return as_run.contains("seed") ? as_run.at("seed") : SortedJson();
   };
-  const Json our_seed = seed_of(ours);
-  const Json their_seed = seed_of(theirs);
+  const SortedJson our_seed = seed_of(ours);
+  const SortedJson their_seed = seed_of(theirs);
   differences.compare("seed", &our_seed, &their_seed);
   differences.compare_members("", object_at(ours, "/settings"), object_at(theirs, "/settings"));
-  const Json our_axes = values_by_label(ours);
-  const Json their_axes = values_by_label(theirs);
+  const SortedJson our_axes = values_by_label(ours);
+  const SortedJson their_axes = values_by_label(theirs);
   for (const auto& [axis, values] : our_axes.items()) {
     if (!their_axes.contains(axis)) continue;
     for (const auto& [label, settings] : values.items()) {
@@ -94,7 +97,7 @@ std::string other_settings(const Json& ours, const Json& theirs) {
 }
 
 /// "commit a7a0195", "commit a7a0195 with changes", "unknown".
-std::string code_text(const Json& manifest) {
+std::string code_text(const SortedJson& manifest) {
   constexpr std::size_t kShort = 7;
   const std::string commit = manifest.value("commit", "");
   if (commit.empty()) return "unknown";
@@ -103,7 +106,7 @@ std::string code_text(const Json& manifest) {
 }
 
 /// Nothing if both are the same program, or of the same commit without changes.
-std::string other_code(const Json& ours, const Json& theirs) {
+std::string other_code(const SortedJson& ours, const SortedJson& theirs) {
   const std::string program = ours.value("program_sha256", "");
   if (!program.empty() && program == theirs.value("program_sha256", "")) return "";
   const std::string our_code = code_text(ours);
@@ -121,8 +124,8 @@ std::string other_code(const Json& ours, const Json& theirs) {
 std::string published_otherwise(const Experiment& experiment, const fs::path& folder,
                                 const fs::path& published) {
   const std::string name = experiment.slug + ".manifest.json";
-  const Json ours = read_manifest(folder / name);
-  const Json theirs = read_manifest(published / name);
+  const SortedJson ours = read_manifest(folder / name);
+  const SortedJson theirs = read_manifest(published / name);
   if (ours.is_null() || theirs.is_null()) return "";
   try {
     const std::string settings =
@@ -132,7 +135,7 @@ std::string published_otherwise(const Experiment& experiment, const fs::path& fo
     return "published " + (settings.empty() ? "" : "with other settings: " + settings) +
            (settings.empty() || code.empty() ? "" : "; ") +
            (code.empty() ? "" : "by other code: " + code);
-  } catch (const Json::exception&) {
+  } catch (const SortedJson::exception&) {
     throw geometry::InvalidInput((published / name).string() + " or " + (folder / name).string() +
                                  ": is damaged");
   }

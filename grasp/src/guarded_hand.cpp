@@ -8,6 +8,7 @@
 
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/finger_crossing.hpp"
+#include "internal/infinity.hpp"
 #include "internal/target_posture.hpp"
 
 namespace graspfit::grasp {
@@ -24,8 +25,6 @@ constexpr float kNearVoxels = 3.0F;
 constexpr double kFarEnough = 4.0;
 
 constexpr double kStepBeforeSurface = 0.5;  // [voxels]
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

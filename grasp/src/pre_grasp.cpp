@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/checked_pre_grasp.hpp"
+#include "internal/infinity.hpp"
 #include "internal/option_check.hpp"
 #include "internal/straight_way.hpp"
 
@@ -21,7 +21,6 @@ using hands::RigidTransform;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostSteps = 1000;
 
 struct LinkPair {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "internal/distance_up_to.hpp"
+#include "internal/infinity.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -19,8 +19,6 @@ using geometry::InvalidInput;
 using hands::RigidTransform;
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Corners of the convex hull of what the faces of a mesh use, exact.
 std::vector<Vector3d> hull_corners(const geometry::TriangleMesh& mesh) {

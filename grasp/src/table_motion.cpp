@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "graspfit/geometry/used_vertices.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "internal/infinity.hpp"
 #include "internal/straight_way.hpp"
 
 namespace graspfit::grasp {
@@ -26,8 +26,6 @@ using geometry::RigidTransform;
 using hands::HandConfiguration;
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Depth to which an object that rests on the table may be in it [m]: rounding of its pose.
 constexpr double kRestTolerance = 1e-9;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graspfit/geometry/errors.hpp"
+#include "internal/control_characters.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -17,8 +18,6 @@ using nlohmann::json;
 
 constexpr const char* kFormat = "graspfit hand sidecar";
 constexpr int kVersion = 1;
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 
 /// A value of the file and where it stands, so that every complaint names both.
 class Item {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "graspfit/geometry/errors.hpp"
+#include "internal/control_characters.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -15,7 +16,6 @@ using tinyxml2::XMLElement;
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 
 }  // namespace
 
