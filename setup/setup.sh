@@ -91,7 +91,7 @@ missing_packages() {
 }
 
 # Whether apt has a version of the package to install.
-is_available() { apt-cache policy "$1" 2>/dev/null | grep -q '^  Candidate: [^(]'; }
+is_available() { [[ $(apt-cache policy "$1" 2>/dev/null) =~ Candidate:\ [^\(] ]]; }
 
 # An apt-get or dpkg that was interrupted, perhaps in an earlier run of this script, leaves packages
 # half installed and refuses all work until this is called.

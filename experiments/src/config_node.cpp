@@ -1,6 +1,7 @@
 #include "internal/config_node.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
@@ -10,6 +11,8 @@ namespace graspfit::experiments::internal {
 void ConfigNode::fail(const std::string& what) const {
   throw geometry::InvalidInput(file_ + ": " + (place_.empty() ? "/" : place_) + ": " + what);
 }
+
+bool ConfigNode::has(const std::string& key) const { return json_->contains(key); }
 
 void ConfigNode::require_members(const std::vector<std::string>& required,
                                  const std::vector<std::string>& optional) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/experiments/experiment.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
@@ -10,6 +11,10 @@ namespace graspfit::experiments::internal {
 
 void SettingValue::fail(const std::string& rule) const {
   throw SettingError(key_, "is " + json_->dump() + ", " + rule);
+}
+
+bool SettingValue::has(const std::string& member) const {
+  return json_->is_object() && json_->contains(member);
 }
 
 double SettingValue::number() const {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
@@ -25,6 +26,9 @@ JsonNode JsonNode::parse(std::string file, const std::string& text) {
 void JsonNode::fail(const std::string& what) const {
   throw geometry::IoError(*file_ + ": " + (place_.empty() ? "/" : place_) + ": " + what);
 }
+
+bool JsonNode::is_null() const { return json_->is_null(); }
+bool JsonNode::is_text() const { return json_->is_string(); }
 
 JsonNode JsonNode::at(const std::string& key) const {
   if (!json_->is_object()) fail("is not an object");

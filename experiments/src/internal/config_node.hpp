@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +23,7 @@ class ConfigNode {
   /// Throws unless this is an object with these members and no others but the optional ones.
   void require_members(const std::vector<std::string>& required,
                        const std::vector<std::string>& optional) const;
-  bool has(const std::string& key) const { return json_->contains(key); }
+  bool has(const std::string& key) const;
   ConfigNode at(const std::string& key) const;
   std::vector<ConfigNode> items() const;  ///< Of an array that is not empty.
   std::vector<std::pair<std::string, ConfigNode>> members() const;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,9 +28,7 @@ class SettingValue {
   std::vector<SettingValue> items() const;
   /// The axis "x", "y" or "z" as 0, 1, 2.
   int axis() const;
-  bool has(const std::string& member) const {
-    return json_->is_object() && json_->contains(member);
-  }
+  bool has(const std::string& member) const;
   SettingValue at(const std::string& member) const;
   /// Throws unless this is an object with no other members.
   void require_members_among(const std::vector<std::string>& allowed) const;

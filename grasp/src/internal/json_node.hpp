@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,8 +30,8 @@ class JsonNode {
   /// The members of this object, in the order of the file.
   std::vector<std::pair<std::string, JsonNode>> members() const;
 
-  bool is_null() const { return json_->is_null(); }
-  bool is_text() const { return json_->is_string(); }
+  bool is_null() const;
+  bool is_text() const;
   double number() const;
   double positive_number() const;  ///< > 0.
   std::int64_t integer() const;
