@@ -9,6 +9,7 @@
 // `least_epsilon` ("selected"), each with the attempts and the processor time that they took. At
 // least 0.6 in `closed_share` with a median epsilon above 0.05, unselected, is what is aimed at.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/experiments/planning_settings.hpp"
 #include "internal/experiment_list.hpp"

@@ -4,6 +4,7 @@
 //
 // Answered by a row per set of contacts on a ball, built so that it differs from a good set in one
 // respect, with M and every term of it. No planner is asked.
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 

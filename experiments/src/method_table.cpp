@@ -1,6 +1,7 @@
 #include "internal/method_table.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/grasp/grasp_io.hpp"

@@ -6,6 +6,8 @@
 // beside `parameter` and `value`, so that a plot of any column over the value is a filter and a
 // sort. A parameter that matters moves usable_rate or mean_m by more than its neighbors' scatter,
 // which the repeated defaults (each parameter has its own) show.
+#include <nlohmann/json.hpp>
+
 #include "graspfit/experiments/planning_settings.hpp"
 #include "internal/experiment_list.hpp"
 #include "internal/planning_table.hpp"

@@ -7,6 +7,7 @@
 // case's result. Where a case has several modes, all are planned and their best M reported.
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "graspfit/experiments/planning_settings.hpp"
 #include "internal/case_predicate.hpp"
