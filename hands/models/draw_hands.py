@@ -16,7 +16,7 @@ GAP = 12  # between the pictures of the sheet [pixels]
 def program_of(given):
     """The program graspfit: as given, of the build tree, or on the path."""
     tree = MODELS.parent.parent
-    candidates = [given] if given else [tree / "build/bin/graspfit", tree / "build/release/bin/graspfit"]
+    candidates = [given] if given else [tree / f"build/{build}/bin/graspfit" for build in ("unity", "release")]
     for candidate in candidates:
         if candidate and pathlib.Path(candidate).is_file():
             return str(candidate)

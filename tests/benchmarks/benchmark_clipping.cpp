@@ -6,7 +6,7 @@
 // How to read it: processor time of the process, so that a busy machine matters little; medians of
 // repetitions that take turns; memory of the results only. All run on memory that the process
 // already has (see keep_memory). The bounds are those of issue 3. Run:
-// build/release/bin/graspfit_benchmarks "[clipping]".
+// build/unity/bin/graspfit_benchmarks "[clipping]".
 #include <malloc.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // and with 256 pieces.
 //
 // How to read it: wall time, pieces, deviations and volume error as the result states them. "ok":
-// within 1 mm; else the pieces did not suffice. Run: build/release/bin/graspfit_benchmarks
+// within 1 mm; else the pieces did not suffice. Run: build/unity/bin/graspfit_benchmarks
 // "[convex_decomposition]".
 #include <cstdio>
 

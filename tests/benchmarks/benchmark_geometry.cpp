@@ -7,7 +7,7 @@
 // How to read it: wall times, medians of repetitions that are interleaved, so that whatever else
 // the machine does hits both sides. Ours uses one thread; OpenVDB's are named. "ratio" is ours over
 // OpenVDB's, below 1 is faster. Memory is the process's growth to its peak within a step.
-// Run: build/release/bin/graspfit_benchmarks "[geometry]".
+// Run: build/unity/bin/graspfit_benchmarks "[geometry]".
 #include <malloc.h>
 
 #include <array>

@@ -2,7 +2,7 @@
 // voxels), at the poses that lead to grasps, and the workspace of every shipped hand.
 //
 // How to read it: the time of one exact test by how far the hand was closed: what a bound that
-// comes first could spare. Run: build/release/bin/graspfit_benchmarks "[hands]".
+// comes first could spare. Run: build/unity/bin/graspfit_benchmarks "[hands]".
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -3,7 +3,7 @@
 //
 // How to read it: one-off stages are the median of several runs; the stages of planning are totals
 // over a fixed number of attempts, divided by the usable grasps found, failures counted. "share" is
-// of that section's total. Run: build/release/bin/graspfit_benchmarks "[pipeline]".
+// of that section's total. Run: build/unity/bin/graspfit_benchmarks "[pipeline]".
 #include <algorithm>
 #include <cstdio>
 #include <string>

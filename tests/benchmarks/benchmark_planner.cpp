@@ -5,7 +5,7 @@
 //
 // How to read it: "with the object's model" adds a hundredth of its cost (reading the file and the
 // offline search for weak features left out; that one is kept in the user's cache).
-// Run: build/release/bin/graspfit_benchmarks "[planner]".
+// Run: build/unity/bin/graspfit_benchmarks "[planner]".
 #include <algorithm>
 #include <cstdio>
 #include <string>

@@ -7,7 +7,7 @@
 // How to read it: wall time per hull, the median over several sets, both sides in turn. "ratio" is
 // ours over Qhull's, below 1 is faster. Ours keeps every facet that rounding makes, Qhull merges
 // them and is therefore no exact answer; the numbers of facets say so.
-// Run: build/release/bin/graspfit_benchmarks "[polytope]".
+// Run: build/unity/bin/graspfit_benchmarks "[polytope]".
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -5,7 +5,7 @@
 // How to read it: cells share nothing but the journal, so two cores that are otherwise idle finish
 // at least 1.8 times as fast as one. On a busy machine, or with cores that are two threads of one,
 // it says less.
-// Run: build/release/bin/graspfit_benchmarks "[sweep]".
+// Run: build/unity/bin/graspfit_benchmarks "[sweep]".
 #include <cstdio>
 #include <filesystem>
 #include <thread>
