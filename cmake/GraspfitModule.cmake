@@ -81,7 +81,7 @@ function(graspfit_add_module name)
       list(APPEND packages "Boost 1.74 COMPONENTS ${CMAKE_MATCH_1}")
     elseif(library STREQUAL "mujoco::mujoco")
       list(APPEND packages "mujoco 2.2...<3")
-    elseif(library STREQUAL "yaml-cpp")  # which has no namespace before its version 0.8
+    elseif(library STREQUAL "yaml-cpp::yaml-cpp")
       list(APPEND packages "yaml-cpp 0.7")
     elseif(library MATCHES "^OpenSSL::")
       list(APPEND packages "OpenSSL 3.0 COMPONENTS Crypto")
