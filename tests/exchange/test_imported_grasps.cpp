@@ -11,9 +11,9 @@
 namespace {
 
 using namespace graspfit;
-using Catch::Matchers::Contains;
 using exchange::import_grasps;
 using exchange::ImportedGrasp;
+using testing::Contains;
 using testing::TemporaryFolder;
 
 const grasp::ImportRecord kSource = {"isaac_grasp 1.0", "elsewhere.yaml", std::string(64, 'a')};

@@ -13,10 +13,10 @@
 namespace {
 
 using namespace graspfit;
-using Catch::Matchers::Contains;
 using exchange::ImportedGrasp;
 using exchange::isaac_grasp_yaml;
 using exchange::read_isaac_grasps;
+using testing::Contains;
 using testing::random_grasps;
 using testing::TemporaryFolder;
 

@@ -153,7 +153,7 @@ TEST_CASE("An axis can have the values of another configuration's", "[experiment
            {R"({"values_of": "other", "amount": 3})", "/axes/letter/0/amount: "},
            {R"({"values_of": "other"}, {"name": "e", "amount": 1})",
             "/axes/letter/1: is the second value named e"}}) {
-    CHECK_THROWS_WITH(sweep_with(value), Catch::Contains(expected));
+    CHECK_THROWS_WITH(sweep_with(value), graspfit::testing::Contains(expected));
   }
 }
 

@@ -105,7 +105,7 @@ TEST_CASE("M of contact sets on a ball is what the formulas say",
 TEST_CASE("Contact sets that make no sense are refused by name",
           "[experiments][measured_contacts]") {
   const auto refused = [](const std::string& settings, const std::string& why) {
-    CHECK_THROWS_WITH(run("measured_contacts", settings), Catch::Contains(why));
+    CHECK_THROWS_WITH(run("measured_contacts", settings), testing::Contains(why));
   };
   refused(contact_set({contact("[0, 0, 0]")}), "must not be zero");
   refused(R"({"radius_m": 0, "pads_of": "barrett", "contact_set": []})", "must be > 0");
@@ -253,7 +253,7 @@ TEST_CASE("Stages are those of fitting: another planner is refused by name",
             "contacts": 3, "count": 1, "max-attempts": 3, "resolution": 20,
             "weak-thickness-mm": 0, "planner": ")" +
                                                 planner + "\"}"),
-                      Catch::Contains("is \"" + planner + "\", must be fitting"));
+                      testing::Contains("is \"" + planner + "\", must be fitting"));
   }
 }
 
@@ -273,7 +273,7 @@ TEST_CASE("Time and quality by contacts: the row sums up the grasps",
   }
   for (const Fields& grasp : result.details) CHECK(number(grasp, "num_contacts") >= 3.0);
   CHECK_THROWS_WITH(run("contacts_and_time", grip + R"(0, "count": 2})"),
-                    Catch::Contains("must be at least max-attempts"));
+                    testing::Contains("must be at least max-attempts"));
   CHECK_THROWS_WITH(run("contacts_and_time", grip + R"(10, "count": 4})"),
-                    Catch::Contains("the one with the larger M would stay"));
+                    testing::Contains("the one with the larger M would stay"));
 }

@@ -40,7 +40,7 @@ TEST_CASE("Experiments that hold grasps leave none out", "[experiments][hold]") 
            {R"(, "count": 9, "max-attempts": 9, "margins": -1)", "margins: is -1, must be >= 0"},
            {R"(, "count": 9, "max-attempts": 9, "margins": 2, "search": "first")", "search: "},
            {R"(, "count": 9, "max-attempts": 9, "margins": 2, "accept": "usable")", "accept: "}}) {
-    CHECK_THAT(refusal(members), Catch::StartsWith(expected));
+    CHECK_THAT(refusal(members), graspfit::testing::StartsWith(expected));
   }
 }
 

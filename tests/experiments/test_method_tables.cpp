@@ -48,12 +48,14 @@ std::string field_of(const ResultRow& row, const std::vector<Column>& columns,
 
 TEST_CASE("Tables over methods refuse settings that select grasps", "[experiments][methods]") {
   CHECK(refusal(R"(, "search": "first", "planner-seed": 1)").empty());
-  CHECK_THAT(refusal(R"(, "search": "best", "planner-seed": 1)"), Catch::StartsWith("search: "));
-  CHECK_THAT(refusal(R"(, "search": "first")"), Catch::StartsWith(": there is no setting"));
+  CHECK_THAT(refusal(R"(, "search": "best", "planner-seed": 1)"),
+             graspfit::testing::StartsWith("search: "));
+  CHECK_THAT(refusal(R"(, "search": "first")"),
+             graspfit::testing::StartsWith(": there is no setting"));
   CHECK_THAT(refusal(R"(, "search": "first", "planner-seed": -1)"),
-             Catch::StartsWith("planner-seed: is -1"));
+             graspfit::testing::StartsWith("planner-seed: is -1"));
   CHECK_THAT(refusal(R"(, "search": "first", "planner-seed": 1, "planner": "none")"),
-             Catch::Contains("fitting|gs|ma|ma-full-retreat"));
+             graspfit::testing::Contains("fitting|gs|ma|ma-full-retreat"));
 }
 
 TEST_CASE("The four tables compare the same methods with the same seed", "[experiments][methods]") {
@@ -67,7 +69,7 @@ TEST_CASE("The four tables compare the same methods with the same seed", "[exper
     Fields labels;
     for (const AxisValue& value : methods.values) labels.push_back(value.label);
     CHECK(labels == Fields{"gs", "ma", "ma-full-retreat", "fitting"});
-    CHECK_THAT(sweep.settings, Catch::Contains("\"planner-seed\":1"));
+    CHECK_THAT(sweep.settings, graspfit::testing::Contains("\"planner-seed\":1"));
     if (std::string(slug) == "table1_all_objects") continue;
     CHECK(sweep.axes[0].values.size() == 4);
     CHECK(sweep.axes[1].values.size() ==

@@ -95,7 +95,7 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       FAIL("accepted");
     } catch (const SettingError& error) {
       CHECK(error.key() == expected[0]);
-      CHECK_THAT(error.what(), Catch::Contains(expected[1]));
+      CHECK_THAT(error.what(), graspfit::testing::Contains(expected[1]));
     }
   }
 }
@@ -193,7 +193,7 @@ TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings
 
   ObjectSettings missing;
   missing.file = "meshes/no_such_object.off";
-  CHECK_THROWS_WITH(load_object(missing), Catch::Contains("GRASPFIT_DATA"));
+  CHECK_THROWS_WITH(load_object(missing), graspfit::testing::Contains("GRASPFIT_DATA"));
   CHECK_THROWS_AS(load_object(missing), MissingData);
   CHECK_THROWS_AS(load_hand("hands/no_such_hand.urdf"), MissingData);
 }

@@ -47,5 +47,5 @@ TEST_CASE("A cell's hand keeps above its table", "[experiments][planning_table]"
   CHECK(lowest_hand(above) > table_z);
   CHECK(lowest_hand(free) < table_z);
   CHECK_THROWS_WITH(planned_over(R"(, "table": 0.05)"),
-                    Catch::Contains("table 0.05 is above the whole object"));
+                    testing::Contains("table 0.05 is above the whole object"));
 }

@@ -161,7 +161,7 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
   const std::vector<std::string> rows = lines_of(folder.path() / "one/counting.details.csv");
   REQUIRE(rows.size() > 2);
   CHECK(rows[0] == "letter,step,seed,part,note");
-  CHECK_THAT(rows[1], Catch::EndsWith(",0,\"a, b\""));
+  CHECK_THAT(rows[1], graspfit::testing::EndsWith(",0,\"a, b\""));
   // 24 cells, 8 of them skipped and 2 failed.
   CHECK(lines_of(folder.path() / "one/counting.summary.csv") ==
         std::vector<std::string>{"cells,parts", "14," + std::to_string(rows.size() - 1)});
@@ -251,7 +251,7 @@ TEST_CASE("Cells that failed for a reason that may pass are counted, not publish
   const fs::path manifest = out / "counting.manifest.json";
   CHECK(nlohmann::json::parse(read_file(manifest)).at("cells").at("not_final") == 16);
   CHECK_THROWS_WITH(require_publishable_manifest(manifest),
-                    Catch::Contains("16 cells failed for a reason that may pass"));
+                    graspfit::testing::Contains("16 cells failed for a reason that may pass"));
   const RunProgress second = run_sweep(counting_experiment(), config, {}, {out, 1});
   CHECK(second.num_resumed == 8);
   CHECK(second.num_failed == 2);
@@ -270,14 +270,14 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
   const std::string expected = undisturbed_table(folder);
   const ExperimentConfig other = config_in(folder, {false, {{"base", {"1"}}}});
   CHECK_THROWS_WITH(run_sweep(counting_experiment(), other, {}, {out, 1}),
-                    Catch::Contains("holds results of another configuration"));
+                    graspfit::testing::Contains("holds results of another configuration"));
   RunManifest rebuilt;
   rebuilt.program = "another";
   CHECK_THROWS_WITH(run_sweep(counting_experiment(), config_in(folder), rebuilt, {out, 1}),
-                    Catch::Contains("holds results of another build"));
+                    graspfit::testing::Contains("holds results of another build"));
   for (const int jobs : {0, -1, 1025, 2000000000}) {
     CHECK_THROWS_WITH(run_sweep(counting_experiment(), config_in(folder), {}, {out, jobs}),
-                      Catch::Contains("must be in [1, 1024]"));
+                      graspfit::testing::Contains("must be in [1, 1024]"));
   }
   CHECK(read_file(out / "counting.csv") == expected);
 
@@ -293,19 +293,19 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
     throw MissingData("nothing");
   };
   run_sweep(nested, config_in(folder), {}, {folder.path() / "busy", 1});
-  CHECK_THAT(refusal, Catch::Contains("is in use by another run"));
+  CHECK_THAT(refusal, graspfit::testing::Contains("is in use by another run"));
 }
 
 TEST_CASE("Neither quick nor modified results are published", "[experiments][sweep_runner]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(require_publishable(config_in(folder, {true, {}}), source_folder()),
-                    Catch::Contains("--quick"));
+                    graspfit::testing::Contains("--quick"));
   CHECK_THROWS_WITH(
       require_publishable(config_in(folder, {false, {{"letter", {"a"}}}}), source_folder()),
-      Catch::Contains("--set"));
+      graspfit::testing::Contains("--set"));
   // Nor those of a configuration that is not among the sources.
   CHECK_THROWS_WITH(require_publishable(config_in(folder), source_folder()),
-                    Catch::Contains("is not one of"));
+                    graspfit::testing::Contains("is not one of"));
 }
 
 TEST_CASE("A recorded command is quoted for a shell and names no folder of results",
@@ -371,7 +371,7 @@ TEST_CASE("Inputs are hashed before the first cell and checked after the last",
       return run(cell, cells);
     };
     CHECK_THROWS_WITH(run_sweep(meddling, config_in(folder), {}, {other, 1}),
-                      Catch::Contains("mesh.off: was " + other.filename().string()));
+                      graspfit::testing::Contains("mesh.off: was " + other.filename().string()));
     CHECK_FALSE(fs::exists(other / "counting.csv"));
     CHECK_FALSE(fs::exists(other / "counting.manifest.json"));
   }

@@ -112,13 +112,14 @@ TEST_CASE("Shards of several partitions and a run of its own merge, too", "[expe
   const fs::path out = folder.path() / "mixed";
   run_shards(experiment, config, out, 2);
   fs::remove_all(shard_folder(out, {2, 2}));
-  CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out),
-                    Catch::Contains("12 of 24 cells are missing, letter=a step=0 seed=2 first"));
+  CHECK_THROWS_WITH(
+      merge_shards(experiment, config, {}, out),
+      graspfit::testing::Contains("12 of 24 cells are missing, letter=a step=0 seed=2 first"));
   CHECK_FALSE(fs::exists(out / "counting.csv"));
   for (const std::size_t i : {1, 2}) run_sweep(experiment, config, {}, {out, 2, Shard{i, 3}});
   run_sweep(experiment, config, {}, {out, 1, Shard{12, 12}});
   CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out),
-                    Catch::Contains("cells are missing"));
+                    graspfit::testing::Contains("cells are missing"));
   run_sweep(experiment, config, {}, {out, 1});
   merge_shards(experiment, config, {}, out);
   CHECK(results_in(out) == results_in(folder.path() / "whole"));
@@ -169,7 +170,7 @@ TEST_CASE("A merge counts cells that failed for a reason that may pass", "[exper
   run_shards(crowded, config, out, 2);
   CHECK(merge_shards(crowded, config, {}, out).num_not_final == 8);
   CHECK_THROWS_WITH(require_publishable_manifest(out / "counting.manifest.json"),
-                    Catch::Contains("8 cells failed for a reason that may pass"));
+                    graspfit::testing::Contains("8 cells failed for a reason that may pass"));
 }
 
 TEST_CASE("Shards that do not belong together are not merged", "[experiments][shards]") {
@@ -177,15 +178,16 @@ TEST_CASE("Shards that do not belong together are not merged", "[experiments][sh
   const ExperimentConfig config = config_in(folder);
   const Experiment experiment = experiment_with_all();
   const fs::path out = folder.path() / "out";
-  CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out), Catch::Contains("has no shards"));
+  CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out),
+                    graspfit::testing::Contains("has no shards"));
   run_shards(experiment, config, out, 2);
   const ExperimentConfig other = config_in(folder, {false, {{"base", {"1"}}}});
   CHECK_THROWS_WITH(merge_shards(experiment, other, {}, out),
-                    Catch::Contains("holds results of another configuration"));
+                    graspfit::testing::Contains("holds results of another configuration"));
   RunManifest rebuilt;
   rebuilt.program = "another";
   CHECK_THROWS_WITH(merge_shards(experiment, config, rebuilt, out),
-                    Catch::Contains("holds results of another build"));
+                    graspfit::testing::Contains("holds results of another build"));
 
   Experiment different = experiment;
   different.run = [&](const Cell& cell, const fs::path& cells) {
@@ -195,7 +197,7 @@ TEST_CASE("Shards that do not belong together are not merged", "[experiments][sh
   };
   run_sweep(different, config, {}, {out, 1, Shard{3, 3}});
   CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out),
-                    Catch::Contains("have different results of cell letter="));
+                    graspfit::testing::Contains("have different results of cell letter="));
 }
 
 TEST_CASE("Shards of other inputs are not merged or continued", "[experiments][shards]") {
@@ -208,9 +210,11 @@ TEST_CASE("Shards of other inputs are not merged or continued", "[experiments][s
   run_sweep(experiment, config, {}, {out, 1, Shard{1, 2}});
   folder.write("mesh.off", "after");
   CHECK_THROWS_WITH(run_sweep(experiment, config, {}, {out, 1, Shard{1, 2}}),
-                    Catch::Contains("holds results of another") && Catch::Contains("mesh.off"));
+                    graspfit::testing::Contains("holds results of another") &&
+                        graspfit::testing::Contains("mesh.off"));
   run_sweep(experiment, config, {}, {out, 1, Shard{2, 2}});
-  CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out), Catch::Contains("mesh.off"));
+  CHECK_THROWS_WITH(merge_shards(experiment, config, {}, out),
+                    graspfit::testing::Contains("mesh.off"));
   CHECK_FALSE(fs::exists(out / "counting.csv"));
 }
 
@@ -219,7 +223,8 @@ TEST_CASE("Status counts each cell once and tells what runs", "[experiments][sha
   const ExperimentConfig config = config_in(folder);
   const Experiment experiment = experiment_with_all();
   const fs::path out = folder.path() / "out";
-  CHECK_THROWS_WITH(sweep_status("counting", out), Catch::Contains("has no results of counting"));
+  CHECK_THROWS_WITH(sweep_status("counting", out),
+                    graspfit::testing::Contains("has no results of counting"));
   run_sweep(experiment, config, {}, {out, 1, Shard{1, 2}});
   run_sweep(experiment, config, {}, {out, 1, Shard{1, 3}});
 

@@ -92,7 +92,7 @@ TEST_CASE("Numbers are compared relatively, counts, seeds and texts exactly",
   CHECK_FALSE(are_near("true", "false"));
   CHECK_FALSE(are_near("index 0.02; palm", "index 0.03; palm"));
   CHECK(compare("a,1.01\n", "a,1\n", {0.02, 0.0}).differences.empty());
-  CHECK_THROWS_WITH(compare("", "", {-1.0, 0.0}), Catch::Contains("relative = -1"));
+  CHECK_THROWS_WITH(compare("", "", {-1.0, 0.0}), graspfit::testing::Contains("relative = -1"));
 }
 
 TEST_CASE("A difference names row, column and both values", "[experiments][table_comparison]") {
@@ -188,7 +188,7 @@ TEST_CASE("Rows of a run's own cells are not missed in silence",
   CHECK(missing_in(compare_with_published(experiment, whole, published)) == Counts{0, 1, 1});
   cut(whole / "counting.csv", 1);
   CHECK_THROWS_WITH(compare_with_published(experiment, whole, published),
-                    Catch::Contains("counting.csv: has 23 rows for 24 cells"));
+                    graspfit::testing::Contains("counting.csv: has 23 rows for 24 cells"));
 }
 
 TEST_CASE("A table that is not the one its manifest was written for is named",
@@ -208,9 +208,10 @@ TEST_CASE("A table that is not the one its manifest was written for is named",
     const auto table = folder.path() / name / "counting.details.csv";
     const std::string text = graspfit::geometry::read_file(table);
     graspfit::geometry::write_file_atomically(table, text + "a,0,1,3\n");
-    CHECK_THROWS_WITH(compare_both(), Catch::Contains(table.string() + ": is not the table"));
+    CHECK_THROWS_WITH(compare_both(),
+                      graspfit::testing::Contains(table.string() + ": is not the table"));
     CHECK_THROWS_WITH(require_tables_of_manifest(folder.path() / name / "counting.manifest.json"),
-                      Catch::Contains("tables_sha256"));
+                      graspfit::testing::Contains("tables_sha256"));
     graspfit::geometry::write_file_atomically(table, text);
   }
   // Manifests from before that say nothing of tables.

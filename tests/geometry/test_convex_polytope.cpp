@@ -408,7 +408,7 @@ TEST_CASE("Points and queries that make no sense are refused", "[geometry][conve
   CHECK_THROWS_AS(ConvexPolytope(MatrixXd::Zero(7, 3)), InvalidInput);
   MatrixXd points = cube(3);
   points(1, 4) = kInfinity;
-  CHECK_THROWS_WITH(ConvexPolytope(points), Catch::Contains("point 4 is not finite"));
+  CHECK_THROWS_WITH(ConvexPolytope(points), graspfit::testing::Contains("point 4 is not finite"));
   const ConvexPolytope polytope(cube(3));
   CHECK_THROWS_AS(polytope.containment(VectorXd::Zero(2)), InvalidInput);
   CHECK_THROWS_AS(polytope.inradius(VectorXd::Constant(3, std::nan(""))), InvalidInput);

@@ -129,8 +129,8 @@ TEST_CASE("At any number of segments a shape is sound or refused", "[geometry][e
       try {
         mesh = shape.build(segments);
       } catch (const InvalidInput& error) {
-        CHECK_THAT(error.what(),
-                   Catch::StartsWith(shape.name + ": ") && Catch::Contains("segments"));
+        CHECK_THAT(error.what(), graspfit::testing::StartsWith(shape.name + ": ") &&
+                                     graspfit::testing::Contains("segments"));
         continue;
       }
       ++num_built;
@@ -199,15 +199,17 @@ TEST_CASE("Everyday shapes refuse what does not fit and name it", "[geometry][ev
       for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
         if (dimension.name == "subdivisions" && bad == 0.0) continue;  // an icosahedron
         INFO(shape.name << ' ' << dimension.name << ' ' << bad);
-        CHECK_THROWS_WITH(named_shape(shape.name, {{dimension.name, bad}}),
-                          Catch::StartsWith(shape.name + ": ") && Catch::Contains(field));
+        CHECK_THROWS_WITH(
+            named_shape(shape.name, {{dimension.name, bad}}),
+            graspfit::testing::StartsWith(shape.name + ": ") && graspfit::testing::Contains(field));
       }
     }
   }
   const auto refuse = [](const std::string& shape, const std::vector<ShapeDimension>& dimensions,
                          const std::string& says) {
     INFO(shape << ' ' << dimensions.front().name);
-    CHECK_THROWS_WITH(named_shape(shape, dimensions), Catch::StartsWith(shape + ": " + says));
+    CHECK_THROWS_WITH(named_shape(shape, dimensions),
+                      graspfit::testing::StartsWith(shape + ": " + says));
   };
   refuse("bottle", {{"neck_diameter", 0.1}}, "neck_diameter is 0.1, must be below body_diameter");
   refuse("bottle", {{"shoulder_bottom", 0.25}}, "shoulder_bottom is 0.25, must be below");
@@ -250,5 +252,6 @@ TEST_CASE("Everyday shapes refuse what does not fit and name it", "[geometry][ev
   refuse("mug", {{"hight", 1.0}}, "has no dimension \"hight\"; there are height, diameter, ");
   refuse("mug", {{"height", 0.1}, {"height", 0.1}}, "height is given twice");
   refuse("mug", {{"segments", 99.5}}, "segments is 99.5, must be an integer");
-  CHECK_THROWS_WITH(named_shape("cup"), Catch::StartsWith("there is no shape \"cup\"; there are "));
+  CHECK_THROWS_WITH(named_shape("cup"),
+                    graspfit::testing::StartsWith("there is no shape \"cup\"; there are "));
 }

@@ -146,7 +146,7 @@ TEST_CASE("Degenerate programs come to an end", "[geometry][linear_program]") {
 TEST_CASE("Linear programs whose parts do not fit are refused", "[geometry][linear_program]") {
   const VectorXd one = VectorXd::Ones(1);
   CHECK_THROWS_WITH(maximize_linear(VectorXd::Ones(2), MatrixXd::Ones(1, 3), one),
-                    Catch::Contains("1 x 3, must be finite and 1 x 2"));
+                    graspfit::testing::Contains("1 x 3, must be finite and 1 x 2"));
   CHECK_THROWS_AS(maximize_linear(VectorXd(0), MatrixXd(1, 0), one), InvalidInput);
   CHECK_THROWS_AS(maximize_linear(one, MatrixXd::Constant(1, 1, std::nan("")), one), InvalidInput);
   CHECK_THROWS_AS(maximize_linear(one, MatrixXd::Ones(1, 1),

@@ -96,8 +96,9 @@ TEST_CASE("A hole of a box is filled and the volume restored", "[geometry][mesh_
   CHECK(steps_of(repaired) == "filled holes 1");
   CHECK(repaired.before.num_boundary_edges == 4);
   check_is_good(repaired, 4.0);
-  CHECK_THROWS_WITH(repair_mesh(mesh, {.max_hole_extent_rel = 0.2}),
-                    Catch::Contains("4 boundary edges") && Catch::Contains("0.25"));
+  CHECK_THROWS_WITH(
+      repair_mesh(mesh, {.max_hole_extent_rel = 0.2}),
+      graspfit::testing::Contains("4 boundary edges") && graspfit::testing::Contains("0.25"));
 }
 
 TEST_CASE("Turned faces and parts are turned back", "[geometry][mesh_repair]") {
@@ -247,7 +248,7 @@ TEST_CASE("Strict refuses any defect and as-is keeps every one", "[geometry][mes
   TriangleMesh mesh = box({1, 1, 1});
   mesh.vertices.push_back({9, 9, 9});
   CHECK_THROWS_WITH(repair_mesh(mesh, {.mode = RepairMode::Strict}),
-                    Catch::Contains("1 unused vertices"));
+                    graspfit::testing::Contains("1 unused vertices"));
   CHECK(repair_mesh(mesh, {.mode = RepairMode::AsIs}).mesh == mesh);
   mesh.faces.pop_back();
   CHECK_THROWS_AS(repair_mesh(mesh, {.mode = RepairMode::Strict}), InvalidInput);
@@ -259,12 +260,14 @@ TEST_CASE("Strict refuses any defect and as-is keeps every one", "[geometry][mes
 TEST_CASE("Repair options out of range are refused by name", "[geometry][mesh_repair]") {
   const TriangleMesh mesh = box({1, 1, 1});
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
-    CHECK_THROWS_WITH(repair_mesh(mesh, {.max_hole_extent_rel = bad}), Catch::Contains("max_hole"));
-    CHECK_THROWS_WITH(repair_mesh(mesh, {.weld_distance_rel = bad}), Catch::Contains("weld"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.max_hole_extent_rel = bad}),
+                      graspfit::testing::Contains("max_hole"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.weld_distance_rel = bad}),
+                      graspfit::testing::Contains("weld"));
     CHECK_THROWS_WITH(repair_mesh(mesh, {.wrap = AlphaWrap{.alpha_rel = bad}}),
-                      Catch::Contains("alpha_rel"));
+                      graspfit::testing::Contains("alpha_rel"));
     CHECK_THROWS_WITH(repair_mesh(mesh, {.wrap = AlphaWrap{.offset_rel = bad}}),
-                      Catch::Contains("offset_rel"));
+                      graspfit::testing::Contains("offset_rel"));
   }
 }
 
@@ -371,7 +374,7 @@ TEST_CASE("Crossings are reported as asked and refused by strict", "[geometry][m
   }
   for (const auto choice : {SelfIntersections::Report, SelfIntersections::Resolve}) {
     CHECK_THROWS_WITH(repair_mesh(two, {.mode = RepairMode::Strict, .self_intersections = choice}),
-                      Catch::Contains("pairs of crossing faces"));
+                      graspfit::testing::Contains("pairs of crossing faces"));
     CHECK(repair_mesh(box({1, 1, 1}), {.mode = RepairMode::Strict, .self_intersections = choice})
               .steps.empty());
   }

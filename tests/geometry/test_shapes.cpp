@@ -67,7 +67,7 @@ TEST_CASE("Impossible shapes are refused with the name of the number", "[geometr
   CHECK_THROWS_WITH(ball(1.0, 9), "ball: subdivisions is 9, must be in [0, 8]");
   CHECK_THROWS_AS(ball(std::nan("")), InvalidInput);
   CHECK_THROWS_AS(box({1, -1, 1}), InvalidInput);
-  CHECK_THROWS_WITH(torus(1, 2), Catch::Contains("must exceed minor_radius"));
+  CHECK_THROWS_WITH(torus(1, 2), graspfit::testing::Contains("must exceed minor_radius"));
   CHECK_THROWS_AS(torus(2, 1, 2, 8), InvalidInput);
   CHECK_THROWS_AS(cylinder(1, 0), InvalidInput);
   CHECK_THROWS_AS(capsule(1, 1, 3), InvalidInput);

@@ -159,7 +159,7 @@ TEST_CASE("A mesh that crosses nothing comes back with all its faces",
 TEST_CASE("An open mesh bounds no solid", "[geometry][solid_boundary]") {
   TriangleMesh mesh = box({1, 1, 1});
   mesh.faces.pop_back();
-  CHECK_THROWS_WITH(solid_boundary(mesh), Catch::Contains("bounds no solid"));
+  CHECK_THROWS_WITH(solid_boundary(mesh), graspfit::testing::Contains("bounds no solid"));
   mesh = box({1, 1, 1});
   std::swap(mesh.faces[0][0], mesh.faces[0][1]);
   CHECK_THROWS_AS(solid_boundary(mesh), InvalidInput);

@@ -244,10 +244,11 @@ TEST_CASE("A mesh that leaves the lattice is refused", "[geometry][surface_patch
   TriangleMesh cube = box({1.0, 1.0, 1.0});
   CHECK_THROWS_AS(surface_patches(cube, unit_lattice(3)), InvalidInput);
   for (auto& vertex : cube.vertices) vertex.array() += 2.5;  // High faces in the last plane.
-  CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(3)), Catch::Contains("leaves the lattice"));
+  CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(3)),
+                    graspfit::testing::Contains("leaves the lattice"));
   CHECK_NOTHROW(surface_patches(cube, unit_lattice(4)));
   CHECK_THROWS_AS(surface_patches(cube, VoxelLattice{}), InvalidInput);
-  CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(1291)), Catch::Contains("2^31"));
+  CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(1291)), graspfit::testing::Contains("2^31"));
 }
 
 TEST_CASE("A mesh without faces or of degenerate faces has no patches",

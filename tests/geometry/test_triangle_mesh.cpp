@@ -48,7 +48,7 @@ TEST_CASE("Moving, scaling and joining meshes", "[geometry][triangle_mesh]") {
   }
   CHECK(surface_area(moved) == Approx(6.0));
   CHECK(surface_area(scaled(mesh, 2.0)) == Approx(24.0));
-  CHECK_THROWS_WITH(scaled(mesh, 0.0), Catch::StartsWith("scaled: factor is 0"));
+  CHECK_THROWS_WITH(scaled(mesh, 0.0), graspfit::testing::StartsWith("scaled: factor is 0"));
   CHECK_THROWS_AS(scaled(mesh, -1.0), InvalidInput);
 
   const TriangleMesh both = concatenated({mesh, moved});

@@ -196,7 +196,7 @@ TEST_CASE("A lattice refuses what it cannot hold", "[geometry][voxel_grid]") {
   CHECK_THROWS_AS(lattice_around(unit, {.resolution = 513}), InvalidInput);
   CHECK_THROWS_WITH(lattice_around(unit, {.margin = -1.0}), "margin is -1 m, must be 0 or more");
   CHECK_THROWS_WITH(lattice_around(unit, {.resolution = 512, .margin = 2.0}),
-                    Catch::Contains("too many"));
+                    graspfit::testing::Contains("too many"));
   // Flat boxes have one layer and their margin.
   const Eigen::AlignedBox3d flat(Eigen::Vector3d::Zero(), Eigen::Vector3d(1, 1, 0));
   CHECK(lattice_around(flat, {.resolution = 4}).counts == Eigen::Vector3i(6, 6, 3));

@@ -257,7 +257,7 @@ TEST_CASE("Faces can be painted weak and sound by hand", "[geometry][weak_region
   CHECK(sound.regions == found.regions);
   CHECK(num_weak(painted(sound, std::vector<std::int32_t>{0, 5, 5}, FacePaint::Weak)) == 2);
   CHECK_THROWS_WITH(painted(found, std::vector<std::int32_t>{-1}, FacePaint::Weak),
-                    Catch::StartsWith("painted: face -1 of "));
+                    graspfit::testing::StartsWith("painted: face -1 of "));
 }
 
 TEST_CASE("Options of weak regions out of range are refused", "[geometry][weak_regions]") {

@@ -13,11 +13,11 @@
 
 using namespace graspfit;
 using namespace graspfit::grasp;
-using Catch::Matchers::Contains;
 using Eigen::Vector3d;
 using geometry::MeshQuery;
 using geometry::RigidTransform;
 using graspfit::testing::pad_hand;
+using testing::Contains;
 
 namespace {
 

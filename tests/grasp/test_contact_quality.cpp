@@ -14,7 +14,6 @@
 
 using namespace graspfit;
 using namespace graspfit::grasp;
-using Catch::Matchers::Contains;
 using Eigen::Vector3d;
 using graspfit::testing::ball_contact;
 using graspfit::testing::bipyramid;
@@ -22,6 +21,7 @@ using graspfit::testing::equator;
 using graspfit::testing::octahedron;
 using graspfit::testing::pad_hand;
 using graspfit::testing::tetrahedron;
+using testing::Contains;
 
 namespace {
 

@@ -16,11 +16,11 @@
 
 using namespace graspfit;
 using namespace graspfit::grasp;
-using Catch::Matchers::Contains;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 using geometry::SurfacePatch;
 using geometry::VoxelLattice;
+using testing::Contains;
 
 namespace {
 

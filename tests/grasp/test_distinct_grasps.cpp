@@ -155,5 +155,6 @@ TEST_CASE("Distinctness refuses what makes no sense", "[grasp][distinct_grasps]"
   }
   HandConfiguration short_one = a;
   short_one.q.conservativeResize(2);
-  CHECK_THROWS_WITH(are_distinct(hand, a, short_one), Catch::Contains("2") && Catch::Contains("8"));
+  CHECK_THROWS_WITH(are_distinct(hand, a, short_one),
+                    testing::Contains("2") && testing::Contains("8"));
 }

@@ -102,7 +102,7 @@ TEST_CASE("Epsilon, L-infinity, is zero without closure and says its convention"
   const LInfinityEpsilon two = epsilon_linf(antipodal(), convention_of(0.5));
   CHECK(two.lower == 0.0);
   CHECK(two.upper == 0.0);
-  CHECK_THAT(describe_linf(convention_of(0.5)), Catch::EndsWith("L-infinity, unit normal force"));
+  CHECK_THAT(describe_linf(convention_of(0.5)), testing::EndsWith("L-infinity, unit normal force"));
   CHECK(epsilon_linf({}, convention_of(0.5)).upper == 0.0);
   CHECK_THROWS_AS(epsilon_linf(antipodal(), convention_of(-0.5)), geometry::InvalidInput);
 }

@@ -113,7 +113,7 @@ TEST_CASE("No grasp, one and equal ones have no first axis", "[grasp][grasp_dive
   CHECK(grasp_diversity(barrett(), same).num_clusters == 1);
   CHECK_FALSE(grasp_diversity(barrett(), same).first_axis_share.has_value());
   CHECK_THROWS_WITH(grasp_diversity(barrett(), same, {.rotation = 0.0}),
-                    Catch::Contains("rotation = 0"));
+                    testing::Contains("rotation = 0"));
   Configurations wrong = same;
   wrong.back().q.resize(1);
   CHECK_THROWS_AS(grasp_diversity(barrett(), wrong), geometry::InvalidInput);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace graspfit;
-using Catch::Matchers::Contains;
+using testing::Contains;
 using testing::sample_file;
 using testing::TemporaryFolder;
 

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace graspfit;
-using Catch::Matchers::Contains;
 using geometry::RigidTransform;
+using testing::Contains;
 using testing::sample_file;
 using testing::TemporaryFolder;
 using testing::unusual_options;

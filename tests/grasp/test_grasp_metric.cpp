@@ -112,7 +112,7 @@ TEST_CASE("A metric is in the convention that was asked for, and says so",
   // Half the longest extent of the ball is its radius: only the forces are shorter.
   const GraspMetricValue simox = evaluate(epsilon, input_of(on_cube(), mu, WrenchTool::Simox));
   CHECK(*simox.value == Approx(*house.value / std::hypot(1.0, mu)).epsilon(kRounding));
-  CHECK_THAT(simox.convention, Catch::StartsWith("Simox: "));
+  CHECK_THAT(simox.convention, testing::StartsWith("Simox: "));
   for (const WrenchTool tool :
        {WrenchTool::DexNet, WrenchTool::Frogger, WrenchTool::DexGraspBench}) {
     const GraspMetricValue value = evaluate(epsilon, input_of(on_cube(), mu, tool));
@@ -187,7 +187,7 @@ TEST_CASE(
   const GraspMetricValue linf = evaluate(grasp_metrics().at("epsilon_linf"), four);
   CHECK(*linf.value == epsilon_linf(on_tetrahedron(), convention).lower);
   CHECK(*linf.value > *value_of("epsilon", four));
-  CHECK_THAT(linf.convention, Catch::EndsWith("certified lower bound"));
+  CHECK_THAT(linf.convention, testing::EndsWith("certified lower bound"));
 }
 
 TEST_CASE("Bad facts are refused every time that they are asked for", "[grasp][grasp_metric]") {
@@ -242,7 +242,7 @@ TEST_CASE("Metrics of one's own are added, chosen by name and refused where they
   const GraspMetrics chosen = metrics.selected(std::vector<std::string>{"sum_of_heights", "m"});
   REQUIRE(chosen.all().size() == 2);
   CHECK(chosen.all()[0].name == "m");
-  CHECK_THROWS_WITH(metrics.at("sum"), Catch::Contains("no metric \"sum\"; there are m, m1"));
+  CHECK_THROWS_WITH(metrics.at("sum"), testing::Contains("no metric \"sum\"; there are m, m1"));
   CHECK_THROWS_AS(metrics.selected(std::vector<std::string>{"m", "m"}), InvalidInput);
 
   const auto changed = [](auto change) {
@@ -250,17 +250,17 @@ TEST_CASE("Metrics of one's own are added, chosen by name and refused where they
     change(metric);
     return metric;
   };
-  CHECK_THAT(refusal(metrics, sum_of_heights()), Catch::Contains("new: there is such a metric"));
+  CHECK_THAT(refusal(metrics, sum_of_heights()), testing::Contains("new: there is such a metric"));
   for (const char* const name : {"", "Sum", "sum of", "_sum", "sum_", "sum__of", "2_sums"}) {
     CHECK_THAT(refusal({}, changed([&](GraspMetric& metric) { metric.name = name; })),
-               Catch::Contains("snake_case"));
+               testing::Contains("snake_case"));
   }
   CHECK_THAT(refusal({}, changed([](GraspMetric& metric) { metric.unit.clear(); })),
-             Catch::Contains("unit of sum_of_heights"));
+             testing::Contains("unit of sum_of_heights"));
   CHECK_THAT(refusal({}, changed([](GraspMetric& metric) { metric.group.clear(); })),
-             Catch::Contains("group of sum_of_heights"));
+             testing::Contains("group of sum_of_heights"));
   CHECK_THAT(refusal({}, changed([](GraspMetric& metric) { metric.meaning.clear(); })),
-             Catch::Contains("meaning of sum_of_heights"));
+             testing::Contains("meaning of sum_of_heights"));
   CHECK_THAT(refusal({}, changed([](GraspMetric& metric) { metric.value = nullptr; })),
-             Catch::Contains("value of sum_of_heights"));
+             testing::Contains("value of sum_of_heights"));
 }

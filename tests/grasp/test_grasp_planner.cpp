@@ -15,7 +15,7 @@ namespace {
 
 using namespace graspfit;
 using namespace graspfit::testing;
-using Catch::Contains;
+using testing::Contains;
 
 struct NamedMesh {
   std::string name;

@@ -17,8 +17,8 @@
 
 using namespace graspfit;
 using namespace graspfit::grasp;
-using Catch::Matchers::Contains;
 using Eigen::Vector3d;
+using testing::Contains;
 
 TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
   geometry::TriangleMesh mesh = geometry::box({0.06, 0.08, 0.10});

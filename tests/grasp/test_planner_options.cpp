@@ -14,7 +14,7 @@ namespace {
 
 using namespace graspfit;
 using namespace graspfit::testing;
-using Catch::Contains;
+using testing::Contains;
 
 // ---------------------------------------------------------------------------------------------
 // Options

@@ -142,9 +142,10 @@ TEST_CASE("Metrics of robustness are these numbers at the default noise",
   CHECK(*evaluate(grasp_metrics().at("robust_closed_share"), input).value == found.closed_share);
   const GraspMetricValue epsilon = evaluate(grasp_metrics().at("robust_epsilon"), input);
   CHECK(*epsilon.value == found.mean_epsilon);
-  CHECK_THAT(epsilon.convention,
-             Catch::StartsWith("100 poses, seed 1, Gaussian: 0.005 m and 0.08726646259971647 rad"));
-  CHECK_THAT(epsilon.convention, Catch::Contains("house: torques about"));
+  CHECK_THAT(
+      epsilon.convention,
+      testing::StartsWith("100 poses, seed 1, Gaussian: 0.005 m and 0.08726646259971647 rad"));
+  CHECK_THAT(epsilon.convention, testing::Contains("house: torques about"));
   CHECK_FALSE(evaluate(grasp_metrics().at("robust_usable_share"), input).value.has_value());
 }
 
@@ -155,10 +156,11 @@ TEST_CASE("Robustness needs contacts, a surface and sound options", "[grasp][pos
   facts.surface = nullptr;
   CHECK_FALSE(pose_robustness(facts).has_value());
   facts.surface = &ball();
-  CHECK_THROWS_WITH(pose_robustness(facts, {.num_samples = 0}), Catch::Contains("num_samples = 0"));
+  CHECK_THROWS_WITH(pose_robustness(facts, {.num_samples = 0}),
+                    testing::Contains("num_samples = 0"));
   CHECK_THROWS_WITH(pose_robustness(facts, {.translation_deviation = -1.0}),
-                    Catch::Contains("translation_deviation = -1"));
+                    testing::Contains("translation_deviation = -1"));
   CHECK_THROWS_WITH(pose_robustness(facts, {.rotation_deviation = std::nan("")}),
-                    Catch::Contains("rotation_deviation"));
-  CHECK_THROWS_WITH(pose_robustness(facts, {.reach = 0.0}), Catch::Contains("reach = 0"));
+                    testing::Contains("rotation_deviation"));
+  CHECK_THROWS_WITH(pose_robustness(facts, {.reach = 0.0}), testing::Contains("reach = 0"));
 }

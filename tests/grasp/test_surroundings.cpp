@@ -188,12 +188,12 @@ TEST_CASE("Nothing around touches nothing; what makes no sense is refused",
   CHECK_FALSE(over_all.touches(hands::HandCollision(empty), 0, RigidTransform::Identity()));
 
   for (const double z : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
-    CHECK_THROWS_WITH(SurroundingsCollision(hand, with_table(z)), Catch::Contains("table_z_O"));
+    CHECK_THROWS_WITH(SurroundingsCollision(hand, with_table(z)), testing::Contains("table_z_O"));
   }
   TriangleMesh open = geometry::box({0.1, 0.1, 0.1});
   open.faces.pop_back();
   const MeshQuery closed(geometry::box({0.1, 0.1, 0.1}));
   CHECK_THROWS_WITH(SurroundingsCollision(hand, {{}, {closed, MeshQuery(open)}}),
-                    Catch::Contains("obstacle 1 is not closed (3 boundary edges"));
+                    testing::Contains("obstacle 1 is not closed (3 boundary edges"));
   CHECK_THROWS_AS(SurroundingsCollision(hand, {{}, {MeshQuery(open)}}), InvalidInput);
 }

@@ -220,7 +220,7 @@ TEST_CASE("Pick-and-place options out of range are refused by name", "[grasp][pi
     }
     return std::string("nothing thrown");
   };
-  const auto starts = [](const std::string& field) { return Catch::StartsWith(field); };
+  const auto starts = [](const std::string& field) { return testing::StartsWith(field); };
   CHECK_THAT(refusal([](auto& o) { o.lifts.clear(); }), starts("PickAndPlaceOptions: lifts = 0"));
   CHECK_THAT(refusal([](auto& o) {
                o.lifts = {0.1, -0.2};
@@ -294,7 +294,7 @@ TEST_CASE("Two blocks that change places need a third place, and one that is in 
                     geometry::InvalidInput);
     options.resting_places_W = {{0.1, std::nan("")}};
     CHECK_THROWS_WITH(tidy_table(scene, {left, right}, {left, right}, options),
-                      Catch::Contains("resting_places_W = 0.1, nan"));
+                      testing::Contains("resting_places_W = 0.1, nan"));
     options.resting_places_W.clear();
     options.move.clearance = options.move.planner.pre_grasp.clearance;
     CHECK_THROWS_AS(tidy_table(scene, {left, right}, {left, right}, options),
@@ -418,7 +418,7 @@ TEST_CASE("A motion file that contradicts itself, its hand or its objects is ref
   const auto moved = [](MotionFile & changed, std::size_t at_move, std::size_t stretch) -> auto& {
     return changed.moves[at_move].stretches[stretch];
   };
-  using Catch::Contains;
+  using testing::Contains;
   CHECK(refusal([](MotionFile&) {}) == "accepted");
   CHECK(refusal([&](auto& f) { moved(f, 0, 2).to.q[0] += 1e-11; }) == "accepted");
   CHECK_THAT(refusal([&](auto& f) { moved(f, 0, 0).X_WO_to.translation().x() += 2e-9; }),

@@ -118,7 +118,8 @@ TEST_CASE("Cones, scales and options out of range are refused", "[grasp][wrench]
   CHECK_THROWS_AS(friction_cone(Vector3d::UnitX(), -0.1), InvalidInput);
   CHECK_THROWS_AS(cone_edges(friction_cone(Vector3d::UnitX(), 0.5), 2), InvalidInput);
   CHECK_THROWS_AS(grasp_matrix({}, Vector3d::Zero(), 0.0), InvalidInput);
-  CHECK_THROWS_WITH(WrenchSpaceOptions{}.validate(), Catch::Contains("torque_scale = nan"));
+  CHECK_THROWS_WITH(WrenchSpaceOptions{}.validate(),
+                    graspfit::testing::Contains("torque_scale = nan"));
   CHECK_NOTHROW(WrenchSpaceOptions{.torque_scale = 1.0}.validate());
   CHECK_THROWS_AS((WrenchSpaceOptions{.num_cone_edges = 2, .torque_scale = 1.0}.validate()),
                   InvalidInput);

@@ -98,7 +98,7 @@ TEST_CASE("Positions outside the limits are clamped or refused by name and value
   HandConfiguration configuration = hands::open_configuration(barrett());
   at(configuration.q, "thumb_proximal") = 3.0;
   CHECK_THROWS_WITH(hands::validate(barrett(), configuration),
-                    Catch::Contains("joint thumb_proximal at 3 is outside 0 to 2.44"));
+                    testing::Contains("joint thumb_proximal at 3 is outside 0 to 2.44"));
   hands::clamp_to_limits(barrett(), configuration.q);
   CHECK(at(configuration.q, "thumb_proximal") == Approx(140.0 / 180.0 * pi).epsilon(1e-12));
   CHECK_NOTHROW(hands::validate(barrett(), configuration));

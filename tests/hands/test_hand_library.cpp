@@ -45,9 +45,9 @@ TEST_CASE("The Barrett hand is shipped and read by name or by path", "[hands][ha
 }
 
 TEST_CASE("A hand that is not shipped is answered with those that are", "[hands][hand_library]") {
-  CHECK_THROWS_WITH(hands::find_hand("baret"), Catch::Contains("shipped hands are barrett"));
+  CHECK_THROWS_WITH(hands::find_hand("baret"), testing::Contains("shipped hands are barrett"));
   CHECK_THROWS_AS(hands::find_hand("baret"), geometry::InvalidInput);
-  CHECK_THROWS_WITH(hands::shipped_hand_file("baret"), Catch::Contains("there are barrett"));
+  CHECK_THROWS_WITH(hands::shipped_hand_file("baret"), testing::Contains("there are barrett"));
   CHECK_THROWS_AS(hands::find_hand("nowhere/hand.urdf"), geometry::IoError);
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("GRASPFIT_HANDS names the folder of hands, and must be one", "[hands][
           testing::source_directory() / "hands/models/barrett/barrett.urdf");
   }
   const Setting setting("GRASPFIT_HANDS", (testing::source_directory() / "LICENSE").string());
-  CHECK_THROWS_WITH(hands::shipped_hands(), Catch::Contains("LICENSE is not a folder"));
+  CHECK_THROWS_WITH(hands::shipped_hands(), testing::Contains("LICENSE is not a folder"));
 }
 
 }  // namespace

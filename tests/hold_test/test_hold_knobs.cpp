@@ -12,13 +12,13 @@
 namespace graspfit {
 namespace {
 
-using Catch::Matchers::Contains;
 using geometry::shortest_decimal;
 using hold_test::HoldProtocol;
 using hold_test::knob_names;
 using hold_test::knob_value;
 using hold_test::KnobValue;
 using hold_test::set_knob;
+using testing::Contains;
 
 // As a command line has it; `change` makes another value of it.
 std::string text_of(const KnobValue& value, bool change) {

@@ -46,7 +46,7 @@ TEST_CASE("A margin is zero for what falls by itself, and no more than it was lo
   CHECK(plenty.force == 1.0);
   CHECK(plenty.force_direction_O.isZero());
   CHECK_THROWS_WITH(jaws_on_cube(hold_protocol("tabletop-lift")).margin(pinch(5.0)),
-                    Catch::Contains("tabletop-lift"));
+                    testing::Contains("tabletop-lift"));
 }
 
 }  // namespace

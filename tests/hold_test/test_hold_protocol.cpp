@@ -21,9 +21,9 @@ TEST_CASE("Every shipped protocol has its name, says where its numbers come from
 }
 
 TEST_CASE("A protocol that there is not is refused with the names there are", "[hold_test]") {
-  CHECK_THROWS_WITH(hold_protocol("gravity"), Catch::Contains("\"gravity\"") &&
-                                                  Catch::Contains("dexonomy-hard") &&
-                                                  Catch::Contains("tabletop-lift"));
+  CHECK_THROWS_WITH(hold_protocol("gravity"), graspfit::testing::Contains("\"gravity\"") &&
+                                                  graspfit::testing::Contains("dexonomy-hard") &&
+                                                  graspfit::testing::Contains("tabletop-lift"));
 }
 
 TEST_CASE("Published numbers stand in the protocols", "[hold_test]") {
@@ -63,7 +63,7 @@ TEST_CASE("A bad knob is refused by name", "[hold_test]") {
   for (const Case& bad : cases) {
     HoldProtocol protocol = hold_protocol("dexgraspbench-100g");
     bad.set(protocol);
-    CHECK_THROWS_WITH(protocol.validate(), Catch::Contains(bad.field));
+    CHECK_THROWS_WITH(protocol.validate(), graspfit::testing::Contains(bad.field));
     CHECK_THROWS_AS(protocol.validate(), InvalidInput);
   }
 }

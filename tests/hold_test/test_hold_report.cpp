@@ -63,7 +63,7 @@ TEST_CASE("A report has a row of the same width for every grasp, whatever stage 
   CHECK(commas(lines[2]) == commas(lines[0]));
   CHECK(commas(lines[1]) == commas(lines[0]) + 1);  // the one inside quotes
   CHECK_THAT(lines[1],
-             Catch::Matchers::StartsWith("1,false,rejected,\"links a, \"\"b\"\" overlap\",0,0,0,"));
+             testing::StartsWith("1,false,rejected,\"links a, \"\"b\"\" overlap\",0,0,0,"));
 
   const auto data = nlohmann::json::parse(hold_test::to_json(report));
   const auto& grasps = data["results"]["grasps"];

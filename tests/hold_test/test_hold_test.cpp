@@ -115,7 +115,7 @@ TEST_CASE("A pre-grasp deep in the object is rejected, one that is shallow or mi
   deep.pre_grasp->configuration = jaws_at(0.052, 0.03);  // 12 mm
   const HoldVerdict verdict = test.test(deep);
   CHECK(verdict.stage == HoldStage::Rejected);
-  CHECK_THAT(verdict.reason, Catch::Contains("left") && Catch::Contains("12."));
+  CHECK_THAT(verdict.reason, testing::Contains("left") && testing::Contains("12."));
   CHECK(verdict.directions.empty());
   CHECK(test.replay(deep, 0).empty());
   CHECK(test.margin(deep).force == 0.0);
@@ -184,7 +184,7 @@ TEST_CASE("A replay shows the test: it starts at the pre-grasp and ends with the
   CHECK(frames.front().hand.q == grasp.pre_grasp->configuration.q);
   CHECK(frames.back().time == Approx(end));
   CHECK(frames.back().X_OB.translation().norm() < 0.005);
-  CHECK_THROWS_WITH(test.replay(grasp, 6), Catch::Contains("direction 6"));
+  CHECK_THROWS_WITH(test.replay(grasp, 6), testing::Contains("direction 6"));
 }
 
 TEST_CASE("A simulation that diverges is a grasp that fails, and says so", "[hold_test]") {
@@ -228,7 +228,8 @@ TEST_CASE("Joint positions that are not the hand's are refused", "[hold_test]") 
   HoldTest test = jaws_on_cube(bench());
   grasp::Grasp grasp = pinch(5.0);
   grasp.configuration.q = Eigen::Vector3d::Zero();
-  CHECK_THROWS_WITH(test.test(grasp), Catch::Contains("two jaws") && Catch::Contains("2 joints"));
+  CHECK_THROWS_WITH(test.test(grasp),
+                    testing::Contains("two jaws") && testing::Contains("2 joints"));
   grasp = pinch(5.0);
   grasp.squeeze->configuration.q[0] = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(test.test(grasp), geometry::InvalidInput);

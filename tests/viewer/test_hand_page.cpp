@@ -9,7 +9,7 @@
 namespace graspfit {
 namespace {
 
-using Catch::Matchers::Contains;
+using testing::Contains;
 using testing::sample_hand_scene;
 using viewer::hand_page_html;
 

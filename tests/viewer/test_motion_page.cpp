@@ -10,7 +10,7 @@
 namespace graspfit {
 namespace {
 
-using Catch::Matchers::Contains;
+using testing::Contains;
 using testing::sample_motion;
 
 TEST_CASE("A motion's page names no other file and no network address", "[viewer][motion_page]") {

@@ -10,7 +10,7 @@
 namespace graspfit {
 namespace {
 
-using Catch::Matchers::Contains;
+using testing::Contains;
 using viewer::page_html;
 
 viewer::PageInput sample_input() {

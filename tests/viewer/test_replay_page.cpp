@@ -10,8 +10,8 @@
 namespace graspfit {
 namespace {
 
-using Catch::Matchers::Contains;
 using hold_test::HoldStage;
+using testing::Contains;
 using testing::sample_replay;
 using viewer::replay_page_html;
 
