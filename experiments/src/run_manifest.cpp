@@ -182,7 +182,7 @@ void require_tables_of_manifest(const fs::path& manifest) {
   if (!json.contains("tables_sha256")) return;
   for (const auto& [name, hash] : json.at("tables_sha256").items()) {
     const fs::path table = manifest.parent_path() / name;
-    if (geometry::sha256_of_file(table) == hash) continue;
+    if (hash == Json(geometry::sha256_of_file(table))) continue;
     throw geometry::InvalidInput(table.string() + ": is not the table that " +
                                  manifest.filename().string() +
                                  " was written for (tables_sha256); run or publish it again");

@@ -19,6 +19,7 @@
 #include "internal/box_tree.hpp"
 #include "internal/crossing_faces.hpp"
 #include "internal/disjoint_sets.hpp"
+#include "internal/intersection_part.hpp"
 #include "internal/mesh_edges.hpp"
 #include "internal/predicates.hpp"
 #include "internal/vertex_welding.hpp"
@@ -329,15 +330,15 @@ class Builder {
   static void insert_crossings(const std::vector<Common>& crossings, int a, int b, Cut& cut) {
     const auto flat = [&](const Exact::Point_3& p) { return Exact::Point_2(p[a], p[b]); };
     for (const Common& common : crossings) {
-      if (!common) continue;
+      using internal::intersection_part;
       std::vector<Exact::Point_2> outline;
-      if (const auto* point = boost::get<Exact::Point_3>(&*common)) {
+      if (const auto* point = intersection_part<Exact::Point_3>(common)) {
         cut.insert(flat(*point));
-      } else if (const auto* segment = boost::get<Exact::Segment_3>(&*common)) {
+      } else if (const auto* segment = intersection_part<Exact::Segment_3>(common)) {
         cut.insert_constraint(flat(segment->source()), flat(segment->target()));
-      } else if (const auto* shared = boost::get<Exact::Triangle_3>(&*common)) {
+      } else if (const auto* shared = intersection_part<Exact::Triangle_3>(common)) {
         for (int i = 0; i < 3; ++i) outline.push_back(flat((*shared)[i]));
-      } else if (const auto* polygon = boost::get<std::vector<Exact::Point_3>>(&*common)) {
+      } else if (const auto* polygon = intersection_part<std::vector<Exact::Point_3>>(common)) {
         for (const Exact::Point_3& p : *polygon) outline.push_back(flat(p));
       }
       for (std::size_t i = 0; i < outline.size(); ++i) {

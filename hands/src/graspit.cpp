@@ -432,8 +432,9 @@ class Reader : private XmlSource {
       } else if (!fs::is_regular_file(mesh, error)) {
         findings_.note("link " + link.name, name + " is not there");
       } else {
-        link.collision.push_back(
-            {X_LG, MeshFileShape{name, Eigen::Vector3d::Constant(kMillimeter)}});
+        DescribedGeometry& added = link.collision.emplace_back();
+        added.X_LG = X_LG;
+        added.shape = MeshFileShape{name, Eigen::Vector3d::Constant(kMillimeter)};
         return;
       }
       break;

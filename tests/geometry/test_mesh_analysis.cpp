@@ -5,6 +5,7 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "internal/intersection_part.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
@@ -174,8 +175,8 @@ TEST_CASE("Crossings in triangles on a small grid are those of exact arithmetic"
         };
         const auto common = CGAL::intersection(triangles[i], triangles[j]);
         if (!common) continue;
-        const auto* point = boost::get<Exact::Point_3>(&*common);
-        const auto* segment = boost::get<Exact::Segment_3>(&*common);
+        const auto* point = internal::intersection_part<Exact::Point_3>(common);
+        const auto* segment = internal::intersection_part<Exact::Segment_3>(common);
         const bool is_regular = (point != nullptr && is_corner_of_both(*point)) ||
                                 (segment != nullptr && is_corner_of_both(segment->source()) &&
                                  is_corner_of_both(segment->target()));
