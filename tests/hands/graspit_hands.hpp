@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "graspfit/geometry/random.hpp"
@@ -11,8 +12,8 @@
 
 namespace graspfit::testing {
 
-inline const hands::Joint& joint(const hands::HandModel& hand, const std::string& name) {
-  return hand.joints[static_cast<std::size_t>(hand.joint_index(name))];
+inline const hands::Joint& joint(const hands::HandModel& hand, std::string_view name) {
+  return hand.joints[static_cast<std::size_t>(hand.joint_index(std::string(name)))];
 }
 
 inline bool mentions(const std::vector<hands::HandFinding>& findings, hands::FindingKind kind,
