@@ -17,6 +17,9 @@ function(graspfit_target_defaults target)
     -Wunused -Wextra-semi
     # GCC 12 warns of overlaps in std::string's own operator+ (its bug 105329).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    # It takes the sources that a unity build includes for headers, whose anonymous namespaces would
+    # be a mistake.
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
     $<$<BOOL:${GRASPFIT_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
