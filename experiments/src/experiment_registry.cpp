@@ -29,7 +29,7 @@ const std::vector<Experiment>& all_experiments() {
   return experiments;
 }
 
-const Experiment& find_experiment(const std::string& slug) {
+const Experiment& find_experiment(std::string_view slug) {
   std::vector<std::string> slugs;
   std::string names;
   for (const Experiment& experiment : all_experiments()) {
@@ -37,8 +37,9 @@ const Experiment& find_experiment(const std::string& slug) {
     slugs.push_back(experiment.slug);
     names += (names.empty() ? "" : ", ") + experiment.slug;
   }
-  throw geometry::InvalidInput("no experiment named " + slug + "; there are " + names +
-                               geometry::did_you_mean(slug, slugs));
+  const std::string name(slug);
+  throw geometry::InvalidInput("no experiment named " + name + "; there are " + names +
+                               geometry::did_you_mean(name, slugs));
 }
 
 }  // namespace graspfit::experiments

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "graspfit/experiments/parameter_sweep.hpp"
@@ -81,6 +82,6 @@ struct Experiment {
 const std::vector<Experiment>& all_experiments();
 
 /// @throws InvalidInput that lists the experiments, if there is none of that name.
-const Experiment& find_experiment(const std::string& slug);
+const Experiment& find_experiment(std::string_view slug);
 
 }  // namespace graspfit::experiments
