@@ -1,7 +1,7 @@
 # Set-up shared by ./quickstart and ./run-tests; sourced by bash, from the repository's root.
 # Safe to repeat: what is there already is found in a second and left alone.
 
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 LANG=C.UTF-8
 # Another checkout of the same sources may use what the compiler cache holds.
 export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_COMPILERCHECK=content
 
