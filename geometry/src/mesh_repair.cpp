@@ -365,9 +365,11 @@ TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, d
   constexpr double kMostStepsRel = 2000.0;
   const double size = extent / alpha;
   WrapLimit limit(static_cast<std::int64_t>(kMostStepsRel * (size * size + 10.0)));
+  // CGAL 5 looks for the visitor among the parameters of the output, CGAL 6 among those of the
+  // input; where it does not look, it says nothing.
+  const auto visited = CGAL::parameters::visitor(std::ref(limit));
   try {
-    CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap, CGAL::parameters::default_values(),
-                       CGAL::parameters::visitor(std::ref(limit)));
+    CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap, visited, visited);
   } catch (const WrapLimit::Exceeded&) {
     return {};
   } catch (const CGAL::Failure_exception&) {
