@@ -12,9 +12,9 @@ namespace graspfit::hands::internal {
 
 namespace {
 
-constexpr std::size_t kNumSamples = 100;
+constexpr std::size_t kNumPostures = 100;
 constexpr double kAlwaysShare = 0.95;
-constexpr std::uint64_t kSeed = 20;
+constexpr std::uint64_t kPostureSeed = 20;
 
 /// Links that may collide: queries and boxes of their surfaces.
 struct Surfaces {
@@ -38,7 +38,7 @@ bool meet(const Surfaces& surfaces, std::size_t a, std::size_t b,
 }
 
 HandConfiguration random_configuration(const HandModel& model, std::size_t sample) {
-  geometry::Random random = geometry::Random::stream(kSeed, sample);
+  geometry::Random random = geometry::Random::stream(kPostureSeed, sample);
   HandConfiguration configuration;
   configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -82,11 +82,11 @@ std::vector<std::pair<std::string, std::string>> derived_exclusions(const HandMo
   const std::vector<int> body_of = body_of_links(bodies, model.links.size());
   const std::vector<RigidTransform> open = forward_kinematics(model, open_configuration(model));
   std::vector<std::vector<RigidTransform>> samples;
-  for (std::size_t s = 0; s < kNumSamples; ++s) {
+  for (std::size_t s = 0; s < kNumPostures; ++s) {
     samples.push_back(forward_kinematics(model, random_configuration(model, s)));
   }
   const auto largest_miss =
-      static_cast<std::size_t>((1.0 - kAlwaysShare) * static_cast<double>(kNumSamples) + 0.5);
+      static_cast<std::size_t>((1.0 - kAlwaysShare) * static_cast<double>(kNumPostures) + 0.5);
 
   std::vector<std::pair<std::string, std::string>> pairs;
   for (std::size_t a = 0; a < model.links.size(); ++a) {
@@ -104,16 +104,16 @@ std::vector<std::pair<std::string, std::string>> derived_exclusions(const HandMo
         continue;
       }
       std::size_t num_met = 0;
-      for (std::size_t s = 0; s < kNumSamples; ++s) {
+      for (std::size_t s = 0; s < kNumPostures; ++s) {
         num_met += meet(surfaces, a, b, samples[s]) ? 1U : 0U;
         // The answer cannot change any more.
         if (are_neighbors ? num_met > 0 : s + 1 - num_met > largest_miss) break;
       }
-      if (are_neighbors ? num_met > 0 : num_met + largest_miss >= kNumSamples) {
+      if (are_neighbors ? num_met > 0 : num_met + largest_miss >= kNumPostures) {
         pairs.push_back(names);
         if (!are_neighbors) {
           findings.note(item, "their collision is ignored: they meet in " +
-                                  percent(num_met, kNumSamples) + " of random configurations");
+                                  percent(num_met, kNumPostures) + " of random configurations");
         }
       }
     }
