@@ -168,8 +168,9 @@ fetch_meshes() {
     say "meshes: $GRASPFIT_PACKAGED_MESHES"
     return
   fi
-  local cache=${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache}/graspfit work
-  if ! mkdir -p "$cache" 2>/dev/null || ! [ -w "$cache" ]; then
+  local cache=${XDG_CACHE_HOME:-${HOME:+$HOME/.cache}} work
+  cache+=${cache:+/graspfit}
+  if [ -z "$cache" ] || ! mkdir -p "$cache" 2>/dev/null || ! [ -w "$cache" ]; then
     cache=$PWD/build/cache
     mkdir -p "$cache"
     export CCACHE_DIR=${CCACHE_DIR:-$cache/ccache}
