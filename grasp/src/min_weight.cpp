@@ -39,7 +39,10 @@ MinWeight min_weight(const Wrenches& wrenches) {
   Eigen::MatrixXd constraints(7, count + 2);
   constraints.topLeftCorner(6, count) = rounded;
   constraints.row(6).head(count).setOnes();
-  constraints.col(count) << rounded.rowwise().sum(), static_cast<double>(count);
+  // A vector of its own: straight into a column at an odd place, Eigen 3.4 reads pairs of rows from
+  // odd ones, and its assertions take those for misaligned.
+  const Wrench sum = rounded.rowwise().sum();
+  constraints.col(count) << sum, static_cast<double>(count);
   constraints.col(count + 1) = -constraints.col(count);
   Eigen::VectorXd objective = Eigen::VectorXd::Zero(count + 2);
   objective[count] = 1.0;
