@@ -22,7 +22,7 @@ function(graspfit_target_defaults target)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
     $<$<BOOL:${GRASPFIT_WARNINGS_AS_ERRORS}>:-Werror>)
   if(GRASPFIT_SANITIZE)
-    # With them, as its manual says, GCC warns where nothing is wrong: here in std::regex.
+    # GCC 12 then takes std::regex for uninitialized (its bug 105562).
     target_compile_options(${target} PRIVATE
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   endif()

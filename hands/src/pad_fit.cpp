@@ -412,8 +412,8 @@ std::optional<FittedPad> flat_pad(const MeshQuery& link, const RayGrid& grid,
   if (outline_S.size() < 3 || !(area_of(outline_S) > least_area)) return std::nullopt;
   simplify(outline_S, kMaxCorners);
   // From the search frame's x and y onto the plane, then into the pad's own axes.
-  const auto lifted_L = [&](const Vector2d& p) -> Vector3d {
-    const double z = (plane.offset - plane.normal.head<2>().dot(p)) / plane.normal.z();
+  const auto lifted_L = [&R_LS, &front = plane](const Vector2d& p) -> Vector3d {
+    const double z = (front.offset - front.normal.head<2>().dot(p)) / front.normal.z();
     return R_LS * Vector3d(p.x(), p.y(), z);
   };
   FittedPad pad;
