@@ -294,9 +294,10 @@ TEST_CASE("Duplicated faces have the same pieces, bit for bit",
   for (const auto& [voxel, piece] : triple) {
     if (piece.face >= num_faces && (piece.face - num_faces) % 2 == 1) continue;  // The other way.
     const std::int32_t face = piece.face < num_faces ? piece.face : (piece.face - num_faces) / 2;
-    const auto same = std::find_if(single.begin(), single.end(), [&](const VoxelPiece& p) {
-      return p.voxel == voxel && p.piece.face == face;
-    });
+    const auto same =
+        std::find_if(single.begin(), single.end(), [face, &place = voxel](const VoxelPiece& p) {
+          return p.voxel == place && p.piece.face == face;
+        });
     REQUIRE(same != single.end());
     REQUIRE(piece.polygon == same->piece.polygon);
     REQUIRE(piece.area == same->piece.area);

@@ -122,7 +122,8 @@ TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh
   Random random(43);
   int touches = 0;
   for (int i = 0; i < 90; ++i) {
-    const auto& [mesh_a, mesh_b] = solids[i % solids.size()];
+    const TriangleMesh& mesh_a = solids[i % solids.size()].first;
+    const TriangleMesh& mesh_b = solids[i % solids.size()].second;
     RigidTransform X = drawn_pose(random, 1.0);
     if (i % 2 == 1) X.linear() = (X.linear() * 1e6).array().round() / 1e6;
     const double far = i % 5 == 0 ? 1000.0 : 0.0;

@@ -1,6 +1,5 @@
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,6 @@ namespace {
 using namespace graspfit;
 using namespace graspfit::testing;
 using grasp::TargetFailure;
-
-constexpr double kPi = std::numbers::pi;
 
 /// Two fingers whose tips are anywhere, and a palm pad of radius 0.2.
 PartDistances reach_with_palm(double smallest, double largest) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,8 +18,6 @@ using namespace graspfit;
 using namespace graspfit::testing;
 using grasp::PairRule;
 using grasp::TargetFailure;
-
-constexpr double kPi = std::numbers::pi;
 
 // ---------------------------------------------------------------------------------------------
 // Chance
