@@ -148,8 +148,7 @@ class Written(ConvertTest):
     def setUp(self):
         super().setUp()
         if numpy is None or yaml is None:
-            print("SKIPPED: python3-numpy or python3-yaml is not installed")
-            self.skipTest("no numpy or yaml")
+            self.skipTest("python3-numpy or python3-yaml is not installed")
 
     def test_isaac_grasp(self):
         printed = self.convert("out/grasps.json", "grasps.yaml")
@@ -370,8 +369,7 @@ class Imported(ConvertTest):
         for file in ("out/grasps.json", "back.json"):
             done = program.run("hold", file, "--grasp", "1", cwd=self.folder)
             if "MuJoCo" in done.stderr:
-                print("SKIPPED: built without MuJoCo")
-                return
+                self.skipTest("built without MuJoCo")
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             tables.append(done.stdout)
         self.assertIn(" held ", tables[0])
@@ -381,8 +379,7 @@ class Imported(ConvertTest):
         try:
             import jsonschema
         except ImportError:
-            print("SKIPPED: python3-jsonschema is not installed")
-            return
+            self.skipTest("python3-jsonschema is not installed")
         self.convert("out/grasps.json", "grasps.yaml")
         self.convert("grasps.yaml", "back.json", *self.IMPORT)
         schema = json.loads((program.SOURCE_DIR / "grasp/grasps.schema.json").read_text())
@@ -502,9 +499,8 @@ class Locale(ConvertTest):
     def test_locale_does_not_change_the_bytes(self):
         environment = program.german_environment(self.folder)
         if environment is None:
-            print("SKIPPED: no German locale, and none could be compiled; install the package "
-                  "locales")
-            return
+            self.skipTest("no German locale, and none could be compiled; install the package "
+                          "locales")
         comma = subprocess.run(["bash", "-c", "printf %.1f 1,5"], env=environment,
                                capture_output=True, text=True, check=True)
         self.assertEqual(comma.stdout, "1,5")

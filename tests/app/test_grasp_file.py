@@ -76,8 +76,7 @@ def planned_file():
 class Schema(program.ProgramTest):
     def test_valid_against_the_schema_and_the_schema_is_strict(self):
         if jsonschema is None:
-            print("SKIPPED: python3-jsonschema is not installed")
-            return
+            self.skipTest("python3-jsonschema is not installed")
         data = planned_file()
         schema = json.loads((program.SOURCE_DIR / "grasp/grasps.schema.json").read_text())
         jsonschema.Draft202012Validator.check_schema(schema)
@@ -220,8 +219,7 @@ class GraspFile(program.ProgramTest):
 
     def test_epsilon_follows_from_contacts_and_convention_alone(self):
         if ConvexHull is None:
-            print("SKIPPED: python3-scipy is not installed")
-            return
+            self.skipTest("python3-scipy is not installed")
         for grasp in self.data["results"]["grasps"]:
             wrench = grasp["wrench"]
             self.assertIsNotNone(wrench)

@@ -41,7 +41,6 @@ class PhysicsTest(program.ProgramTest):
         if "no physics engine" in done.stderr:
             assert done.returncode == 2, done.stderr
             assert done.stderr.startswith("graspfit hold: this build"), done.stderr
-            print("SKIPPED: built without MuJoCo")
             raise unittest.SkipTest("built without MuJoCo")
         assert done.returncode == 0, done.stderr
 

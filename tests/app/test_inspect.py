@@ -141,8 +141,7 @@ class Inspect(InspectTest):
 class VtkFiles(InspectTest):
     def test_files_open_in_vtk_and_agree_with_the_report(self):
         if vtkPLYReader is None:
-            print("SKIPPED: python3-vtk9 is not installed")
-            return
+            self.skipTest("python3-vtk9 is not installed")
         out = self.folder / "out"
         text = self.inspect(self.write_torus(), "--out", out)
         self.assertEqual(sorted(path.name for path in out.iterdir()),

@@ -19,7 +19,7 @@ class Motion(ProgramTest):
     def setUp(self):
         super().setUp()
         if not (data_folder() / "meshes/paper/flower_pot.obj").is_file():
-            self.skipTest("SKIPPED: no meshes; set GRASPFIT_DATA")
+            self.skipTest("no meshes; set GRASPFIT_DATA")
         out = self.folder / "out"
         done = run("experiment", "run", "table_tidying", "--quick", "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)

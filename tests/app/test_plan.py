@@ -202,9 +202,8 @@ class Locale(program.ProgramTest):
     def test_locale_does_not_change_the_bytes(self):
         environment = program.german_environment(self.folder)
         if environment is None:
-            print("SKIPPED: no German locale, and none could be compiled; install the package "
-                  "locales")
-            return
+            self.skipTest("no German locale, and none could be compiled; install the package "
+                          "locales")
         comma = subprocess.run(["bash", "-c", "printf %.1f 1,5"], env=environment,
                                capture_output=True, text=True, check=True)
         self.assertEqual(comma.stdout, "1,5")
@@ -232,8 +231,7 @@ class Page(program.ProgramTest):
 class Pictures(program.ProgramTest):
     def test_pictures_are_drawn(self):
         if importlib.util.find_spec("vtkmodules") is None or not shutil.which("xvfb-run"):
-            print("SKIPPED: python3-vtk9 or xvfb is not installed")
-            return
+            self.skipTest("python3-vtk9 or xvfb is not installed")
         done = program.run("plan", self.write_torus(), *FAST, "--pictures", "--out",
                            self.folder / "out")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
