@@ -17,10 +17,10 @@ CACHE = tempfile.TemporaryDirectory()
 os.environ["GRASPFIT_CACHE"] = CACHE.name
 
 
-def run(*arguments, cwd=None, env=None, timeout=200):
+def run(*arguments, cwd=None, env=None):
     """Exit code, standard output and standard error of one run."""
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd,
-                          env=env, timeout=timeout, check=False)
+                          env=env, check=False)
 
 
 def off_text(vertices, faces):
