@@ -105,10 +105,15 @@ po::options_description search_options() {
   add_integer(search, "count", static_cast<std::uint64_t>(defaults.count),
               "grasps to find, at least 1");
   add_integer(search, "seed", defaults.seed, "of the random numbers; same seed, same grasps");
-  add_choice(
-      search, "accept", defaults.acceptance,
-      "which grasps count: free of penetration and with every contact; M > 0 [P]; M at least "
-      "half of the targets' own or 0.6 [R, A36]");
+  add_choice(search, "accept", defaults.acceptance,
+             "which grasps count: free of penetration and with every contact; or M > 0 [P]");
+  add_choice(search, "reject", defaults.rejection,
+             "grasps after which new targets are drawn: with a contact farther from its target "
+             "than --largest-deviation-mm; or M below half of the targets' own and below 0.6 [P; "
+             "how much is too much: R, A36]");
+  add_option(search, "largest-deviation-mm", "NUMBER", std::nullopt,
+             "with --reject deviation: of a contact from its target; without it the width of a "
+             "fingertip pad [R, A36]");
   add_choice(search, "missing-contact", defaults.missing_contact,
              "without refinement: whether an attempt fails where a part that was asked for does "
              "not touch, or is measured by the contacts that there are [R, A31]");
@@ -199,8 +204,20 @@ po::options_description target_options() {
              "fingers stop at each other, too, while they close, those without a target swing out "
              "of the way, and sets for which none cross go first; no: fingers close through each "
              "other, and refinement parts them or gives up [R]");
-  add_option(target, "settle", "yes|no", defaults.fitting.settle ? "yes" : "no",
-             "after the clip test, close fingers on until they touch [R]; no: the paper's contact");
+  add_choice(
+      target, "contact-state", defaults.fitting.contact_state,
+      "when a closing finger has touched: when its next motion would enter the object [P], or "
+      "when its clip volume holds a first sliver of surface, for comparison [R, A32]");
+  add_choice(
+      target, "palm-after-contact", defaults.fitting.palm_after_contact,
+      "once a finger touches the palm stays, or goes on when all have closed, as long as "
+      "contacts come nearer to their targets, fingers giving way and closing again [R, A29]");
+  add_option(target, "counted-pads", names_of<grasp::CountedPads>(), std::nullopt,
+             "whose contacts count; without it those of fingertips and palm, in power grasps all "
+             "[R, A35]");
+  add_choice(target, "contact-pieces", defaults.contact_pieces,
+             "surface in a clip volume that does not hang together is one contact [P], or several "
+             "where their middles are farther apart than half the pad's width [R]");
   add_option(target, "clip-thickness-mm", "NUMBER", std::nullopt,
              "of clip volumes; without it max(0.5 voxel, 1 mm) [R, A33]");
 
@@ -236,6 +253,9 @@ po::options_description refinement_options() {
   add_integer(refinement, "slide-steps", static_cast<std::uint64_t>(limits.slide_steps),
               "in which pads that touch are slid toward their targets: larger M, more work; 8 is a "
               "good number, 0: not");
+  add_integer(refinement, "near-pad-steps", static_cast<std::uint64_t>(limits.near_pad_steps),
+              "in which each further pad that nearly touches is brought to touch where all others "
+              "keep touching; 0: it stays");
   add_option(refinement, "contact-score-threshold", "NUMBER", std::nullopt,
              "every contact's score must exceed it, 0 to 1, not only those of targets, which "
              "fingers miss; such grasps count as usable but not valid; without: not asked [R]");
@@ -368,6 +388,7 @@ void read_contact_flags(const Flags& flags, PlannerOptions& options) {
   read_angle(flags, "largest-turn-deg", limits.largest_turn);
   limits.max_iterations = flags.integer("refine-iterations");
   limits.slide_steps = flags.integer("slide-steps");
+  limits.near_pad_steps = flags.integer("near-pad-steps");
   options.contact_score_threshold = flags.optional_number("contact-score-threshold");
   options.pre_grasps = flags.yes_or_no("pre-grasps");
   read_millimeters(flags, "pre-grasp-clearance-mm", options.pre_grasp.clearance);
@@ -407,6 +428,13 @@ void read_search_flags(const Flags& flags, PlannerOptions& options) {
   options.seed = flags.unsigned_integer("seed");
   options.acceptance = flags.choice<grasp::Acceptance>("accept");
   options.missing_contact = flags.choice<grasp::MissingContact>("missing-contact");
+  options.rejection = flags.choice<grasp::Rejection>("reject");
+  if (const auto deviation_mm = flags.optional_number("largest-deviation-mm")) {
+    if (options.rejection != grasp::Rejection::Deviation) {
+      throw UsageError("--largest-deviation-mm means nothing without --reject deviation");
+    }
+    options.largest_deviation = *deviation_mm / 1000.0;
+  }
   options.search = flags.choice<grasp::SearchRule>("search");
   options.target_draws = flags.integer("target-draws");
   options.attempt_choice = flags.choice<grasp::AttemptChoice>("attempt-choice");
@@ -452,11 +480,16 @@ void read_target_flags(const Flags& flags, PlannerOptions& options) {
   read_millimeters(flags, "pool-spacing-mm", options.targets.pool_spacing);
   options.fitting.guard = flags.choice<grasp::PenetrationGuard>("guard");
   options.fitting.guard_self = flags.yes_or_no("guard-self");
-  options.fitting.settle = flags.yes_or_no("settle");
+  options.fitting.contact_state = flags.choice<grasp::ContactState>("contact-state");
+  options.fitting.palm_after_contact = flags.choice<grasp::PalmAfterContact>("palm-after-contact");
   options.fitting.clearance = flags.number("clearance-mm") / 1000.0;
   if (const auto thickness_mm = flags.optional_number("clip-thickness-mm")) {
     options.clip_thickness = *thickness_mm / 1000.0;
   }
+  if (flags.has("counted-pads")) {
+    options.counted_pads = flags.choice<grasp::CountedPads>("counted-pads");
+  }
+  options.contact_pieces = flags.choice<grasp::ContactPieces>("contact-pieces");
 }
 
 void read_measure_flags(const Flags& flags, PlannerOptions& options) {

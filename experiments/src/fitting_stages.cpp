@@ -7,12 +7,13 @@
 // refinement did.
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/experiment_list.hpp"
@@ -82,7 +83,7 @@ class Loop {
                            std::optional<int> max_iterations = {}) const {
     const grasp::PlannerOptions& options = planned_.settings.options;
     grasp::FittingOptions fitting = options.fitting;
-    fitting.settle = fitting.settle && !options.refine;
+    if (options.refine) fitting.contact_state = grasp::ContactState::FirstGraze;
     if (max_iterations) fitting.max_iterations = *max_iterations;
     return grasp::fit_hand(
         hand_, planned_.object, surroundings_, options.style, targets_, placement,
@@ -122,24 +123,17 @@ class Loop {
 
 /// Mean distance of the fingers' contacts with a target from it [m].
 std::optional<double> mean_target_distance(const grasp::Grasp& grasp) {
-  std::vector<double> distances;
-  for (const grasp::TargetContact& target : grasp.targets.contacts) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const grasp::Contact& contact : grasp.contacts) {
-      if (!contact.is_target || contact.finger != target.finger) continue;
-      nearest = std::min(nearest, (contact.point_O - target.point_O).norm());
-    }
-    if (nearest < std::numeric_limits<double>::infinity()) distances.push_back(nearest);
-  }
+  std::vector<double> distances = grasp::target_distances(grasp);
+  std::erase_if(distances, [](double distance) { return !std::isfinite(distance); });
   return mean(distances);
 }
 
 /// Grasps of other methods have no targets from which the loop could be run again.
 PlanningSettings settings_of(const Cell& cell) {
   PlanningSettings settings = planning_settings(cell);
-  if (settings.options.planner != "fitting") {
+  if (!grasp::find_planning_method(settings.options.planner).has_targets) {
     throw SettingError("planner", "is \"" + settings.options.planner +
-                                      "\", must be fitting: only its grasps have targets");
+                                      "\", must be one whose hands are fitted to targets");
   }
   return settings;
 }

@@ -1,7 +1,9 @@
 #include "internal/method_summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -13,9 +15,12 @@
 namespace graspfit::experiments::internal {
 namespace {
 
-/// Methods in the paper's order, with the names of their columns.
-constexpr std::pair<const char*, const char*> kMethods[] = {
-    {"gs", "gs"}, {"ma", "ma"}, {"ma-full-retreat", "ma_full_retreat"}, {"fitting", "fitting"}};
+/// The baselines that a method may be above, with the names of the columns that say so.
+constexpr std::pair<const char*, const char*> kBaselines[] = {
+    {"gs-targets", "above_gs_targets"},
+    {"gs", "above_gs"},
+    {"ma", "above_ma"},
+    {"ma-full-retreat", "above_ma_full_retreat"}};
 constexpr const char* kAll = "all";
 
 std::optional<std::size_t> axis_of(const ParameterSweep& sweep, const std::string& name) {
@@ -48,72 +53,131 @@ std::vector<double> numbers_of(const FinishedCell& cell, std::size_t column) {
 std::vector<Column> paper_layout_columns(const MethodTableAxes& axes) {
   std::vector<Column> columns = {
       {"object", "", "label of the object"},
-      {axes.row, "", "label of its " + axes.row + "; empty where there is one only"}};
-  for (const auto& [method, name] : kMethods) {
-    const std::string prefix = name;
-    const std::string of = std::string(" of planner ") + method;
-    columns.push_back({prefix + "_grasps", "1", "grasps" + of});
-    columns.push_back({prefix + "_mean_m", "1", "mean M of these"});
-    columns.push_back({prefix + "_sd_m", "1", "standard deviation of M of these"});
-    columns.push_back({prefix + "_median_m", "1", "median M of these"});
-    columns.push_back({prefix + "_paper_m", "1", "mean M in the paper's Table 1"});
-    columns.push_back({prefix + "_paper_time_s", "s", "its time per grasp"});
+      {axes.row, "", "label of its " + axes.row + "; empty where there is one only"},
+      {"planner", "", "label of the method"},
+      {"hand", "", "name of the hand"},
+      {"grasps", "1", "with M > 0, of all cells of this row"},
+      {"attempts", "1", "for these"},
+      {"mean_m", "1", "mean M of the grasps"},
+      {"se_m", "1", "its standard error: standard deviation over the root of their number"},
+      {"sd_m", "1", "standard deviation of M"},
+      {"median_m", "1", "median M"},
+      {"m_per_attempt", "1", "mean M per attempt, 0 for those without a grasp"},
+      {"rejected_rate", "1", "attempts rejected for their deviation or their M, over attempts"},
+      {"paper_m", "1", "mean M in the paper's Table 1"},
+      {"m_over_paper", "1", "mean M over the paper's"},
+      {"paper_time_s", "s", "its time per grasp"},
+      {"target_distance_m", "m", "mean distance of contacts from their targets"},
+      {"area_share_median", "1",
+       "median over the grasps of that over contacts of A over the pad's"},
+      {"gap_median_m", "m", "median over the grasps of that over contacts of the gap"},
+      {"overlap_mean_m", "m", "mean over the grasps of the deepest overlap"},
+      {"overlap_max_m", "m", "largest"}};
+  for (const auto& [method, column] : kBaselines) {
+    columns.push_back({column, "", std::string("the mean M is above that of ") + method});
   }
-  columns.push_back({"fitting_above_ma", "", "fitting has the larger mean M, as in the paper"});
-  columns.push_back({"ma_above_gs", "", "ma has the larger mean M, as in the paper"});
-  columns.push_back({"fitting_above_ma_full_retreat", "", "the same with full retreat"});
-  columns.push_back({"ma_full_retreat_above_gs", "", "the same with full retreat"});
-  columns.push_back({"fitting_above_gs", "", "fitting has the larger mean M, as in the paper"});
   return columns;
 }
 
-std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const ParameterSweep& sweep,
+namespace {
+
+/// What the cells of one method on one object and row come to.
+struct MethodCells {
+  std::string hand;
+  double attempts = 0.0;
+  double rejected = 0.0;
+  std::map<std::string, std::vector<double>> details;
+
+  const std::vector<double>& of(const std::string& name) const { return details.at(name); }
+};
+
+/// Details that the layout sums up.
+constexpr const char* kSummedDetails[] = {"m", "target_distance_mean", "area_share_median",
+                                          "gap_median_m", "deepest_overlap_m"};
+
+void add(const FinishedCell& cell, const std::vector<Column>& columns,
+         const std::vector<Column>& details, MethodCells& cells) {
+  const auto number = [&](const char* name) {
+    return csv_number(cell.row[column_of(columns, name)]).value_or(0.0);
+  };
+  cells.hand = cell.row[column_of(columns, "hand")];
+  cells.attempts += number("attempts");
+  cells.rejected += number("attempts_rejected");
+  for (const char* const name : kSummedDetails) {
+    const std::vector<double> more = numbers_of(cell, column_of(details, name));
+    std::vector<double>& all = cells.details[name];
+    all.insert(all.end(), more.begin(), more.end());
+  }
+}
+
+std::optional<double> over(std::optional<double> value, double divisor) {
+  if (!value || !(divisor > 0.0)) return std::nullopt;
+  return *value / divisor;
+}
+
+void fill_layout_row(const std::string& object, const std::string& method, const MethodCells& cells,
+                     ResultRow& row) {
+  const std::vector<double>& ms = cells.of("m");
+  const auto count = static_cast<double>(ms.size());
+  row.set("hand", cells.hand);
+  row.set("grasps", field(ms.size()));
+  row.set("attempts", cells.attempts);
+  row.set("mean_m", field(mean(ms)));
+  row.set("se_m", field(over(standard_deviation(ms), std::sqrt(count))));
+  row.set("sd_m", field(standard_deviation(ms)));
+  row.set("median_m", field(median(ms)));
+  row.set("m_per_attempt", field(over(std::accumulate(ms.begin(), ms.end(), 0.0), cells.attempts)));
+  row.set("rejected_rate", field(over(cells.rejected, cells.attempts)));
+  row.set("target_distance_m", field(mean(cells.of("target_distance_mean"))));
+  row.set("area_share_median", field(median(cells.of("area_share_median"))));
+  row.set("gap_median_m", field(median(cells.of("gap_median_m"))));
+  row.set("overlap_mean_m", field(mean(cells.of("deepest_overlap_m"))));
+  row.set("overlap_max_m", field(largest(cells.of("deepest_overlap_m"))));
+  if (const auto paper = paper_table1(object, method)) {
+    row.set("paper_m", paper->quality);
+    row.set("m_over_paper", field(over(mean(ms), paper->quality)));
+    row.set("paper_time_s", paper->time_s);
+  }
+}
+
+}  // namespace
+
+std::vector<ResultRow> paper_layout(const std::vector<Column>& columns,
+                                    const std::vector<Column>& details, const ParameterSweep& sweep,
                                     const std::vector<FinishedCell>& cells,
                                     const MethodTableAxes& axes) {
   const auto object_axis = axis_of(sweep, kObjectAxis);
   const auto row_axis = axis_of(sweep, axes.row);
   const auto method_axis = axis_of(sweep, kMethodAxis);
-  const std::size_t m_at = column_of(details, "m");
-  std::vector<std::pair<std::string, std::string>> order;  // of rows, as in the sweep
-  std::map<std::pair<std::string, std::string>, std::map<std::string, std::vector<double>>> found;
+  using Key = std::pair<std::string, std::string>;  // object and row
+  std::vector<Key> order;                           // as in the sweep
+  std::map<Key, std::vector<std::string>> methods;  // as in the sweep
+  std::map<Key, std::map<std::string, MethodCells>> found;
   for (const FinishedCell& cell : cells) {
-    const std::pair key(label_of(cell, object_axis), label_of(cell, row_axis));
+    const Key key(label_of(cell, object_axis), label_of(cell, row_axis));
+    const std::string method = label_of(cell, method_axis);
     if (!found.contains(key)) order.push_back(key);
-    std::vector<double>& ms = found[key][label_of(cell, method_axis)];
-    const std::vector<double> more = numbers_of(cell, m_at);
-    ms.insert(ms.end(), more.begin(), more.end());
+    if (!found[key].contains(method)) methods[key].push_back(method);
+    add(cell, columns, details, found[key][method]);
   }
   std::vector<ResultRow> rows;
-  for (const auto& key : order) {
-    ResultRow row(paper_layout_columns(axes));
-    row.set("object", key.first);
-    row.set(axes.row, key.second);
-    std::map<std::string, double> means;
-    for (const auto& [method, name] : kMethods) {
-      const std::string prefix = name;
-      if (const auto paper = paper_table1(key.first, method)) {
-        row.set(prefix + "_paper_m", paper->quality);
-        row.set(prefix + "_paper_time_s", paper->time_s);
+  for (const Key& key : order) {
+    for (const std::string& method : methods[key]) {
+      ResultRow row(paper_layout_columns(axes));
+      row.set("object", key.first);
+      row.set(axes.row, key.second);
+      row.set("planner", method);
+      const MethodCells& own = found[key][method];
+      fill_layout_row(key.first, method, own, row);
+      for (const auto& [baseline, column] : kBaselines) {
+        const auto other = found[key].find(baseline);
+        if (other == found[key].end() || baseline == method) continue;
+        const auto mine = mean(own.of("m"));
+        const auto others = mean(other->second.of("m"));
+        if (mine && others) row.set(column, *mine > *others);
       }
-      const auto ms = found[key].find(method);
-      if (ms == found[key].end()) continue;
-      row.set(prefix + "_grasps", field(ms->second.size()));
-      row.set(prefix + "_mean_m", field(mean(ms->second)));
-      row.set(prefix + "_sd_m", field(standard_deviation(ms->second)));
-      row.set(prefix + "_median_m", field(median(ms->second)));
-      if (const auto m = mean(ms->second)) means[name] = *m;
+      rows.push_back(std::move(row));
     }
-    const auto compare = [&](const char* column, const char* larger, const char* smaller) {
-      if (means.contains(larger) && means.contains(smaller)) {
-        row.set(column, means[larger] > means[smaller]);
-      }
-    };
-    compare("fitting_above_ma", "fitting", "ma");
-    compare("ma_above_gs", "ma", "gs");
-    compare("fitting_above_ma_full_retreat", "fitting", "ma_full_retreat");
-    compare("ma_full_retreat_above_gs", "ma_full_retreat", "gs");
-    compare("fitting_above_gs", "fitting", "gs");
-    rows.push_back(std::move(row));
   }
   return rows;
 }

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/grasp/fitting_hand.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/grasp_measures.hpp"
 #include "internal/planning_table.hpp"
 #include "internal/setting_value.hpp"
@@ -45,14 +47,20 @@ std::vector<Column> details() {
       {"is_valid", "", "without penetration, every requested part in contact"},
       {"has_all_contacts", "", "every requested part in contact"},
       {"is_penetrating", "", "on the true meshes, decided exactly"},
-      {"deepest_overlap_m", "m", "with the object or of the hand with itself"}};
+      {"deepest_overlap_m", "m", "with the object or of the hand with itself"},
+      {"d_min_voxels", "voxels", "smallest value of the signed map where the hand is"},
+      {"area_share_median", "1", "median over the contacts of A over the area of the pad"},
+      {"gap_median_m", "m", "median over the contacts of the gap"}};
   for (Column& column : grasp_measure_columns()) columns.push_back(std::move(column));
   return columns;
 }
 
 std::vector<Column> columns() {
   std::vector<Column> all = {
+      {"hand", "", "name of the hand"},
       {"planner_seed", "1", "seed of the planner"},
+      {"voxel_size_m", "m", "edge of a voxel"},
+      {"clip_thickness_m", "m", "of clip volumes whose pads state none"},
       {"is_complete", "", "as many grasps as were asked for"},
       {"found_share", "1", "grasps over attempts"},
       {"all_contacts_share", "1", "of the grasps, with every requested part in contact"},
@@ -105,6 +113,35 @@ std::optional<double> share_of(std::size_t count, std::size_t all) {
   return static_cast<double>(count) / static_cast<double>(all);
 }
 
+/// Of all links, where the map knows it.
+double d_min(const grasp::ObjectModel& object, const grasp::FittingHand& hand,
+             const grasp::Grasp& grasp) {
+  constexpr float kEnough = 2.0F;
+  const std::vector<geometry::RigidTransform> X_OL =
+      hands::forward_kinematics(hand.model(), grasp.configuration);
+  float smallest = kEnough;
+  for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
+    if (hand.samples(link).balls.empty()) continue;
+    smallest = std::min(smallest,
+                        grasp::smallest_distance(hand, link, X_OL[link], object.distance, kEnough));
+  }
+  return smallest;
+}
+
+std::vector<double> area_shares(const hands::HandModel& hand, const grasp::Grasp& grasp) {
+  std::vector<double> shares;
+  for (const grasp::Contact& contact : grasp.contacts) {
+    shares.push_back(contact.area / hands::pad_area(hand.pads[contact.pad]));
+  }
+  return shares;
+}
+
+std::vector<double> gaps(const grasp::Grasp& grasp) {
+  std::vector<double> gaps;
+  for (const grasp::Contact& contact : grasp.contacts) gaps.push_back(contact.gap);
+  return gaps;
+}
+
 CellResult run(const Cell& cell, const std::filesystem::path& folder) {
   const Planned planned = plan(settings_of(cell));
   std::vector<const grasp::Grasp*> found;  // in the order in which they were found
@@ -115,6 +152,9 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
   CellResult result{ResultRow(columns()), ResultRow(timings())};
   double measures_s = 0.0;
   std::vector<GraspMeasures> measured;
+  const grasp::PlannerOptions& options = planned.settings.options;
+  const double voxel_size = planned.object.grid.lattice.voxel_size;
+  const grasp::FittingHand hand(*planned.hand, options.fitting.sample_spacing * voxel_size);
   for (const grasp::Grasp* grasp : found) {
     measured.push_back(measures_of(planned, *grasp, measures_s));
     ResultRow row(details());
@@ -123,6 +163,9 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
     row.set("has_all_contacts", grasp->has_all_contacts);
     row.set("is_penetrating", grasp->penetration.is_any());
     row.set("deepest_overlap_m", grasp::largest_penetration(*grasp));
+    row.set("d_min_voxels", d_min(planned.object, hand, *grasp));
+    row.set("area_share_median", field(median(area_shares(*planned.hand, *grasp))));
+    row.set("gap_median_m", field(median(gaps(*grasp))));
     for (const auto& [name, value] : measured.back()) row.set(name, field(value));
     result.details.push_back(std::move(row));
   }
@@ -133,8 +176,11 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
   };
   ResultRow& row = result.row;
   fill_planning_columns(planned, row);
-  row.set("planner_seed", static_cast<std::int64_t>(planned.settings.options.seed));
-  row.set("is_complete", static_cast<int>(found.size()) >= planned.settings.options.count);
+  row.set("hand", planned.hand->name);
+  row.set("planner_seed", static_cast<std::int64_t>(options.seed));
+  row.set("voxel_size_m", voxel_size);
+  row.set("clip_thickness_m", grasp::clip_thickness(options, voxel_size));
+  row.set("is_complete", static_cast<int>(found.size()) >= options.count);
   row.set(
       "found_share",
       field(share_of(found.size(), static_cast<std::size_t>(planned.result.statistics.attempts))));
@@ -183,9 +229,9 @@ Experiment method_experiment(const std::string& slug, const MethodTableAxes& axe
   experiment.details = details();
   experiment.summaries.push_back(
       {"summary", paper_layout_columns(axes),
-       [columns = details(), axes](const ParameterSweep& sweep,
-                                   const std::vector<FinishedCell>& cells) {
-         return paper_layout(columns, sweep, cells, axes);
+       [columns = columns(), details = details(), axes](const ParameterSweep& sweep,
+                                                        const std::vector<FinishedCell>& cells) {
+         return paper_layout(columns, details, sweep, cells, axes);
        }});
   experiment.summaries.push_back(
       {"correlations", correlation_columns(axes),

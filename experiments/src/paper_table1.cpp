@@ -25,9 +25,9 @@ std::optional<PaperFigures> paper_table1(std::string_view object, std::string_vi
   if (object == "bowling_pin" || object == "bowling_ball") object = "bowling";
   for (const PaperRow& row : kRows) {
     if (row.object != object) continue;
-    if (method == "gs") return row.gs;
+    if (method == "gs" || method == "gs-targets") return row.gs;
     if (method == "ma" || method == "ma-full-retreat") return row.ma;
-    if (method == "fitting") return row.fitting;
+    if (method.starts_with("fitting")) return row.fitting;
   }
   return std::nullopt;
 }

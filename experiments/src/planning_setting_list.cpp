@@ -183,6 +183,17 @@ std::vector<PlanningSetting> request_settings() {
       choice<grasp::MissingContact>(
           "missing-contact", "without refinement: what becomes of an attempt that lacks one",
           [](PlannerOptions & o) -> auto& { return o.missing_contact; }),
+      choice<grasp::Rejection>(
+          "reject", "which usable grasps are rejected for new targets",
+          [](PlannerOptions & o) -> auto& { return o.rejection; }),
+      option(
+          "largest-deviation-mm", "mm",
+          "with reject deviation: of a contact from its target; without it a fingertip pad's width",
+          of_type("number"),
+          [](PlannerOptions& o, const SettingValue& v) {
+            o.largest_deviation = v.number() * kMetersPerMillimeter;
+          },
+          above(0)),
       choice<grasp::SearchRule>(
           "search", "when the planner stops looking",
           [](PlannerOptions & o) -> auto& { return o.search; })};
@@ -307,9 +318,21 @@ std::vector<PlanningSetting> fitting_settings() {
       yes_or_no(
           "guard-self", "fingers stop at each other while they close",
           [](PlannerOptions & o) -> auto& { return o.fitting.guard_self; }),
-      yes_or_no(
-          "settle", "fingers close on until they touch",
-          [](PlannerOptions & o) -> auto& { return o.fitting.settle; }),
+      choice<grasp::ContactState>(
+          "contact-state", "when a closing part has touched",
+          [](PlannerOptions & o) -> auto& { return o.fitting.contact_state; }),
+      choice<grasp::PalmAfterContact>(
+          "palm-after-contact", "what the palm does once a finger touches",
+          [](PlannerOptions & o) -> auto& { return o.fitting.palm_after_contact; }),
+      option("counted-pads", "",
+             "whose contacts count; without it: power grasps all, others tips-and-palm",
+             {{"enum", {"all", "tips-and-palm"}}},
+             [](PlannerOptions& o, const SettingValue& v) {
+               o.counted_pads = v.choice<grasp::CountedPads>();
+             }),
+      choice<grasp::ContactPieces>(
+          "contact-pieces", "what becomes of surface in several pieces",
+          [](PlannerOptions & o) -> auto& { return o.contact_pieces; }),
       option(
           "clip-thickness-mm", "mm", "of clip volumes; without it half a voxel, at least 1 mm",
           of_type("number"),
@@ -345,6 +368,9 @@ std::vector<PlanningSetting> fitting_settings() {
       integer(
           "slide-steps", "of touching pads toward their targets; 0: none", at_least(0),
           [](PlannerOptions & o) -> auto& { return o.refinement.slide_steps; }),
+      integer(
+          "near-pad-steps", "of each further pad that nearly touches toward the surface; 0: none",
+          at_least(0), [](PlannerOptions & o) -> auto& { return o.refinement.near_pad_steps; }),
       yes_or_no(
           "pre-grasps", "a grasp needs a pre-grasp with a free way in",
           [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),

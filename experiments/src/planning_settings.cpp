@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "graspfit/geometry/nearest_name.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "internal/planning_setting_list.hpp"
 #include "internal/planning_setting_schemas.hpp"
 
@@ -135,6 +136,12 @@ void require_compatible(const grasp::PlannerOptions& options) {
                        "is " + std::string(grasp::name_of(options.missing_contact)) +
                            ", must be fails with refine, which accepts no part without contact; "
                            "turn refine off");
+  }
+  if (options.rejection == grasp::Rejection::Deviation &&
+      !grasp::find_planning_method(options.planner).has_targets) {
+    throw SettingError("reject", "is deviation, and planner " + options.planner +
+                                     " has no targets that contacts could be far from; reject none "
+                                     "or quality");
   }
 }
 

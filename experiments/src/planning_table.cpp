@@ -23,13 +23,13 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr std::array kOutcomes = {
-    grasp::AttemptOutcome::Valid,         grasp::AttemptOutcome::UsableOnly,
-    grasp::AttemptOutcome::NoTargets,     grasp::AttemptOutcome::InitialCollision,
-    grasp::AttemptOutcome::BlockedFinger, grasp::AttemptOutcome::MissedContact,
-    grasp::AttemptOutcome::GapLeft,       grasp::AttemptOutcome::SelfCollision,
-    grasp::AttemptOutcome::NoWayIn,       grasp::AttemptOutcome::IterationLimit,
-    grasp::AttemptOutcome::Weak,          grasp::AttemptOutcome::Unstable,
-    grasp::AttemptOutcome::PoorShape};
+    grasp::AttemptOutcome::Valid,          grasp::AttemptOutcome::UsableOnly,
+    grasp::AttemptOutcome::NoTargets,      grasp::AttemptOutcome::InitialCollision,
+    grasp::AttemptOutcome::BlockedFinger,  grasp::AttemptOutcome::MissedContact,
+    grasp::AttemptOutcome::GapLeft,        grasp::AttemptOutcome::SelfCollision,
+    grasp::AttemptOutcome::Rejected,       grasp::AttemptOutcome::NoWayIn,
+    grasp::AttemptOutcome::IterationLimit, grasp::AttemptOutcome::Weak,
+    grasp::AttemptOutcome::Unstable,       grasp::AttemptOutcome::PoorShape};
 
 std::string snake_case(std::string text) {
   for (char& c : text) {
@@ -48,6 +48,7 @@ struct Measures {
   std::vector<double> epsilon;
   std::vector<double> claimed_gaps;
   std::vector<double> num_contacts;
+  std::vector<double> target_distances;  ///< Of targets whose parts have a contact.
   double largest_penetration = 0.0;
   std::size_t num_penetrating = 0;
   std::size_t num_closed = 0;
@@ -58,9 +59,9 @@ struct Measures {
 /// own squeeze a grasp may have for another friction.
 bool is_balanced(const Planned& planned, const grasp::Grasp& grasp, double torque_scale) {
   const grasp::PlannerOptions& options = planned.settings.options;
-  return grasp::squeeze_configuration(*planned.hand, grasp.configuration, grasp.contacts,
-                                      planned.object.mass.center_of_mass, torque_scale,
-                                      options.friction, options.squeeze)
+  return grasp::squeeze_configuration(
+             *planned.hand, grasp.configuration, grasp.contacts, planned.object.mass.center_of_mass,
+             torque_scale, options.friction, options.squeeze, grasp::bearing_gap(options))
       .is_balanced;
 }
 
@@ -76,6 +77,9 @@ Measures measures_of(const Planned& planned) {
     for (const grasp::Contact& contact : grasp.contacts) {
       if (contact.is_target) measures.claimed_gaps.push_back(contact.gap);
     }
+    for (const double distance : grasp::target_distances(grasp)) {
+      if (std::isfinite(distance)) measures.target_distances.push_back(distance);
+    }
     measures.largest_penetration =
         std::max(measures.largest_penetration, grasp::largest_penetration(grasp));
     if (grasp.penetration.is_any()) ++measures.num_penetrating;
@@ -88,11 +92,6 @@ Measures measures_of(const Planned& planned) {
 std::optional<double> share(std::size_t count, std::size_t total) {
   if (total == 0) return std::nullopt;
   return static_cast<double>(count) / static_cast<double>(total);
-}
-
-std::optional<double> largest(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  return *std::max_element(values.begin(), values.end());
 }
 
 void require_over_table(const geometry::TriangleMesh& mesh_O, std::optional<double> table_z_O) {
@@ -143,6 +142,7 @@ std::vector<Column> planning_columns() {
       {"valid", "1",
        "of these without penetration, every requested part in contact, a free way in"},
       {"usable_rate", "1", "usable over attempts"},
+      {"rejected_rate", "1", "rejected for their deviation or their M, over attempts"},
       {"valid_rate", "1", "valid over attempts"},
       {"grasps", "1", "distinct grasps returned; the following are about these"},
       {"best_m", "1", "largest M"},
@@ -157,6 +157,8 @@ std::vector<Column> planning_columns() {
        "share whose contacts can press and balance one another at the friction of epsilon"},
       {"num_penetrating", "1", "grasps that touch with what must not touch, decided exactly"},
       {"largest_penetration_m", "m", "deepest overlap with the object or of the hand with itself"},
+      {"mean_target_distance_m", "m",
+       "mean distance of the contacts from the targets that they were meant for"},
       {"mean_gap_m", "m", "mean gap of the contacts that were asked for"},
       {"largest_gap_m", "m", "largest gap of the contacts that were asked for"},
       {"duplicates", "1", "accepted grasps left out as too like another"}};
@@ -181,6 +183,10 @@ void fill_planning_columns(const Planned& planned, ResultRow& row) {
   row.set("usable", statistics.usable());
   row.set("valid", statistics.valid());
   row.set("usable_rate", field(share(static_cast<std::size_t>(statistics.usable()), attempts)));
+  row.set(
+      "rejected_rate",
+      field(share(static_cast<std::size_t>(statistics.outcomes.at(grasp::AttemptOutcome::Rejected)),
+                  attempts)));
   row.set("valid_rate", field(share(static_cast<std::size_t>(statistics.valid()), attempts)));
   row.set("grasps", field(grasps.size()));
   row.set("best_m", field(largest(measures.m)));
@@ -195,6 +201,7 @@ void fill_planning_columns(const Planned& planned, ResultRow& row) {
   row.set("force_closed_share", field(share(measures.num_closed, grasps.size())));
   row.set("balanced_share", field(share(measures.num_balanced, grasps.size())));
   row.set("num_penetrating", field(measures.num_penetrating));
+  row.set("mean_target_distance_m", field(mean(measures.target_distances)));
   row.set("mean_gap_m", field(mean(measures.claimed_gaps)));
   row.set("largest_gap_m", field(largest(measures.claimed_gaps)));
   row.set("duplicates", statistics.duplicates);
@@ -246,6 +253,11 @@ void fill_planning_timings(const Planned& planned, ResultRow& row) {
 bool is_closed(const grasp::Grasp& grasp) {
   constexpr double kRoundedEpsilon = 1e-9;  // far above the rounding of wrenches, 1e-16
   return grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
+}
+
+std::optional<double> largest(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return *std::max_element(values.begin(), values.end());
 }
 
 std::optional<double> median(std::vector<double> values) {

@@ -74,7 +74,8 @@ void write_summaries(const Experiment& experiment, const ParameterSweep& sweep,
   std::vector<FinishedCell> cells;
   for (std::size_t i = 0; i < sweep.num_cells(); ++i) {
     CellRecord record = journal.read(i);
-    if (record.status == "ok") cells.push_back({sweep.cell(i).labels, std::move(record.details)});
+    if (record.status != "ok") continue;
+    cells.push_back({sweep.cell(i).labels, std::move(record.details), std::move(record.fields)});
   }
   for (const SummaryTable& summary : experiment.summaries) {
     std::string text = csv_line(header({}, {}, summary.columns));

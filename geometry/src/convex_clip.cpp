@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "graspfit/geometry/errors.hpp"
+#include "internal/box_tree.hpp"
 #include "internal/predicates.hpp"
 #include "internal/triangle_clip.hpp"
 
@@ -78,6 +79,17 @@ std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::in
     }
   }
   return pieces;
+}
+
+Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& point) {
+  const std::vector<Eigen::Vector3d>& corners = piece.polygon;
+  Eigen::Vector3d closest = corners.front();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Eigen::Vector3d candidate =
+        internal::closest_on_triangle(point, {corners[0], corners[i], corners[i + 1]});
+    if ((candidate - point).squaredNorm() < (closest - point).squaredNorm()) closest = candidate;
+  }
+  return closest;
 }
 
 ClippedWithOrigins clip_with_origins(const std::array<Eigen::Vector3d, 3>& triangle,

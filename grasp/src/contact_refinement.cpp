@@ -129,7 +129,7 @@ class Refinement {
     result.stop = make_clear();
     if (result.stop == RefinementStop::Contact) {
       const HandConfiguration clear = configuration_;
-      result.stop = approach(result.iterations);
+      result.stop = approach(result.iterations, options_.max_iterations);
       if (result.stop == RefinementStop::Contact && options_.slide_steps > 0) {
         const HandConfiguration touching = configuration_;
         slide(result.iterations);
@@ -140,6 +140,7 @@ class Refinement {
         go_to(clear);
         result.stop = RefinementStop::GapLeft;
       }
+      if (result.stop == RefinementStop::Contact) bring_near_pads(result.iterations);
     }
     result.configuration = configuration_;
     result.contacts = estimate_contacts(model_, X_OL_, object_.query, contact_options_,
@@ -284,15 +285,15 @@ class Refinement {
            });
   }
 
-  /// Closes the gaps from a clear start.
-  RefinementStop approach(int& iterations) {
+  /// Closes the gaps from a clear start, in so many steps at most.
+  RefinementStop approach(int& iterations, int max_iterations) {
     if (!measure_gaps() || largest_gap() > options_.reach) return RefinementStop::OutOfReach;
     double trust = kLongestStep;
     std::vector<double> sums = {sum_of_gaps()};
     bool has_moved = true;
     while (!all_touch()) {
       if (is_stuck(sums) || trust < kShortestStep) return RefinementStop::GapLeft;
-      if (iterations == options_.max_iterations) return RefinementStop::IterationLimit;
+      if (iterations == max_iterations) return RefinementStop::IterationLimit;
       ++iterations;
       if (has_moved) {
         near_ = clearance_.find(X_OL_, kNearPerStep * trust);
@@ -308,6 +309,48 @@ class Refinement {
       sums.push_back(sum_of_gaps());
     }
     return RefinementStop::Contact;
+  }
+
+  /// Pads beside the claimed ones that nearly touch, one after the other: what is not brought to
+  /// touch within its steps, or takes another's contact, is given up.
+  void bring_near_pads(int& iterations) {
+    if (options_.near_pad_steps == 0) return;
+    const std::vector<Claim> claimed = claims_;
+    std::vector<Claim> near = near_pads();
+    for (Claim& pad : near) {
+      const HandConfiguration touching = configuration_;
+      claims_.push_back(pad);
+      int steps = 0;
+      const RefinementStop stop = approach(steps, options_.near_pad_steps);
+      iterations += steps;
+      if (stop == RefinementStop::Contact && is_clear()) continue;
+      claims_.pop_back();
+      go_to(touching);
+    }
+    claims_ = claimed;
+    measure_gaps();
+  }
+
+  /// Not claimed, with surface in their clip volumes and a gap; the smallest first.
+  std::vector<Claim> near_pads() const {
+    std::vector<Claim> near;
+    for (int pad = 0; pad < static_cast<int>(model_.pads.size()); ++pad) {
+      const bool is_claimed = std::any_of(claims_.begin(), claims_.end(),
+                                          [&](const Claim& claim) { return claim.pad == pad; });
+      if (is_claimed || !is_counted(model_, pad, contact_options_) ||
+          !has_contact(model_, pad, hands::pad_pose(model_, pad, X_OL_), object_.query,
+                       contact_options_)) {
+        continue;
+      }
+      Claim claim = claim_of(pad, nullptr);
+      claim.gap = pad_gap(hand_.pad_surface(pad), X_OL_[static_cast<std::size_t>(claim.link)],
+                          object_.query, options_.reach)
+                      .value_or(options_.reach);
+      if (claim.gap > options_.largest_gap) near.push_back(claim);
+    }
+    std::stable_sort(near.begin(), near.end(),
+                     [](const Claim& a, const Claim& b) { return a.gap < b.gap; });
+    return near;
   }
 
   /// How far the pads are from their targets, and how far from lying flat there [m²].
@@ -466,6 +509,8 @@ void RefinementOptions::validate() const {
                  least_distance, "above 0 m and at most wanted_gap");
   internal::require(max_iterations >= 1, "RefinementOptions", "max_iterations", max_iterations,
                     "at least 1");
+  internal::require(near_pad_steps >= 0, "RefinementOptions", "near_pad_steps", near_pad_steps,
+                    "at least 0");
   internal::require(slide_steps >= 0, "RefinementOptions", "slide_steps", slide_steps,
                     "at least 0");
   require_length(reach > 0.0, "reach", reach, "finite and above 0 m");

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <iterator>
 #include <mutex>
-#include <tuple>
 #include <utility>
 
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/grasp/grasp_balance.hpp"
-#include "internal/finger_crossing.hpp"
 #include "internal/guidance_list.hpp"
-#include "internal/target_posture.hpp"
+#include "internal/target_sides.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -33,23 +31,6 @@ const char* failure_name(TargetFailure failure) {
   return "";
 }
 
-/// Assigned targets and the side from which to reach for them.
-struct Side {
-  TargetContacts targets;
-  PalmPlacement placement;
-  int imbalance = 0;  ///< Of its set, where that counts.
-  double misfit = 0.0;
-  bool do_fingers_cross = false;  ///< Where that counts: at the start from this side.
-};
-
-/// Sides of sets that balance first where that counts, then those from which fingers need not
-/// cross, then those that suit the fingertips.
-std::tuple<int, bool, double> misfit_of(const Side& side) {
-  return {side.imbalance, side.do_fingers_cross, side.misfit};
-}
-
-bool by_misfit(const Side& a, const Side& b) { return misfit_of(a) < misfit_of(b); }
-
 class FittingGuidance : public GraspGuidance {
  public:
   explicit FittingGuidance(const GuidanceScene& scene)
@@ -66,19 +47,8 @@ class FittingGuidance : public GraspGuidance {
 
   GuidedStarts starts(std::int64_t number) const override {
     GuidedStarts result;
-    std::vector<Side> sides = ranked_ ? ranked_sides(number, result) : drawn_sides(number, result);
-    const auto most = static_cast<std::size_t>(scene_.options.max_placements);
-    if (sides.size() > most)
-      sides.erase(sides.begin() + scene_.options.max_placements, sides.end());
-    for (Side& side : sides) {
-      GuidedStart start;
-      start.close = [&scene = scene_, targets = side.targets, placement = side.placement] {
-        return fit_hand(scene.hand, scene.object, scene.surroundings, scene.options.style, targets,
-                        placement, scene.contact_options, scene.options.fitting);
-      };
-      start.targets = std::move(side.targets);
-      result.starts.push_back(std::move(start));
-    }
+    result.starts =
+        starts_from(ranked_ ? ranked_sides(number, result) : drawn_sides(number, result), scene_);
     return result;
   }
 
@@ -116,25 +86,25 @@ class FittingGuidance : public GraspGuidance {
 
  private:
   /// The next of the sets in their order.
-  std::vector<Side> ranked_sides(std::int64_t number, GuidedStarts& result) const {
+  std::vector<TargetSide> ranked_sides(std::int64_t number, GuidedStarts& result) const {
     const std::optional<TargetContacts> targets = ranked_targets(number);
     if (!targets) {
       result.is_exhausted = true;
       if (number == 0) result.failure = failure_name(ranked_->failure());
       return {};
     }
-    std::vector<Side> sides = sides_of(*targets);
+    std::vector<TargetSide> sides = sides_of(*targets, scene_, true);
     if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
     std::stable_sort(sides.begin(), sides.end(), by_misfit);
     return sides;
   }
 
   /// Of several random sets the one whose best side goes first, or those of all of them.
-  std::vector<Side> drawn_sides(std::int64_t number, GuidedStarts& result) const {
+  std::vector<TargetSide> drawn_sides(std::int64_t number, GuidedStarts& result) const {
     const PlannerOptions& options = scene_.options;
     geometry::Random random =
         geometry::Random::stream(options.seed, static_cast<std::uint64_t>(number));
-    std::vector<Side> best;
+    std::vector<TargetSide> best;
     TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
     int num_judged = 0;
     // Where sets are rare, the seeds of one search are the budget of all draws together.
@@ -149,13 +119,14 @@ class FittingGuidance : public GraspGuidance {
         failure = selection.failure;
         break;  // the search gave up after many seeds of its own
       }
-      std::vector<Side> sides = sides_of(*selection.targets);
+      std::vector<TargetSide> sides =
+          sides_of(*selection.targets, scene_, options.target_draws > 1);
       if (sides.empty()) continue;
       num_judged += static_cast<int>(sides.size());
       if (options.target_draws == 1) return sides;
       if (options.attempt_choice != AttemptChoice::First) {
         const int set_imbalance = imbalance(*selection.targets);
-        for (Side& side : sides) side.imbalance = set_imbalance;
+        for (TargetSide& side : sides) side.imbalance = set_imbalance;
       }
       std::stable_sort(sides.begin(), sides.end(), by_misfit);
       if (options.attempt_choice == AttemptChoice::Strongest) {
@@ -194,28 +165,6 @@ class FittingGuidance : public GraspGuidance {
   int num_draws() const {
     const int draws = scene_.options.target_draws;
     return scene_.parts.palm ? std::max(1, draws / 4) : draws;
-  }
-
-  /// The sides from which to reach for a set, in the order of their placements.
-  std::vector<Side> sides_of(const TargetContacts& targets) const {
-    const hands::HandModel& hand = scene_.hand.model();
-    std::vector<Side> sides;
-    for (const PalmPlacement& placement : palm_placements(
-             scene_.object, targets, scene_.options.approach_O, scene_.options.approach_angle)) {
-      Side side{assign_fingers(hand, targets, scene_.parts, placement), placement};
-      if (scene_.options.target_draws > 1 || ranked_) {
-        side.misfit = reach_misfit(hand, side.targets, placement);
-        side.do_fingers_cross = scene_.options.fitting.guard_self && crosses(side);
-      }
-      sides.push_back(std::move(side));
-    }
-    return sides;
-  }
-
-  bool crosses(const Side& side) const {
-    const hands::HandConfiguration goal =
-        posture_for(scene_.hand.model(), side.targets, side.placement).configuration;
-    return do_fingers_cross(scene_.hand, with_fingers_apart(scene_.hand, side.targets, goal));
   }
 
   std::optional<TargetContacts> ranked_targets(std::int64_t number) const {

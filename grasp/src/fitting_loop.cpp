@@ -29,7 +29,8 @@ FittingLoop::FittingLoop(const FittingHand& hand, const ObjectModel& object,
       voxel_size_(object.grid.lattice.voxel_size),
       state_(hand, object, surroundings, options),
       style_(style),
-      has_palm_target_(requested.palm) {
+      has_palm_target_(requested.palm),
+      stops_at_palm_(requested.palm) {
   for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
     moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
   }
@@ -56,6 +57,10 @@ FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacemen
   goal_ = posture_for(model_, targets, placement).configuration;
   if (options_.guard_self) goal_ = with_fingers_apart(hand_, targets, goal_);
   for (Part& part : parts_) {
+    const auto target =
+        std::find_if(targets.contacts.begin(), targets.contacts.end(),
+                     [&](const TargetContact& contact) { return contact.finger == part.finger; });
+    if (target != targets.contacts.end()) part.target_O = target->point_O;
     part.is_toward_goal =
         style_ == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
   }
@@ -78,6 +83,9 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
       std::min(std::ceil(far / step), static_cast<double>(std::numeric_limits<int>::max())));
   const int most_steps = rule.most_steps.value_or(steps_to_far);
   if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
+  if (rule.palm_may_touch && model_.palm.pad >= 0) {
+    bring_palm((start.X_OH.translation() - initial_.X_OH.translation()).dot(palm_direction()));
+  }
   seat_palm(0.0);
   return run();
 }
@@ -92,27 +100,34 @@ FittingResult FittingLoop::failed_start() const {
 }
 
 FittingResult FittingLoop::run() {
+  if (close_free_parts() && options_.palm_after_contact == PalmAfterContact::Recentred) recenter();
   FittingResult result;
-  result.initial = initial_;
-  bool is_hopeless_now = false;
-  while (result.iterations < options_.max_iterations && num_free() > 0 && !is_hopeless_now) {
-    ++result.iterations;
+  finish(result);
+  return result;
+}
+
+/// Steps 1 and 2 until every finger has stopped or the iterations are used up. False as soon as
+/// the fit cannot come to anything.
+bool FittingLoop::close_free_parts() {
+  while (iterations_ < options_.max_iterations && num_free() > 0) {
+    ++iterations_;
     for (Part& part : parts_) {
       if (part.state == Part::State::Free) close_part(part);
     }
     move_palm_to_goal();
+    bool is_hopeless_now = false;
     for (Part& part : parts_) {
       if (part.state == Part::State::Free && touches(part)) part.state = Part::State::Touching;
       is_hopeless_now = is_hopeless_now || is_hopeless(part);
     }
+    if (is_hopeless_now) return false;
   }
-  if (options_.settle && !is_hopeless_now) {
+  if (options_.contact_state == ContactState::Closed) {
     for (Part& part : parts_) {
-      if (part.state == Part::State::Touching) settle(part);
+      if (part.state == Part::State::Touching) close_on(part);
     }
   }
-  finish(result);
-  return result;
+  return true;
 }
 
 void FittingLoop::add_part(int finger, bool has_target) {
@@ -190,7 +205,7 @@ void FittingLoop::advance(double distance, double tolerance) {
       is_done = try_move(candidate, state_.all_links(), step);
       if (is_done) distance -= step;
     }
-    if (!is_done || (has_palm_target_ && palm_touches())) return;
+    if (!is_done || (stops_at_palm_ && palm_touches())) return;
   }
 }
 
@@ -202,15 +217,35 @@ void FittingLoop::approach() {
 }
 
 /// The palm, if it is requested, onto the surface about `distance` before it (A39): on until its
-/// clip volume holds surface or the guard stops it.
+/// clip volume holds surface or the guard stops it, and then until it touches.
 void FittingLoop::seat_palm(double distance) {
   if (!has_palm_target_) return;
   is_palm_done_ = true;
-  if (palm_touches()) return;
   // The goal weighs the palm's target against those of the fingers; and the surface at the target
   // may lie deeper than its patch by some voxels.
   constexpr double kSearch = 4.0;  // [voxels]
-  advance(distance + kSearch * voxel_size_, options_.small_step * voxel_size_ / 8.0);
+  bring_palm(distance + kSearch * voxel_size_);
+}
+
+/// The palm onto the surface, if that is within `distance` along n_palm.
+void FittingLoop::bring_palm(double distance) {
+  stops_at_palm_ = true;
+  if (!palm_touches()) advance(distance, options_.small_step * voxel_size_ / 8.0);
+  if (options_.contact_state == ContactState::Closed && palm_touches()) press_palm();
+}
+
+/// On along n_palm until the guard stops even the smallest motion, or the palm would lose its
+/// contact.
+void FittingLoop::press_palm() {
+  is_palm_held_ = true;
+  const Vector3d direction = palm_direction();
+  double motion = options_.small_step * voxel_size_;
+  while (motion >= options_.closing_tolerance) {
+    hands::HandConfiguration candidate = state_.configuration();
+    candidate.X_OH.pretranslate(Vector3d(motion * direction));
+    if (!try_move(candidate, state_.all_links(), motion)) motion /= 2;
+  }
+  is_palm_held_ = has_palm_target_;
 }
 
 bool FittingLoop::palm_touches() {
@@ -227,6 +262,10 @@ bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std:
     if (part.state != Part::State::Touching || part.pad < 0) continue;
     if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
     if (!has_contact_at(part.pad, state_.trial_X_OL())) return false;
+  }
+  if (is_palm_held_ && moved.size() == state_.all_links().size() &&
+      !has_contact_at(model_.palm.pad, state_.trial_X_OL())) {
+    return false;
   }
   if (!state_.passes_exact(moved)) return false;
   state_.accept();
@@ -413,9 +452,9 @@ bool FittingLoop::is_hopeless(const Part& part) const {
 }
 
 /// Closes a touching finger on until the guard stops even the smallest motion.
-void FittingLoop::settle(Part& part) {
+void FittingLoop::close_on(Part& part) {
   double motion = options_.small_step * voxel_size_;
-  while (motion >= options_.settle_tolerance && part.stage < part.closing.size()) {
+  while (motion >= options_.closing_tolerance && part.stage < part.closing.size()) {
     const int joint = part.closing[part.stage];
     const double step = motion / lever(joint) * model_.joints[joint].closing_sign;
     const bool is_at_limit = is_at_closing_limit(joint);
@@ -425,7 +464,7 @@ void FittingLoop::settle(Part& part) {
     // The tip may go on where only the link behind it is stopped.
     const bool is_stopped_behind =
         is_at_limit || (state_.blocking_link() >= 0 && state_.blocking_link() != part.tip_link);
-    if (motion < options_.settle_tolerance && is_stopped_behind && next_stage(part)) {
+    if (motion < options_.closing_tolerance && is_stopped_behind && next_stage(part)) {
       motion = options_.small_step * voxel_size_;
     }
   }
@@ -433,6 +472,8 @@ void FittingLoop::settle(Part& part) {
 
 void FittingLoop::finish(FittingResult& result) {
   state_.measure_all();
+  result.initial = initial_;
+  result.iterations = iterations_;
   result.configuration = state_.configuration();
   result.smallest_distance = state_.smallest_distance();
   result.distance_queries = state_.num_queries();
@@ -455,7 +496,7 @@ void FittingLoop::finish(FittingResult& result) {
   }
   if (has_palm_target_) look_at(model_.palm.pad, true);
   result.contact_tests_s = contact_tests_s_;
-  const bool is_out_of_budget = result.iterations >= options_.max_iterations && num_free() > 0;
+  const bool is_out_of_budget = iterations_ >= options_.max_iterations && num_free() > 0;
   result.stop = is_out_of_budget ? FittingStop::IterationLimit
                 : has_all        ? FittingStop::Contact
                 : is_blocked     ? FittingStop::BlockedFinger

@@ -13,6 +13,7 @@ GraspFileMetrics::GraspFileMetrics(const GraspFile& file, const geometry::MeshQu
       .hand = &file.hand};
   shared_.object = wrench_object(mesh, context.center_of_mass_O);
   shared_.friction = file.options.friction;
+  shared_.bearing_gap = bearing_gap(file);
   shared_.tool = tool;
   shared_.surface = &object;
   shared_.quality_context = context;

@@ -10,7 +10,10 @@ namespace graspfit::grasp {
 
 std::span<const PlanningMethod> planning_methods() {
   static constexpr std::array methods = {
-      PlanningMethod{"fitting", "hand-object geometric fitting", internal::fitting_guidance},
+      PlanningMethod{"fitting", "hand-object geometric fitting", internal::fitting_guidance, true,
+                     true},
+      PlanningMethod{"gs-targets", "sampled target contacts", internal::sample_target_guidance,
+                     true},
       PlanningMethod{"gs", "sampled surface normals", internal::sampling_guidance},
       PlanningMethod{"ma", "medial axis, short retreat", internal::medial_guidance},
       PlanningMethod{"ma-full-retreat", "medial axis, full retreat",

@@ -74,13 +74,18 @@ Json conventions() {
        "force_limit for unit-normal, over the length of e for unit-edge. Where the origin is "
        "outside: 0, -1, or (signed) minus its distance"},
       {"largest_claimed_gap_m", "over the contacts with target true"},
+      {"touching",
+       "of refined grasps contacts with a gap of at most options.refinement.largest_gap_m; of "
+       "others all. wrench and squeeze are of these alone; m is of all contacts, as the paper has "
+       "it"},
       {"pre_grasp",
        "open, every link at least clearance_m from object and surroundings, the straight way from "
        "it to the grasp free; opening: share of the way from the grasp's joints to open ones; "
        "retreat_m: of the palm, against its direction"},
       {"squeeze",
        "commanded joints beyond the surface, by contact forces that balance one another; forces: "
-       "per contact, on the object; residual: what stays unbalanced over the sum of normal forces"},
+       "per contact, on the object, 0 where it does not touch; residual: what stays unbalanced "
+       "over the sum of normal forces"},
       {"hold",
        "only where planned grasps were tested in physics: those that did not hold under the "
        "protocol are left out and counted by the stage they came to, the others are ordered by "

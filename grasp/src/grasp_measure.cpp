@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -55,13 +56,27 @@ Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration&
     grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
   }
   grasp.quality = contact_quality(grasp.contacts, scene.quality_context, scene.quality_options);
-  if (!grasp.contacts.empty()) {
+  const std::vector<Contact> touching = touching_contacts(grasp.contacts, scene.bearing_gap);
+  if (!touching.empty()) {
     grasp.wrench = wrench_quality(grasp_wrench_space(
-        grasp.contacts, wrench_convention(WrenchTool::GraspIt, scene.wrench_object, grasp.contacts,
-                                          scene.friction)));
+        touching,
+        wrench_convention(WrenchTool::GraspIt, scene.wrench_object, touching, scene.friction)));
   }
   grasp.penetration = measure_penetration(scene, X_OL);
   return grasp;
+}
+
+std::vector<double> target_distances(const Grasp& grasp) {
+  std::vector<double> distances;
+  for (const TargetContact& target : grasp.targets.contacts) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : grasp.contacts) {
+      if (!contact.is_target || contact.finger != target.finger) continue;
+      nearest = std::min(nearest, (contact.point_O - target.point_O).norm());
+    }
+    distances.push_back(nearest);
+  }
+  return distances;
 }
 
 }  // namespace graspfit::grasp

@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
+#include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "internal/metric_list.hpp"
 #include "internal/option_check.hpp"
@@ -29,17 +30,20 @@ bool is_spread(std::span<const Contact> contacts) {
 
 }  // namespace
 
+GraspMetricInput::GraspMetricInput(GraspMetricFacts facts)
+    : facts_(std::move(facts)), touching_(touching_contacts(facts_.contacts, facts_.bearing_gap)) {}
+
 const std::optional<WrenchConvention>& GraspMetricInput::convention() const {
   if (has_asked_for_convention_) return convention_;
-  if (!contacts().empty() && (facts_.tool != WrenchTool::DexGraspBench || is_spread(contacts()))) {
-    convention_ = wrench_convention(facts_.tool, facts_.object, contacts(), facts_.friction);
+  if (!touching().empty() && (facts_.tool != WrenchTool::DexGraspBench || is_spread(touching()))) {
+    convention_ = wrench_convention(facts_.tool, facts_.object, touching(), facts_.friction);
   }
   has_asked_for_convention_ = true;  // not before: what is refused is refused again
   return convention_;
 }
 
 const GraspWrenchSpace* GraspMetricInput::wrench_space() const {
-  if (!wrench_space_ && convention()) wrench_space_ = grasp_wrench_space(contacts(), *convention());
+  if (!wrench_space_ && convention()) wrench_space_ = grasp_wrench_space(touching(), *convention());
   return wrench_space_ ? &*wrench_space_ : nullptr;
 }
 
@@ -136,6 +140,7 @@ GraspMetricFacts metric_facts(const ObjectModel& object, const hands::HandModel&
                               const PlannerOptions& options, const Grasp& grasp) {
   GraspMetricFacts facts;
   facts.contacts = grasp.contacts;
+  facts.bearing_gap = bearing_gap(options);
   facts.object = wrench_object(object.mesh(), object.mass.center_of_mass);
   facts.friction = options.friction;
   facts.grasp = &grasp;

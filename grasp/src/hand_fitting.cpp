@@ -49,8 +49,8 @@ void FittingOptions::validate() const {
   require(max_halvings >= 0 && max_halvings <= 30, "max_halvings", std::to_string(max_halvings),
           "in [0, 30]");
   require(max_iterations >= 1, "max_iterations", std::to_string(max_iterations), ">= 1");
-  require(finite_positive(settle_tolerance), "settle_tolerance", shortest_decimal(settle_tolerance),
-          "finite and > 0 m");
+  require(finite_positive(closing_tolerance), "closing_tolerance",
+          shortest_decimal(closing_tolerance), "finite and > 0 m");
   require(give_up_distance >= 0.0 && std::isfinite(give_up_distance), "give_up_distance",
           shortest_decimal(give_up_distance), "finite and >= 0 m");
   require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing",

@@ -20,8 +20,15 @@ std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>() {
 template <>
 std::span<const NamedValue<Acceptance>> named_values<Acceptance>() {
   static constexpr std::array names = {NamedValue<Acceptance>{Acceptance::Valid, "valid"},
-                                       NamedValue<Acceptance>{Acceptance::Usable, "usable"},
-                                       NamedValue<Acceptance>{Acceptance::Quality, "quality"}};
+                                       NamedValue<Acceptance>{Acceptance::Usable, "usable"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<Rejection>> named_values<Rejection>() {
+  static constexpr std::array names = {NamedValue<Rejection>{Rejection::None, "none"},
+                                       NamedValue<Rejection>{Rejection::Deviation, "deviation"},
+                                       NamedValue<Rejection>{Rejection::Quality, "quality"}};
   return names;
 }
 
@@ -62,6 +69,38 @@ std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>() {
   static constexpr std::array names = {
       NamedValue<PenetrationGuard>{PenetrationGuard::Voxels, "voxels"},
       NamedValue<PenetrationGuard>{PenetrationGuard::Meshes, "meshes"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ContactState>> named_values<ContactState>() {
+  static constexpr std::array names = {
+      NamedValue<ContactState>{ContactState::Closed, "closed"},
+      NamedValue<ContactState>{ContactState::FirstGraze, "first-graze"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<PalmAfterContact>> named_values<PalmAfterContact>() {
+  static constexpr std::array names = {
+      NamedValue<PalmAfterContact>{PalmAfterContact::Frozen, "frozen"},
+      NamedValue<PalmAfterContact>{PalmAfterContact::Recentred, "recentred"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<CountedPads>> named_values<CountedPads>() {
+  static constexpr std::array names = {
+      NamedValue<CountedPads>{CountedPads::All, "all"},
+      NamedValue<CountedPads>{CountedPads::TipsAndPalm, "tips-and-palm"}};
+  return names;
+}
+
+template <>
+std::span<const NamedValue<ContactPieces>> named_values<ContactPieces>() {
+  static constexpr std::array names = {
+      NamedValue<ContactPieces>{ContactPieces::Joined, "joined"},
+      NamedValue<ContactPieces>{ContactPieces::Separate, "separate"}};
   return names;
 }
 

@@ -15,6 +15,7 @@ namespace graspfit::grasp::internal {
 namespace {
 
 constexpr double kHighQuality = 0.6;  // of M (A36)
+constexpr double kIdealShare = 0.5;   // of the targets' own M (A36)
 // More than refinement may exceed its largest turn by [rad].
 constexpr double kAngleSlack = 1e-6;
 
@@ -27,8 +28,8 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
     options.targets.min_separation = fingertip_width(hand, parts.fingers);
   }
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
-  // Refinement moves the palm too, and would undo what settling did.
-  options.fitting.settle = options.fitting.settle && !options.refine;
+  // Refinement takes over there, which moves the palm too and would undo the rest of closing.
+  if (options.refine) options.fitting.contact_state = ContactState::FirstGraze;
   // Where other contacts may do, fingers close however far one of them has stopped.
   if (options.missing_contact == MissingContact::Measured) {
     options.fitting.give_up_distance = std::numeric_limits<double>::max();
@@ -50,10 +51,9 @@ MeasuringScene measuring_scene(const ObjectModel& object, const FittingHand& han
                            .normalizing_radius = object.normalizing_radius,
                            .hand = &hand.model()};
   scene.quality_options = options.quality;
-  scene.contact_options = {
-      .clip_thickness = clip_thickness(options, object.grid.lattice.voxel_size),
-      .averaging = options.averaging};
-  if (options.refine) scene.largest_gap = options.refinement.largest_gap;
+  scene.contact_options =
+      contact_estimation(options, clip_thickness(options, object.grid.lattice.voxel_size));
+  scene.largest_gap = scene.bearing_gap = bearing_gap(options);
   return scene;
 }
 
@@ -81,11 +81,7 @@ bool is_balanced(const AttemptResult& result) {
 /// close; least possible without any.
 double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
   std::vector<Contact> contacts;
-  if (result.grasp) contacts = result.grasp->contacts;
-  if (scene.largest_gap) {
-    std::erase_if(contacts,
-                  [&](const Contact& contact) { return contact.gap > *scene.largest_gap; });
-  }
+  if (result.grasp) contacts = touching_contacts(result.grasp->contacts, scene.bearing_gap);
   if (contacts.empty()) return -std::numeric_limits<double>::infinity();
   WrenchConvention convention =
       wrench_convention(WrenchTool::House, scene.wrench_object, contacts, friction);
@@ -114,12 +110,14 @@ int stage_of(AttemptOutcome outcome) {
       return 5;
     case AttemptOutcome::SelfCollision:
       return 6;
-    case AttemptOutcome::NoWayIn:
+    case AttemptOutcome::Rejected:
       return 7;
-    case AttemptOutcome::UsableOnly:
+    case AttemptOutcome::NoWayIn:
       return 8;
-    case AttemptOutcome::Valid:
+    case AttemptOutcome::UsableOnly:
       return 9;
+    case AttemptOutcome::Valid:
+      return 10;
   }
   return 0;
 }
@@ -134,7 +132,8 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
       surroundings_(hand, surroundings),
       scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
-      claimed_pads_(requested_pads(hand, parts_)) {
+      claimed_pads_(requested_pads(hand, parts_)),
+      largest_deviation_(largest_deviation(options_, hand)) {
   if (size_check == SizeCheck::Due) {
     check_object_size(object.mesh(), hand, parts_.fingers,
                       widest_opening(part_distances(hand), parts_));
@@ -245,6 +244,10 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     result.outcome = AttemptOutcome::SelfCollision;
     return result;
   }
+  if (is_rejected(grasp)) {
+    result.outcome = AttemptOutcome::Rejected;
+    return result;
+  }
   complete(grasp, result);
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;
@@ -324,9 +327,10 @@ void PlannerAttempts::complete(Grasp& grasp, AttemptResult& result) const {
     grasp.pre_grasp = find_pre_grasp(hand_, fitting_hand_.collision(), object_.query, surroundings_,
                                      grasp.configuration, options_.pre_grasp);
   }
-  grasp.squeeze = squeeze_configuration(
-      hand_, grasp.configuration, grasp.contacts, object_.mass.center_of_mass,
-      scene_.wrench_object.largest_radius, options_.squeeze_friction, options_.squeeze);
+  grasp.squeeze =
+      squeeze_configuration(hand_, grasp.configuration, grasp.contacts, object_.mass.center_of_mass,
+                            scene_.wrench_object.largest_radius, options_.squeeze_friction,
+                            options_.squeeze, scene_.bearing_gap);
 }
 
 double PlannerAttempts::ideal_m(const TargetContacts& targets) const {
@@ -364,11 +368,23 @@ bool PlannerAttempts::is_accepted(const Grasp& grasp) const {
       return grasp.is_valid();
     case Acceptance::Usable:
       return grasp.is_usable();
-    case Acceptance::Quality:
-      return grasp.is_usable() &&
-             grasp.quality.m >= (grasp.targets.contacts.empty()
-                                     ? kHighQuality
-                                     : std::min(0.5 * grasp.ideal_m, kHighQuality));
+  }
+  return false;
+}
+
+bool PlannerAttempts::is_rejected(const Grasp& grasp) const {
+  const bool has_targets = !grasp.targets.contacts.empty();
+  switch (options_.rejection) {
+    case Rejection::None:
+      return false;
+    case Rejection::Deviation: {
+      const std::vector<double> distances = target_distances(grasp);
+      return std::any_of(distances.begin(), distances.end(),
+                         [&](double distance) { return distance > largest_deviation_; });
+    }
+    case Rejection::Quality:
+      return grasp.quality.m <
+             (has_targets ? std::min(kIdealShare * grasp.ideal_m, kHighQuality) : kHighQuality);
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/option_names.hpp"
+#include "internal/object_size.hpp"
 #include "internal/option_check.hpp"
 
 namespace graspfit::grasp {
@@ -43,6 +44,10 @@ void PlannerOptions::validate() const {
   if (clip_thickness) {
     require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
             *clip_thickness, "finite and > 0 m");
+  }
+  if (largest_deviation) {
+    require(*largest_deviation > 0.0 && std::isfinite(*largest_deviation), "largest_deviation",
+            *largest_deviation, "finite and > 0 m");
   }
   require(target_draws >= 1, "target_draws", target_draws, ">= 1");
   require(max_placements >= 1, "max_placements", max_placements, ">= 1");
@@ -94,6 +99,8 @@ const char* outcome_name(AttemptOutcome outcome) {
       return "weak features only";
     case AttemptOutcome::SelfCollision:
       return "self-collision";
+    case AttemptOutcome::Rejected:
+      return "rejected";
     case AttemptOutcome::IterationLimit:
       return "iteration limit";
     case AttemptOutcome::Unstable:
@@ -116,6 +123,24 @@ double clip_thickness(const PlannerOptions& options, double voxel_size) {
 
 double merge_distance(const PlannerOptions& options, double voxel_size) {
   return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
+}
+
+double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand) {
+  if (options.largest_deviation) return *options.largest_deviation;
+  return internal::fingertip_width(hand, requested_parts(hand, options).fingers);
+}
+
+ContactEstimationOptions contact_estimation(const PlannerOptions& options, double clip_thickness) {
+  const bool is_power = options.style == GraspStyle::Power;
+  return {
+      .clip_thickness = clip_thickness,
+      .averaging = options.averaging,
+      .pads = options.counted_pads.value_or(is_power ? CountedPads::All : CountedPads::TipsAndPalm),
+      .pieces = options.contact_pieces};
+}
+
+std::optional<double> bearing_gap(const PlannerOptions& options) {
+  return options.refine ? std::optional(options.refinement.largest_gap) : std::nullopt;
 }
 
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {

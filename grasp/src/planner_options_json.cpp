@@ -161,8 +161,9 @@ constexpr auto fitting_fields = [](auto& at, auto& fitting) {
   at("max_iterations", fitting.max_iterations);
   at("sample_spacing_voxels", fitting.sample_spacing);
   at("guard", fitting.guard);
-  at("settle", fitting.settle);
-  at("settle_tolerance_m", fitting.settle_tolerance);
+  at("contact_state", fitting.contact_state);
+  at("closing_tolerance_m", fitting.closing_tolerance);
+  at("palm_after_contact", fitting.palm_after_contact);
   at("guard_self", fitting.guard_self);
   at("give_up_distance_m", fitting.give_up_distance);
 };
@@ -191,6 +192,7 @@ constexpr auto refinement_fields = [](auto& at, auto& refinement) {
   at("least_distance_m", refinement.least_distance);
   at("max_iterations", refinement.max_iterations);
   at("slide_steps", refinement.slide_steps);
+  at("near_pad_steps", refinement.near_pad_steps);
   at("reach_m", refinement.reach);
   at("largest_shift_m", refinement.largest_shift);
   at("largest_turn_rad", refinement.largest_turn);
@@ -243,6 +245,8 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("max_iterations", options.max_iterations);
   at("acceptance", options.acceptance);
   at("missing_contact", options.missing_contact);
+  at("rejection", options.rejection);
+  at("largest_deviation_m", options.largest_deviation);
   at("search", options.search);
   at("target_draws", options.target_draws);
   at("attempt_choice", options.attempt_choice);
@@ -253,6 +257,8 @@ constexpr auto planner_fields = [](auto& at, auto& options) {
   at("resolution", options.resolution);
   at("clip_thickness_m", options.clip_thickness);
   at("averaging", options.averaging);
+  at("counted_pads", options.counted_pads);
+  at("contact_pieces", options.contact_pieces);
   at.group("score", options.score, score_fields);
   at.optional_group("weak", options.weak, weak_fields);
   at.group("targets", options.targets, target_fields);

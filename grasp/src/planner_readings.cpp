@@ -4,6 +4,7 @@
 #include <array>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/option_names.hpp"
 
 namespace graspfit::grasp::internal {
@@ -17,10 +18,15 @@ bool is_about_scores(std::string_view number) {
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
-/// Whether a reading is about targets or the posture at them, which only fitting has.
+/// Whether a reading is about how targets are chosen by their scores.
+bool is_about_choice(std::string_view number) {
+  constexpr std::array about = {"A19", "A20", "A48"};
+  return std::find(about.begin(), about.end(), number) != about.end();
+}
+
+/// Whether a reading is about targets, however chosen, or the posture at them.
 bool is_about_targets(std::string_view number) {
-  constexpr std::array about = {"A17", "A18", "A19", "A20", "A21", "A22",
-                                "A23", "A24", "A25", "A26", "A28", "A48"};
+  constexpr std::array about = {"A17", "A18", "A21", "A22", "A23", "A24", "A25", "A26", "A28"};
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
@@ -38,6 +44,20 @@ std::string choice_reading(AttemptChoice choice) {
 }
 
 std::string text(std::string_view name) { return std::string(name); }
+
+std::string rejection_reading(const PlannerOptions& options) {
+  switch (options.rejection) {
+    case Rejection::None:
+      break;
+    case Rejection::Deviation:
+      return "; rejected: a contact farther from its target than " +
+             (options.largest_deviation ? shortest_decimal(*options.largest_deviation) + " m"
+                                        : text("a fingertip pad is wide"));
+    case Rejection::Quality:
+      return "; rejected: M below half of the targets' own and below 0.6";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -93,32 +113,40 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A26", "least sum of squared angular errors of the fingers that share a joint"},
       {"A27", "coupled, with breakaway"},
       {"A28", "all joints of a finger, to the posture at the targets by least squares"},
-      {"A29", "whole-hand motion after the first contact only if no contact is lost"},
+      {"A29",
+       fitting.palm_after_contact == PalmAfterContact::Frozen
+           ? text("the palm stays once a finger touches")
+           : text("the palm goes on while contacts come nearer to targets; fingers close again")},
       {"A30", "fastest point moves at most " + shortest_decimal(fitting.large_step_limit) +
                   " voxels from " + shortest_decimal(fitting.large_step_at) + ", else " +
                   shortest_decimal(fitting.small_step)},
       {"A31", options.missing_contact == MissingContact::Fails
                   ? text("a part without contact fails the attempt")
                   : text("the contacts that there are count")},
-      {"A32", std::string("small steps until contact or penetration; guard on ") +
-                  std::string(name_of(fitting.guard)) +
-                  (options.refine   ? ", contacts then refined"
-                   : fitting.settle ? ", fingers then settle on the surface"
-                                    : "")},
+      {"A32", (options.refine ? text("closed until refinement makes contacts real")
+               : fitting.contact_state == ContactState::Closed
+                   ? text("closed until the next motion would enter")
+                   : text("closed until the first sliver of surface in the clip volume")) +
+                  "; guard on " + text(name_of(fitting.guard))},
       {"A33", options.clip_thickness
                   ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
                   : "clip volume max(0.5 voxel, 1 mm) thick"},
-      {"A34", averaging},
-      {"A35", "contacts of all pads count"},
+      {"A34", averaging + (options.contact_pieces == ContactPieces::Joined
+                               ? ", one contact per pad"
+                               : ", pieces far apart are contacts of their own")},
+      {"A35", contact_estimation(options, 1.0).pads == CountedPads::All
+                  ? text("contacts of all links count")
+                  : text("contacts of fingertips and palm count")},
       {"A36",
        std::string(name_of(options.search)) + " " + std::string(name_of(options.acceptance)) +
            " of at most " + std::to_string(options.max_attempts) + " attempts" +
            (options.max_iterations ? ", " + std::to_string(*options.max_iterations) + " iterations"
-                                   : "")},
+                                   : "") +
+           rejection_reading(options)},
       {"A37", options.weak ? "slender features thinner than " +
                                  shortest_decimal(options.weak->weak_thickness) + " m"
                            : text("not looked for: nothing counts as weak")},
-      {"A39", "palm first, then every finger joint by joint"},
+      {"A39", "palm first until it touches, then every finger joint by joint"},
       {"A40", options.refine ? text("none, decided on the meshes")
                              : "overlap of different fingers above " +
                                    shortest_decimal(options.self_overlap) + " m ends the attempt"},
@@ -134,14 +162,15 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   ? "complete sets drawn by (ideal M)^" + shortest_decimal(targets.ideal_m_bias)
                   : text("measure not used in target selection")},
   };
-  if (options.planner != "fitting") {
-    for (auto& [number, reading] : readings) {
-      const bool is_score_unused = is_about_scores(number) && !options.contact_score_threshold;
-      if (is_score_unused || is_about_targets(number)) {
-        reading = "not used by planner " + options.planner;
-      }
-      if (number == "A47")
-        reading = "of the measure alone: planner " + options.planner + " has no targets";
+  const PlanningMethod& method = find_planning_method(options.planner);
+  for (auto& [number, reading] : readings) {
+    const bool is_unused =
+        (!method.has_scores && is_about_scores(number) && !options.contact_score_threshold) ||
+        (!method.has_scores && is_about_choice(number)) ||
+        (!method.has_targets && is_about_targets(number));
+    if (is_unused) reading = "not used by planner " + options.planner;
+    if (number == "A47" && !method.has_targets) {
+      reading = "of the measure alone: planner " + options.planner + " has no targets";
     }
   }
   return readings;

@@ -49,7 +49,6 @@ std::optional<Contact> met_contact(const Contact& contact, const Eigen::Isometry
   Contact met = contact;
   met.point_O = hit->point;
   met.inward_normal_O = -outward;
-  met.gap = 0.0;
   return met;
 }
 
@@ -90,7 +89,7 @@ std::optional<PoseRobustness> pose_robustness(const GraspMetricFacts& facts,
     const ContactQuality* quality = input.quality();
     if (quality != nullptr && quality->is_usable()) ++num_usable;
     if (!input.convention() ||
-        is_surely_no_force_closure(contact_wrenches(input.contacts(), *input.convention()))) {
+        is_surely_no_force_closure(contact_wrenches(input.touching(), *input.convention()))) {
       continue;
     }
     if (!is_force_closure(*input.wrench_space())) continue;

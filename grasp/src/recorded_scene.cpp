@@ -18,6 +18,10 @@ RecordedScene::RecordedScene(const GraspFile& file, geometry::TriangleMesh objec
   requested_.palm = file.palm;
 }
 
+std::optional<double> bearing_gap(const GraspFile& file) {
+  return file.imported ? std::nullopt : bearing_gap(file.options);
+}
+
 Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) const {
   const geometry::TriangleMesh& mesh = object_.mesh();
   const PlannerOptions& options = file_.options;
@@ -27,21 +31,18 @@ Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) cons
   context.hand = &file_.hand;
   QualityOptions quality_options = options.quality;
   quality_options.merge_distance = file_.merge_distance;
-  ContactEstimationOptions contact_options;
-  contact_options.clip_thickness = file_.clip_thickness;
-  contact_options.averaging = options.averaging;
-  const MeasuringScene scene{
-      .hand = file_.hand,
-      .collision = collision_,
-      .object = object_,
-      .surroundings = surroundings_,
-      .weak = weak_ ? &*weak_ : nullptr,
-      .wrench_object = wrench_object(mesh, context.center_of_mass_O),
-      .friction = options.friction,
-      .quality_context = context,
-      .quality_options = quality_options,
-      .contact_options = contact_options,
-      .largest_gap = options.refine ? std::optional(options.refinement.largest_gap) : std::nullopt};
+  const MeasuringScene scene{.hand = file_.hand,
+                             .collision = collision_,
+                             .object = object_,
+                             .surroundings = surroundings_,
+                             .weak = weak_ ? &*weak_ : nullptr,
+                             .wrench_object = wrench_object(mesh, context.center_of_mass_O),
+                             .friction = options.friction,
+                             .quality_context = context,
+                             .quality_options = quality_options,
+                             .contact_options = contact_estimation(options, file_.clip_thickness),
+                             .largest_gap = bearing_gap(options),
+                             .bearing_gap = bearing_gap(file_)};
   return measure_grasp(scene, configuration, requested_);
 }
 

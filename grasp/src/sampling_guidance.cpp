@@ -1,7 +1,8 @@
 // The baseline GS of the paper's Table 1: surface samples with normals guide the hand. A
 // reconstruction [R]: the paper says that much, and the work it cites could not be identified with
 // certainty (notes 16). A sample is drawn at random; the palm looks against its normal, turned at
-// random, at the sample or a little before it; the hand backs off until it is clear and closes.
+// random, at the sample, where it may touch, or a little before it; the hand backs off until it is
+// clear and closes.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include "graspfit/geometry/random.hpp"
 #include "internal/guidance_list.hpp"
 #include "internal/palm_pose.hpp"
+#include "internal/sample_model.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -67,24 +69,18 @@ class SamplingGuidance : public GraspGuidance {
         turned_axis(any_normal(direction), direction, roll * 2.0 * std::numbers::pi);
     start.X_OH = palm_pose(hand, axis_H_, hand.palm.center_H, direction, axis,
                            sample.point + standoff * sample.normal);
-    result.starts.push_back({{}, [&scene = scene_, start] {
+    const RetreatRule retreat{
+        .step = scene_.options.fitting.small_step * scene_.object.grid.lattice.voxel_size,
+        .palm_may_touch = standoff == 0.0};
+    result.starts.push_back({{}, [&scene = scene_, start, retreat] {
                                return close_hand(scene.hand, scene.object, scene.surroundings,
-                                                 scene.options.style, scene.parts, start, {},
+                                                 scene.options.style, scene.parts, start, retreat,
                                                  scene.contact_options, scene.options.fitting);
                              }});
     return result;
   }
 
-  /// The sampled geometry.
-  GuidanceModel model() const override {
-    GuidanceModel model;
-    model.columns = {"x_m", "y_m", "z_m", "nx", "ny", "nz"};
-    for (const geometry::SurfaceSample& sample : samples_) {
-      model.rows.push_back({sample.point.x(), sample.point.y(), sample.point.z(), sample.normal.x(),
-                            sample.normal.y(), sample.normal.z()});
-    }
-    return model;
-  }
+  GuidanceModel model() const override { return sample_model(samples_); }
 
   std::vector<std::string> failures() const override { return {kNoSample}; }
 
@@ -119,6 +115,16 @@ class SamplingGuidance : public GraspGuidance {
 };
 
 }  // namespace
+
+GuidanceModel sample_model(const std::vector<geometry::SurfaceSample>& samples) {
+  GuidanceModel model;
+  model.columns = {"x_m", "y_m", "z_m", "nx", "ny", "nz"};
+  for (const geometry::SurfaceSample& sample : samples) {
+    model.rows.push_back({sample.point.x(), sample.point.y(), sample.point.z(), sample.normal.x(),
+                          sample.normal.y(), sample.normal.z()});
+  }
+  return model;
+}
 
 std::unique_ptr<GraspGuidance> sampling_guidance(const GuidanceScene& scene) {
   return std::make_unique<SamplingGuidance>(scene);

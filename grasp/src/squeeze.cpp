@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/grasp/contact_estimation.hpp"
 #include "graspfit/grasp/grasp_balance.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/jacobian.hpp"
@@ -102,27 +103,35 @@ void SqueezeOptions::validate() const {
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                               std::span<const Contact> contacts,
                               const Eigen::Vector3d& center_of_mass_O, double torque_scale,
-                              double friction, const SqueezeOptions& options) {
+                              double friction, const SqueezeOptions& options,
+                              const std::optional<double>& bearing_gap) {
   options.validate();
   hands::validate(hand, grasp);
-  internal::require(!contacts.empty(), "squeeze_configuration", "number of contacts",
-                    contacts.size(), "at least 1");
+  const std::vector<Contact> touching = touching_contacts(contacts, bearing_gap);
+  internal::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
+                    touching.size(), "at least 1");
   const int num_links = static_cast<int>(hand.links.size());
   for (const Contact& contact : contacts) {
     internal::require(contact.link >= 0 && contact.link < num_links, "squeeze_configuration",
                       "link of a contact", contact.link,
                       "one of the " + std::to_string(num_links) + " of hand " + hand.name);
   }
-  const BalanceForces balance = balance_forces(contacts, center_of_mass_O, Wrench::Zero(),
+  const BalanceForces balance = balance_forces(touching, center_of_mass_O, Wrench::Zero(),
                                                {.friction = friction,
                                                 .least_normal_sum = options.normal_sum,
                                                 .torque_scale = torque_scale,
                                                 .evenness = kEvenness});
-  Squeeze result{grasp, balance.forces_O, balance.residual_norm / options.normal_sum, false, false};
+  Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
+                 balance.residual_norm / options.normal_sum, false, false};
+  Index next = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const bool bears = !bearing_gap || contacts[i].gap <= *bearing_gap;
+    if (bears) result.forces_O.col(static_cast<Index>(i)) = balance.forces_O.col(next++);
+  }
   result.is_balanced = result.residual <= options.largest_residual;
 
   const std::vector<bool> follows = following_joints(hand, grasp.q);
-  VectorXd displacement = joint_forces(hand, grasp, contacts, balance.forces_O, follows);
+  VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O, follows);
   const std::vector<int> independent = hands::independent_joints(hand);
   for (std::size_t k = 0; k < independent.size(); ++k) {
     const bool is_slide =

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/contact_quality.hpp"
@@ -127,14 +128,19 @@ Turns turns_of_any(const std::vector<FingerOrder>& orders,
 
 TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distances,
                          const RequestedParts& parts, const TargetOptions& options)
+    : TargetRules(object, distances, parts, options, pool_of(object, options)) {}
+
+TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distances,
+                         const RequestedParts& parts, const TargetOptions& options,
+                         std::vector<Place> pool)
     : object_(object),
       distances_(distances),
       parts_(parts),
       options_(options),
-      cos_theta_max_(std::cos(options.theta_max)) {
+      cos_theta_max_(std::cos(options.theta_max)),
+      pool_(std::move(pool)) {
   options.validate();
   check_parts(distances, parts, options);
-  pool_ = pool_of(object, options);
   if (!parts.palm) return;
   room_ = std::vector<std::atomic<signed char>>(pool_.size());
   for (auto& known : room_) known = -1;
@@ -367,11 +373,13 @@ TargetContacts TargetRules::as_targets(Places places, std::optional<double> palm
   TargetContacts targets;
   targets.seeds_tried = seeds_tried;
   targets.rank = rank(places, palm_misfit);
-  for (const std::int32_t place : places) {
-    const std::int32_t patch = pool_[place].patch;
-    targets.contacts.push_back({object_.patches[patch].centroid,
-                                object_.patches[patch].outward_normal, patch,
-                                object_.scores.scores[patch], kUnassigned});
+  for (const std::int32_t index : places) {
+    const Place& place = pool_[index];
+    const double score = place.patch == kNoPatch
+                             ? contact_score_at(object_, place.point_O).value_or(0.0)
+                             : object_.scores.scores[place.patch];
+    targets.contacts.push_back(
+        {place.point_O, -place.inward_normal_O, place.patch, score, kUnassigned});
   }
   if (has_palm()) targets.contacts.back().finger = kPalm;
   return targets;

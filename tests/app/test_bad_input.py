@@ -212,7 +212,8 @@ class BadFlags(program.ProgramTest):
         for flag in ("style", "accept", "score-normalization", "plane-distance", "averaging",
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
-                     "settle", "guard-self", "pre-grasp-open-neutral", "attempt-choice"):
+                     "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
+                     "reject", "guard-self", "pre-grasp-open-neutral", "attempt-choice"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

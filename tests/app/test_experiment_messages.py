@@ -91,7 +91,7 @@ class Refusals(ProgramTest):
         self.assert_refused(*experiment, "force_closure", "--jobs", "100000",
                             says="--jobs is 100000, must be in [1, 1024]")
         self.assert_refused(*experiment, "fitting_stages", "--quick", "--set", "planner=gs",
-                            says="must be fitting: only its grasps have targets")
+                            says="must be one whose hands are fitted to targets")
         self.assert_refused(*experiment, "force_closure", "--quick", "--publish",
                             says="results are not published: --quick")
 

@@ -249,11 +249,12 @@ TEST_CASE("Stages of a fitting start open and end at the grasp", "[experiments][
 TEST_CASE("Stages are those of fitting: another planner is refused by name",
           "[experiments][fitting_stages]") {
   for (const std::string planner : {"gs", "ma"}) {
-    CHECK_THROWS_WITH(run("fitting_stages", R"({"shape": "torus", "size_m": 0.14, "hand": "barrett",
+    CHECK_THROWS_WITH(
+        run("fitting_stages", R"({"shape": "torus", "size_m": 0.14, "hand": "barrett",
             "contacts": 3, "count": 1, "max-attempts": 3, "resolution": 20,
             "weak-thickness-mm": 0, "planner": ")" +
-                                                planner + "\"}"),
-                      testing::Contains("is \"" + planner + "\", must be fitting"));
+                                  planner + "\"}"),
+        testing::Contains("is \"" + planner + "\", must be one whose hands are fitted to targets"));
   }
 }
 

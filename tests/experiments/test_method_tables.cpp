@@ -27,6 +27,31 @@ std::string refusal(const std::string& members) {
 
 const std::vector<Column> kDetails = {{"m", "1", "M"}, {"other", "1", "another measure"}};
 
+const std::vector<Column> kColumns = {
+    {"hand", "", "name"}, {"attempts", "1", "attempts"}, {"attempts_rejected", "1", "of these"}};
+const std::vector<Column> kLayoutDetails = {{"m", "1", "M"},
+                                            {"target_distance_mean", "m", "half of M"},
+                                            {"area_share_median", "1", "a tenth"},
+                                            {"gap_median_m", "m", "a hundredth"},
+                                            {"deepest_overlap_m", "m", "a thousandth"}};
+
+/// Rows of `kLayoutDetails`.
+std::vector<Fields> grasps(const std::vector<double>& ms) {
+  std::vector<Fields> rows;
+  for (const double m : ms) {
+    rows.emplace_back();
+    for (const double share : {1.0, 0.5, 0.1, 0.01, 0.001}) {
+      rows.back().push_back(std::to_string(share * m));
+    }
+  }
+  return rows;
+}
+
+/// A row of `kColumns`.
+Fields counts(int attempts, int rejected) {
+  return {"a hand", std::to_string(attempts), std::to_string(rejected)};
+}
+
 ParameterSweep sweep_of_methods() {
   ParameterSweep sweep;
   sweep.axes = {{"object", {{"kitten", "{}"}, {"mug", "{}"}}},
@@ -55,7 +80,7 @@ TEST_CASE("Tables over methods refuse settings that select grasps", "[experiment
   CHECK_THAT(refusal(R"(, "search": "first", "planner-seed": -1)"),
              graspfit::testing::StartsWith("planner-seed: is -1"));
   CHECK_THAT(refusal(R"(, "search": "first", "planner-seed": 1, "planner": "none")"),
-             graspfit::testing::Contains("fitting|gs|ma|ma-full-retreat"));
+             graspfit::testing::Contains("fitting|gs-targets|gs|ma|ma-full-retreat"));
 }
 
 TEST_CASE("The four tables compare the same methods with the same seed", "[experiments][methods]") {
@@ -68,12 +93,12 @@ TEST_CASE("The four tables compare the same methods with the same seed", "[exper
     CHECK(methods.name == "planner");
     Fields labels;
     for (const AxisValue& value : methods.values) labels.push_back(value.label);
-    CHECK(labels == Fields{"gs", "ma", "ma-full-retreat", "fitting"});
-    CHECK_THAT(sweep.settings, graspfit::testing::Contains("\"planner-seed\":1"));
+    CHECK(labels == Fields{"gs-targets", "gs", "ma", "ma-full-retreat", "fitting",
+                           "fitting-reject-deviation", "fitting-reject-m"});
     if (std::string(slug) == "table1_all_objects") continue;
     CHECK(sweep.axes[0].values.size() == 4);
     CHECK(sweep.axes[1].values.size() ==
-          (sweep.axes[1].name == "reading" ? std::size_t{7} : std::size_t{3}));
+          (sweep.axes[1].name == "reading" ? std::size_t{19} : std::size_t{3}));
   }
 }
 
@@ -83,6 +108,8 @@ TEST_CASE("The paper's figures are its own", "[experiments][methods]") {
   CHECK(internal::paper_table1("max_planck", "fitting")->quality == 1.22);
   CHECK(internal::paper_table1("kitten", "ma")->quality == 0.92);
   CHECK(internal::paper_table1("kitten", "ma-full-retreat")->time_s == 1.2);
+  CHECK(internal::paper_table1("kitten", "gs-targets")->quality == 0.52);
+  CHECK(internal::paper_table1("kitten", "fitting-reject-m")->quality == 1.06);
   CHECK_FALSE(internal::paper_table1("mug", "gs"));
   CHECK_FALSE(internal::paper_table1("kitten", "other"));
   for (const char* const object : {"bowling_pin", "max_planck", "kitten"}) {
@@ -93,56 +120,80 @@ TEST_CASE("The paper's figures are its own", "[experiments][methods]") {
   }
 }
 
-TEST_CASE("The summary has the means of all methods side by side and says which order they have",
+TEST_CASE("The summary has a row per method, seeds together, beside the paper's figures",
           "[experiments][methods]") {
   const std::vector<FinishedCell> cells = {
-      {{"kitten", "0.10", "gs"}, {{"0.5", "1"}, {"1.5", "2"}}},
-      {{"kitten", "0.10", "ma"}, {{"0.25", "1"}}},
-      {{"kitten", "0.10", "fitting"}, {{"1", "1"}, {"2", "2"}, {"6", "3"}}},
-      {{"mug", "0.10", "gs"}, {}},
+      {{"kitten", "0.10", "gs"}, grasps({0.5, 1.5}), counts(2, 0)},
+      {{"kitten", "0.10", "ma"}, grasps({0.25}), counts(1, 0)},
+      {{"kitten", "0.10", "fitting"}, grasps({1, 2}), counts(7, 2)},
+      {{"kitten", "0.10", "fitting"}, grasps({6}), counts(3, 1)},  // another seed
+      {{"mug", "0.10", "gs"}, {}, counts(4, 0)},
   };
   const auto columns = internal::paper_layout_columns();
-  const auto rows = internal::paper_layout(kDetails, sweep_of_methods(), cells);
-  REQUIRE(rows.size() == 2);
+  const auto rows = internal::paper_layout(kColumns, kLayoutDetails, sweep_of_methods(), cells);
+  REQUIRE(rows.size() == 4);
   const auto of = [&](std::size_t row, const std::string& name) {
     return field_of(rows[row], columns, name);
   };
   CHECK(of(0, "object") == "kitten");
-  CHECK(of(0, "gs_grasps") == "2");
-  CHECK(of(0, "gs_mean_m") == "1");
-  CHECK(std::stod(of(0, "gs_sd_m")) == Approx(std::sqrt(0.5)));
-  CHECK(of(0, "ma_sd_m").empty());
-  CHECK(of(0, "fitting_mean_m") == "3");
-  CHECK(of(0, "fitting_median_m") == "2");
-  CHECK(of(0, "fitting_paper_m") == "1.06");
-  CHECK(of(0, "ma_paper_time_s") == "1.2");
-  CHECK(of(0, "fitting_above_ma") == "true");
-  CHECK(of(0, "ma_above_gs") == "false");
-  CHECK(of(0, "fitting_above_ma_full_retreat").empty());
-  CHECK(of(1, "gs_grasps") == "0");
-  CHECK(of(1, "gs_mean_m").empty());
-  CHECK(of(1, "gs_paper_m").empty());
-  CHECK(of(1, "gs_paper_time_s").empty());
+  CHECK(of(0, "size") == "0.10");
+  CHECK(of(0, "planner") == "gs");
+  CHECK(of(0, "hand") == "a hand");
+  CHECK(of(0, "grasps") == "2");
+  CHECK(of(0, "mean_m") == "1");
+  CHECK(std::stod(of(0, "sd_m")) == Approx(std::sqrt(0.5)));
+  CHECK(std::stod(of(0, "se_m")) == Approx(0.5));
+  CHECK(of(0, "m_per_attempt") == "1");
+  CHECK(of(0, "above_gs").empty());
+  CHECK(of(1, "sd_m").empty());
+  CHECK(of(1, "paper_time_s") == "1.2");
+  CHECK(of(1, "above_gs") == "false");
+  CHECK(of(2, "grasps") == "3");
+  CHECK(of(2, "attempts") == "10");
+  CHECK(of(2, "mean_m") == "3");
+  CHECK(of(2, "median_m") == "2");
+  CHECK(std::stod(of(2, "m_per_attempt")) == Approx(0.9));
+  CHECK(std::stod(of(2, "rejected_rate")) == Approx(0.3));
+  CHECK(of(2, "paper_m") == "1.06");
+  CHECK(std::stod(of(2, "m_over_paper")) == Approx(3 / 1.06));
+  CHECK(of(2, "above_ma") == "true");
+  CHECK(of(2, "above_gs") == "true");
+  CHECK(of(2, "above_ma_full_retreat").empty());
+  // What the other details come to: half of M, a tenth, a hundredth, a thousandth.
+  CHECK(std::stod(of(2, "target_distance_m")) == Approx(1.5));
+  CHECK(std::stod(of(2, "area_share_median")) == Approx(0.2));
+  CHECK(std::stod(of(2, "gap_median_m")) == Approx(0.02));
+  CHECK(std::stod(of(2, "overlap_mean_m")) == Approx(0.003));
+  CHECK(std::stod(of(2, "overlap_max_m")) == Approx(0.006));
+  CHECK(of(3, "grasps") == "0");
+  CHECK(of(3, "mean_m").empty());
+  CHECK(of(3, "m_per_attempt") == "0");
+  CHECK(of(3, "paper_m").empty());
 }
 
 TEST_CASE("Rows and correlations may be told apart by another axis", "[experiments][methods]") {
   ParameterSweep sweep = sweep_of_methods();
   sweep.axes[1] = {"reading", {{"own", "{}"}, {"other", "{}"}}};
   const internal::MethodTableAxes axes{.row = "reading", .group = "reading"};
+  const std::vector<FinishedCell> of_readings = {
+      {{"kitten", "own", "gs"}, grasps({1, 2}), counts(2, 0)},
+      {{"kitten", "other", "gs"}, grasps({1, 4}), counts(2, 0)},
+      {{"kitten", "other", "ma"}, grasps({5}), counts(1, 0)},
+  };
+  const auto rows = internal::paper_layout(kColumns, kLayoutDetails, sweep, of_readings, axes);
+  const auto columns = internal::paper_layout_columns(axes);
+  REQUIRE(rows.size() == 3);
+  CHECK(field_of(rows[0], columns, "reading") == "own");
+  CHECK(field_of(rows[0], columns, "mean_m") == "1.5");
+  CHECK(field_of(rows[1], columns, "mean_m") == "2.5");
+  CHECK(field_of(rows[2], columns, "planner") == "ma");
+  CHECK(field_of(rows[2], columns, "above_gs") == "true");
+
   const std::vector<FinishedCell> cells = {
       {{"kitten", "own", "gs"}, {{"1", "1"}, {"2", "2"}}},
       {{"kitten", "other", "gs"}, {{"1", "2"}, {"4", "1"}}},
       {{"kitten", "other", "ma"}, {{"5", "0"}}},
   };
-  const auto rows = internal::paper_layout(kDetails, sweep, cells, axes);
-  const auto columns = internal::paper_layout_columns(axes);
-  REQUIRE(rows.size() == 2);
-  CHECK(field_of(rows[0], columns, "reading") == "own");
-  CHECK(field_of(rows[0], columns, "gs_mean_m") == "1.5");
-  CHECK(field_of(rows[0], columns, "ma_mean_m").empty());
-  CHECK(field_of(rows[1], columns, "gs_mean_m") == "2.5");
-  CHECK(field_of(rows[1], columns, "ma_above_gs") == "true");
-
   const auto agreement = internal::correlations({"m", "other"}, kDetails, sweep, cells, axes);
   REQUIRE(agreement.size() == 3 * 2);  // all and two readings, two scopes
   const auto names = internal::correlation_columns(axes);

@@ -33,7 +33,14 @@ inline grasp::PlannerOptions unusual_options() {
   options.palm = false;
   options.seed = 18446744073709551615U;  // the largest there is
   options.search = grasp::SearchRule::First;
-  options.acceptance = grasp::Acceptance::Quality;
+  options.acceptance = grasp::Acceptance::Usable;
+  options.rejection = grasp::Rejection::Quality;
+  options.largest_deviation = 0.017;
+  options.counted_pads = grasp::CountedPads::TipsAndPalm;
+  options.contact_pieces = grasp::ContactPieces::Separate;
+  options.fitting.contact_state = grasp::ContactState::FirstGraze;
+  options.fitting.palm_after_contact = grasp::PalmAfterContact::Frozen;
+  options.refinement.near_pad_steps = 5;
   options.count = 7;
   options.max_attempts = 77;
   options.max_iterations = 5000000000;  // more than an int holds
@@ -63,7 +70,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.fitting.guard_self = true;
   options.refine = false;
   options.refinement.wanted_gap = 3e-5;
-  options.refinement.largest_gap = 3e-4;
+  options.refinement.largest_gap = 0.2;  // so large that every contact bears forces
   options.refinement.least_distance = 2e-6;
   options.refinement.max_iterations = 61;
   options.refinement.slide_steps = 3;
@@ -115,6 +122,7 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
   }
   file.options = unusual_options();
   file.options.quality.units = grasp::MeasureUnits::Normalized;
+  file.options.counted_pads = grasp::CountedPads::All;
   file.options.weak.reset();  // a search takes seconds
   file.surroundings.table_z_O = -0.2;
   file.surroundings.obstacles.push_back(object.record);

@@ -35,7 +35,7 @@ inline grasp::PlannerOptions at_voxel_level(const std::string& planner) {
   options.planner = planner;
   options.refine = false;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;
-  options.fitting.settle = false;
+  options.fitting.contact_state = grasp::ContactState::FirstGraze;
   options.acceptance = grasp::Acceptance::Usable;
   options.missing_contact = grasp::MissingContact::Measured;
   options.weak.reset();

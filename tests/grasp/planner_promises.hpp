@@ -36,13 +36,13 @@ using grasp::SearchRule;
 inline const std::vector<std::string> kNothing;
 
 inline const std::vector<AttemptOutcome> kOutcomes = {
-    AttemptOutcome::Valid,         AttemptOutcome::UsableOnly,
-    AttemptOutcome::NoTargets,     AttemptOutcome::InitialCollision,
-    AttemptOutcome::BlockedFinger, AttemptOutcome::MissedContact,
-    AttemptOutcome::GapLeft,       AttemptOutcome::SelfCollision,
-    AttemptOutcome::NoWayIn,       AttemptOutcome::IterationLimit,
-    AttemptOutcome::Weak,          AttemptOutcome::Unstable,
-    AttemptOutcome::PoorShape,
+    AttemptOutcome::Valid,          AttemptOutcome::UsableOnly,
+    AttemptOutcome::NoTargets,      AttemptOutcome::InitialCollision,
+    AttemptOutcome::BlockedFinger,  AttemptOutcome::MissedContact,
+    AttemptOutcome::GapLeft,        AttemptOutcome::SelfCollision,
+    AttemptOutcome::Rejected,       AttemptOutcome::NoWayIn,
+    AttemptOutcome::IterationLimit, AttemptOutcome::Weak,
+    AttemptOutcome::Unstable,       AttemptOutcome::PoorShape,
 };
 
 /// Every number of a grasp, written so that two are equal exactly if their bits are.
@@ -154,10 +154,12 @@ inline grasp::MeasuringScene measuring_scene(const Run& run,
       .friction = run.options.friction,
       .quality_context = {run.object.mass.center_of_mass, run.object.normalizing_radius, &run.hand},
       .quality_options = run.options.quality,
-      .contact_options = {grasp::clip_thickness(run.options, voxel_size), run.options.averaging},
-      .largest_gap = std::nullopt};
+      .contact_options =
+          grasp::contact_estimation(run.options, grasp::clip_thickness(run.options, voxel_size))};
   scene.quality_options.merge_distance = grasp::merge_distance(run.options, voxel_size);
-  if (run.options.refine) scene.largest_gap = run.options.refinement.largest_gap;
+  if (run.options.refine) {
+    scene.largest_gap = scene.bearing_gap = run.options.refinement.largest_gap;
+  }
   return scene;
 }
 
@@ -190,7 +192,8 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   const hands::HandModel& hand = run.hand;
   const double voxel_size = run.object.grid.lattice.voxel_size;
 
-  const bool has_targets = options.planner == "fitting";
+  const bool has_targets = options.planner == "fitting" || options.planner == "gs-targets";
+  const bool are_chosen = options.planner == "fitting";
 
   // Statistics.
   const grasp::PlannerStatistics& statistics = result.statistics;
@@ -218,7 +221,8 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   for (const auto& [name, count] : statistics.target_failures) {
     const bool is_of_fitting =
         name == "no seed" || name == "no second" || name == "no further" || name == "no palm";
-    if (has_targets ? !is_of_fitting : name != "no sample" && name != "no candidate") {
+    if (are_chosen ? !is_of_fitting
+                   : name != "no sample" && name != "no candidate" && name != "no set") {
       report("failure ", name);
     }
     target_failures += count;
@@ -247,8 +251,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       options.count,
       (options.acceptance == Acceptance::Valid ? statistics.valid() : statistics.usable()) -
           statistics.duplicates);
-  if (options.acceptance == Acceptance::Quality ? num_grasps > num_acceptable
-                                                : num_grasps != num_acceptable) {
+  if (num_grasps != num_acceptable) {
     report(num_grasps, " grasps, statistics say ", num_acceptable);
   }
   for (std::size_t i = 1; i < result.grasps.size(); ++i) {
@@ -287,15 +290,25 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     if (!(g.quality.m > 0.0) || !g.is_usable()) wrong("not usable");
     if (options.acceptance == Acceptance::Valid && !g.is_valid()) wrong("not valid");
     const double least_m = has_targets ? std::min(0.5 * g.ideal_m, 0.6) : 0.6;
-    if (options.acceptance == Acceptance::Quality && g.quality.m < least_m) {
+    if (options.rejection == grasp::Rejection::Quality && g.quality.m < least_m) {
       wrong("M ", g.quality.m, " with ideal ", g.ideal_m);
+    }
+    if (options.rejection == grasp::Rejection::Deviation) {
+      for (const auto& target : g.targets.contacts) {
+        const bool is_near =
+            std::any_of(g.contacts.begin(), g.contacts.end(), [&](const grasp::Contact& contact) {
+              return contact.finger == target.finger && contact.is_target &&
+                     (contact.point_O - target.point_O).norm() <= *options.largest_deviation;
+            });
+        if (!is_near) wrong("no contact near the target of finger ", target.finger);
+      }
     }
     if (has_targets ? !(g.ideal_m > 0.0) : g.ideal_m != 0.0) wrong("ideal M ", g.ideal_m);
 
     // Targets.
     if (!has_targets && !g.targets.contacts.empty()) wrong("targets of a method without");
     for (const std::string& line :
-         has_targets
+         are_chosen
              ? testing::broken_requirements(run.object, distances, parts, target_options, g.targets)
              : kNothing) {
       wrong(line);

@@ -150,6 +150,99 @@ TEST_CASE("On a ball the contact is the cap that the clip volume cuts off",
   CHECK(contact->pad_boundary_distance == Approx(0.02).margin(5e-5));
 }
 
+namespace {
+
+/// Two bars along y, 5 mm wide under the pad's halves, tops at 0.1 and `second_top`, and below the
+/// slit between them a third one whose top is at `middle_top`.
+geometry::TriangleMesh bars(double second_top, double middle_top) {
+  const auto bar = [](double x, double width, double top) {
+    geometry::TriangleMesh mesh = geometry::box({width, 0.2, 0.05});
+    for (Vector3d& vertex : mesh.vertices) vertex += Vector3d(x, 0, top - 0.025);
+    return mesh;
+  };
+  return geometry::concatenated(
+      {bar(-0.01, 0.01, 0.1), bar(0.01, 0.01, second_top), bar(0.0, 0.002, middle_top)});
+}
+
+}  // namespace
+
+TEST_CASE("The point of a contact lies on its pieces, not on whatever is near their mean",
+          "[grasp][contact_estimation]") {
+  // Bars from 5 to 15 mm on either side, seen by a pad that reaches 10 mm far; their mean is over
+  // the slit, 1 mm from the middle bar, which ends just below the clip volume.
+  const double gap = 0.0005;
+  const MeshQuery object(bars(0.1, 0.1 - (kThickness - gap) - 1e-4));
+  const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
+  const auto contact = estimate_contact(hand, 1, above(0, 0, 0.1, gap), object, kOptions);
+  REQUIRE(contact);
+  CHECK(std::abs(contact->point_O.x()) == Approx(0.005).margin(kRounding));
+  CHECK(contact->point_O.z() <= 0.1 + kRounding);
+  CHECK(contact->point_O.z() >= 0.1 - (kThickness - gap) - kRounding);
+  const double top = 0.005 * 0.04;
+  const double wall = (kThickness - gap) * 0.04;
+  CHECK(contact->area == Approx(2 * (top + wall)).epsilon(1e-9));
+  CHECK(std::abs(contact->inward_normal_O.x()) < 1e-9);  // the walls of the slit cancel
+}
+
+TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
+          "[grasp][contact_estimation]") {
+  const double gap = 0.0005;
+  const double lower = 0.001;
+  const MeshQuery object(bars(0.1 - lower, 0.05));
+  const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
+  ContactEstimationOptions separate = kOptions;
+  separate.pieces = ContactPieces::Separate;
+  const std::vector<RigidTransform> X_OL = {above(0, 0, 0.2, 0), above(0, 0, 0.1, gap)};
+  const std::vector<Contact> contacts = estimate_contacts(hand, X_OL, object, separate);
+  REQUIRE(contacts.size() == 2);
+  for (int i = 0; i < 2; ++i) {
+    const Contact& contact = contacts[i];
+    CAPTURE(i);
+    const double depth = kThickness - gap - (i == 1 ? lower : 0.0);
+    const double top = 0.005 * 0.04;
+    const double wall = depth * 0.04;
+    CHECK(contact.pad == 1);
+    CHECK(contact.area == Approx(top + wall).epsilon(1e-9));
+    CHECK(contact.gap == Approx(i == 0 ? gap : gap + lower).epsilon(1e-9));
+    const double side = i == 0 ? -1.0 : 1.0;
+    // The wall toward the slit looks along -side x, so the inward normal leans along +side x.
+    CHECK((contact.inward_normal_O - Vector3d(side * wall, 0, -top).normalized()).norm() < 1e-9);
+    CHECK(contact.point_O.x() * side > 0.005 - kRounding);
+  }
+  CHECK(estimate_contacts(hand, X_OL, object, kOptions).size() == 1);
+  // Nearer to each other than half the pad's width they are one: bars 2 cm apart, a pad 6 cm wide.
+  const hands::HandModel wide = pad_hand(1, 0.06, 0.08);
+  CHECK(estimate_contacts(wide, X_OL, object, separate).size() == 1);
+}
+
+TEST_CASE("Contacts of fingertips and palm alone", "[grasp][contact_estimation]") {
+  // Two pads on one finger, the first of which is no fingertip's.
+  hands::HandModel hand = pad_hand(2);
+  hand.pads[1].finger = 1;
+  hand.fingers[1].links = {1, 2};
+  const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
+  const std::vector<RigidTransform> X_OL(3, above(0, 0, 0.1, 0.0005));
+  CHECK(estimate_contacts(hand, X_OL, box, kOptions).size() == 3);
+  ContactEstimationOptions some = kOptions;
+  some.pads = CountedPads::TipsAndPalm;
+  const std::vector<Contact> contacts = estimate_contacts(hand, X_OL, box, some);
+  REQUIRE(contacts.size() == 2);
+  CHECK(contacts[0].pad == 0);
+  CHECK(contacts[1].pad == 2);
+}
+
+TEST_CASE("Contacts that touch are those within the gap", "[grasp][contact_estimation]") {
+  std::vector<Contact> contacts(3);
+  contacts[0].gap = 0.0001;
+  contacts[1].gap = 0.0002;
+  contacts[2].gap = 0.0;
+  CHECK(touching_contacts(contacts, std::nullopt).size() == 3);
+  const std::vector<Contact> touching = touching_contacts(contacts, 0.0001);
+  REQUIRE(touching.size() == 2);
+  CHECK(touching[0].gap == 0.0001);
+  CHECK(touching[1].gap == 0.0);
+}
+
 TEST_CASE("A pad off the middle knows how far its outline is", "[grasp][contact_estimation]") {
   // The ball's pole is 6 mm from the pad's middle along x: 20 - 6 mm from the outline. The cap is
   // cut by the outline only beyond 14 mm, so it is whole.

@@ -250,6 +250,7 @@ TEST_CASE("Signed distances cancel on uneven ground, unsigned ones do not",
       patch(lattice, {1, 2, 2}, {0.5, 0.5, 0.9}, Vector3d::UnitZ()),
       patch(lattice, {3, 2, 2}, {0.5, 0.5, 0.1}, Vector3d::UnitZ())};
   ScoreOptions options = kUnfilteredRaw;
+  options.plane_distance = PlaneDistance::Unsigned;
   CHECK(contact_score_map(patches, lattice, options).mean_plane_distance[0] ==
         Approx(0.4).epsilon(kRounding));
   options.plane_distance = PlaneDistance::SignedMean;

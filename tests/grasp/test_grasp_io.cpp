@@ -300,8 +300,8 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(refusal(path, good.substr(0, good.size() / 2)), Contains("is not JSON"));
   CHECK_THAT(refusal(path, "[]"), Contains("/: is not an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
-  CHECK_THAT(refusal(path, replaced(good, "\"version\": 3", "\"version\": 1")),
-             Contains("/version: is 1; this program reads version 3"));
+  CHECK_THAT(refusal(path, replaced(good, "\"version\": 4", "\"version\": 1")),
+             Contains("/version: is 1; this program reads version 4"));
   CHECK_THAT(refusal(path, replaced(good, "\"outside\": \"minus-one\"", "\"outside\": \"far\"")),
              Contains("/results/grasps/0/wrench/convention/outside: is \"far\"") &&
                  Contains("zero|minus-one|signed"));

@@ -132,7 +132,8 @@ TEST_CASE("Metrics have no value where what they need is not there", "[grasp][gr
   for (const GraspMetric& metric : grasp_metrics().all()) {
     CAPTURE(metric.name);
     const GraspMetricValue found = evaluate(metric, nothing);
-    CHECK(found.value.has_value() == (metric.name == "num_contacts"));
+    CHECK(found.value.has_value() ==
+          (metric.name == "num_contacts" || metric.name == "num_touching"));
   }
   CHECK(*value_of("num_contacts", nothing) == 0.0);
   // DexGraspBench has no torque scale for contacts in one point.
@@ -140,6 +141,26 @@ TEST_CASE("Metrics have no value where what they need is not there", "[grasp][gr
   CHECK_FALSE(value_of("epsilon", input_of(same, 0.5, WrenchTool::DexGraspBench)).has_value());
   CHECK(value_of("epsilon", input_of(same, 0.5)).has_value());
   CHECK_THROWS_AS(value_of("epsilon", input_of(on_cube(), -0.5)), InvalidInput);
+}
+
+TEST_CASE("Pads that do not touch bear no force, but count in M", "[grasp][grasp_metric]") {
+  Contacts contacts = on_tetrahedron();
+  contacts[3].gap = 0.0002;
+  const Contacts touching(contacts.begin(), contacts.begin() + 3);
+  grasp::GraspMetricFacts facts = input_of(contacts, 0.5).facts();
+  facts.bearing_gap = 0.0001;
+  const GraspMetricInput some(facts);
+  const GraspMetricInput three = input_of(touching, 0.5);
+  for (const char* const name :
+       {"epsilon", "epsilon_graspit", "volume", "force_closure", "wrench_rank", "epsilon_linf",
+        "min_weight", "balance_residual", "sigma_min"}) {
+    CAPTURE(name);
+    CHECK(value_of(name, some) == value_of(name, three));
+  }
+  CHECK(*value_of("epsilon", some) != *value_of("epsilon", input_of(contacts, 0.5)));
+  CHECK(*value_of("num_contacts", some) == 4.0);
+  CHECK(*value_of("num_touching", some) == 3.0);
+  CHECK(*value_of("num_touching", input_of(contacts, 0.5)) == 4.0);  // no gap is too large
 }
 
 TEST_CASE("Areas and gaps are those of the contacts", "[grasp][grasp_metric]") {

@@ -52,8 +52,8 @@ TEST_CASE(
     const FittingResult result = scene.fit(targets, placement);
     CHECK(result.stop == FittingStop::Contact);
     CHECK(result.initial.X_OH.translation().x() == Approx(off).margin(1e-9));
-    // Both jaws rest on the box within the tolerance of settling, so the gripper is in its middle.
-    const double settled = grasp::FittingOptions{}.settle_tolerance;
+    // Both jaws rest on the box within the tolerance of closing, so the gripper is in its middle.
+    const double settled = grasp::FittingOptions{}.closing_tolerance;
     CHECK(result.configuration.X_OH.translation().x() == Approx(0.0).margin(2 * settled));
     CHECK(result.configuration.q[0] == Approx(0.02).margin(2 * settled));
     CHECK(result.configuration.q[0] == result.configuration.q[1]);
@@ -99,7 +99,7 @@ TEST_CASE("A human hand brings its fingertips near their targets on a ball",
     CHECK(std::is_permutation(served.begin(), served.end(), scene.parts.fingers.begin()));
     grasp::FittingOptions options;
     options.guard = grasp::PenetrationGuard::Voxels;
-    options.settle = false;
+    options.contact_state = grasp::ContactState::FirstGraze;
     const FittingResult result = scene.fit(targets, placement, options);
     const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
     for (const grasp::TargetContact& target : targets.contacts) {

@@ -32,7 +32,7 @@ hands::HandConfiguration above(const Scene& scene, double height) {
 grasp::FittingOptions options_at(grasp::PenetrationGuard guard) {
   grasp::FittingOptions options;
   options.guard = guard;
-  options.settle = false;
+  options.contact_state = grasp::ContactState::FirstGraze;
   return options;
 }
 
@@ -96,6 +96,29 @@ TEST_CASE("A colliding hand backs off to the first clear place along its directi
   before.X_OH.pretranslate(Vector3d(0, 0, -step));
   CHECK(least_distance(scene, before) <= 0.0F);
   CHECK(result.stop == FittingStop::Contact);
+}
+
+TEST_CASE("A hand that has backed off may go back until its palm touches",
+          "[grasp][hand_closing]") {
+  const Scene scene(geometry::ball(0.045));
+  const hands::HandConfiguration start = above(scene, 0.043);  // the palm at the pole
+  const double step = 2.0 * scene.voxel_size();
+  const auto has_palm = [](const FittingResult& result) {
+    return std::any_of(result.contacts.begin(), result.contacts.end(),
+                       [](const grasp::Contact& contact) { return contact.finger < 0; });
+  };
+  const FittingResult away = closed(scene, start, {.step = step});
+  CHECK_FALSE(has_palm(away));
+  const FittingResult touching = closed(scene, start, {.step = step, .palm_may_touch = true});
+  CHECK(has_palm(touching));
+  CHECK(touching.smallest_distance >= 0.0);
+  // Between where it was clear and where it started.
+  const double height = touching.configuration.X_OH.translation().z();
+  CHECK(height < away.configuration.X_OH.translation().z());
+  CHECK(height >= start.X_OH.translation().z() - 1e-12);
+  // From a start that is clear it does not go on.
+  const FittingResult clear = closed(scene, above(scene, 0.075), {.palm_may_touch = true});
+  CHECK(clear.configuration.X_OH.matrix() == above(scene, 0.075).X_OH.matrix());
 }
 
 TEST_CASE("Of a bounded retreat the rule says whether a hand in collision closes",

@@ -197,7 +197,7 @@ TEST_CASE("A model from the cache is the built one bit for bit, and damaged entr
            {.resolution = 14, .score = {.gamma_deg = 90.0}},
            {.resolution = 14, .score = {.length_voxels = 4.0}},
            {.resolution = 14, .score = {.normalization = ScoreNormalization::Max}},
-           {.resolution = 14, .score = {.plane_distance = PlaneDistance::SignedMean}},
+           {.resolution = 14, .score = {.plane_distance = PlaneDistance::Unsigned}},
            {.resolution = 14, .score = {.mean_filter_radius = 2}},
            {.resolution = 14, .score = {.mean_filter_passes = 2}},
            {.resolution = 14, .score = {.floor = 0.06}},

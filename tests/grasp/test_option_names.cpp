@@ -25,6 +25,11 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
   check(grasp::GraspStyle{});
   check(grasp::Acceptance{});
   check(grasp::MissingContact{});
+  check(grasp::Rejection{});
+  check(grasp::ContactState{});
+  check(grasp::PalmAfterContact{});
+  check(grasp::CountedPads{});
+  check(grasp::ContactPieces{});
   check(grasp::ApproachSource{});
   check(geometry::PatchAveraging{});
   check(grasp::ScoreNormalization{});
@@ -36,7 +41,7 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
   check(grasp::PlannerStop{});
   check(geometry::RepairMode{});
   check(geometry::SelfIntersections{});
-  CHECK(grasp::names_of<grasp::Acceptance>() == "valid|usable|quality");
+  CHECK(grasp::names_of<grasp::Acceptance>() == "valid|usable");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
   CHECK(unsaid(message_after([](auto& o) { o.self_overlap = -0.125; }), "self_overlap", "-0.125") ==
         "");
   CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "planner", "none") == "");
-  CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "fitting|gs|ma",
+  CHECK(unsaid(message_after([](auto& o) { o.planner = "none"; }), "fitting|gs-targets|gs|ma",
                "ma-full-retreat") == "");
   // Refined grasps touch with every part.
   const auto measured = [](auto& o) { o.missing_contact = grasp::MissingContact::Measured; };

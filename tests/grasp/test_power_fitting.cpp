@@ -30,7 +30,7 @@ using testing::targets_at;
 FittingOptions paper_loop() {
   FittingOptions options;
   options.guard = grasp::PenetrationGuard::Voxels;
-  options.settle = false;
+  options.contact_state = grasp::ContactState::FirstGraze;
   return options;
 }
 
@@ -146,10 +146,12 @@ TEST_CASE("Fingers that are kept from each other end apart, others have closed t
 
 TEST_CASE("No configuration of a fit touches the table", "[grasp][power_fitting]") {
   const Scene scene(geometry::ball(0.05));
+  FittingOptions options = paper_loop();
+  options.palm_after_contact = grasp::PalmAfterContact::Frozen;  // no finger was lower than it ends
   const TargetContacts open_targets = testing::equilateral_targets(0.05, 0.2);
   const PalmPlacement from_above{Vector3d(0, 0, -1)}, from_below{Vector3d(0, 0, 1)};
   const TargetContacts targets = scene.assigned(open_targets, from_above);
-  const FittingResult free = scene.fit(targets, from_above, paper_loop());
+  const FittingResult free = scene.fit(targets, from_above, options);
   REQUIRE(free.stop == FittingStop::Contact);
   const auto lowest_point = [&](const hands::HandConfiguration& configuration) {
     const auto X_OL = hands::forward_kinematics(scene.hand, configuration);
@@ -167,13 +169,13 @@ TEST_CASE("No configuration of a fit touches the table", "[grasp][power_fitting]
     const grasp::SurroundingsCollision surroundings(scene.hand, {table, {}});
     const FittingResult result =
         grasp::fit_hand(scene.fitting_hand, scene.object, surroundings, GraspStyle::Precision,
-                        targets, from_above, scene.contact_options, paper_loop());
+                        targets, from_above, scene.contact_options, options);
     CHECK(lowest_point(result.initial) > table);
     CHECK(lowest_point(result.configuration) > table);
     if (table < reached - 0.01) CHECK(result.stop == FittingStop::Contact);
     const FittingResult below = grasp::fit_hand(
         scene.fitting_hand, scene.object, surroundings, GraspStyle::Precision,
-        scene.assigned(open_targets, from_below), from_below, scene.contact_options, paper_loop());
+        scene.assigned(open_targets, from_below), from_below, scene.contact_options, options);
     CHECK(below.stop == FittingStop::InitialCollision);
   }
 }

@@ -94,6 +94,32 @@ HandModel ring_hand(int count, double radius) {
 
 }  // namespace
 
+TEST_CASE("A pad that does not touch is not pressed", "[grasp][squeeze]") {
+  const HandModel hand = ring_hand(3, 0.05);
+  HandConfiguration grasp = hands::open_configuration(hand);
+  Contacts contacts;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 3.0;
+    const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
+    contacts.push_back(link_contact(i + 1, 0.05 * outward + 0.1 * Vector3d::UnitZ(), -outward));
+  }
+  Contacts four = contacts;
+  four.insert(four.begin() + 1, link_contact(0, Vector3d(0, 0, 0.05), Vector3d::UnitZ()));
+  four[1].gap = 0.001;
+  const Vector3d center(0, 0, 0.1);
+  const Squeeze of_three = squeeze_configuration(hand, grasp, contacts, center, 0.05, 0.4);
+  const Squeeze of_four = squeeze_configuration(hand, grasp, four, center, 0.05, 0.4, {}, 0.0005);
+  REQUIRE(of_four.forces_O.cols() == 4);
+  CHECK(of_four.forces_O.col(1).norm() == 0.0);
+  CHECK(of_four.forces_O.col(0) == of_three.forces_O.col(0));
+  CHECK(of_four.forces_O.col(3) == of_three.forces_O.col(2));
+  CHECK(of_four.configuration.q == of_three.configuration.q);
+  CHECK(of_four.residual == of_three.residual);
+  four[0].gap = four[2].gap = four[3].gap = 0.001;
+  CHECK_THROWS_AS(squeeze_configuration(hand, grasp, four, center, 0.05, 0.4, {}, 0.0005),
+                  InvalidInput);
+}
+
 TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[grasp][squeeze]") {
   HandModel hand = hands::find_hand("parallel_gripper");
   const double half = 0.02;
@@ -284,7 +310,8 @@ TEST_CASE("A squeeze refuses what makes no sense", "[grasp][squeeze]") {
         SqueezeOptions{.slide_stiffness = -1.0}, SqueezeOptions{.largest_residual = -0.1}}) {
     CHECK_THROWS_AS(squeeze(grasp, contacts, 0.04, 0.4, bad), InvalidInput);
   }
-  CHECK_THROWS_WITH(squeeze(grasp, {}, 0.04, 0.4, {}), testing::Contains("number of contacts = 0"));
+  CHECK_THROWS_WITH(squeeze(grasp, {}, 0.04, 0.4, {}),
+                    testing::Contains("number of contacts that touch = 0"));
   CHECK_THROWS_WITH(
       squeeze(grasp, {link_contact(3, {0.04, 0, 0}, {-1, 0, 0})}, 0.04, 0.4, {}),
       testing::Contains("link of a contact = 3") && testing::Contains("3 of hand ring"));

@@ -160,6 +160,14 @@ def check_measure(scene, grasp, contacts, found):
     return quality
 
 
+def touching(scene, contacts):
+    """Those that bear forces: of refined grasps within the largest gap."""
+    limit = scene.options["refinement"]["largest_gap_m"]
+    is_refined = scene.options["refine"] and not scene.record.get("imported")
+    return [contact.contact for contact in contacts.values()
+            if not is_refined or contact.gap <= limit]
+
+
 def check_wrench(scene, stored, contacts, found):
     """Epsilon in the convention of the file, which must be GraspIt!'s; None where not recorded."""
     if stored is None:
@@ -235,6 +243,11 @@ def check_squeeze(scene, grasp, contacts, found):
     found.equal("pose", "squeeze X_OH", hand_files.pose_of_json(stored["X_OH"]),
                 hand_files.pose_of_json(grasp["X_OH"]))
     forces = np.array(stored["forces_O_N"]).reshape(-1, 3)
+    bearing = touching(scene, contacts)
+    contacts = [contact.contact for contact in contacts.values()]
+    idle = [force for force, contact in zip(forces, contacts)
+            if not any(contact is other for other in bearing)]
+    found.require(f"forces {idle} on pads that do not touch", not np.any(idle))
     points = np.array([contact.point for contact in contacts])
     normals = np.array([contact.normal for contact in contacts])
     pressing = (forces * normals).sum(axis=1)
@@ -301,8 +314,8 @@ def check_grasp(scene, grasp):
         plain = [c.contact for c in contacts.values()]
         quality = check_measure(scene, grasp, plain, found)
         gap = check_claims(scene, grasp, contacts, quality, found)
-        epsilon = check_wrench(scene, grasp["wrench"], plain, found)
-        check_squeeze(scene, grasp, plain, found)
+        epsilon = check_wrench(scene, grasp["wrench"], touching(scene, contacts), found)
+        check_squeeze(scene, grasp, contacts, found)
         row |= {"gap_mm": 1e3 * gap, "gap_file": 1e3 * grasp["largest_claimed_gap_m"],
                 "area_mm2": 1e6 * sum(contact.area for contact in plain),
                 "area_file": 1e6 * sum(c["area_m2"] for c in grasp["contacts"]),

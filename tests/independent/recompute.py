@@ -113,8 +113,8 @@ class Scene:
     """Object, surroundings and hand of a grasp file."""
 
     def __init__(self, record, folder):
-        if record["version"] != 3:
-            raise ValueError(f"is of version {record['version']}, not 3")
+        if record["version"] != 4:
+            raise ValueError(f"is of version {record['version']}, not 4")
         self.record, self.folder = record, folder
         self.options = record["planner"]["options"]
         self.used = record["planner"]["used"]
@@ -215,7 +215,8 @@ class Scene:
             mean, normal = areas @ middles / total, vectors.sum(axis=0) / total
         if np.linalg.norm(normal) < LEAST_NORMAL:
             return None
-        (point,) = triangles.nearest_on_surface(mean[None], self.object.tree)
+        nearest = triangles.nearest_on_triangles(np.tile(mean, (len(pieces), 1)), pieces)
+        point = nearest[np.nanargmin(np.linalg.norm(nearest - mean, axis=1))]
         contact = measures.Contact(
             pad.name, pad.finger, point, -normal / np.linalg.norm(normal), total,
             pad.boundary_distance(hand_files.moved(hand_files.inverse(X_OC), point)))
@@ -239,8 +240,14 @@ class Scene:
         return triangles.surface_distance(surface, self.object.tree)
 
     def contacts(self, X_OL):
-        """Of all pads that have one, by the pad's name, in the hand's order."""
-        found = {name: self.contact(pad, X_OL) for name, pad in self.hand.pads.items()}
+        """Of all pads that count and have one, by the pad's name, in the hand's order."""
+        if self.options["contact_pieces"] != "joined":
+            raise ValueError("contacts of several pieces are not recomputed")
+        counted = self.options["counted_pads"] or (
+            "all" if self.options["style"] == "power" else "tips-and-palm")
+        tips = {finger["tip_pad"] for finger in self.record["hand"]["fingers"]}
+        found = {name: self.contact(pad, X_OL) for name, pad in self.hand.pads.items()
+                 if counted == "all" or name in tips or pad.finger == "palm"}
         return {name: contact for name, contact in found.items() if contact}
 
     def quality(self, contacts):

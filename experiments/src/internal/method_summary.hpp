@@ -16,10 +16,11 @@ struct MethodTableAxes {
   std::string group = "planner";  ///< Correlations of its values apart, and of all.
 };
 
-/// The paper's layout: a row per object and `axes.row`, mean M of each method beside the paper's,
-/// and whether the order of methods is the paper's.
+/// The paper's layout: a row per object, `axes.row` and method, seeds together: mean M beside the
+/// paper's, and above which other methods it is. `columns` and `details` are those of the cells.
 std::vector<Column> paper_layout_columns(const MethodTableAxes& axes = {});
-std::vector<ResultRow> paper_layout(const std::vector<Column>& details, const ParameterSweep& sweep,
+std::vector<ResultRow> paper_layout(const std::vector<Column>& columns,
+                                    const std::vector<Column>& details, const ParameterSweep& sweep,
                                     const std::vector<FinishedCell>& cells,
                                     const MethodTableAxes& axes = {});
 

@@ -13,7 +13,8 @@ struct PaperFigures {
 };
 
 /// By the label of an object and of a method; both `bowling_pin` and `bowling_ball` have those of
-/// its BOWLING, `ma` and `ma-full-retreat` those of its MA. Empty for others.
+/// its BOWLING, `gs` and `gs-targets` those of its GS, `ma` and `ma-full-retreat` those of its MA,
+/// and all that begin with `fitting` those of the paper's own method. Empty for others.
 std::optional<PaperFigures> paper_table1(std::string_view object, std::string_view method);
 
 }  // namespace graspfit::experiments::internal

@@ -39,6 +39,8 @@ void fill_planning_timings(const Planned& planned, ResultRow& row);
 /// have it, too, as their wrenches are rounded, with an epsilon of 1e-17: they count as open.
 bool is_closed(const grasp::Grasp& grasp);
 
+/// Empty without any.
+std::optional<double> largest(const std::vector<double>& values);
 /// The middle of some numbers, mean of the middle two; empty without any.
 std::optional<double> median(std::vector<double> values);
 /// The arithmetic mean; empty without any.

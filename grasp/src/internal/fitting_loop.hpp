@@ -36,7 +36,17 @@ class FittingLoop {
     std::size_t stage = 0;
     bool is_shared = false;       ///< Others close by the same joint: a gripper's jaws.
     bool is_toward_goal = false;  ///< Still on the way to the posture at the targets.
+    std::optional<Eigen::Vector3d> target_O;
     State state = State::Free;
+  };
+
+  /// Where the fingers have closed, and how far from their targets.
+  struct Formed {
+    hands::HandConfiguration configuration;
+    std::vector<Part> parts;
+    int num_missing = 0;        ///< Targets whose fingertip has no contact.
+    double miss = 0.0;          ///< The sum of the others' distances from their contacts [m].
+    Eigen::Vector3d to_center;  ///< From the mean of contacts to the mean of targets [m].
   };
 
   void add_part(int finger, bool has_target);
@@ -45,6 +55,7 @@ class FittingLoop {
   FittingResult failed_start() const;
   void approach();
   void seat_palm(double distance);
+  void bring_palm(double distance);
   FittingResult run();
   void advance(double distance, double tolerance);
   void close_part(Part& part);
@@ -52,7 +63,12 @@ class FittingLoop {
   bool try_closing(const Part& part, double step);
   bool next_stage(Part& part);
   void move_palm_to_goal();
-  void settle(Part& part);
+  bool close_free_parts();
+  void recenter();
+  Formed formed();
+  bool try_shift(const Eigen::Vector3d& shift, double opening);
+  void close_on(Part& part);
+  void press_palm();
   void finish(FittingResult& result);
 
   bool try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
@@ -85,6 +101,9 @@ class FittingLoop {
   hands::HandConfiguration initial_;
   hands::HandConfiguration goal_;  ///< The posture at the targets; without, where the hand started.
   bool is_palm_done_ = false;      ///< The palm is where it is wanted, or cannot get there.
+  bool stops_at_palm_;             ///< Once the palm touches, `advance` ends.
+  bool is_palm_held_ = false;      ///< The palm touches and must not lose its contact.
+  int iterations_ = 0;
   double contact_tests_s_ = 0.0;
 };
 

@@ -10,6 +10,7 @@
 namespace graspfit::grasp::internal {
 
 std::unique_ptr<GraspGuidance> fitting_guidance(const GuidanceScene& scene);
+std::unique_ptr<GraspGuidance> sample_target_guidance(const GuidanceScene& scene);
 std::unique_ptr<GraspGuidance> sampling_guidance(const GuidanceScene& scene);
 std::unique_ptr<GraspGuidance> medial_guidance(const GuidanceScene& scene);
 std::unique_ptr<GraspGuidance> medial_guidance_with_full_retreat(const GuidanceScene& scene);

@@ -57,6 +57,7 @@ class PlannerAttempts {
   bool are_scores_high(const std::vector<Contact>& contacts) const;
   bool is_accepted(const Grasp& grasp) const;
   StartRank rank_of(const AttemptResult& result) const;
+  bool is_rejected(const Grasp& grasp) const;
   bool is_enough(const AttemptResult& result) const;
 
   const ObjectModel& object_;
@@ -67,6 +68,7 @@ class PlannerAttempts {
   const SurroundingsCollision surroundings_;
   const MeasuringScene scene_;
   std::vector<int> claimed_pads_;
+  const double largest_deviation_;  ///< From targets [m].
   std::unique_ptr<GraspGuidance> guidance_;
   double guidance_s_ = 0.0;
 };

@@ -13,7 +13,7 @@ namespace graspfit::grasp::internal {
 using Json = nlohmann::ordered_json;
 
 /// The only version of grasp files that is written and read.
-inline constexpr std::int64_t kGraspFileVersion = 3;
+inline constexpr std::int64_t kGraspFileVersion = 4;
 
 inline Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

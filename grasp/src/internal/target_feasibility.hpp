@@ -13,11 +13,14 @@
 
 namespace graspfit::grasp::internal {
 
+/// Stands for the patch of a place that is none.
+inline constexpr std::int32_t kNoPatch = -1;
+
 /// A place that may become a target.
 struct Place {
   Eigen::Vector3d point_O;
   Eigen::Vector3d inward_normal_O;
-  std::int32_t patch;
+  std::int32_t patch;  ///< Or kNoPatch.
 };
 
 /// One way to give targets to fingers: position in `RequestedParts::fingers` by target, the seed's
@@ -34,9 +37,12 @@ class TargetRules {
   /// Refers to the object and the distances. @throws InvalidInput as `select_target_contacts`.
   TargetRules(const ObjectModel& object, const PartDistances& distances,
               const RequestedParts& parts, const TargetOptions& options);
+  /// With a pool of its own.
+  TargetRules(const ObjectModel& object, const PartDistances& distances,
+              const RequestedParts& parts, const TargetOptions& options, std::vector<Place> pool);
 
   const TargetOptions& options() const { return options_; }
-  /// Ascending by patch.
+  /// Of patches: ascending by patch.
   const std::vector<Place>& pool() const { return pool_; }
   std::size_t num_fingers() const { return parts_.fingers.size(); }
   bool has_palm() const { return parts_.palm; }

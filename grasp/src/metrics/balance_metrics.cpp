@@ -12,7 +12,7 @@ std::vector<GraspMetric> balance_metrics() {
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
              const WrenchConvention& convention = *input.convention();
-             return balance_forces(input.contacts(), convention.reference_point_O, Wrench::Zero(),
+             return balance_forces(input.touching(), convention.reference_point_O, Wrench::Zero(),
                                    {.num_cone_edges = convention.options.num_cone_edges,
                                     .friction = convention.options.friction,
                                     .least_normal_sum = 1.0,

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "internal/metric_list.hpp"
 
@@ -33,6 +35,18 @@ double sum(Contacts contacts, double Contact::*field) {
   return std::accumulate(
       contacts.begin(), contacts.end(), 0.0,
       [field](double total, const Contact& contact) { return total + contact.*field; });
+}
+
+/// Over the targets; none without targets, and where one has no contact.
+Value distance_from_targets(const GraspMetricInput& input, bool is_mean) {
+  if (input.facts().grasp == nullptr) return std::nullopt;
+  const std::vector<double> distances = target_distances(*input.facts().grasp);
+  if (distances.empty()) return std::nullopt;
+  const double largest = *std::max_element(distances.begin(), distances.end());
+  if (!std::isfinite(largest)) return std::nullopt;
+  if (!is_mean) return largest;
+  return std::accumulate(distances.begin(), distances.end(), 0.0) /
+         static_cast<double>(distances.size());
 }
 
 }  // namespace
@@ -69,6 +83,21 @@ std::vector<GraspMetric> contact_metrics() {
                        return largest;
                      },
                      .convention = nullptr});
+  for (const auto& [name, meaning, is_mean] :
+       {std::tuple("target_distance_mean", "mean distance of the contacts from their targets",
+                   true),
+        std::tuple("target_distance_max", "largest distance of a contact from its target",
+                   false)}) {
+    metrics.push_back({.name = name,
+                       .group = "contacts",
+                       .unit = "m",
+                       .meaning = meaning,
+                       .better = BetterValue::Smaller,
+                       .value = [is_mean](const GraspMetricInput& input) -> Value {
+                         return distance_from_targets(input, is_mean);
+                       },
+                       .convention = nullptr});
+  }
   metrics.push_back({.name = "num_contacts",
                      .group = "contacts",
                      .unit = "1",
@@ -76,6 +105,16 @@ std::vector<GraspMetric> contact_metrics() {
                      .better = BetterValue::Larger,
                      .value = [](const GraspMetricInput& input) -> Value {
                        return static_cast<double>(input.contacts().size());
+                     },
+                     .convention = nullptr});
+  metrics.push_back({.name = "num_touching",
+                     .group = "contacts",
+                     .unit = "1",
+                     .meaning = "number of contacts that bear forces: of refined grasps those that "
+                                "touch",
+                     .better = BetterValue::Larger,
+                     .value = [](const GraspMetricInput& input) -> Value {
+                       return static_cast<double>(input.touching().size());
                      },
                      .convention = nullptr});
   return metrics;

@@ -11,7 +11,7 @@ std::vector<GraspMetric> epsilon_linf_metrics() {
            .better = BetterValue::Larger,
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
-             return epsilon_linf(input.contacts(), *input.convention()).lower;
+             return epsilon_linf(input.touching(), *input.convention()).lower;
            },
            .convention = [](const GraspMetricInput& input) -> std::string {
              if (!input.convention()) return {};

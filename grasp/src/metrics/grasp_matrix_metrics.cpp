@@ -23,7 +23,7 @@ GraspMetric of_matrix(std::string name, std::string meaning,
           .value = [value](const GraspMetricInput& input) -> std::optional<double> {
             if (!input.convention()) return std::nullopt;
             const WrenchConvention& convention = *input.convention();
-            return (grasp_matrix_quality(input.contacts(), convention.reference_point_O,
+            return (grasp_matrix_quality(input.touching(), convention.reference_point_O,
                                          convention.options.torque_scale).*
                     value)();
           },

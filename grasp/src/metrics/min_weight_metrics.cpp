@@ -12,7 +12,7 @@ std::vector<GraspMetric> min_weight_metrics() {
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
              const MinWeight found =
-                 min_weight(contact_wrenches(input.contacts(), *input.convention()));
+                 min_weight(contact_wrenches(input.touching(), *input.convention()));
              if (found.rank < 6 || !found.weight) return std::nullopt;
              return found.normalized;
            },

@@ -22,8 +22,8 @@ GraspMetric of_space(std::string name, std::string meaning,
 }
 
 std::optional<WrenchConvention> graspit_convention(const GraspMetricInput& input) {
-  if (input.contacts().empty()) return std::nullopt;
-  return wrench_convention(WrenchTool::GraspIt, input.facts().object, input.contacts(),
+  if (input.touching().empty()) return std::nullopt;
+  return wrench_convention(WrenchTool::GraspIt, input.facts().object, input.touching(),
                            input.facts().friction);
 }
 
@@ -48,7 +48,7 @@ std::vector<GraspMetric> wrench_space_metrics() {
                      .value = [](const GraspMetricInput& input) -> Value {
                        const std::optional<WrenchConvention> convention = graspit_convention(input);
                        if (!convention) return std::nullopt;
-                       return epsilon_quality(grasp_wrench_space(input.contacts(), *convention));
+                       return epsilon_quality(grasp_wrench_space(input.touching(), *convention));
                      },
                      .convention =
                          [](const GraspMetricInput& input) {

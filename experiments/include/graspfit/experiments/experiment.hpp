@@ -39,10 +39,11 @@ struct CellResult {
   std::vector<ResultRow> details = {};  ///< Of `Experiment::details`.
 };
 
-/// What a table over all cells is made of: a finished cell's labels and details as CSV fields.
+/// What a table over all cells is made of: a finished cell's labels, details and row as CSV fields.
 struct FinishedCell {
   std::vector<std::string> labels;  ///< One per axis.
   std::vector<std::vector<std::string>> details;
+  std::vector<std::string> row = {};  ///< One field per column of the experiment.
 };
 
 /// A table over all cells.

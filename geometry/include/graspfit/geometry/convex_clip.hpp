@@ -46,6 +46,9 @@ std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
 std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
                                const ConvexVolume& volume);
 
+/// The point of a piece nearest to `point`. Rounded, to the piece's rounded corners.
+Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& point);
+
 /// A plane that cut a piece.
 struct CuttingPlane {
   int axis = -1;  ///< 0…2: the plane `VoxelLattice::plane(axis, index)`. −1: of a ConvexVolume.

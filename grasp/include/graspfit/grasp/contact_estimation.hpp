@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "graspfit/geometry/mesh_query.hpp"
@@ -12,19 +13,36 @@
 
 namespace graspfit::grasp {
 
+/// Which pads can have contacts (notes A35).
+enum class CountedPads {
+  All,          ///< Those of every link: fingers may touch with any part.
+  TipsAndPalm,  ///< Fingertips and palm [P: "a clip volume for each finger/palm"].
+};
+
+/// What becomes of surface that a clip volume holds in several pieces.
+enum class ContactPieces {
+  Joined,    ///< One contact, the mean of all [P].
+  Separate,  ///< Pieces that do not hang together and whose centroids are farther apart than half
+             ///< the pad's width are contacts of their own [R]: the mean of two ridges is in
+             ///< neither.
+};
+
 /// Parameters of contact estimation (paper section 10).
 struct ContactEstimationOptions {
   double clip_thickness = 0.0;  ///< Of clip volumes whose pad states none [m], > 0. The planner's
                                 ///< rule: max(0.5 voxel, 1 mm) (A33).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A34.
+  CountedPads pads = CountedPads::All;
+  ContactPieces pieces = ContactPieces::Joined;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// Contact of one pad: the object's triangles clipped by the pad's clip volume. Point and normal
-/// are the mean over the pieces, the point projected to the nearest point of the surface; size is
-/// the pieces' total area; boundary distance is that of the point dropped onto the pad's plane; gap
-/// is `pad_gap`. Empty if no piece has area, or the mean normal vanishes (shorter than 0.1), as on
-/// a plate thinner than the clip volume.
+/// Contact of one pad, whether its link counts or not: the object's triangles clipped by the pad's
+/// clip volume, all pieces joined. Point and normal are the mean over the pieces, the point
+/// projected to the nearest point of these pieces; size is the pieces' total area; boundary
+/// distance is that of the point dropped onto the pad's plane; gap is `pad_gap`. Empty if no piece
+/// has area, or the mean normal vanishes (shorter than 0.1), as on a plate thinner than the clip
+/// volume.
 ///
 /// `weak` says whether at least half of the pieces' area is on weak faces; it stays empty without
 /// `weak_regions`, and where those say that nothing is known (`WeakOutcome::TooCoarse`).
@@ -48,11 +66,18 @@ std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L,
                               const geometry::RigidTransform& X_OL,
                               const geometry::MeshQuery& object, double enough);
 
-/// Contacts of all pads of the hand, in pad order (contacts without a target count: A35).
+/// Contacts of all pads of the hand that count, in pad order; those of one pad in the order of
+/// their first faces, each with the gap between the pad and its own faces. Contacts without a
+/// target count, too (A35).
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
                                        const std::vector<geometry::RigidTransform>& X_OL,
                                        const geometry::MeshQuery& object,
                                        const ContactEstimationOptions& options,
                                        const geometry::WeakRegions* weak_regions = nullptr);
+
+/// The contacts that can bear a force: those with a gap of at most `largest_gap` [m]; without one
+/// all of them, as of grasps at the level of voxels, whose pads are nowhere exactly on the surface.
+std::vector<Contact> touching_contacts(std::span<const Contact> contacts,
+                                       const std::optional<double>& largest_gap);
 
 }  // namespace graspfit::grasp

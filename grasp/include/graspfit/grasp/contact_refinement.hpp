@@ -21,6 +21,9 @@ struct RefinementOptions {
   /// Steps in which pads that touch are then slid toward their targets, ≥ 0; 0: they stay where
   /// they first touch. Larger M, more work.
   int slide_steps = 0;
+  /// Steps in which each further pad that nearly touches (its clip volume holds surface) is then
+  /// brought to touch too, where all others keep touching, ≥ 0; 0: they stay where they are.
+  int near_pad_steps = 12;
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.
   double largest_turn = 0.5;    ///< Of the palm from where it started [rad], ≥ 0.
@@ -61,7 +64,9 @@ struct RefinementResult {
 /// A start that cuts something is first opened, straightened and withdrawn until clear. Where
 /// `targets` are given, pads are also drawn, weakly, toward their targets and to lie flat on the
 /// surface there; with `slide_steps`, strongly once they touch, and of the places where all claimed
-/// pads touch the one nearest to the targets is kept.
+/// pads touch the one nearest to the targets is kept. At last further pads that nearly touch, the
+/// nearest first, are treated as claimed ones for a few steps, and let go where that does not end
+/// with all of them in contact.
 ///
 /// Gap: as `Contact::gap`, the distance between the pad's part of the link's mesh and the object.
 /// Deterministic.

@@ -17,8 +17,9 @@ enum class ScoreNormalization {
 
 /// Signed or unsigned distances to the oriented plane (notes A2).
 enum class PlaneDistance {
-  Unsigned,    ///< Mean of |distance| [R].
-  SignedMean,  ///< |mean of signed distance|.
+  Unsigned,    ///< Mean of |distance|.
+  SignedMean,  ///< |mean of signed distance| [R, after the paper's "oriented plane" and its Fig.
+               ///< 8].
 };
 
 /// Parameters of the contact score map (paper section 5).
@@ -28,7 +29,7 @@ struct ScoreOptions {
   double length_voxels =
       5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 (A3) [R].
   ScoreNormalization normalization = ScoreNormalization::FloorMedian;  ///< A1.
-  PlaneDistance plane_distance = PlaneDistance::Unsigned;              ///< A2.
+  PlaneDistance plane_distance = PlaneDistance::SignedMean;            ///< A2.
   int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included (A5); [0, 31].
   int mean_filter_passes = 1;   ///< In [0, 1000] (A5).
   double floor = 0.05;          ///< Smallest C_d/L + C_a/gamma (FloorMedian, Max), > 0.

@@ -52,4 +52,8 @@ struct Grasp {
   bool is_valid() const { return is_usable() && !penetration.is_any() && has_all_contacts; }
 };
 
+/// How far the grasp is from every one of its targets: the nearest contact of the part that the
+/// target is for [m]; infinite where that has none. In the order of the targets.
+std::vector<double> target_distances(const Grasp& grasp);
+
 }  // namespace graspfit::grasp

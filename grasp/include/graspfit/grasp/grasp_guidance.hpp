@@ -80,6 +80,8 @@ struct PlanningMethod {
   std::string_view name;   ///< On the command line and in files: "fitting".
   std::string_view title;  ///< In words.
   std::unique_ptr<GraspGuidance> (*make)(const GuidanceScene&);
+  bool has_targets = false;  ///< Its hands are fitted to target contacts.
+  bool has_scores = false;   ///< It chooses these by the score map.
 };
 
 /// All methods. This is the registry: one line each in grasp_guidance.cpp.

@@ -75,6 +75,10 @@ struct GraspFile {
   PlannerTimings timings;
 };
 
+/// The gap up to which contacts of the file's grasps bear forces [m]: as the planner's of planned
+/// ones; empty for imported ones, which nobody refined: all contacts do.
+std::optional<double> bearing_gap(const GraspFile& file);
+
 /// The record of a run of the planner.
 /// @throws IoError if a link mesh of the hand can no longer be read.
 GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& hand,

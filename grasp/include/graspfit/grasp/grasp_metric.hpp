@@ -29,6 +29,9 @@ struct PlannerOptions;
 /// given makes the metrics that need it have no value. Everything pointed at must outlive this.
 struct GraspMetricFacts {
   std::vector<Contact> contacts;
+  /// Contacts with a larger gap bear no force [m]: in M and in what is said of contacts they count,
+  /// in wrench spaces and balances not. Empty: all bear forces.
+  std::optional<double> bearing_gap = std::nullopt;
   WrenchObject object;                  ///< Center of mass and scales.
   double friction = 0.4;                ///< Coulomb's μ of all wrench metrics, ≥ 0.
   WrenchTool tool = WrenchTool::House;  ///< Whose wrench convention.
@@ -43,14 +46,16 @@ struct GraspMetricFacts {
 /// one thread at a time.
 class GraspMetricInput {
  public:
-  explicit GraspMetricInput(GraspMetricFacts facts) : facts_(std::move(facts)) {}
+  explicit GraspMetricInput(GraspMetricFacts facts);
 
   const GraspMetricFacts& facts() const { return facts_; }
   std::span<const Contact> contacts() const { return facts_.contacts; }
+  /// Those that bear forces.
+  std::span<const Contact> touching() const { return touching_; }
 
-  /// The convention of `facts().tool`. Empty without contacts, and where it has no torque scale for
-  /// them (DexGraspBench, all contacts in one point). @throws InvalidInput for bad facts: a
-  /// friction below 0, an object without extent.
+  /// The convention of `facts().tool`. Empty where no contact touches, and where it has no torque
+  /// scale for them (DexGraspBench, all contacts in one point). @throws InvalidInput for bad facts:
+  /// a friction below 0, an object without extent.
   const std::optional<WrenchConvention>& convention() const;
 
   /// The wrench space in that convention; null where there is no convention.
@@ -65,6 +70,7 @@ class GraspMetricInput {
 
  private:
   GraspMetricFacts facts_;
+  std::vector<Contact> touching_;
   mutable bool has_asked_for_convention_ = false;
   mutable std::optional<WrenchConvention> convention_;
   mutable std::optional<GraspWrenchSpace> wrench_space_;

@@ -25,10 +25,18 @@ namespace graspfit::grasp {
 
 /// Which grasps the planner collects.
 enum class Acceptance {
-  Valid,    ///< Usable, free of penetration on the true meshes, every requested contact there.
-  Usable,   ///< M > 0: the paper's meaning.
-  Quality,  ///< Usable and M ≥ min(0.5 · ideal M, 0.6): the paper's "high quality" (A36); of
-            ///< methods without targets M ≥ 0.6.
+  Valid,   ///< Usable, free of penetration on the true meshes, every requested contact there.
+  Usable,  ///< M > 0: the paper's meaning.
+};
+
+/// Which usable grasps are rejected, so that the next attempt draws new targets: the validation of
+/// the paper's section 6.5, which leaves open how much is too much (notes A36).
+enum class Rejection {
+  None,
+  Deviation,  ///< A requested contact farther from its target as drawn than
+              ///< `PlannerOptions::largest_deviation`, or missing. Of methods without targets none.
+  Quality,    ///< M < min(0.5 · ideal M, 0.6): below "high quality"; of methods without targets
+              ///< M < 0.6. Selects by M itself.
 };
 
 /// When the planner stops looking (notes A36).
@@ -83,6 +91,9 @@ struct PlannerOptions {
   std::optional<std::int64_t> max_iterations;
   Acceptance acceptance = Acceptance::Valid;
   MissingContact missing_contact = MissingContact::Fails;
+  Rejection rejection = Rejection::None;      ///< [R]: which grasps are good the measures say.
+  std::optional<double> largest_deviation;    ///< Of a contact from its target [m], > 0; empty: the
+                                              ///< width of a fingertip pad (A36).
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
                                               ///< by targets' sides and by every grasp accepted.
   double approach_angle =
@@ -92,6 +103,10 @@ struct PlannerOptions {
   int resolution = 30;     ///< Voxels along the object's longest extent [P].
   std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm) (A33).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
+  std::optional<CountedPads> counted_pads;  ///< Empty: in power grasps all [P: proximal links are
+                                            ///< encouraged to touch], else those of fingertips and
+                                            ///< palm (A35) [R].
+  ContactPieces contact_pieces = ContactPieces::Joined;
   ScoreOptions score;
   /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
   /// for and S = 1 everywhere (A37).
@@ -149,7 +164,8 @@ enum class AttemptOutcome {
   MissedContact,
   GapLeft,  ///< Refinement could not bring every claimed pad to touch.
   SelfCollision,
-  NoWayIn,  ///< No pre-grasp with a free way to the grasp.
+  Rejected,  ///< Usable, but not as `PlannerOptions::rejection` wants it.
+  NoWayIn,   ///< No pre-grasp with a free way to the grasp.
   IterationLimit,
   Weak,       ///< All contacts on weak features (M1 = 0).
   Unstable,   ///< A formed grasp with no stable pair (M2 = 0).
@@ -225,8 +241,19 @@ PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& han
 /// The planner's rule for clip volumes (A33).
 double clip_thickness(const PlannerOptions& options, double voxel_size);
 
+/// The planner's rule for deviations from targets (A36) [m].
+double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand);
+
 /// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
 double merge_distance(const PlannerOptions& options, double voxel_size);
+
+/// Which contacts of `options` count, and how they are estimated. @param clip_thickness [m]
+ContactEstimationOptions contact_estimation(const PlannerOptions& options, double clip_thickness);
+
+/// The gap up to which contacts of planned grasps bear forces (ε, closure, min-weight, squeeze)
+/// [m]: of refined grasps the largest that a claimed pad may have. Empty at the level of voxels:
+/// all contacts do.
+std::optional<double> bearing_gap(const PlannerOptions& options);
 
 /// What `options` ask of `hand`, the thumb first where it is among the fingers (A22).
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
@@ -247,7 +274,9 @@ struct MeasuringScene {
   QualityOptions quality_options = {};
   ContactEstimationOptions contact_options = {};
   std::optional<double> largest_gap =
-      std::nullopt;  ///< A requested contact with a larger gap does not count [m].
+      std::nullopt;  ///< A requested contact with a larger gap is none [m].
+  std::optional<double> bearing_gap =
+      std::nullopt;  ///< Contacts with a larger gap bear no force: not in ε [m].
 };
 
 /// Contacts, M, ε and penetration of a configuration, from the true meshes alone: what the planner

@@ -32,6 +32,24 @@ enum class PenetrationGuard {
            ///< intersect, decided exactly [R].
 };
 
+/// When a closing part has touched (notes A32).
+enum class ContactState {
+  Closed,  ///< When its next motion would enter what the guard keeps free, or take its surface out
+           ///< of its clip volume: fingers "stop their movements by touching the object surface"
+           ///< [P].
+  FirstGraze,  ///< When its clip volume holds a first sliver of surface: up to a clip thickness
+               ///< before it, with a few hundredths of the pad's area. For comparison; no reading
+               ///< of the paper [R].
+};
+
+/// What the palm does once a finger touches (notes A29).
+enum class PalmAfterContact {
+  Frozen,     ///< It stays: a shift would drag the finger.
+  Recentred,  ///< Once the fingers have closed it goes on in small steps that bring the mean of the
+              ///< contacts to that of their targets; fingers give way and close again, as long as
+              ///< contacts come nearer to targets.
+};
+
 /// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
 struct FittingOptions {
   double clearance = 0.02;  ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
@@ -45,11 +63,9 @@ struct FittingOptions {
   double sample_spacing =
       0.5;  ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
   PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
-  /// Whether fingers that touch by the clip test close on until the next motion would penetrate, so
-  /// that pads rest on the surface instead of up to a clip thickness before it [R]. Without: the
-  /// paper's contact.
-  bool settle = true;
-  double settle_tolerance = 1e-5;  ///< Motion at which settling ends [m], > 0.
+  ContactState contact_state = ContactState::Closed;  ///< A32.
+  double closing_tolerance = 1e-5;  ///< Motion at which closing ends where it is to touch [m], > 0.
+  PalmAfterContact palm_after_contact = PalmAfterContact::Recentred;  ///< A29 [R].
   /// Whether links must not run into each other either, exclusions of the model left out [R].
   /// Without: fingers close through each other, and refinement has to part them. Links that meet
   /// where the loop starts are let go on.
@@ -160,6 +176,9 @@ struct RetreatRule {
   /// Whether the fingers close all the same where the hand is still not clear: links that are
   /// inside the object stay where they are, and the result may have d_min < 0.
   bool closes_in_collision = false;
+  /// Whether a hand that has backed off goes back again until its palm touches, or the guard stops
+  /// it, but not beyond where it started.
+  bool palm_may_touch = false;
 };
 
 /// Closes the fingers of a hand that stands somewhere, open: the methods without target contacts.

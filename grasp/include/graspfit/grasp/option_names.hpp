@@ -46,6 +46,16 @@ std::span<const NamedValue<AttemptChoice>> named_values<AttemptChoice>();
 template <>
 std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>();
 template <>
+std::span<const NamedValue<Rejection>> named_values<Rejection>();
+template <>
+std::span<const NamedValue<ContactState>> named_values<ContactState>();
+template <>
+std::span<const NamedValue<PalmAfterContact>> named_values<PalmAfterContact>();
+template <>
+std::span<const NamedValue<CountedPads>> named_values<CountedPads>();
+template <>
+std::span<const NamedValue<ContactPieces>> named_values<ContactPieces>();
+template <>
 std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
 template <>
 std::span<const NamedValue<ScoreNormalization>> named_values<ScoreNormalization>();

@@ -32,8 +32,9 @@ struct PoseRobustness {
 /// Moves the contacts' pads as rigidly as a hand that is off by Gaussian noise: a turn about the
 /// center of mass, then a shift. Each pad then goes along its own contact's inward normal, from
 /// `reach` before to `reach` beyond its place, until it meets the front of the surface; the contact
-/// is there, with the face's normal, and keeps its area and its distance from the pad's outline. A
-/// pad that meets none has no contact.
+/// is there, with the face's normal, and keeps its area, its distance from the pad's outline and
+/// its gap: a pad that bears no force in the grasp bears none here. One that meets no surface has
+/// no contact.
 ///
 /// So fingers give way along their contact's normal only, and neither joint limits nor other parts
 /// of the hand count: a model of compliance, not a simulation of closing. Empty without contacts or

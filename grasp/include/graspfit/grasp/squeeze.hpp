@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "graspfit/grasp/contact.hpp"
@@ -23,7 +24,8 @@ struct SqueezeOptions {
 struct Squeeze {
   hands::HandConfiguration configuration;  ///< The grasp's palm pose; joints commanded, clamped to
                                            ///< their limits.
-  Eigen::Matrix3Xd forces_O;               ///< Per contact, on the object [N].
+  Eigen::Matrix3Xd forces_O;               ///< Per contact, on the object [N]; zero where the pad
+                                           ///< does not touch.
   double residual = 0.0;     ///< Unbalanced wrench over normal_sum (torques over the torque scale).
   bool is_balanced = false;  ///< residual ≤ largest_residual.
   bool is_clamped = false;   ///< Some joint would have to be commanded beyond its limits, so that
@@ -45,11 +47,14 @@ struct Squeeze {
 /// stands at a limit, or has broken away) neither counts nor moves until its leader takes it along.
 ///
 /// `friction` is Coulomb's μ, ≥ 0; `torque_scale` divides torques in the residual [m], > 0.
-/// @throws InvalidInput for bad options, a configuration outside the hand's limits, no contact, and
-/// contacts of links that the hand does not have or with normals that are not unit.
+/// Contacts with a gap above `bearing_gap` [m] bear nothing; without it all do.
+/// @throws InvalidInput for bad options, a configuration outside the hand's limits, no contact that
+/// bears anything, and contacts of links that the hand does not have or with normals that are not
+/// unit.
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                               std::span<const Contact> contacts,
                               const Eigen::Vector3d& center_of_mass_O, double torque_scale,
-                              double friction, const SqueezeOptions& options = {});
+                              double friction, const SqueezeOptions& options = {},
+                              const std::optional<double>& bearing_gap = std::nullopt);
 
 }  // namespace graspfit::grasp

@@ -90,10 +90,10 @@ inline constexpr int kUnassigned = -2;
 
 /// One contact to reach.
 struct TargetContact {
-  Eigen::Vector3d point_O = Eigen::Vector3d::Zero();           ///< Patch centroid [m].
-  Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Patch normal, unit.
-  std::int32_t patch = -1;                                     ///< Index into ObjectModel::patches.
-  double score = 0.0;                                          ///< Of that patch.
+  Eigen::Vector3d point_O = Eigen::Vector3d::Zero();           ///< Patch centroid, or sample [m].
+  Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Its normal, unit.
+  std::int32_t patch = -1;   ///< Index into ObjectModel::patches; −1: not a patch's.
+  double score = 0.0;        ///< Of that patch, or of the voxel that the point is in.
   int finger = kUnassigned;  ///< Assigned finger of the hand, kPalm, or kUnassigned.
 };
 
