@@ -181,14 +181,16 @@ std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& 
 /// Best-first search for the point of one surface that is deepest inside another solid.
 class DeepestPoint {
  public:
+  /// What is not deeper than `depth_known` is not looked for.
   DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface,
-               const PenetrationOptions& options)
-      : solid_(solid),
+               const PenetrationOptions& options, double depth_known = 0.0)
+      : depth(depth_known),
+        solid_(solid),
         X_(X_solid_surface),
         tolerance_(options.tolerance),
         enough_(options.enough) {}
 
-  double depth = 0.0;                 ///< Deepest point found.
+  double depth;                       ///< Deepest point found.
   double bound = 0.0;                 ///< No point is deeper.
   Vector3d point = Vector3d::Zero();  ///< In the solid's frame.
 
@@ -244,7 +246,9 @@ class DeepestPoint {
     const BoxTree::Node& node = surface.nodes[index];
     const SeenBox box = seen_from(node, X_);
     const Eigen::AlignedBox3d& solid_box = solid_.impl().box;
-    if (!overlap(solid_box.min(), solid_box.max(), box)) return;
+    // What is deeper lies as far inside the solid's box.
+    const Vector3d inset = Vector3d::Constant(depth);
+    if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
     const Vector3d center = 0.5 * (box.lower + box.upper);
     const double radius = 0.5 * (node.upper - node.lower).norm();
     // The distance to a surface changes by at most the distance gone.
@@ -403,6 +407,20 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   result.depth_bound = std::max(in_a.bound, in_b.bound);
   result.deepest_point_A = is_in_a ? in_a.point : Vector3d(X_AB * in_b.point);
   return result;
+}
+
+DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
+                        double floor, const PenetrationOptions& options) {
+  options.validate();
+  if (!(floor >= 0.0) || !std::isfinite(floor)) {
+    throw InvalidInput("depth_above: floor = " + shortest_decimal(floor) +
+                       ", must be finite and >= 0 m");
+  }
+  DeepestPoint in_a(a, X_AB, options, floor);
+  in_a.search(b.impl().tree);
+  DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);
+  in_b.search(a.impl().tree);
+  return {in_b.depth > floor ? in_b.depth : 0.0, std::max(in_a.bound, in_b.bound)};
 }
 
 MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {

@@ -186,7 +186,8 @@ bool FittingLoop::retreat(hands::HandConfiguration start, double step, int most_
   for (int steps = 0;; ++steps) {
     state_.put(start);
     initial_ = start;
-    if (state_.is_clear()) return true;
+    is_clear_at_start_ = state_.is_clear();
+    if (is_clear_at_start_) return true;
     if (steps == most_steps) return false;
     start.X_OH.pretranslate(back);
   }

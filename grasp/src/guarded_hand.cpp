@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -26,6 +27,10 @@ constexpr double kFarEnough = 4.0;
 
 constexpr double kStepBeforeSurface = 0.5;  // [voxels]
 
+// Depths of links in the object up to the first are not told apart, others to the second [voxels].
+constexpr double kDepthFloor = 0.3;
+constexpr double kDepthTolerance = 0.05;
+
 }  // namespace
 
 GuardedHand::GuardedHand(const FittingHand& hand, const ObjectModel& object,
@@ -37,6 +42,8 @@ GuardedHand::GuardedHand(const FittingHand& hand, const ObjectModel& object,
       options_(options),
       voxel_size_(object.grid.lattice.voxel_size),
       all_links_(model_.links.size()),
+      guards_depth_(model_.links.size(), false),
+      known_depths_(model_.links.size()),
       distance_(model_.links.size()),
       room_(model_.links.size(), kInfinity) {
   std::iota(all_links_.begin(), all_links_.end(), 0);
@@ -77,16 +84,55 @@ void GuardedHand::measure_all() {
   }
 }
 
-bool GuardedHand::is_clear() const {
+bool GuardedHand::is_clear() {
   return std::all_of(all_links_.begin(), all_links_.end(), [&](int link) {
     return distance_[link] > 0.0F && room_[link] > 0.0 &&
            !cuts_object(link, distance_[link], X_OL_[link]);
   });
 }
 
-bool GuardedHand::cuts_object(int link, float d_min, const RigidTransform& X_OL) const {
-  return options_.guard == PenetrationGuard::Meshes && d_min < kNearVoxels &&
-         hand_.collision().link_intersects(object_.query, link, X_OL);
+bool GuardedHand::cuts_object(int link, float d_min, const RigidTransform& X_OL) {
+  if (!(d_min < kNearVoxels)) return false;
+  return options_.guard == PenetrationGuard::Meshes
+             ? hand_.collision().link_intersects(object_.query, link, X_OL)
+             : guards_depth_[link] && is_too_deep(link, X_OL);
+}
+
+std::vector<int> GuardedHand::links_too_deep() {
+  std::vector<int> deep;
+  std::copy_if(all_links_.begin(), all_links_.end(), std::back_inserter(deep), [&](int link) {
+    return !guards_depth_[link] && distance_[link] < kNearVoxels && is_too_deep(link, X_OL_[link]);
+  });
+  return deep;
+}
+
+bool GuardedHand::is_too_deep(int link, const RigidTransform& X_OL) {
+  // A depth changes by no more than the link moves: what was found at another pose often decides.
+  for (const std::optional<KnownDepth>& known :
+       {known_depths_[link].let, known_depths_[link].cut}) {
+    if (!known) continue;
+    const double motion = largest_motion(link, known->X_OL, X_OL);
+    if (known->bounds.at_most + motion <= voxel_size_) return false;
+    if (known->bounds.at_least - motion > voxel_size_) return true;
+  }
+  const geometry::DepthBounds bounds =
+      hand_.collision().link_depth_above(object_.query, link, X_OL, kDepthFloor * voxel_size_,
+                                         {.tolerance = kDepthTolerance * voxel_size_});
+  const bool cuts = bounds.at_most > voxel_size_;
+  (cuts ? known_depths_[link].cut : known_depths_[link].let) = {X_OL, bounds};
+  return cuts;
+}
+
+double GuardedHand::largest_motion(int link, const RigidTransform& X_from,
+                                   const RigidTransform& X_to) const {
+  // How far a point moves is convex in the point: a corner of the link's box moves farthest.
+  const Eigen::AlignedBox3d& box = hand_.collision().link_solid(link)->box();
+  double largest = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    largest = std::max(largest, (X_to * corner - X_from * corner).norm());
+  }
+  return largest;
 }
 
 bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,

@@ -34,6 +34,26 @@ void require_tip_pad(const std::string& where, const hands::HandModel& hand, int
   throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
 }
 
+/// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand of
+/// which a link ends deeper in the object than a voxel's edge, one of twenty, is fitted again with
+/// an eye on the depth of that link at every motion.
+template <class Make, class Run>
+FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
+  std::vector<int> watched;
+  for (std::int64_t distance_queries = 0;;) {
+    FittingLoop loop = make();
+    for (const int link : watched) loop.guard_depth(link);
+    FittingResult result = run(loop);
+    result.distance_queries += distance_queries;
+    if (guard != PenetrationGuard::Voxels) return result;
+    const std::vector<int> deep = loop.links_too_deep();
+    if (deep.empty()) return result;
+    // Links that are watched already are none of these, so that this ends.
+    watched.insert(watched.end(), deep.begin(), deep.end());
+    distance_queries = result.distance_queries;
+  }
+}
+
 }  // namespace
 
 void FittingOptions::validate() const {
@@ -85,8 +105,12 @@ FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
     require_tip_pad("fit_hand", model, finger);
     requested.fingers.push_back(finger);
   }
-  return FittingLoop(hand, object, surroundings, style, requested, contact_options, options)
-      .fit(targets, placement);
+  return fitted(
+      options.guard,
+      [&] {
+        return FittingLoop(hand, object, surroundings, style, requested, contact_options, options);
+      },
+      [&](FittingLoop& loop) { return loop.fit(targets, placement); });
 }
 
 FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,
@@ -118,8 +142,12 @@ FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,
     throw InvalidInput("close_hand: retreat of at most " + std::to_string(*retreat.most_steps) +
                        " steps, must be >= 0");
   }
-  return FittingLoop(hand, object, surroundings, style, requested, contact_options, options)
-      .close(start, retreat);
+  return fitted(
+      options.guard,
+      [&] {
+        return FittingLoop(hand, object, surroundings, style, requested, contact_options, options);
+      },
+      [&](FittingLoop& loop) { return loop.close(start, retreat); });
 }
 
 }  // namespace graspfit::grasp

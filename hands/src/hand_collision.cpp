@@ -63,6 +63,14 @@ bool HandCollision::link_intersects(const geometry::MeshQuery& object, int link,
          geometry::do_intersect(object, *query, X_OL);
 }
 
+geometry::DepthBounds HandCollision::link_depth_above(
+    const geometry::MeshQuery& object, int link, const RigidTransform& X_OL, double floor,
+    const geometry::PenetrationOptions& options) const {
+  const auto& query = links_.at(static_cast<std::size_t>(link));
+  if (!query || !may_meet(object.box(), boxes_[static_cast<std::size_t>(link)], X_OL)) return {};
+  return geometry::depth_above(object, *query, X_OL, floor, options);
+}
+
 HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& object,
                                                     const std::vector<RigidTransform>& X_OL) const {
   require_poses(model_, X_OL);

@@ -217,6 +217,36 @@ TEST_CASE("Touching solids intersect with no depth", "[geometry][mesh_intersecti
   CHECK(p.depth_bound <= 1e-5);
 }
 
+TEST_CASE("Above a floor the bounds of a depth are those of the whole search",
+          "[geometry][mesh_intersection]") {
+  const MeshQuery a(torus(0.1, 0.03, 32, 16));
+  const MeshQuery b(capsule(0.01, 0.05, 16));
+  Random random(47);
+  int num_deeper = 0, num_overlapping = 0;
+  for (int i = 0; i < 200; ++i) {
+    const RigidTransform X = drawn_pose(random, 0.1);
+    const Penetration p = penetration(a, b, X);
+    num_overlapping += p.intersects;
+    for (const double floor : {0.0, 0.002, 0.01}) {
+      const DepthBounds bounds = depth_above(a, b, X, floor);
+      CHECK(bounds.at_least <= p.depth_bound);
+      CHECK(bounds.at_most >= p.depth);
+      CHECK((bounds.at_least == 0.0 || bounds.at_least > floor));
+      CHECK(bounds.at_most <= std::max(floor, bounds.at_least) + 1.1e-5);
+      num_deeper += bounds.at_least > 0.0;
+    }
+  }
+  CHECK(num_overlapping > 40);
+  CHECK(num_deeper > 40);
+  CHECK(num_deeper < 3 * num_overlapping);
+  // Inside, without a crossing of the surfaces: its farthest point is 0.09 deep.
+  const MeshQuery large(ball(0.10, 4)), small(ball(0.03, 4));
+  CHECK(depth_above(large, small, shift(0, 0, 0.02), 0.05).at_least == Approx(0.09).margin(3e-4));
+  CHECK(depth_above(small, large, shift(0, 0, 0.02), 0.05).at_least == Approx(0.09).margin(3e-4));
+  CHECK(depth_above(large, small, shift(0, 0, 0.02), 0.095).at_least == 0.0);
+  CHECK(depth_above(large, small, shift(0, 0, 0.2), 0.0).at_most == 0.0);
+}
+
 TEST_CASE("The distance of two boxes is that of their nearest features",
           "[geometry][mesh_intersection]") {
   const MeshQuery cube(box({2, 2, 2}));
@@ -256,6 +286,7 @@ TEST_CASE("A tolerance that is not positive, or less than nothing as enough, is 
   for (const double bad : {-1.0, std::nan("")}) {
     CHECK_THROWS_AS(penetration(cube, cube, shift(0, 0, 0), {.enough = bad}), InvalidInput);
   }
+  CHECK_THROWS_AS(depth_above(cube, cube, shift(0, 0, 0), -1.0), InvalidInput);
 }
 
 namespace {

@@ -22,6 +22,14 @@ class FittingLoop {
   /// From where the hand stands, without targets.
   FittingResult close(const hands::HandConfiguration& start, const RetreatRule& retreat);
 
+  /// Before it runs: this link is not to get deeper into the object than a voxel's edge, see
+  /// `GuardedHand::guard_depth`. Its motions take several times as long.
+  void guard_depth(int link) { state_.guard_depth(link); }
+  /// After it ran: links not guarded so that may be that deep, if the hand was clear at the start.
+  std::vector<int> links_too_deep() {
+    return is_clear_at_start_ ? state_.links_too_deep() : std::vector<int>();
+  }
+
  private:
   /// A finger that closes, while the loop runs.
   struct Part {
@@ -100,9 +108,10 @@ class FittingLoop {
   const bool has_palm_target_;
   hands::HandConfiguration initial_;
   hands::HandConfiguration goal_;  ///< The posture at the targets; without, where the hand started.
-  bool is_palm_done_ = false;      ///< The palm is where it is wanted, or cannot get there.
-  bool stops_at_palm_;             ///< Once the palm touches, `advance` ends.
-  bool is_palm_held_ = false;      ///< The palm touches and must not lose its contact.
+  bool is_clear_at_start_ = false;
+  bool is_palm_done_ = false;  ///< The palm is where it is wanted, or cannot get there.
+  bool stops_at_palm_;         ///< Once the palm touches, `advance` ends.
+  bool is_palm_held_ = false;  ///< The palm touches and must not lose its contact.
   int iterations_ = 0;
   double contact_tests_s_ = 0.0;
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,9 +20,15 @@ class GuardedHand {
   /// Puts the hand somewhere, unchecked.
   void put(const hands::HandConfiguration& configuration);
 
-  /// Whether no link shares a voxel with the object's surface or inside, the true meshes are apart
-  /// where the guard is on them, and nothing touches the surroundings.
-  bool is_clear() const;
+  /// Whether no link shares a voxel with the object's surface or inside, the true meshes are as the
+  /// guard wants them, and nothing touches the surroundings.
+  bool is_clear();
+
+  /// With the guard on voxels: from now on no motion brings this link deeper into the object than a
+  /// voxel's edge.
+  void guard_depth(int link) { guards_depth_[link] = true; }
+  /// Links not guarded so that may be deeper in the object than that.
+  std::vector<int> links_too_deep();
 
   /// A motion under test.
   bool passes_map(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
@@ -50,10 +57,27 @@ class GuardedHand {
   std::int64_t num_queries() const { return num_queries_; }
 
  private:
+  /// How deep a link was in the object at a pose.
+  struct KnownDepth {
+    geometry::RigidTransform X_OL;
+    geometry::DepthBounds bounds;
+  };
+  /// The last pose at which the guard let it pass for its depth, and the last at which it did not.
+  struct KnownDepths {
+    std::optional<KnownDepth> let, cut;
+  };
+
   float measured(int link, const geometry::RigidTransform& X_OL);
   /// Never more than `enough`: what is farther comes nearer in later motions.
   double measured_room(int link, double enough) const;
-  bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL) const;
+  /// Whether the true meshes overlap by more than the guard lets them.
+  bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL);
+  /// Whether a link may be in the object by more than a voxel's edge: false is certain, true is
+  /// wrong by the tolerance at most.
+  bool is_too_deep(int link, const geometry::RigidTransform& X_OL);
+  /// Of any point of a link between two poses, or a little more [m].
+  double largest_motion(int link, const geometry::RigidTransform& X_from,
+                        const geometry::RigidTransform& X_to) const;
 
   /// Whether the motion brings links into each other that were apart; then the moved one blocks.
   bool meets_itself(const std::vector<int>& moved);
@@ -66,6 +90,8 @@ class GuardedHand {
   const double voxel_size_;
   std::vector<int> all_links_;
   std::vector<std::pair<int, int>> pairs_;  ///< Links that must not meet; empty: not guarded.
+  std::vector<bool> guards_depth_;          ///< Per link.
+  std::vector<KnownDepths> known_depths_;
   hands::HandConfiguration configuration_, trial_;
   std::vector<geometry::RigidTransform> X_OL_, trial_X_OL_;
   std::vector<float> distance_, trial_distance_;

@@ -26,8 +26,9 @@ enum class GraspStyle {
 
 /// What a motion of the hand must not do (paper section 9).
 enum class PenetrationGuard {
-  Voxels,  ///< Let a link's surface enter a full voxel: d_min < 0 [P]. Links may cut into the
-           ///< object by a voxel, and through parts too thin to hold a full voxel.
+  Voxels,  ///< Let a link's surface enter a full voxel: d_min < 0 [P]; nor end with
+           ///< the true meshes deeper in each other than a voxel's edge, which d_min alone lets
+           ///< happen where a partial voxel is entered along its diagonal [R].
   Meshes,  ///< Nor, where a link shares voxels with the surface (d_min = 0), let the true meshes
            ///< intersect, decided exactly [R].
 };

@@ -36,6 +36,11 @@ class HandCollision {
   bool link_intersects(const geometry::MeshQuery& object, int link,
                        const RigidTransform& X_OL) const;
 
+  /// Bounds of the depth by which one link and the object overlap, as `geometry::depth_above`.
+  geometry::DepthBounds link_depth_above(const geometry::MeshQuery& object, int link,
+                                         const RigidTransform& X_OL, double floor,
+                                         const geometry::PenetrationOptions& options) const;
+
   /// Hand against object, all links. `X_OL` from forward kinematics.
   Result against_object(const geometry::MeshQuery& object,
                         const std::vector<RigidTransform>& X_OL) const;
