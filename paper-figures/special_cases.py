@@ -7,9 +7,9 @@ from object_names import NOTE, short_name
 COLUMNS = ("case", "seed", "status", "satisfied", "satisfying_grasps", "grasps")
 # By case: the object, and what is claimed of its grasps.
 CLAIMS = {
-    "bunny_9cm": ("bunny", " 9 cm wide: pinch has the largest M"),
-    "bunny_15cm": ("bunny", " 15 cm wide: three-finger grip has the largest M"),
-    "bunny_30cm": ("bunny", " 30 cm wide: power grasp has the largest M"),
+    "bunny_9cm": ("bunny", " 9 cm wide: pinch, ears left alone"),
+    "bunny_15cm": ("bunny", " 15 cm wide: three-finger grip"),
+    "bunny_30cm": ("bunny", " 30 cm wide: power grasp, palm on"),
     "torus_7cm": ("torus", " 7 cm wide: all contacts on the outer side"),
     "torus_16cm": ("torus", " 16 cm wide: a finger through the hole"),
     "squirrel_from_top": ("squirrel", " from the top"),
@@ -22,6 +22,7 @@ CLAIMS = {
     "mug_four_contacts": ("mug", ": four contacts or more"),
     "teddy_six_contacts": ("teddy", ": six contacts or more"),
     "horse_legs": ("horse", ": no contact on the legs"),
+    "horse_legs_rejection": ("horse", ": the same, far contacts rejected instead"),
     "shark_fins": ("shark", ": no contact on the fins"),
 }
 

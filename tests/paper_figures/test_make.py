@@ -80,7 +80,7 @@ class Lists(unittest.TestCase):
         from special_cases import CLAIMS, label
 
         self.assertEqual(label("torus_7cm"), "TORUS* 7 cm wide: all contacts on the outer side")
-        self.assertEqual(label("bunny_9cm"), "BUNNY 9 cm wide: pinch has the largest M")
+        self.assertEqual(label("bunny_9cm"), "BUNNY 9 cm wide: pinch, ears left alone")
         for case, (name, _) in CLAIMS.items():
             self.assertTrue(case.startswith(f"{name}_"), case)
             self.assertEqual("*" in label(case), name in STAND_INS, case)
