@@ -168,7 +168,7 @@ def force_closure(tables):
 
 def table_tidying(tables):
     paper = tables.table("table_tidying").set_index("scene").loc["paper"]
-    moves = tables.table("table_tidying.details")
+    moves = tables.table("table_tidying.details")[lambda rows: rows["scene"] == "paper"]
     yield (f"{int(paper['at_goal'])} of {int(paper['objects'])} objects reach their goals in {int(paper['moves'])} moves, in the paper's order "
            f"({paper['order'].replace('_', ' ')})")
     yield (f"mean M {paper['mean_m']:.2f}, smallest {paper['least_m']:.2f} ({moves.loc[moves['grasp_m'].idxmin(), 'object'].replace('_', ' ')})")
