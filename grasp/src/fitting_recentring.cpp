@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 /// Steps 2 and 1 in turn: a small step of the palm that brings the mean of the contacts toward that
 /// of the targets, then the fingers close again. As long as that brings contacts nearer to targets;
-/// the nearest is kept.
+/// the nearest is kept that the guard of voxels does not find too deep.
 void FittingLoop::recenter() {
   // A finger that hangs on the same joint as others would take them along: the hand gives way to
   // these (A44).
@@ -24,26 +24,36 @@ void FittingLoop::recenter() {
   constexpr int kPatience = 4;
   const double small_step = options_.small_step * voxel_size_;
   is_palm_held_ = has_palm_target_ && palm_touches();
-  Formed best = formed();
-  Formed now = best;
-  for (int fruitless = 0; fruitless < kPatience && iterations_ < options_.max_iterations;) {
-    const double length = now.to_center.norm();
+  std::vector<Formed> tried = {formed()};
+  std::size_t nearest = 0;
+  while (tried.size() <= nearest + kPatience && iterations_ < options_.max_iterations) {
+    const Vector3d to_center = tried.back().to_center;
+    const double length = to_center.norm();
     if (length < small_step / 4.0) break;
-    const Vector3d shift = std::min(1.0, small_step / length) * now.to_center;
+    const Vector3d shift = std::min(1.0, small_step / length) * to_center;
     constexpr std::array kOpenings = {0.0, 1.0, 2.0, 4.0};  // of the step, at the fastest point
     if (std::none_of(kOpenings.begin(), kOpenings.end(),
                      [&](double opening) { return try_shift(shift, opening * shift.norm()); })) {
       break;
     }
     if (!close_free_parts() || num_free() > 0) break;
-    now = formed();
-    const bool is_better =
-        std::pair(now.num_missing, now.miss) < std::pair(best.num_missing, best.miss);
-    if (is_better) best = now;
-    fruitless = is_better ? 0 : fruitless + 1;
+    tried.push_back(formed());
+    if (is_nearer(tried.back(), tried[nearest])) nearest = tried.size() - 1;
   }
-  state_.put(best.configuration);
-  parts_ = std::move(best.parts);
+  std::stable_sort(tried.begin(), tried.end(), is_nearer);
+  // One that is too deep in the object would have to be fitted again.
+  const bool looks_at_depth = options_.guard == PenetrationGuard::Voxels && tried.size() > 1;
+  auto kept = std::find_if(tried.begin(), tried.end(), [&](const Formed& hand) {
+    state_.put(hand.configuration);
+    return !looks_at_depth || state_.links_too_deep().empty();
+  });
+  if (kept == tried.end()) kept = tried.begin();
+  state_.put(kept->configuration);
+  parts_ = std::move(kept->parts);
+}
+
+bool FittingLoop::is_nearer(const Formed& a, const Formed& b) {
+  return std::pair(a.num_missing, a.miss) < std::pair(b.num_missing, b.miss);
 }
 
 FittingLoop::Formed FittingLoop::formed() {

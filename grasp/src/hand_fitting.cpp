@@ -40,17 +40,18 @@ void require_tip_pad(const std::string& where, const hands::HandModel& hand, int
 template <class Make, class Run>
 FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
   std::vector<int> watched;
-  for (std::int64_t distance_queries = 0;;) {
+  for (FittingResult spent;;) {
     FittingLoop loop = make();
     for (const int link : watched) loop.guard_depth(link);
     FittingResult result = run(loop);
-    result.distance_queries += distance_queries;
+    result.distance_queries += spent.distance_queries;
+    result.contact_tests_s += spent.contact_tests_s;
     if (guard != PenetrationGuard::Voxels) return result;
     const std::vector<int> deep = loop.links_too_deep();
     if (deep.empty()) return result;
     // Links that are watched already are none of these, so that this ends.
     watched.insert(watched.end(), deep.begin(), deep.end());
-    distance_queries = result.distance_queries;
+    spent = result;
   }
 }
 

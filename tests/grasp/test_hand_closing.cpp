@@ -140,6 +140,24 @@ TEST_CASE("Of a bounded retreat the rule says whether a hand in collision closes
   CHECK(forced.smallest_distance < 0.0);
 }
 
+TEST_CASE("With the guard on voxels no link ends deeper in the object than a voxel's edge",
+          "[grasp][hand_closing]") {
+  // Edges of a turned box: where d_min alone is looked at, links stop up to a diagonal deep.
+  for (int i = 0; i < 12; ++i) {
+    const geometry::RigidTransform X_OB(Eigen::AngleAxisd(0.5 * i, Vector3d(1, 2, 3).normalized()));
+    const Scene scene(geometry::transformed(geometry::box(Vector3d(0.08, 0.06, 0.07)), X_OB));
+    grasp::FittingOptions options;
+    options.guard = grasp::PenetrationGuard::Voxels;
+    const FittingResult result = grasp::close_hand(
+        scene.fitting_hand, scene.object, scene.nothing, grasp::GraspStyle::Precision, scene.parts,
+        above(scene, 0.07), {}, scene.contact_options, options);
+    INFO("turned by " << 0.5 * i << " rad");
+    const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
+    CHECK(least_distance(scene, result.configuration) >= 0.0F);
+    CHECK(scene.collision.against_object(scene.object.query, X_OL).depth <= scene.voxel_size());
+  }
+}
+
 TEST_CASE("Fingers that meet nothing close to their limits", "[grasp][hand_closing]") {
   const Scene scene(geometry::ball(0.045));
   const FittingResult result = closed(scene, above(scene, 0.5));

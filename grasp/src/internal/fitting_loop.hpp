@@ -74,6 +74,7 @@ class FittingLoop {
   bool close_free_parts();
   void recenter();
   Formed formed();
+  static bool is_nearer(const Formed& a, const Formed& b);
   bool try_shift(const Eigen::Vector3d& shift, double opening);
   void close_on(Part& part);
   void press_palm();
