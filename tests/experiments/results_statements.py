@@ -160,10 +160,9 @@ def special_cases(tables):
 
 
 def force_closure(tables):
-    names = {"precision": "precision, 45° [P]"}
     for row in tables.table("force_closure").itertuples():
-        yield (f"| {names.get(row.grip, row.grip)} | {row.attempts} | {percent(row.closed_share)} "
-               f"| {digits(row.median_epsilon, 3)} |")
+        yield (f"| `{row.grip}` | {row.attempts} | {row.grasps} | {percent(row.closed_share)} "
+               f"| {max(row.median_epsilon, 0.0):.3f} |")
 
 
 def table_tidying(tables):
