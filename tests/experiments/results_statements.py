@@ -53,20 +53,17 @@ class Tables:
 def method_rows(tables, name, row, cell):
     """One row per object and `row`, one cell per method."""
     summary = tables.table(f"{name}.summary")
-    methods = [method for method in METHODS if method in set(summary["planner"])]
-    summary = summary.set_index(["object", row, "planner"]) if row else summary.set_index(["object", "planner"])
-    for key in dict.fromkeys(index[:-1] for index in summary.index):
-        cells = " | ".join(cell(summary.loc[(*key, method)]) for method in methods)
-        second = {"size": lambda: f" | {key[1]} m", "reading": lambda: f" | `{key[1]}`"}.get(row, lambda: "")()
-        yield f"| {OBJECTS.get(key[0], key[0].replace('_', ' '))}{second} | {cells} |"
+    summary = summary.set_index(["object", row, "planner"])
+    for obj, second in dict.fromkeys(index[:-1] for index in summary.index):
+        cells = " | ".join(cell(summary.loc[(obj, second, method)]) for method in METHODS)
+        yield f"| {OBJECTS[obj]} | {second} m | {cells} |"
 
 
 def quality(row):
     if row["grasps"] == 0:
         return "none"
     error = "" if pandas.isna(row["se_m"]) else f" ± {digits(row['se_m'])}"
-    over_paper = "" if pandas.isna(row["m_over_paper"]) else f" ({digits(row['m_over_paper'])})"
-    return f"{digits(row['mean_m'])}{error}{over_paper}"
+    return f"{digits(row['mean_m'])}{error} ({digits(row['m_over_paper'])})"
 
 
 def orders(tables, name, row, method, objects=None, seconds=None, measure="mean_m"):
@@ -76,7 +73,7 @@ def orders(tables, name, row, method, objects=None, seconds=None, measure="mean_
         summary = summary[summary["object"].isin(objects)]
     if seconds:
         summary = summary[summary[row].isin(seconds)]
-    means = summary.pivot(index=["object", row] if row else "object", columns="planner", values=measure)
+    means = summary.pivot(index=["object", row], columns="planner", values=measure)
     for baseline in BASELINES:
         both = means[[method, baseline]].dropna() if baseline in means else means.iloc[:0]
         yield baseline, int((both[method] > both[baseline]).sum()), len(both)
@@ -119,21 +116,6 @@ def table1(tables):
     yield f"Per attempt fitting without rejection is {order_sentence(tables, 'table1', 'size', 'fitting', measure='m_per_attempt')}"
     ma = tables.table("table1.details")[lambda grasps: grasps["planner"] == AS_PUBLISHED]
     yield f"{percent((ma['d_min_voxels'] < 0).mean())} of its grasps have links in full voxels"
-
-
-def table1_readings(tables):
-    yield from method_rows(tables, "table1_readings", "reading", quality)
-
-
-def table1_refined(tables):
-    yield from method_rows(tables, "table1_refined", "size", quality)
-    yield f"fitting with rejection by deviation is {order_sentence(tables, 'table1_refined', 'size', HEADLINE)} rows"
-
-
-def table1_all_objects(tables):
-    yield from method_rows(tables, "table1_all_objects", None, quality)
-    yield f"fitting with rejection by deviation is {order_sentence(tables, 'table1_all_objects', None, HEADLINE)} objects"
-    yield f"without rejection {order_sentence(tables, 'table1_all_objects', None, 'fitting')}"
 
 
 # Cases.
