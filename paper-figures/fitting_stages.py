@@ -24,7 +24,8 @@ def stage_panel(stage, source, record, poses, points, final):
     targets = [np.asarray(t["point_O_m"]) for t in grasp["targets"]["contacts"]]
 
     def marks():
-        made = [stage.colored_ball(p, 0.017 * size, TARGET) for p in targets]
+        # Contacts lie on their targets, nearly: smaller than those, targets leave them to be seen.
+        made = [stage.colored_ball(p, (0.009 if final else 0.017) * size, TARGET) for p in targets]
         pairs = [(targets[i], targets[j]) for i in range(len(targets)) for j in range(i + 1, len(targets))]
         return [*made, stage.colored_tubes(pairs, 0.0035 * size, TARGET)]
 

@@ -129,8 +129,8 @@ double d_min(const grasp::ObjectModel& object, const grasp::FittingHand& hand,
   return smallest;
 }
 
-/// A measure as the details have it: read by plots and statistics, which more digits would not
-/// change, and the table is half as large.
+/// A measure as these tables have it: read by plots and statistics, which more digits would not
+/// change, and the details are half as large.
 double to_six_digits(double value) {
   std::array<char, 32> text{};
   const char* const end =
@@ -178,8 +178,9 @@ CellResult run(const Cell& cell, const std::filesystem::path& folder) {
     row.set("d_min_voxels", d_min(planned.object, hand, *grasp));
     row.set("area_share_median", field(median(area_shares(*planned.hand, *grasp))));
     row.set("gap_median_m", field(median(gaps(*grasp))));
-    for (const auto& [name, value] : measured.back()) {
-      if (value) row.set(name, to_six_digits(*value));
+    for (auto& [name, value] : measured.back()) {
+      if (value) value = to_six_digits(*value);
+      row.set(name, field(value));
     }
     result.details.push_back(std::move(row));
   }

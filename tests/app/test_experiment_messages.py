@@ -20,7 +20,7 @@ class Describe(ProgramTest):
     def test_describe_names_axes_columns_and_settings(self):
         done = run("experiment", "describe", "special_cases")
         self.assertEqual(done.returncode, 0, done.stderr)
-        for text in ("320 cells", "torus_16cm", "satisfied", "first_grasp_s", "score-threshold"):
+        for text in ("340 cells", "torus_16cm", "satisfied", "first_grasp_s", "score-threshold"):
             self.assertIn(text, done.stdout)
         done = run("experiment", "describe", "special_cases", "--set", "seed=1,2")
         self.assertIn("32 cells", done.stdout)
