@@ -23,7 +23,7 @@ class Describe(ProgramTest):
         for text in ("340 cells", "torus_16cm", "satisfied", "first_grasp_s", "score-threshold"):
             self.assertIn(text, done.stdout)
         done = run("experiment", "describe", "special_cases", "--set", "seed=1,2")
-        self.assertIn("32 cells", done.stdout)
+        self.assertIn("34 cells", done.stdout)
 
     def settings_of(self, slug, *arguments):
         """What describe says of each setting: default, unit, allowed, meaning."""
