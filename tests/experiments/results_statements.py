@@ -16,21 +16,15 @@ BASELINES = {"gs-targets": "GS by targets", "gs": "GS by approach", "ma": "MA as
 AS_PUBLISHED = "ma"
 
 
-def digits(value, places=2):
+def digits(value):
     """Two significant digits, as the page has them; nothing where there is nothing."""
     if pandas.isna(value):
         return "none"
-    return f"{value:.{places}f}" if abs(value) >= 0.1 or value == 0 else f"{value:.2g}" if abs(value) >= 1e-4 else f"{value:.1g}"
+    return f"{value:.2f}" if abs(value) >= 0.1 or value == 0 else f"{value:.2g}" if abs(value) >= 1e-4 else f"{value:.1g}"
 
 
 def percent(value):
     return f"{100 * value:.0f} %"
-
-
-def listed(values):
-    """"a, b and c"."""
-    *most, last = values
-    return f"{', '.join(most)} and {last}" if most else last
 
 
 class Tables:
