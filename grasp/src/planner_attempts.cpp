@@ -7,6 +7,7 @@
 
 #include "graspfit/grasp/grasp_wrench_space.hpp"
 #include "graspfit/grasp/wrench_convention.hpp"
+#include "internal/grasp_measure.hpp"
 #include "internal/object_size.hpp"
 #include "internal/palm_pose.hpp"
 #include "internal/stopwatch.hpp"
@@ -229,7 +230,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   Grasp grasp;
   {
     const Stopwatch watch(result.timings.measure_s);
-    grasp = measure_grasp(scene_, configuration, parts_);
+    grasp = with_contacts(scene_, configuration, parts_);
     grasp.targets = start.targets;
     if (!start.targets.contacts.empty()) grasp.ideal_m = ideal_m(start.targets);
     grasp.attempt = number;
@@ -240,6 +241,10 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     result.outcome = failure.value_or(unusable_outcome(grasp));
     return result;
   }
+  {
+    const Stopwatch watch(result.timings.measure_s);
+    grasp = with_self_penetration(scene_, std::move(grasp));
+  }
   if (!options_.refine && grasp.penetration.self_depth > options_.self_overlap) {
     result.outcome = AttemptOutcome::SelfCollision;
     return result;
@@ -247,6 +252,10 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   if (is_rejected(grasp)) {
     result.outcome = AttemptOutcome::Rejected;
     return result;
+  }
+  {
+    const Stopwatch watch(result.timings.measure_s);
+    grasp = with_all_measures(scene_, std::move(grasp));
   }
   complete(grasp, result);
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
