@@ -225,7 +225,7 @@ std::string help_text(const Command& command) {
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
           "line says why,\nnothing is written, except that grasps are kept if drawing their "
           "pictures fails); 3 no grasp\nfound; 4 evaluate: measures differ; motion: not "
-          "free of\ncollisions; experiment verify: results differ.\n";
+          "free of\ncollisions; experiment verify: results differ; 130 interrupted.\n";
   return text.str();
 }
 

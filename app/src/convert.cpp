@@ -118,7 +118,9 @@ Target read_target(const Flags& flags) {
   }
   std::error_code error;
   const bool is_there = fs::is_directory(target.path, error);
-  target.is_folder = is_there || extension.empty();
+  const bool is_stream =
+      fs::is_fifo(target.path, error) || fs::is_character_file(target.path, error);
+  target.is_folder = is_there || (extension.empty() && !is_stream);
   if (target.is_folder && !(target.format && exchange::holds_one_grasp(*target.format))) {
     if (is_there) throw UsageError("OUT \"" + target.path.string() + "\" is a folder");
     target.is_folder = false;

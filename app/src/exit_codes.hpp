@@ -12,6 +12,8 @@ enum ExitCode : int {
   kNoGrasp = 3,        ///< `plan` found no grasp; the line says how the attempts ended.
   kDiffers = 4,  ///< `evaluate` or `experiment verify` found other results than those on file;
                  ///< `motion` found a stretch that is not free of collisions.
+  kInterrupted = 128,  ///< Plus the signal's number: 130 for Ctrl-C, whether the work was broken
+                       ///< off or, by `plan`, finished with what had been found.
 };
 
 /// A command line that cannot be understood.

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <mutex>
 #include <thread>
@@ -20,8 +21,11 @@ namespace {
 /// What the thread that waits for signals does when one comes.
 struct InterruptState {
   std::mutex mutex;
-  std::function<void()> cleanup;
+  std::vector<std::pair<const CleanupOnInterrupt*, std::function<void()>>> cleanups;
   pid_t child = -1;
+  std::optional<std::stop_source> stop;  ///< Whom the first interrupt asks to stop, if anybody.
+  std::string stop_message;
+  std::optional<int> heard;  ///< The signal that has asked.
 };
 
 InterruptState& state() {
@@ -45,23 +49,55 @@ void watch_interrupts() {
   state();
   std::thread([signals] {
     int signal = 0;
-    if (sigwait(&signals, &signal) != 0) return;
-    // Held to the end: whoever waits for it does not go on.
-    state().mutex.lock();
+    for (;;) {
+      if (sigwait(&signals, &signal) != 0) return;
+      // Held to the end, if that comes: whoever waits for it does not go on.
+      state().mutex.lock();
+      if (!state().stop || state().heard) break;
+      state().heard = signal;
+      // On a terminal the line holds progress, and what its driver shows of the interrupt.
+      std::fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "",
+                   state().stop_message.c_str());
+      state().stop->request_stop();
+      state().mutex.unlock();
+    }
     if (state().child > 0) kill(-state().child, SIGTERM);
-    if (state().cleanup) state().cleanup();
+    for (auto last = state().cleanups.rbegin(); last != state().cleanups.rend(); ++last) {
+      last->second();
+    }
     _exit(128 + signal);
   }).detach();
 }
 
 CleanupOnInterrupt::CleanupOnInterrupt(std::function<void()> cleanup) {
   const std::lock_guard lock(state().mutex);
-  state().cleanup = std::move(cleanup);
+  state().cleanups.emplace_back(this, std::move(cleanup));
 }
 
 CleanupOnInterrupt::~CleanupOnInterrupt() {
   const std::lock_guard lock(state().mutex);
-  state().cleanup = nullptr;
+  std::erase_if(state().cleanups, [this](const auto& cleanup) { return cleanup.first == this; });
+}
+
+StopOnInterrupt::StopOnInterrupt(std::string message) {
+  const std::lock_guard lock(state().mutex);
+  state().stop.emplace();
+  state().stop_message = std::move(message);
+}
+
+StopOnInterrupt::~StopOnInterrupt() {
+  const std::lock_guard lock(state().mutex);
+  state().stop.reset();
+}
+
+std::stop_token StopOnInterrupt::token() const {
+  const std::lock_guard lock(state().mutex);
+  return state().stop->get_token();
+}
+
+std::optional<int> interrupt_heard() {
+  const std::lock_guard lock(state().mutex);
+  return state().heard;
 }
 
 void without_interrupts(const std::function<void()>& work) {

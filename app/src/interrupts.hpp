@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace graspfit::app {
 /// exists.
 void watch_interrupts();
 
-/// A cleanup that is in force while this object lives. One at a time.
+/// A cleanup that is in force while this object lives. Those made later run first.
 class CleanupOnInterrupt {
  public:
   explicit CleanupOnInterrupt(std::function<void()> cleanup);
@@ -19,6 +21,21 @@ class CleanupOnInterrupt {
   CleanupOnInterrupt(const CleanupOnInterrupt&) = delete;
   CleanupOnInterrupt& operator=(const CleanupOnInterrupt&) = delete;
 };
+
+/// While this object lives, the first interrupt does not end the program: it asks for a stop, and
+/// says on standard error that a second one will not wait. One at a time.
+class StopOnInterrupt {
+ public:
+  explicit StopOnInterrupt(std::string message);
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+  std::stop_token token() const;
+};
+
+/// The signal of the interrupt that has asked for a stop, if one has.
+std::optional<int> interrupt_heard();
 
 /// Runs `work`; interrupts wait until it is done.
 void without_interrupts(const std::function<void()>& work);

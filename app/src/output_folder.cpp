@@ -1,16 +1,11 @@
 #include "output_folder.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/replacement_mark.hpp"
 #include "interrupts.hpp"
 
 namespace graspfit::app {
@@ -20,16 +15,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& target, const std::string& why) {
   throw geometry::IoError("output folder " + target.string() + ": " + why);
-}
-
-/// A new folder with a unique hidden name in `parent`; its mode is that of any new folder.
-fs::path make_hidden_folder(const fs::path& parent, const fs::path& target) {
-  std::string name = (parent / ".graspfit-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) fail(target, std::strerror(errno));
-  const mode_t mask = umask(0);
-  umask(mask);
-  chmod(name.c_str(), 0777 & ~mask);
-  return name;
 }
 
 /// The folder's absolute path without a trailing slash.
@@ -56,7 +41,11 @@ OutputFolder::OutputFolder(fs::path target, IsOurs is_ours)
   const fs::path existing = existing_ancestor(absolute);
   std::error_code error;
   if (!fs::is_directory(existing, error)) fail(target_, existing.string() + " is not a folder");
-  fs::remove(make_hidden_folder(existing, target_));
+  try {
+    const WorkingFolder trial(existing);
+  } catch (const geometry::IoError& reason) {
+    fail(target_, reason.what());
+  }
 }
 
 OutputFolder::~OutputFolder() {
@@ -66,7 +55,7 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::discard() {
   std::error_code error;
-  if (!staging_.empty()) fs::remove_all(staging_, error);
+  if (staging_) staging_->remove();
   // Folders made on the way to the target go too, unless somebody has put something there.
   if (first_created_.empty()) return;
   fs::path folder = absolute_path(target_).parent_path();
@@ -74,12 +63,11 @@ void OutputFolder::discard() {
 }
 
 const fs::path& OutputFolder::staging() {
-  if (!staging_.empty()) return staging_;
+  if (staging_) return staging_->path();
   const fs::path absolute = absolute_path(target_);
   std::error_code error;
-  if (fs::is_directory(absolute, error)) {
-    staging_ = make_hidden_folder(absolute, target_);
-  } else {
+  fs::path beside = absolute;
+  if (!fs::is_directory(absolute, error)) {
     const fs::path parent = absolute.parent_path();
     const fs::path existing = existing_ancestor(parent);
     for (fs::path folder = parent; folder != existing; folder = folder.parent_path()) {
@@ -87,10 +75,15 @@ const fs::path& OutputFolder::staging() {
     }
     fs::create_directories(parent, error);
     if (error) fail(target_, error.message());
-    staging_ = make_hidden_folder(parent, target_);
+    beside = parent;
+  }
+  try {
+    staging_.emplace(beside);
+  } catch (const geometry::IoError& reason) {
+    fail(target_, reason.what());
   }
   cleanup_ = std::make_unique<CleanupOnInterrupt>([this] { discard(); });
-  return staging_;
+  return staging_->path();
 }
 
 void OutputFolder::commit(const std::string& last_file) {
@@ -98,33 +91,46 @@ void OutputFolder::commit(const std::string& last_file) {
   without_interrupts([&] {
     const fs::path absolute = absolute_path(target_);
     std::error_code error;
-    if (!fs::exists(absolute, error)) {
-      fs::rename(staging_, absolute, error);
-      if (error) fail(target_, error.message());
-    } else {
-      std::vector<std::string> names;
-      for (const auto& entry : fs::directory_iterator(staging_)) {
-        if (entry.path().filename() != last_file) names.push_back(entry.path().filename());
+    try {
+      if (fs::exists(absolute, error)) {
+        replace_in(absolute, last_file);
+      } else {
+        staging_->keep_as(absolute);
       }
-      names.push_back(last_file);
-      for (const auto& entry : fs::directory_iterator(absolute)) {
-        const std::string name = entry.path().filename();
-        if (is_ours_(name) && !fs::exists(staging_ / name)) fs::remove(entry.path(), error);
-      }
-      for (const std::string& name : names) {
-        fs::rename(staging_ / name, absolute / name, error);
-        if (error) fail(target_, name + ": " + error.message());
-      }
-      fs::remove(staging_, error);
+    } catch (const geometry::IoError& reason) {
+      fail(target_, reason.what());
     }
-    staging_.clear();
+    staging_.reset();
     first_created_.clear();
   });
 }
 
-void require_parent_folder(const std::string& flag, const fs::path& file) {
-  const fs::path folder = fs::absolute(file).parent_path();
+void OutputFolder::replace_in(const fs::path& folder, const std::string& last_file) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(staging_->path())) {
+    if (entry.path().filename() != last_file) names.push_back(entry.path().filename());
+  }
+  names.push_back(last_file);
+  geometry::set_replacement_mark(folder);
   std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (is_ours_(name) && !fs::exists(staging_->path() / name)) fs::remove(entry.path(), error);
+  }
+  for (const std::string& name : names) {
+    fs::rename(staging_->path() / name, folder / name, error);
+    if (error) throw geometry::IoError(name + ": " + error.message());
+  }
+  geometry::remove_replacement_mark(folder);
+}
+
+void require_parent_folder(const std::string& flag, const fs::path& file) {
+  std::error_code error;
+  fs::path folder = fs::absolute(file).parent_path();
+  // A link that leads nowhere yet.
+  if (fs::is_symlink(file, error) && !fs::exists(file, error)) {
+    folder = (folder / fs::read_symlink(file, error)).parent_path();
+  }
   if (!file.has_filename() || fs::is_directory(file, error)) {
     throw geometry::IoError(flag + ' ' + file.string() + ": is a folder, not a file");
   }

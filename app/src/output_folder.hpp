@@ -3,7 +3,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+
+#include "working_folder.hpp"
 
 namespace graspfit::app {
 
@@ -14,7 +17,9 @@ class CleanupOnInterrupt;
 /// Files are written into a hidden temporary folder beside (or, if the folder exists, inside) the
 /// target and moved at the end. An existing folder keeps files that are not ours; ours from an
 /// earlier run are replaced one by one, each atomically, and those that the new run does not have
-/// are removed. Without `commit`, and on an interrupt, nothing is left behind.
+/// are removed; while that goes on the folder bears a mark (see `geometry::set_replacement_mark`),
+/// which a kill leaves there. Without `commit`, and on an interrupt, nothing is left behind; what a
+/// kill leaves the next run removes.
 class OutputFolder {
  public:
   /// Says whether a file name is one that the command writes.
@@ -37,16 +42,17 @@ class OutputFolder {
 
  private:
   void discard();
+  void replace_in(const std::filesystem::path& folder, const std::string& last_file);
 
   std::filesystem::path target_;
   IsOurs is_ours_;
-  std::filesystem::path staging_;        ///< Empty until made.
+  std::optional<WorkingFolder> staging_;
   std::filesystem::path first_created_;  ///< Topmost folder made for the target's sake, if any.
   std::unique_ptr<CleanupOnInterrupt> cleanup_;
 };
 
-/// Throws IoError unless `file` could be written where it is said to be: its folder is there, and
-/// it is no folder itself. `flag` names it; messages start with it.
+/// Throws IoError unless `file` could be written where it is said to be: its folder, behind links,
+/// is there, and it is no folder itself. `flag` names it; messages start with it.
 void require_parent_folder(const std::string& flag, const std::filesystem::path& file);
 
 }  // namespace graspfit::app

@@ -1,15 +1,13 @@
 #include "pictures.hpp"
 
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "interrupts.hpp"
+#include "working_folder.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -48,33 +46,6 @@ std::string last_line(const std::string& text) {
                      start == std::string::npos ? end + 1 : end - start);
 }
 
-/// A new folder for files between programs, gone at the end and on an interrupt.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "graspfit-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) {
-      throw geometry::IoError("temporary folder " + path_ + ": " + std::strerror(errno));
-    }
-    cleanup_ = std::make_unique<CleanupOnInterrupt>([this] { remove(); });
-  }
-  ~TemporaryFolder() {
-    cleanup_.reset();
-    remove();
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  fs::path path() const { return path_; }
-
- private:
-  void remove() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-
-  std::string path_;
-  std::unique_ptr<CleanupOnInterrupt> cleanup_;
-};
-
 void run_script(const std::string& flag, const std::vector<std::string>& arguments) {
   std::vector<std::string> command = {GRASPFIT_PYTHON};
   command.insert(command.end(), arguments.begin(), arguments.end());
@@ -85,13 +56,17 @@ void run_script(const std::string& flag, const std::vector<std::string>& argumen
   }
 }
 
-/// Draws a scene, JSON of the viewer, by a script that takes its file and the picture's.
+/// Draws a scene, JSON of the viewer, by a script that takes its file and the picture's; the
+/// latter's extension says what is drawn.
 void draw_scene(const std::string& flag, const char* script, const std::string& scene_json,
-                const fs::path& picture) {
-  const TemporaryFolder folder;
+                const char* extension, const fs::path& picture) {
+  WorkingFolder folder(fs::temp_directory_path());
+  const CleanupOnInterrupt cleanup([&folder] { folder.remove(); });
   const fs::path scene = folder.path() / "scene.json";
+  const fs::path drawn = folder.path() / (std::string("picture") + extension);
   geometry::write_file_atomically(scene, scene_json);
-  run_script(flag, {find_script(flag, script).string(), scene.string(), picture.string()});
+  run_script(flag, {find_script(flag, script).string(), scene.string(), drawn.string()});
+  geometry::write_file_atomically(picture, geometry::read_file(drawn));
 }
 
 }  // namespace
@@ -122,16 +97,16 @@ void require_animations(const std::string& flag) {
 }
 
 void draw_hand_picture(const std::string& scene_json, const fs::path& picture) {
-  draw_scene("--png", kHandScript, scene_json, picture);
+  draw_scene("--png", kHandScript, scene_json, ".png", picture);
 }
 
 void draw_replay_picture(const std::string& scene_json, const fs::path& picture) {
-  draw_scene("--gif", kHoldScript, scene_json, picture);
+  draw_scene("--gif", kHoldScript, scene_json, ".gif", picture);
 }
 
 void draw_motion_picture(const std::string& flag, const std::string& scene_json,
                          const fs::path& picture) {
-  draw_scene(flag, kMotionScript, scene_json, picture);
+  draw_scene(flag, kMotionScript, scene_json, flag == "--gif" ? ".gif" : ".png", picture);
 }
 
 }  // namespace graspfit::app

@@ -18,6 +18,7 @@
 #include "hand_loading.hpp"
 #include "hold_filter.hpp"
 #include "hold_flags.hpp"
+#include "interrupts.hpp"
 #include "object_loading.hpp"
 #include "output_folder.hpp"
 #include "pictures.hpp"
@@ -138,6 +139,8 @@ const char* stop_text(grasp::PlannerStop stop) {
       return "stopped at the wall-clock limit";
     case grasp::PlannerStop::Iterations:
       return "all iterations made";
+    case grasp::PlannerStop::Interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -243,6 +246,12 @@ std::string attempts_text(const grasp::PlannerResult& result) {
   return found.empty() ? text : text + "; guided by " + found;
 }
 
+/// What the program ends with: an interrupt that was heard goes before what came of the work.
+ExitCode ended_with(ExitCode code) {
+  const std::optional<int> signal = interrupt_heard();
+  return signal ? static_cast<ExitCode>(kInterrupted + *signal) : code;
+}
+
 }  // namespace
 
 ExitCode run_plan(const std::vector<std::string>& arguments) {
@@ -279,8 +288,13 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, &object_timings, {.is_on = true});
-  grasp::PlannerResult result = grasp::plan_grasps(object, hand, options, around.surroundings,
-                                                   num_threads, shown_by(progress, options));
+  grasp::PlannerResult result;
+  {
+    const StopOnInterrupt stop(
+        "graspfit plan: interrupted: the attempts under way are finished; once more ends at once");
+    result = grasp::plan_grasps(object, hand, options, around.surroundings, num_threads,
+                                shown_by(progress, options), stop.token());
+  }
   result.timings.object = object_timings;
   progress.clear();
 
@@ -289,7 +303,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s\n",
                  flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
                  attempts_text(result).c_str());
-    return kNoGrasp;
+    return ended_with(kNoGrasp);
   }
   std::optional<grasp::HoldRecord> hold;
   if (protocol) {
@@ -299,7 +313,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     if (held.grasps.empty()) {
       std::fprintf(stderr, "graspfit plan: %s: no grasp by hand %s holds: %s\n",
                    flags.positional().c_str(), hand.name.c_str(), hold_text(held.record).c_str());
-      return kNoGrasp;
+      return ended_with(kNoGrasp);
     }
     result.grasps = std::move(held.grasps);
     hold = std::move(held.record);
@@ -315,7 +329,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     if (file.hold) std::printf("%s\n", hold_text(*file.hold).c_str());
     if (out) std::printf("written to %s\n", out->target().c_str());
   }
-  return kSuccess;
+  return ended_with(kSuccess);
 }
 
 }  // namespace graspfit::app

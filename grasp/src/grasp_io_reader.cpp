@@ -3,6 +3,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/replacement_mark.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "internal/json_node.hpp"
@@ -359,6 +360,7 @@ PlannerTimings read_timings(const JsonNode& node) {
 }  // namespace
 
 GraspFile read_grasps(const std::filesystem::path& path) {
+  geometry::require_no_replacement_mark(path);
   const JsonNode root = JsonNode::parse(path.string(), geometry::read_file(path));
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");

@@ -26,11 +26,12 @@ class Run {
  public:
   Run(const ObjectModel& object, const hands::HandModel& hand, const PlannerOptions& options,
       const Surroundings& surroundings, internal::SizeCheck size_check,
-      const PlannerProgress& progress)
+      const PlannerProgress& progress, const std::stop_token& stop)
       : attempts_(object, hand, options, surroundings, size_check),
         hand_(hand),
         options_(options),
-        progress_(progress) {
+        progress_(progress),
+        stop_(stop) {
     for (int outcome = 0; outcome <= static_cast<int>(AttemptOutcome::PoorShape); ++outcome) {
       result_.statistics.outcomes[static_cast<AttemptOutcome>(outcome)] = 0;
     }
@@ -52,6 +53,7 @@ class Run {
       work();
     }
     if (failure_) std::rethrow_exception(failure_);
+    if (!is_over_ && stop_.stop_requested()) end(PlannerStop::Interrupted);
     select();
     result_.timings.total_s = seconds_since_start();
     return std::move(result_);
@@ -64,7 +66,7 @@ class Run {
 
   /// One thread: makes attempts until there are no more to make.
   void work() {
-    while (!is_over_) {
+    while (!is_over_ && !stop_.stop_requested()) {
       const std::int64_t number = next_++;
       if (number >= options_.max_attempts) return;
       try {
@@ -163,6 +165,7 @@ class Run {
   const hands::HandModel& hand_;
   const PlannerOptions& options_;
   const PlannerProgress& progress_;
+  const std::stop_token& stop_;
   std::atomic<std::int64_t> next_ = 0;
   std::atomic<bool> is_over_ = false;
   std::mutex lock_;  ///< Of all below.
@@ -207,15 +210,18 @@ ObjectModel internal::prepare_sized_object(const geometry::TriangleMesh& mesh,
 
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
                           const PlannerOptions& options, const Surroundings& surroundings,
-                          int num_threads, const PlannerProgress& progress) {
-  return Run(object, hand, options, surroundings, internal::SizeCheck::Due, progress)(num_threads);
+                          int num_threads, const PlannerProgress& progress,
+                          const std::stop_token& stop) {
+  return Run(object, hand, options, surroundings, internal::SizeCheck::Due, progress,
+             stop)(num_threads);
 }
 
 PlannerResult internal::plan_sized_grasps(const ObjectModel& object, const hands::HandModel& hand,
                                           const PlannerOptions& options,
                                           const Surroundings& surroundings, int num_threads) {
   const PlannerProgress silent;
-  return Run(object, hand, options, surroundings, SizeCheck::Done, silent)(num_threads);
+  const std::stop_token none;
+  return Run(object, hand, options, surroundings, SizeCheck::Done, silent, none)(num_threads);
 }
 
 }  // namespace graspfit::grasp

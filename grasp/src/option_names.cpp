@@ -167,7 +167,8 @@ std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>() {
       NamedValue<PlannerStop>{PlannerStop::Attempts, "attempts"},
       NamedValue<PlannerStop>{PlannerStop::Exhausted, "exhausted"},
       NamedValue<PlannerStop>{PlannerStop::WallClock, "wall-clock"},
-      NamedValue<PlannerStop>{PlannerStop::Iterations, "iterations"}};
+      NamedValue<PlannerStop>{PlannerStop::Iterations, "iterations"},
+      NamedValue<PlannerStop>{PlannerStop::Interrupted, "interrupted"}};
   return names;
 }
 

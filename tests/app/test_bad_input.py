@@ -3,9 +3,6 @@
 import json
 import os
 import shutil
-import signal
-import subprocess
-import time
 
 import program
 from program import box, off_text, torus
@@ -274,28 +271,6 @@ class NoGrasp(program.ProgramTest):
             "plan", self.write_torus(), "--theta-max-deg", "0.5", "--max-attempts", "4",
             "--out", self.folder / "out", code=3, says=["no valid grasp", "4 attempts"])
         self.assertRegex(message, r"4 attempts \(all attempts made\): .* \d+")
-
-
-class Interrupts(program.ProgramTest):
-    def start(self):
-        process = subprocess.Popen(
-            [program.PROGRAM, "plan", str(self.write_torus()), "--count", "100000",
-             "--max-attempts", "1000000", "--out", str(self.folder / "new/out")],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stdout.close)
-        self.addCleanup(process.stderr.close)
-        time.sleep(1.5)
-        self.assertIsNone(process.poll())
-        return process
-
-    def test_a_killed_run_leaves_nothing(self):
-        for kill in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
-            with self.subTest(kill.name):
-                process = self.start()
-                process.send_signal(kill)
-                code = process.wait(20)
-                self.assertEqual(code, -9 if kill == signal.SIGKILL else 128 + kill)
-                self.assertEqual(self.contents(), ["torus.off"])
 
 
 if __name__ == "__main__":

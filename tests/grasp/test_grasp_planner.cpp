@@ -296,6 +296,33 @@ TEST_CASE("A time limit stops the work and is recorded", "[grasp][grasp_planner]
   CHECK(sum == result.statistics.attempts);
 }
 
+TEST_CASE("A stop ends the work with what the attempts before have found",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::ball(0.05);
+  const PlannerOptions options = collecting(Acceptance::Usable, 100000, 100000);
+  const Run run(mesh, options);
+  for (const int num_threads : {1, 3}) {
+    std::stop_source source;
+    const PlannerResult result = plan_grasps(
+        run.object, run.hand, options, {}, num_threads,
+        [&](std::int64_t attempts, std::int64_t) {
+          if (attempts == 4) source.request_stop();
+        },
+        source.get_token());
+    CHECK(result.stop == PlannerStop::Interrupted);
+    // Those under way on the other threads count, too.
+    CHECK(result.statistics.attempts >= 4);
+    CHECK(result.statistics.attempts < 100000);
+    const PlannerResult same = Run(mesh, collecting(Acceptance::Usable, 100000,
+                                                    static_cast<int>(result.statistics.attempts)))
+                                   .plan();
+    REQUIRE(result.grasps.size() == same.grasps.size());
+    for (std::size_t i = 0; i < same.grasps.size(); ++i) {
+      CHECK(all_fields(result.grasps[i]) == all_fields(same.grasps[i]));
+    }
+  }
+}
+
 TEST_CASE("Contacts keep to surface with a high score where that is asked for",
           "[grasp][grasp_planner]") {
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));

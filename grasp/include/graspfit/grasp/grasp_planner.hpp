@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -146,11 +147,12 @@ struct PlannerOptions {
 
 /// How the planner's work ended.
 enum class PlannerStop {
-  Count,       ///< As many grasps as were asked for.
-  Attempts,    ///< All attempts made.
-  Exhausted,   ///< Ranked search: every feasible target set was tried; ma: every candidate.
-  WallClock,   ///< Opt-in limit.
-  Iterations,  ///< The budget of fitting and refinement steps is used up.
+  Count,        ///< As many grasps as were asked for.
+  Attempts,     ///< All attempts made.
+  Exhausted,    ///< Ranked search: every feasible target set was tried; ma: every candidate.
+  WallClock,    ///< Opt-in limit.
+  Iterations,   ///< The budget of fitting and refinement steps is used up.
+  Interrupted,  ///< The caller asked for a stop.
 };
 
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
@@ -233,10 +235,12 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
 /// the fingers open, or smaller than a fingertip.
 ///
 /// Attempts run on `num_threads` threads (0: as many as the machine has); the result does not
-/// depend on their number, but for `wall_clock_limit_s`.
+/// depend on their number, but for `wall_clock_limit_s` and `stop`. Once a stop is requested no
+/// further attempt begins; those under way are finished and count.
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
                           const PlannerOptions& options, const Surroundings& surroundings = {},
-                          int num_threads = 0, const PlannerProgress& progress = {});
+                          int num_threads = 0, const PlannerProgress& progress = {},
+                          const std::stop_token& stop = {});
 
 /// The planner's rule for clip volumes (A33).
 double clip_thickness(const PlannerOptions& options, double voxel_size);
