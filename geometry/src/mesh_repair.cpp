@@ -23,6 +23,7 @@
 #include "internal/crossing_faces.hpp"
 #include "internal/disjoint_sets.hpp"
 #include "internal/mesh_edges.hpp"
+#include "internal/mesh_holes.hpp"
 #include "internal/one_sided_distance.hpp"
 #include "internal/predicates.hpp"
 #include "internal/vertex_welding.hpp"
@@ -34,6 +35,7 @@ using Eigen::Vector3d;
 using internal::DisjointSets;
 using internal::FaceSide;
 using internal::for_each_edge;
+using internal::HoleRim;
 using internal::sorted_sides;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
@@ -253,56 +255,30 @@ std::size_t split_nonmanifold(TriangleMesh& mesh) {
   return added;
 }
 
-/// Boundary loops: vertices in the order in which faces to fill them run.
-std::vector<std::vector<std::int32_t>> boundary_loops(const TriangleMesh& mesh) {
-  std::map<std::int32_t, std::int32_t> next;  // head → tail of each boundary side
-  for_each_edge(sorted_sides(mesh), [&](auto first, auto last) {
-    if (last - first == 1) next[first->head] = first->tail;
-  });
-  std::vector<std::vector<std::int32_t>> loops;
-  while (!next.empty()) {
-    std::vector<std::int32_t> loop;
-    std::int32_t vertex = next.begin()->first;
-    for (auto entry = next.find(vertex); entry != next.end(); entry = next.find(vertex)) {
-      loop.push_back(vertex);
-      vertex = entry->second;
-      next.erase(entry);
-    }
-    if (vertex == loop.front() && loop.size() >= 3) loops.push_back(std::move(loop));
-  }
-  return loops;
-}
-
-double loop_extent(const TriangleMesh& mesh, const std::vector<std::int32_t>& loop) {
-  Eigen::AlignedBox3d box;
-  for (const std::int32_t vertex : loop) box.extend(mesh.vertices[vertex]);
-  return box.sizes().maxCoeff();
-}
-
-/// Triangles that close a loop, by their places in it. A loop without area, as where a vertex of
-/// one face lies on an edge of another, gets triangles without area.
-std::vector<Face> patch_of(const TriangleMesh& mesh, const std::vector<std::int32_t>& loop) {
-  const auto point = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[loop[i]]; };
+/// Triangles that close a hole, by their places in its rim. A rim without area, as where a vertex
+/// of one face lies on an edge of another, gets triangles without area.
+std::vector<Face> patch_of(const TriangleMesh& mesh, const HoleRim& rim) {
+  const auto point = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
   std::size_t num_on_line = 2;
-  while (num_on_line < loop.size() &&
+  while (num_on_line < rim.size() &&
          internal::are_collinear(point(0), point(1), point(num_on_line))) {
     ++num_on_line;
   }
   std::vector<Face> patch;
-  if (loop.size() == 3 || num_on_line == loop.size()) {
-    for (std::int32_t i = 2; i < static_cast<std::int32_t>(loop.size()); ++i) {
+  if (rim.size() == 3 || num_on_line == rim.size()) {
+    for (std::int32_t i = 2; i < static_cast<std::int32_t>(rim.size()); ++i) {
       patch.push_back({0, i - 1, i});
     }
     return patch;
   }
   std::vector<Kernel::Point_3> points;
-  for (std::size_t i = 0; i < loop.size(); ++i) {
+  for (std::size_t i = 0; i < rim.size(); ++i) {
     points.emplace_back(point(i).x(), point(i).y(), point(i).z());
   }
   std::vector<CGAL::Triple<int, int, int>> triangles;
   CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(triangles));
   for (const auto& t : triangles) {
-    // The patch runs along the loop where its corners are numbered upward.
+    // The patch runs along the rim where its corners are numbered upward.
     Face face = {t.first, t.second, t.third};
     if (!is_even(face)) flip(face);
     patch.push_back(face);
@@ -310,13 +286,14 @@ std::vector<Face> patch_of(const TriangleMesh& mesh, const std::vector<std::int3
   return patch;
 }
 
-/// Fills holes up to `largest_extent` [m]. Returns how many.
-std::size_t fill_holes(TriangleMesh& mesh, double largest_extent) {
+/// Fills those holes that are up to `largest_extent` [m]. Returns how many.
+std::size_t fill_holes(TriangleMesh& mesh, const std::vector<HoleRim>& rims,
+                       double largest_extent) {
   std::size_t filled = 0;
-  for (const std::vector<std::int32_t>& loop : boundary_loops(mesh)) {
-    if (loop_extent(mesh, loop) > largest_extent) continue;
-    const std::vector<Face> patch = patch_of(mesh, loop);
-    for (const Face& f : patch) mesh.faces.push_back({loop[f[0]], loop[f[1]], loop[f[2]]});
+  for (const HoleRim& rim : rims) {
+    if (internal::rim_extent(mesh, rim) > largest_extent) continue;
+    const std::vector<Face> patch = patch_of(mesh, rim);
+    for (const Face& f : patch) mesh.faces.push_back({rim[f[0]], rim[f[1]], rim[f[2]]});
     if (!patch.empty()) ++filled;
   }
   return filled;
@@ -461,13 +438,22 @@ std::vector<Face> loose_segments(const std::vector<Face>& removed, const std::ve
   return result;
 }
 
+std::vector<HoleRim> concatenation(std::vector<HoleRim> rims, const std::vector<HoleRim>& more) {
+  rims.insert(rims.end(), more.begin(), more.end());
+  return rims;
+}
+
+std::string percent(double share) {
+  return shortest_decimal(std::round(1000.0 * share) / 10.0) + " %";
+}
+
 /// The repair of one mesh, step by step.
 class Repair {
  public:
+  /// `mesh` and `options` outlive the repair.
   Repair(const TriangleMesh& mesh, const MeshRepairOptions& options)
-      : options_(options), extent_(longest_extent(mesh)) {
+      : given_(mesh), options_(options), extent_(longest_extent(mesh)) {
     result_.mesh = mesh;
-    volume_ = signed_volume(mesh);
   }
 
   RepairedMesh run() {
@@ -475,15 +461,17 @@ class Repair {
     result_.after = result_.before;
     if (options_.mode == RepairMode::AsIs) return std::move(result_);
     if (options_.mode == RepairMode::Strict) refuse_defects();
+    volume_ = volume_of(given_, result_.before.is_closed);
     if (options_.mode == RepairMode::Repair) {
-      const TriangleMesh given = options_.wrap ? result_.mesh : TriangleMesh{};
-      if (!is_good(result_.before)) mend();
-      if (!result_.steps.empty()) result_.after = analyzed(result_.mesh);
+      if (!is_good(result_.before)) mend_either_way();
       if (options_.self_intersections == SelfIntersections::Resolve) resolve_self_intersections();
-      if (options_.wrap && !is_solid()) wrap(given);
+      if (options_.wrap && !is_solid()) wrap();
     }
     refuse_open();
-    if (!is_solid()) throw DegenerateGeometry("the mesh encloses no volume");
+    if (!(volume_ > 0.0)) {
+      throw DegenerateGeometry("the mesh encloses no volume" + advice_to_wrap("; "));
+    }
+    refuse_folded_filling();
     return std::move(result_);
   }
 
@@ -493,11 +481,15 @@ class Repair {
                               options_.self_intersections != SelfIntersections::Leave});
   }
 
-  bool is_solid() const { return result_.after.is_closed && volume_ > 0.0; }
+  static double volume_of(const TriangleMesh& mesh, bool is_closed) {
+    return is_closed ? signed_volume(mesh) : internal::coned_volume(mesh);
+  }
+
+  bool is_solid() const { return result_.after.is_closed && volume_ > 0.0 && !is_filling_folded_; }
 
   void add_step(const char* what, std::size_t count, double hausdorff_bound) {
     if (count == 0) return;
-    const double after = signed_volume(result_.mesh);
+    const double after = volume_of(result_.mesh, false);
     result_.steps.push_back({what, count, after - volume_, hausdorff_bound});
     volume_ = after;
   }
@@ -518,7 +510,38 @@ class Repair {
         .upper;
   }
 
-  void mend() {
+  /// When holes that meet at vertices are filled.
+  enum class MeetingHoles {
+    AfterSplitting,  ///< The surface is split there, and each patch closed for itself.
+    BeforeSplitting  ///< What the file holds together stays together.
+  };
+
+  /// Mends the mesh and judges the result. Where holes meet at vertices, there are two ways to
+  /// close the surface. Solids that only touch come apart as they should; a surface of patches
+  /// that hang together by vertices does so too, and then every patch is closed by a filling along
+  /// its own inside, which leaves a hollow skin. A filling that folds inward loses volume, by
+  /// which the two ways are told apart.
+  void mend_either_way() {
+    // Solids that touch lose less than a thousandth in scans and models from many sources; a skin
+    // loses most of the volume.
+    constexpr double kMostLostRel = 0.1;
+    const auto loses_to = [&](double volume) { return volume_ < (1.0 - kMostLostRel) * volume; };
+    mend(MeetingHoles::AfterSplitting);
+    if (largest_meeting_ == 0.0 || (is_solid() && !loses_to(open_volume_))) return;
+    Repair other(given_, options_);
+    other.result_.before = result_.before;
+    other.volume_ = volume_of(given_, result_.before.is_closed);
+    other.mend(MeetingHoles::BeforeSplitting);
+    if (other.is_solid() && (!is_solid() || loses_to(other.volume_))) {
+      result_ = std::move(other.result_);
+      volume_ = other.volume_;
+    } else if (is_solid() && !other.is_solid()) {
+      is_filling_folded_ = true;
+      largest_open_ = other.largest_hole();
+    }
+  }
+
+  void mend(MeetingHoles meeting_holes) {
     TriangleMesh& mesh = result_.mesh;
     const auto [num_welded, farthest] = weld(mesh, options_.weld_distance_rel * extent_);
     add_step("welded vertices", num_welded, farthest);
@@ -526,21 +549,37 @@ class Repair {
     drop_doubled_faces(TwoSided::Halved);
     add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
     add_step("turned faces", make_consistent(mesh), 0.0);
+    const std::vector<HoleRim> meeting = internal::holes_of(mesh).meeting;
+    for (const HoleRim& rim : meeting) {
+      largest_meeting_ = std::max(largest_meeting_, internal::rim_extent(mesh, rim));
+    }
+    if (!meeting.empty()) open_volume_ = volume_of(mesh, false);
+    std::size_t num_filled = 0;
+    if (meeting_holes == MeetingHoles::BeforeSplitting) num_filled += fill(meeting);
     add_step("split non-manifold vertices", split_nonmanifold(mesh), 0.0);
-    if (mesh.faces.empty()) return;
+    const internal::Holes holes = internal::holes_of(mesh);
+    num_filled += fill(concatenation(holes.single, holes.meeting));
+    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
+    if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);
+    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
+    add_step("turned parts", turn_inside_out_parts(mesh), 0.0);
+    if (!result_.steps.empty()) result_.after = analyzed(mesh);
+  }
+
+  /// Fills the holes that are small enough. Returns how many.
+  std::size_t fill(const std::vector<HoleRim>& rims) {
+    TriangleMesh& mesh = result_.mesh;
+    if (rims.empty() || mesh.faces.empty()) return 0;
     const TriangleMesh open = mesh;
-    const std::size_t num_filled =
-        fill_holes(mesh, options_.max_hole_extent_rel * longest_extent(mesh));
+    const std::size_t count =
+        fill_holes(mesh, rims, options_.max_hole_extent_rel * longest_extent(mesh));
     // Faces without area reach no farther than the rim and the other faces of their patch.
     std::vector<Face> patches;
     for (std::size_t face = open.faces.size(); face < mesh.faces.size(); ++face) {
       if (!internal::is_degenerate(mesh, face)) patches.push_back(mesh.faces[face]);
     }
-    add_step("filled holes", num_filled, reach_of(patches, open));
-    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
-    if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);
-    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
-    add_step("turned parts", turn_inside_out_parts(mesh), 0.0);
+    add_step("filled holes", count, reach_of(patches, open));
+    return count;
   }
 
   void drop_collapsed_faces() {
@@ -589,20 +628,21 @@ class Repair {
     add_step("resolved self-intersections", before - left, bound);
   }
 
-  void wrap(const TriangleMesh& given) {
+  void wrap() {
     const double alpha = options_.wrap->alpha_rel * extent_;
     const double offset = options_.wrap->offset_rel * extent_;
     if (!(extent_ > 0.0)) return;
     // CGAL leaves degenerate faces out, and requires that others remain.
     if (result_.before.num_degenerate_faces == result_.before.num_faces) return;
-    TriangleMesh wrapped = alpha_wrap(given, alpha, offset, extent_);
+    TriangleMesh wrapped = alpha_wrap(given_, alpha, offset, extent_);
     if (wrapped.faces.empty()) return;
     const MeshAnalysis analysis = analyzed(wrapped);
-    if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given)) return;
+    if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given_)) return;
     result_.steps.clear();
-    volume_ = signed_volume(given);
+    is_filling_folded_ = false;
+    volume_ = volume_of(given_, result_.before.is_closed);
     const double bound =
-        hausdorff_distance(MeshQuery(given), MeshQuery(wrapped), distance_options()).upper;
+        hausdorff_distance(MeshQuery(given_), MeshQuery(wrapped), distance_options()).upper;
     result_.mesh = std::move(wrapped);
     result_.after = analysis;
     add_step("wrapped", result_.mesh.faces.size(), bound);
@@ -617,34 +657,92 @@ class Repair {
                  " pairs of crossing faces";
     }
     if (!defects.empty()) {
-      throw InvalidInput("the mesh has " + defects + "; strict mode repairs nothing");
+      throw InvalidInput("the mesh has " + defects +
+                         "; strict mode repairs nothing, --repair repair mends what it can");
     }
   }
 
   void refuse_open() const {
     if (result_.after.is_closed) return;
     if (result_.mesh.faces.empty()) {
-      throw DegenerateGeometry("the mesh encloses no volume: its faces cancel each other");
+      throw DegenerateGeometry("the mesh encloses no volume: its faces cancel each other" +
+                               advice_to_wrap("; "));
     }
-    double largest = 0.0;
-    for (const auto& loop : boundary_loops(result_.mesh)) {
-      largest = std::max(largest, loop_extent(result_.mesh, loop));
-    }
-    std::string holes;
+    const double largest = largest_hole();
+    std::string text;
+    std::string advice;
     if (largest > 0.0) {
-      const double share = largest / longest_extent(result_.mesh);
-      holes = "; its largest hole spans " + shortest_decimal(std::round(1000.0 * share) / 1000.0) +
-              " of its longest extent, holes up to " +
-              shortest_decimal(options_.max_hole_extent_rel) + " are filled";
+      const double share = share_of_extent(largest);
+      text = "; its largest hole spans " + rounded(share) + " of its longest extent, holes up to " +
+             shortest_decimal(options_.max_hole_extent_rel) + " are filled";
+      advice = advice_to_fill(share);
     }
-    throw InvalidInput(
-        "the mesh is not closed and could not be repaired: " + defects_of(result_.after) + holes);
+    advice += advice_to_wrap(advice.empty() ? "" : "; ");
+    throw InvalidInput("the mesh is not closed and could not be repaired: " +
+                       defects_of(result_.after) + text + (advice.empty() ? "" : "; ") + advice);
   }
 
+  void refuse_folded_filling() const {
+    if (!is_filling_folded_) return;
+    const std::string advice = advice_to_fill(share_of_extent(largest_open_));
+    throw InvalidInput("the mesh is not closed, and filling its holes would leave a skin: " +
+                       percent(volume_ / open_volume_) +
+                       " of the volume that the surface encloses; its largest hole spans " +
+                       rounded(share_of_extent(largest_open_)) +
+                       " of its longest extent, holes up to " +
+                       shortest_decimal(options_.max_hole_extent_rel) + " are filled" +
+                       (advice.empty() ? "" : "; ") + advice + advice_to_wrap("; "));
+  }
+
+  /// Extent of the largest hole that is left [m]. Where holes that meet were too large to be
+  /// filled, those are the holes, and not the borders of the patches that came apart there.
+  double largest_hole() const {
+    if (share_of_extent(largest_meeting_) > options_.max_hole_extent_rel) return largest_meeting_;
+    double largest = 0.0;
+    const internal::Holes holes = internal::holes_of(result_.mesh);
+    for (const HoleRim& rim : concatenation(holes.single, holes.meeting)) {
+      largest = std::max(largest, internal::rim_extent(result_.mesh, rim));
+    }
+    return largest;
+  }
+
+  /// What a larger limit for holes would do: tried out, so that it is true.
+  std::string advice_to_fill(double share) const {
+    if (share <= options_.max_hole_extent_rel || options_.mode != RepairMode::Repair) return "";
+    MeshRepairOptions wider = options_;
+    wider.max_hole_extent_rel = std::min(1.0, std::ceil(1000.0 * share) / 1000.0);
+    wider.self_intersections = SelfIntersections::Leave;
+    wider.wrap.reset();
+    try {
+      repair_mesh(given_, wider);
+    } catch (const Error&) {
+      return "";
+    }
+    return "--max-hole " + shortest_decimal(wider.max_hole_extent_rel) + " fills it";
+  }
+
+  double share_of_extent(double length) const { return length / longest_extent(result_.mesh); }
+
+  static std::string rounded(double share) {
+    return shortest_decimal(std::round(1000.0 * share) / 1000.0);
+  }
+
+  std::string advice_to_wrap(const char* before) const {
+    if (options_.mode != RepairMode::Repair || !(extent_ > 0.0)) return "";
+    return std::string(before) +
+           (options_.wrap ? "no wrap could be laid around it either, another --wrap-alpha may do"
+                          : "--wrap lays a closed surface around it");
+  }
+
+  const TriangleMesh& given_;
   const MeshRepairOptions& options_;
   const double extent_;
   RepairedMesh result_;
-  double volume_ = 0.0;
+  double volume_ = 0.0;  ///< Of the mesh as it is now, holes closed by cones [m³].
+  bool is_filling_folded_ = false;
+  double largest_meeting_ = 0.0;  ///< Extent of the largest hole that meets another [m].
+  double largest_open_ = 0.0;     ///< Where the filling is folded: of the hole that it left [m].
+  double open_volume_ = 0.0;      ///< As `volume_`, before anything is split and filled [m³].
 };
 
 void check_range(const char* field, double value, double least, double most) {

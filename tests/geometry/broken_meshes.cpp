@@ -1,5 +1,6 @@
 #include "broken_meshes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -83,6 +84,58 @@ TriangleMesh with_vertices(TriangleMesh mesh, const std::vector<Vector3d>& more)
 // The side replaced by other faces.
 TriangleMesh with_side(const TriangleMesh& mesh, Side side, const std::vector<Face>& faces) {
   return with_faces(without_side(mesh, side), faces);
+}
+
+// The first `num_sides` sides of a box [0, size]³ as tiles of one by one, each a fan around its
+// middle, which is raised. An edge has a vertex in its middle on the first of its two tiles only,
+// so that tiles share no edges but only their corners: every edge is a hole of three sides, without
+// area.
+TriangleMesh tiled_box(int size, double raised, int num_sides) {
+  TriangleMesh mesh;
+  using Place = std::array<int, 3>;
+  std::map<Place, Index> index_of;
+  const auto corner = [&](const Place& at) {
+    const auto [entry, is_new] = index_of.try_emplace(at, static_cast<Index>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.emplace_back(at[0], at[1], at[2]);
+    return entry->second;
+  };
+  std::map<std::array<Index, 2>, int> tiles_at_edge;
+  for (int side = 0; side < num_sides; ++side) {
+    const int axis = side / 2;
+    const bool is_high = side % 2 == 1;
+    for (int tile = 0; tile < size * size; ++tile) {
+      const int i = tile % size;
+      const int j = tile / size;
+      const std::array<std::array<int, 2>, 4> around{
+          {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+      std::vector<Index> rim;
+      for (int k = 0; k < 4; ++k) {
+        Place at{};
+        at[axis] = is_high ? size : 0;
+        at[(axis + 1) % 3] = around[is_high ? k : 3 - k][0];
+        at[(axis + 2) % 3] = around[is_high ? k : 3 - k][1];
+        rim.push_back(corner(at));
+      }
+      Vector3d middle = Vector3d::Zero();
+      for (const Index vertex : rim) middle += mesh.vertices[vertex] / 4.0;
+      middle[axis] += is_high ? raised : -raised;
+      const auto apex = static_cast<Index>(mesh.vertices.size());
+      mesh.vertices.push_back(middle);
+      for (int k = 0; k < 4; ++k) {
+        const Index a = rim[k];
+        const Index b = rim[(k + 1) % 4];
+        if (tiles_at_edge[{std::min(a, b), std::max(a, b)}]++ > 0) {
+          mesh.faces.push_back({a, b, apex});
+          continue;
+        }
+        const auto half = static_cast<Index>(mesh.vertices.size());
+        mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) / 2.0);
+        mesh.faces.push_back({a, half, apex});
+        mesh.faces.push_back({half, b, apex});
+      }
+    }
+  }
+  return mesh;
 }
 
 // Every face with three vertices of its own; `place` may move the copy.
@@ -500,6 +553,11 @@ std::vector<BrokenMesh> broken_meshes() {
        with_vertices(cube(), {{9, 9, 9}, {0.5, 0.5, 0.5}})},
       {"denormal_corner", "a coordinate of 5e-324 (good)", denormal_corner},
       {"high_valence", "two vertices with 3000 faces each (good)", bipyramid(3000)},
+      // Patches that hang together by vertices.
+      {"six_tiles", "a cube whose sides meet in corners: each edge is halved on one of its sides",
+       tiled_box(1, 0.0, 6)},
+      {"tiles", "a box of 24 such tiles with raised middles", tiled_box(2, 0.125, 6)},
+      {"tiles_without_side", "the same without one side of the box", tiled_box(2, 0.125, 5)},
       // Faces.
       {"face_twice", "a face is there twice", with_faces(cube(), {kBlockFaces[0]})},
       {"face_on_both_sides", "a face is there a second time, reversed",

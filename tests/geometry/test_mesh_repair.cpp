@@ -10,6 +10,7 @@
 #include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_distance.hpp"
+#include "internal/mesh_holes.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
@@ -62,7 +63,7 @@ TriangleMesh soup(const TriangleMesh& mesh) {
 
 /// The steps' volumes add up, and their bounds hold against the surfaces themselves.
 void check_report(const TriangleMesh& given, const RepairedMesh& repaired) {
-  double volume = signed_volume(given);
+  double volume = internal::coned_volume(given);
   double bound = 0.0;
   for (const RepairStep& step : repaired.steps) {
     CHECK(step.count > 0);
@@ -440,4 +441,45 @@ TEST_CASE("A wrap closes what nothing else does, around all of it", "[geometry][
   turn(turned, 2);
   CHECK(steps_of(repair_mesh(turned, {.wrap = wrap})) == "turned faces 1");
   CHECK(repair_mesh(turned, {.mode = RepairMode::AsIs, .wrap = wrap}).mesh == turned);
+}
+
+TEST_CASE("Filling a flat hole changes no volume, wherever the mesh stands",
+          "[geometry][mesh_repair]") {
+  TriangleMesh open = box({1, 1, 4});
+  std::erase_if(open.faces, [&](const Face& f) {
+    return std::all_of(f.begin(), f.end(), [&](auto v) { return open.vertices[v][2] > 0.0; });
+  });
+  REQUIRE(open.faces.size() == 10);
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(7, -3, 20)}) {
+    const RepairedMesh repaired = repair_mesh(moved(open, place));
+    CHECK(steps_of(repaired) == "filled holes 1");
+    CHECK(std::abs(repaired.steps[0].volume_change) < 1e-13);
+    CHECK(repaired.steps[0].hausdorff_bound == Approx(0.5).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("A refusal names the limit for holes that does, and only if it does",
+          "[geometry][mesh_repair]") {
+  const auto message = [](const TriangleMesh& mesh, const MeshRepairOptions& options) {
+    try {
+      repair_mesh(mesh, options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  TriangleMesh tray = box({1, 1, 1});
+  tray.faces.erase(tray.faces.begin(), tray.faces.begin() + 2);
+  CHECK(message(tray, {}) ==
+        "the mesh is not closed and could not be repaired: 4 boundary edges; its largest hole "
+        "spans 1 of its longest extent, holes up to 0.5 are filled; --max-hole 1 fills it; --wrap "
+        "lays a closed surface around it");
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.faces = {{0, 1, 2}};
+  CHECK(message(sheet, {}).find("--max-hole") == std::string::npos);
+  CHECK(message(sheet, {}).ends_with("; --wrap lays a closed surface around it"));
+  CHECK(message(sheet, {.max_hole_extent_rel = 1.0}) ==
+        "the mesh encloses no volume: its faces cancel each other; --wrap lays a closed surface "
+        "around it");
 }

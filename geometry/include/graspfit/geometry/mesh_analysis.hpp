@@ -102,7 +102,9 @@ struct RepairStep {
   std::size_t count = 0;         ///< How many of them, > 0. "welded vertices": those that became
                                  ///< another; "resolved self-intersections": pairs of faces fewer;
                                  ///< "wrapped": faces of the wrap.
-  double volume_change = 0.0;    ///< Change of the signed volume by this step [m³].
+  double volume_change = 0.0;    ///< Change of the signed volume by this step [m³]; open surfaces
+                                 ///< are measured with every hole closed by a cone to the middle
+                                 ///< of its rim, so that a flat hole filled changes nothing.
   double hausdorff_bound = 0.0;  ///< Upper bound of the Hausdorff distance between the surfaces
                                  ///< before and after the step [m]; 0 where the set of points is
                                  ///< the same.
@@ -122,13 +124,21 @@ struct RepairedMesh {
 /// unused vertices, orientation made consistent, non-manifold edges and vertices split (solids that
 /// touch along an edge come apart), holes filled up to the stated size, doubled faces and unused
 /// vertices once more (what fills a sheet without thickness is its mirror image), inside-out parts
-/// turned, self-intersections resolved if asked for. Collinear faces stay: they carry the
+/// turned, self-intersections resolved if asked for. Where holes meet at vertices, the result is
+/// judged by its volume against that of the surface with every hole closed by a cone: if splitting
+/// lost more than a tenth, or left the surface open, the holes that meet are filled before the
+/// vertices are split. Patches that hang together by single vertices, as where the border of one
+/// is subdivided and its neighbor's is not, would come apart otherwise, and a filling along the
+/// inside of each would leave a hollow skin. If that cannot be closed either, the skin is no
+/// success: it is wrapped if asked for, or refused. Collinear faces stay: they carry the
 /// connection between their neighbors. Parts that overlap or lie in each other are kept: their
 /// union is meant, and an inward part inside an outward one is a cavity. A mesh that is closed,
 /// outward and manifold and has no degenerate, doubled or unused parts comes back as it is, byte
 /// for byte, crossing or not, close vertices or not, unless self-intersections are to be resolved.
 /// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
-/// large the largest hole is), if `Strict` meets any defect, or if the mesh has no faces.
+/// large the largest hole is, which limit for holes would do, by its option of the program, and
+/// whether a wrap is to be had), if filling would leave a skin, if `Strict` meets any defect, or if
+/// the mesh has no faces.
 /// @throws DegenerateGeometry if the mesh has no volume.
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options = {});
 
