@@ -212,6 +212,35 @@ Eigen::Vector3d checked_point(const Eigen::Vector3d& point, std::size_t index) {
   return point;
 }
 
+/// The index of a vertex, which comes as any number.
+std::int32_t checked_index(double number, const std::string& where) {
+  if (!(number >= 0.0 && number < 2147483648.0) || number != std::floor(number)) {
+    throw IoError(where + " has a bad vertex index");
+  }
+  return static_cast<std::int32_t>(number);
+}
+
+/// Triangles of a list of strips, which end with −1 each: every three neighbors are a triangle, and
+/// every second one runs the other way round. Those with a repeated corner only lead on.
+void add_strips(const std::vector<double>& corners, const std::string& where, PolygonSoup& soup) {
+  std::vector<std::int32_t> strip;
+  for (const double corner : corners) {
+    if (corner == -1.0) {
+      strip.clear();
+      continue;
+    }
+    strip.push_back(checked_index(corner, where));
+    if (strip.size() < 3) continue;
+    const std::size_t i = strip.size() - 3;
+    const std::int32_t a = strip[i + i % 2];
+    const std::int32_t b = strip[i + 1 - i % 2];
+    const std::int32_t c = strip[i + 2];
+    if (a == b || b == c || c == a) continue;
+    soup.polygon_begin.push_back(soup.corners.size());
+    soup.corners.insert(soup.corners.end(), {a, b, c});
+  }
+}
+
 PolygonSoup parse_text_stl(std::string_view content) {
   TextScanner text(content);
   PolygonSoup soup;
@@ -282,31 +311,32 @@ PolygonSoup parse_ply(std::string_view content) {
         });
         soup.vertices.push_back(checked_point(point, soup.vertices.size()));
       }
-    } else if (element.name == "face") {
+    } else if (element.name == "face" || element.name == "tristrips") {
+      const bool is_face = element.name == "face";
       std::size_t list = index_of("vertex_indices");
       if (list == none) list = index_of("vertex_index");
       if (list == none || !element.properties[list].size_type) {
-        throw IoError("the faces have no list of vertex indices");
+        throw IoError(std::string("the ") + (is_face ? "faces" : "strips") +
+                      " have no list of vertex indices");
       }
       for (std::int64_t i = 0; i < element.count; ++i) {
         corners.clear();
         read_element(body, element, i, [&](std::size_t p, std::int64_t k, double, double value) {
           if (p == list && k >= 0) corners.push_back(value);
         });
+        if (!is_face) {
+          add_strips(corners, "strip list " + std::to_string(i), soup);
+          continue;
+        }
         if (corners.size() < 3) {
           throw IoError("face " + std::to_string(i) + " has " + std::to_string(corners.size()) +
                         " corners");
         }
         soup.polygon_begin.push_back(soup.corners.size());
         for (const double corner : corners) {
-          if (!(corner >= 0.0 && corner < 2147483648.0) || corner != std::floor(corner)) {
-            throw IoError("face " + std::to_string(i) + " has a bad vertex index");
-          }
-          soup.corners.push_back(static_cast<std::int32_t>(corner));
+          soup.corners.push_back(checked_index(corner, "face " + std::to_string(i)));
         }
       }
-    } else if (element.name == "tristrips") {
-      throw IoError("triangle strips in PLY are not supported");
     } else {
       for (std::int64_t i = 0; i < element.count; ++i) {
         read_element(body, element, i, [](std::size_t, std::int64_t, double, double) {});
@@ -339,9 +369,10 @@ PolygonSoup parse_stl(std::string_view content) {
   if (!is_binary) {
     // Text holds no zero byte; a cut binary file does, in any count below 2^24.
     const bool is_text = content.find('\0') == std::string_view::npos;
-    const std::size_t start = content.find_first_not_of(" \t\r\n");
-    if (is_text && start != std::string_view::npos && content.substr(start, 5) == "solid") {
-      return parse_text_stl(content);
+    const std::string_view text = without_byte_order_mark(content);
+    const std::size_t start = text.find_first_not_of(" \t\r\n");
+    if (is_text && start != std::string_view::npos && text.substr(start, 5) == "solid") {
+      return parse_text_stl(text);
     }
     if (is_text) throw IoError("not an STL mesh: text that does not start with 'solid'");
     if (content.size() < kHeader) throw IoError("the file ends inside its header of 84 bytes");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "graspfit/geometry/errors.hpp"
+#include "internal/checked_glb.hpp"
 #include "internal/mesh_formats.hpp"
 
 namespace graspfit::geometry::internal {
@@ -63,9 +64,10 @@ void add(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& X_pare
 
 }  // namespace
 
-PolygonSoup import_gltf(const std::filesystem::path& file) {
+PolygonSoup import_gltf(std::string_view content, const std::filesystem::path& folder) {
+  const std::string glb = checked_glb(content, folder);
   Assimp::Importer importer;
-  const aiScene* const scene = importer.ReadFile(file.string(), 0);
+  const aiScene* const scene = importer.ReadFileFromMemory(glb.data(), glb.size(), 0, "glb");
   if (scene == nullptr || scene->mRootNode == nullptr) {
     std::string reason = importer.GetErrorString();
     std::replace(reason.begin(), reason.end(), '\n', ' ');

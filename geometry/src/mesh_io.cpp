@@ -155,13 +155,15 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshReadOptions& opt
   const std::string format = lower_case_extension(file);
   constexpr std::array<std::string_view, 6> kFormats = {"off", "obj", "ply", "stl", "gltf", "glb"};
   if (std::find(kFormats.begin(), kFormats.end(), format) == kFormats.end()) {
-    throw IoError(prefix + unknown_extension(format, "off, obj, ply, stl, gltf, glb"));
+    throw IoError(prefix + unknown_extension(format, "off, obj, ply, stl, gltf, glb") +
+                  "; Blender, MeshLab or 'assimp export FILE NEW.obj' convert most others");
   }
   try {
     const std::string content = read_file(file);
     if (content.empty()) throw IoError("the file is empty");
     if (format == "gltf" || format == "glb") {
-      return mesh_of(internal::import_gltf(file), format, options.meters_per_file_unit);
+      return mesh_of(internal::import_gltf(content, file.parent_path()), format,
+                     options.meters_per_file_unit);
     }
     return internal::mesh_from_content(content, format, options.meters_per_file_unit);
   } catch (const IoError& failure) {

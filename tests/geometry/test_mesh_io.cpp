@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -10,6 +12,7 @@
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
+using graspfit::testing::Contains;
 namespace fs = std::filesystem;
 
 namespace {
@@ -139,6 +142,70 @@ TEST_CASE("Big-endian PLY with unknown elements is read", "[geometry][mesh_io]")
   CHECK(mesh.faces == std::vector<Face>{{0, 1, 2}});
 }
 
+TEST_CASE("A byte order mark before the text of a mesh is skipped", "[geometry][mesh_io]") {
+  const ScratchFolder folder;
+  const TriangleMesh mesh = read_mesh(folder.file("a.off", kTetrahedronOff)).mesh;
+  const std::string mark = "\xEF\xBB\xBF";
+  CHECK(read_mesh(folder.file("b.off", mark + kTetrahedronOff)).mesh == mesh);
+  CHECK(read_mesh(folder.file("b.obj", mark + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"))
+            .mesh.faces.size() == 1);
+  CHECK(read_mesh(
+            folder.file("b.ply", mark + "ply\nformat ascii 1.0\nelement vertex 3\n"
+                                        "property float x\nproperty float y\nproperty float z\n"
+                                        "element face 1\nproperty list uchar int vertex_indices\n"
+                                        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"))
+            .mesh.faces.size() == 1);
+  CHECK(read_mesh(folder.file("b.stl", mark +
+                                           "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"
+                                           "vertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+                                           "endsolid x\n"))
+            .mesh.faces.size() == 1);
+}
+
+TEST_CASE("Triangle strips of PLY run alternately and end with -1", "[geometry][mesh_io]") {
+  // The four faces of a tetrahedron as one strip 0 2 1 3 0 2: (0 2 1), (1 2 3), (1 3 0), (0 3 2),
+  // then one strip of a single triangle that only leads on, as its corners repeat.
+  const std::string header =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  const ScratchFolder folder;
+  const TriangleMesh mesh =
+      read_mesh(folder.file("a.ply", "ply\nformat ascii 1.0\n" + header + points +
+                                         "11 0 2 1 3 0 2 -1 1 1 2 -1\n"))
+          .mesh;
+  CHECK(mesh.faces == std::vector<Face>{{0, 2, 1}, {1, 2, 3}, {1, 3, 0}, {0, 3, 2}});
+  CHECK(signed_volume(mesh) == Approx(1.0 / 6.0));
+
+  std::string binary = "ply\nformat binary_little_endian 1.0\n" + header;
+  const auto append = [&binary](auto value) {
+    binary.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const float x : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) append(x);
+  for (const std::int32_t i : {12, 0, 2, 1, -1, 1, 2, 3, -1, 0, 1, 3, -1}) append(i);
+  CHECK(read_mesh(folder.file("b.ply", binary)).mesh.faces ==
+        std::vector<Face>{{0, 2, 1}, {1, 2, 3}, {0, 1, 3}});
+
+  CHECK(error_of(folder.file("c.ply", "ply\nformat ascii 1.0\n" + header + points + "3 0 1 9\n")) ==
+        "face 0 uses vertex 9 of 4");
+  CHECK(error_of(folder.file("d.ply", "ply\nformat ascii 1.0\n" + header + points +
+                                          "3 0 1 -2\n")) == "strip list 0 has a bad vertex index");
+  CHECK(error_of(folder.file("e.ply", "ply\nformat ascii 1.0\n" + header + points + "9 0 1 2\n")) ==
+        "the file ends at tristrips 0 of 1");
+}
+
+TEST_CASE("Pipes and devices are no mesh files, and nobody waits for them", "[geometry][mesh_io]") {
+  const ScratchFolder folder;
+  for (const char* const name : {"pipe.off", "pipe.stl", "pipe.glb"}) {
+    REQUIRE(mkfifo((folder / name).c_str(), 0600) == 0);
+    CHECK_THROWS_WITH(read_mesh(folder / name),
+                      Contains("it is not a regular file; write to a file"));
+  }
+  fs::create_symlink("/dev/zero", folder / "zero.off");
+  CHECK_THROWS_WITH(read_mesh(folder / "zero.off"), Contains("is not a regular file"));
+  CHECK_THROWS_AS(read_file("/dev/null"), IoError);
+}
+
 TEST_CASE("glTF is read with its node's placement", "[geometry][mesh_io]") {
   // Three vertices (0,0,0), (1,0,0), (0,1,0) as floats and no indices, moved by (0, 0, 5).
   const std::string gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
@@ -203,7 +270,8 @@ TEST_CASE("Bad mesh files get one clear line", "[geometry][mesh_io]") {
   fs::create_directory(folder / "folder.off");
   CHECK(error_of(folder / "folder.off") == "it is a folder");
   CHECK(error_of(folder.file("a.xyz", off)) ==
-        "unknown extension '.xyz'; known are off, obj, ply, stl, gltf, glb");
+        "unknown extension '.xyz'; known are off, obj, ply, stl, gltf, glb; Blender, MeshLab or "
+        "'assimp export FILE NEW.obj' convert most others");
   CHECK(error_of(folder.file("noextension", off)).starts_with("the file name has no extension"));
   for (const char* const name : {"e.off", "e.obj", "e.ply", "e.stl", "e.gltf", "e.glb"}) {
     CHECK(error_of(folder.file(name, "")) == "the file is empty");

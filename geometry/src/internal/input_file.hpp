@@ -14,12 +14,17 @@ namespace graspfit::geometry::internal {
   throw IoError("cannot read " + file.string() + ": " + why);
 }
 
-/// A file opened for reading its bytes. @throws IoError if it is not there or a folder.
+/// A file opened for reading its bytes. Pipes and devices are refused: they may never end, and
+/// whoever reads a file twice, as for its hash, would get other bytes.
+/// @throws IoError if it is not there or not a regular file.
 inline std::ifstream open_input_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) fail_to_read(file, "no such file");
   if (std::filesystem::is_directory(status)) fail_to_read(file, "it is a folder");
+  if (!std::filesystem::is_regular_file(status)) {
+    fail_to_read(file, "it is not a regular file; write to a file what comes through a pipe");
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail_to_read(file, std::strerror(errno));
   return stream;

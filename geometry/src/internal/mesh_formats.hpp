@@ -29,9 +29,9 @@ PolygonSoup parse_obj(std::string_view content);
 PolygonSoup parse_ply(std::string_view content);
 PolygonSoup parse_stl(std::string_view content);
 
-/// glTF and GLB, by assimp: it resolves buffers in other files, and the format has single precision
-/// anyway.
-PolygonSoup import_gltf(const std::filesystem::path& file);
+/// glTF and GLB, by assimp, as the format has single precision anyway. What assimp sees is checked
+/// and made by `checked_glb`; buffers in other files are those in `folder`.
+PolygonSoup import_gltf(std::string_view content, const std::filesystem::path& folder);
 
 /// `read_mesh` of a file's bytes: `format` is "off", "obj", "ply" or "stl". Throws like the
 /// readers.

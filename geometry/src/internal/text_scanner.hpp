@@ -12,10 +12,18 @@
 
 namespace graspfit::geometry::internal {
 
-/// Words and numbers of a text, line by line, in the C locale. Errors name the line.
+/// The text after the mark that some editors put in front of UTF-8.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  return text;
+}
+
+/// Words and numbers of a text, line by line, in the C locale. Errors name the line. A byte order
+/// mark in front is skipped.
 class TextScanner {
  public:
-  explicit TextScanner(std::string_view text) : rest_(text) {}
+  explicit TextScanner(std::string_view text) : rest_(without_byte_order_mark(text)) {}
 
   /// Goes to the next line that is neither empty nor only a comment; false at the end.
   /// `comment` starts a comment that runs to the end of its line; 0 for none.

@@ -11,7 +11,8 @@ namespace graspfit::geometry {
 /// @throws IoError (file and reason) if that fails; no temporary file stays behind.
 void write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
-/// The whole of a file as bytes. @throws IoError if it cannot be read.
+/// The whole of a file as bytes.
+/// @throws IoError if it cannot be read or is not a regular file (a pipe, a device, a folder).
 std::string read_file(const std::filesystem::path& file);
 
 /// SHA-256 of `bytes` as 64 lower-case hexadecimal digits.
