@@ -9,6 +9,7 @@
 
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
 #include "internal/config_node.hpp"
 
@@ -134,7 +135,7 @@ std::vector<AxisValue> values_of(const ConfigNode& item, const std::string& name
   const fs::path file = folder / (slug.text() + ".json");
   std::error_code error;
   if (!fs::is_regular_file(file, error)) slug.fail("has no configuration beside this one");
-  const ConfigNode::Json json = parse(file.string(), geometry::read_file(file));
+  const ConfigNode::Json json = parse(file.string(), geometry::read_json_file(file));
   PlacedAxis other;
   other.axis.name = name;
   for (const ConfigNode& value : ConfigNode(file.string(), json).at("axes").at(name).items()) {
@@ -406,7 +407,7 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
                              const ConfigRequest& request) {
   ExperimentConfig config;
   config.file = file.string();
-  const std::string text = geometry::read_file(file);
+  const std::string text = geometry::read_json_file(file);
   config.sha256 = geometry::sha256_hex(text);
   const ConfigNode::Json json = parse(config.file, text);
   const ConfigNode root(config.file, json);

@@ -2,8 +2,8 @@
 #include <system_error>
 
 #include "graspfit/experiments/table_comparison.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 
 namespace graspfit::experiments {
 namespace {
@@ -14,7 +14,7 @@ using SortedJson = nlohmann::json;
 SortedJson read_manifest(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return {};
-  SortedJson json = SortedJson::parse(geometry::read_file(file), nullptr, false);
+  SortedJson json = SortedJson::parse(geometry::read_json_file(file), nullptr, false);
   if (!json.is_object()) throw geometry::InvalidInput(file.string() + ": is damaged");
   return json;
 }

@@ -13,6 +13,7 @@
 #include "graspfit/experiments/column_dictionary.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/file_hash.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 #include "internal/sweep_tables.hpp"
 
 namespace graspfit::experiments {
@@ -156,7 +157,7 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
 }
 
 void require_publishable_manifest(const fs::path& manifest) {
-  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
+  const Json json = Json::parse(geometry::read_json_file(manifest), nullptr, false);
   const auto has_object = [&](const char* name) {
     return json.is_object() && json.contains(name) && json.at(name).is_object();
   };
@@ -177,7 +178,7 @@ void require_publishable_manifest(const fs::path& manifest) {
 }
 
 void require_tables_of_manifest(const fs::path& manifest) {
-  const Json json = Json::parse(geometry::read_file(manifest), nullptr, false);
+  const Json json = Json::parse(geometry::read_json_file(manifest), nullptr, false);
   if (!json.is_object()) throw geometry::InvalidInput(manifest.string() + ": is damaged");
   if (!json.contains("tables_sha256")) return;
   for (const auto& [name, hash] : json.at("tables_sha256").items()) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <system_error>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 #include "internal/sweep_tables.hpp"
 
 namespace graspfit::experiments {
@@ -147,7 +147,7 @@ RunProgress merge_shards(const Experiment& experiment, const ExperimentConfig& c
     journal.absorb(part);
     const fs::path shard_manifest = source / (experiment.slug + ".manifest.json");
     if (fs::exists(shard_manifest)) {
-      manifest.shards.push_back(geometry::read_file(shard_manifest));
+      manifest.shards.push_back(geometry::read_json_file(shard_manifest));
     }
   }
   require_all(config.sweep, journal, folder);

@@ -11,6 +11,7 @@
 #include "graspfit/experiments/run_manifest.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 
 namespace graspfit::experiments {
 namespace {
@@ -68,7 +69,7 @@ struct RunFacts {
 };
 
 RunFacts run_facts(const std::filesystem::path& manifest) {
-  const auto json = nlohmann::json::parse(geometry::read_file(manifest), nullptr, false);
+  const auto json = nlohmann::json::parse(geometry::read_json_file(manifest), nullptr, false);
   const nlohmann::json::json_pointer axes("/config/as_run/axes");
   const nlohmann::json::json_pointer cells("/cells/total");
   if (!json.is_object() || !json.contains(axes) || !json.at(axes).is_array() ||

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/replacement_mark.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
@@ -45,7 +44,7 @@ geometry::MeshAnalysis read_mesh_analysis(const JsonNode& node) {
 
 ObjectRecord read_object_record(const JsonNode& node) {
   ObjectRecord object;
-  object.file = node.at("file").text();
+  object.file = node.at("file").path();
   object.sha256 = node.at("sha256").text();
   object.meters_per_file_unit = node.at("meters_per_file_unit").number();
   const JsonNode repair = node.at("repair");
@@ -97,7 +96,7 @@ std::optional<UsedMeshFiles> read_used_meshes(const JsonNode& root) {
 
 internal::RecordedHand read_hand_record(const JsonNode& node) {
   internal::RecordedHand hand;
-  hand.description_file = node.at("description_file").text();
+  hand.description_file = node.at("description_file").path();
   hand.description_sha256 = node.at("description_sha256").text();
   hand.sidecar_sha256 = node.at("sidecar_sha256").text();
   for (const JsonNode& link : node.at("links").items()) {
@@ -361,7 +360,7 @@ PlannerTimings read_timings(const JsonNode& node) {
 
 GraspFile read_grasps(const std::filesystem::path& path) {
   geometry::require_no_replacement_mark(path);
-  const JsonNode root = JsonNode::parse(path.string(), geometry::read_file(path));
+  const JsonNode root = JsonNode::read(path);
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
@@ -410,7 +409,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   }
   for (const auto& [key, node] : root.members()) {
     if (key != "imported") continue;
-    file.imported = {node.at("format").text(), node.at("file").text(), node.at("sha256").text()};
+    file.imported = {node.at("format").text(), node.at("file").path(), node.at("sha256").text()};
   }
   file.timings = read_timings(root.at("timings"));
   return file;

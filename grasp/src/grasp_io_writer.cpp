@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "graspfit/geometry/path_text.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
@@ -346,7 +347,7 @@ std::string to_json(const GraspFile& file) {
                {"planner", planner_json(file)}};
   if (file.imported) {
     json["imported"] = {{"format", file.imported->format},
-                        {"file", file.imported->file},
+                        {"file", geometry::path_text(file.imported->file)},
                         {"sha256", file.imported->sha256}};
   }
   json["results"] = results_json(file);

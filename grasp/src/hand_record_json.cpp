@@ -1,3 +1,5 @@
+#include "graspfit/geometry/path_text.hpp"
+#include "graspfit/hands/hand_library.hpp"
 #include "internal/record_json.hpp"
 
 namespace graspfit::grasp::internal {
@@ -58,6 +60,11 @@ Json pad_json(const hands::HandModel& hand, const hands::ContactPad& pad, double
           {"clip_volume_L", {{"thickness_m", thickness}, {"half_spaces", half_spaces}}}};
 }
 
+/// Of a shipped hand below the folder of shipped hands: the same on every machine.
+Json file_json(const std::string& file) {
+  return geometry::path_text(hands::path_in_library(file).string());
+}
+
 }  // namespace
 
 Json hand_json(const GraspFile& file) {
@@ -65,10 +72,14 @@ Json hand_json(const GraspFile& file) {
   Json links = Json::array();
   for (std::size_t i = 0; i < hand.links.size(); ++i) {
     const bool has_file = !hand.links[i].mesh_files.empty();
+    Json mesh_files = Json::array();
+    for (const std::string& name : hand.links[i].mesh_files) {
+      mesh_files.push_back(geometry::path_text(name));
+    }
     const bool has_used_mesh = file.used_meshes && !file.used_meshes->links.at(i).empty();
     links.push_back(
         {{"name", hand.links[i].name},
-         {"mesh_files", hand.links[i].mesh_files},
+         {"mesh_files", mesh_files},
          {"mesh_sha256", has_file ? Json(file.link_mesh_sha256.at(i)) : Json(nullptr)},
          {"used_mesh_file", has_used_mesh ? Json(file.used_meshes->links[i]) : Json(nullptr)}});
   }
@@ -97,9 +108,9 @@ Json hand_json(const GraspFile& file) {
         Json::array({hand.links[exclusion.link_a].name, hand.links[exclusion.link_b].name}));
   }
   return {{"name", hand.name},
-          {"description_file", hand.description_file},
+          {"description_file", file_json(hand.description_file)},
           {"description_sha256", hand.description_sha256},
-          {"sidecar_file", hand.sidecar_file},
+          {"sidecar_file", file_json(hand.sidecar_file)},
           {"sidecar_sha256", hand.sidecar_sha256},
           {"palm",
            {{"link", hand.links[hand.palm.link].name},

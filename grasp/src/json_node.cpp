@@ -6,12 +6,15 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
+#include "graspfit/geometry/path_text.hpp"
 #include "internal/pose_numbers.hpp"
 
 namespace graspfit::grasp::internal {
 
-JsonNode JsonNode::parse(std::string file, const std::string& text) {
-  const auto name = std::make_shared<const std::string>(std::move(file));
+JsonNode JsonNode::read(const std::filesystem::path& file) {
+  const auto name = std::make_shared<const std::string>(file.string());
+  const std::string text = geometry::read_json_file(file);
   try {
     const auto root = std::make_shared<const Json>(Json::parse(text));
     return {name, root, root.get(), ""};
@@ -93,6 +96,8 @@ std::string JsonNode::text() const {
   if (!json_->is_string()) fail("is not a text");
   return json_->get<std::string>();
 }
+
+std::string JsonNode::path() const { return geometry::path_of_text(text()); }
 
 std::vector<std::string> JsonNode::texts() const {
   std::vector<std::string> texts;

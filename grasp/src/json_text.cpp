@@ -46,7 +46,8 @@ void append(const ordered_json& json, int depth, std::string& text) {
     assert(std::isfinite(json.get<double>()));
     text += geometry::shortest_decimal(json.get<double>());
   } else {
-    // Bytes that are not UTF-8 (a file name) become replacement characters instead of an exception.
+    // Bytes that are not UTF-8 become replacement characters instead of an exception; paths are
+    // given by their `path_text`, so that they come back.
     text += json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   }
 }

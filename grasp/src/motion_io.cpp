@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/named_shapes.hpp"
+#include "graspfit/geometry/path_text.hpp"
 #include "graspfit/grasp/object_file.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -228,7 +228,7 @@ std::string to_json(const MotionFile& file) {
   Json objects = Json::array();
   for (const MotionObject& object : file.objects) {
     objects.push_back({{"name", object.name},
-                       {"file", object.file},
+                       {"file", geometry::path_text(object.file)},
                        {"sha256", object.sha256},
                        {"meters_per_file_unit", object.meters_per_file_unit},
                        {"X_WO_start", internal::to_json(object.X_WO_start)},
@@ -255,7 +255,7 @@ std::string to_json(const MotionFile& file) {
          "the hand keeps its place against it"}}},
       {"title", file.title},
       {"hand",
-       {{"description", file.hand},
+       {{"description", geometry::path_text(file.hand)},
         {"description_sha256", file.description_sha256},
         {"joints", file.joints}}},
       {"proven_clearance_m", file.clearance},
@@ -266,7 +266,7 @@ std::string to_json(const MotionFile& file) {
 }
 
 MotionFile read_motion(const fs::path& path) {
-  const JsonNode root = JsonNode::parse(path.string(), geometry::read_file(path));
+  const JsonNode root = JsonNode::read(path);
   if (root.at("format").text() != kFormat) {
     root.at("format").fail(std::string("is not \"") + kFormat + '"');
   }
@@ -275,12 +275,12 @@ MotionFile read_motion(const fs::path& path) {
   }
   MotionFile file;
   file.title = root.at("title").text();
-  file.hand = root.at("hand").at("description").text();
+  file.hand = root.at("hand").at("description").path();
   file.description_sha256 = root.at("hand").at("description_sha256").text();
   file.joints = root.at("hand").at("joints").texts();
   file.clearance = root.at("proven_clearance_m").number();
   for (const JsonNode& object : root.at("objects").items()) {
-    file.objects.push_back({object.at("name").text(), object.at("file").text(),
+    file.objects.push_back({object.at("name").text(), object.at("file").path(),
                             object.at("sha256").text(),
                             object.at("meters_per_file_unit").positive_number(),
                             object.at("X_WO_start").pose(), object.at("X_WO_goal").pose()});

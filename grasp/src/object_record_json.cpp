@@ -1,3 +1,4 @@
+#include "graspfit/geometry/path_text.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "internal/record_json.hpp"
 
@@ -44,7 +45,7 @@ Json object_json(const ObjectRecord& object, const std::optional<std::string>& u
     wrap = {{"alpha_rel", object.repair.wrap->alpha_rel},
             {"offset_rel", object.repair.wrap->offset_rel}};
   }
-  return {{"file", object.file},
+  return {{"file", geometry::path_text(object.file)},
           {"sha256", object.sha256},
           {"meters_per_file_unit", object.meters_per_file_unit},
           {"used_mesh_file", or_null(used_mesh_file)},

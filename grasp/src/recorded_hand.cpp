@@ -19,13 +19,15 @@ fs::path find_description(const RecordedHand& record, const fs::path& grasp_fold
   };
   if (is_it(recorded)) return recorded;
   if (recorded.is_relative() && is_it(grasp_folder / recorded)) return grasp_folder / recorded;
+  if (is_it(grasp_folder / recorded.filename())) return grasp_folder / recorded.filename();
   for (const std::string& name : hands::shipped_hands()) {
     const fs::path shipped = hands::shipped_hand_file(name);
     if (shipped.filename() == recorded.filename() && is_it(shipped)) return shipped;
   }
   throw geometry::IoError("the hand description " + record.description_file + " with SHA-256 " +
                           record.description_sha256 +
-                          " is neither there nor among the shipped hands");
+                          " is neither there, nor beside the grasp file, nor among the shipped "
+                          "hands");
 }
 
 void check_hash(const std::string& what, const std::string& found, const std::string& recorded) {

@@ -6,8 +6,10 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "internal/derivation.hpp"
+#include "internal/hand_size.hpp"
 #include "internal/hand_tree.hpp"
 #include "internal/link_surfaces.hpp"
 #include "internal/robot_file.hpp"
@@ -48,7 +50,7 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
       if (!fs::is_regular_file(sidecar_file, error)) {
         throw IoError(sidecar_file.string() + ": is not a file");
       }
-      sidecar_text = geometry::read_file(sidecar_file);
+      sidecar_text = geometry::read_json_file(sidecar_file);
       sources.sidecar = parse_sidecar(sidecar_text, sidecar_file.string());
     });
   }
@@ -85,6 +87,11 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
     }
     findings.attempt([&] { read_link_surface(source, description_file, *link, findings); },
                      "link " + source.name);
+  }
+  // Faults of the tree leave limits and couplings that no configuration can have.
+  if (sources.tree && !findings.has_faults()) {
+    findings.attempt(
+        [&] { look_at_size(*sources.tree, sources.description.meters_per_unit, findings); });
   }
   return sources;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
@@ -21,31 +22,44 @@ fs::path program_folder() {
   return error ? fs::path() : program.parent_path();
 }
 
-/// The folder of the hand library. A program of the build tree uses the sources' hands, so that a
-/// change there counts at once; an installed one those beside it, wherever it was moved.
-fs::path library_folder() {
-  std::error_code error;
-  if (const char* setting = std::getenv("GRASPFIT_HANDS"); setting != nullptr && *setting != '\0') {
-    if (!fs::is_directory(setting, error)) {
-      throw geometry::InvalidInput("GRASPFIT_HANDS: " + std::string(setting) + " is not a folder");
-    }
-    return setting;
-  }
-  const fs::path program = program_folder();
+/// What GRASPFIT_HANDS says; empty: nothing.
+std::string library_setting() {
+  const char* const setting = std::getenv("GRASPFIT_HANDS");
+  return setting == nullptr ? "" : setting;
+}
+
+/// Where the hand library may be, best first. A program of the build tree uses the sources' hands,
+/// so that a change there counts at once; an installed one those beside it, wherever it was moved.
+std::vector<fs::path> library_candidates() {
+  if (const std::string setting = library_setting(); !setting.empty()) return {setting};
   std::vector<fs::path> candidates;
-  if (!program.empty()) {
+  if (const fs::path program = program_folder(); !program.empty()) {
     candidates.push_back(program.parent_path() / "share/graspfit/hands");
-    if (internal::lies_in(program, GRASPFIT_BUILD_FOLDER))
+    if (internal::lies_in(program, fs::path(GRASPFIT_BUILD_FOLDER)))
       candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
   }
   candidates.emplace_back(GRASPFIT_INSTALLED_HANDS);
   candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
-  for (const fs::path& candidate : candidates) {
+  return candidates;
+}
+
+/// The folder of the hand library, if there is one.
+std::optional<fs::path> found_library_folder() {
+  std::error_code error;
+  for (const fs::path& candidate : library_candidates()) {
     if (fs::is_directory(candidate, error)) return candidate;
   }
+  return std::nullopt;
+}
+
+fs::path library_folder() {
+  if (const auto folder = found_library_folder()) return *folder;
+  if (const std::string setting = library_setting(); !setting.empty()) {
+    throw geometry::InvalidInput("GRASPFIT_HANDS: " + setting + " is not a folder");
+  }
   throw geometry::InvalidInput("no folder of shipped hands (looked in " +
-                               candidates.front().string() + " and " + GRASPFIT_INSTALLED_HANDS +
-                               "); set GRASPFIT_HANDS");
+                               library_candidates().front().string() + " and " +
+                               GRASPFIT_INSTALLED_HANDS + "); set GRASPFIT_HANDS");
 }
 
 std::vector<std::string> hands_in(const fs::path& folder) {
@@ -77,6 +91,13 @@ fs::path shipped_hand_file(const std::string& name) {
                                  geometry::did_you_mean(name, names));
   }
   return folder / name / (name + ".urdf");
+}
+
+fs::path path_in_library(const fs::path& file) {
+  const auto folder = found_library_folder();
+  if (!folder) return file;
+  const fs::path relative = file.lexically_relative(*folder);
+  return relative.empty() || *relative.begin() == ".." ? file : relative;
 }
 
 fs::path find_hand_file(const std::string& name_or_file) {

@@ -99,6 +99,8 @@ TEST_CASE("Configuration errors name file, key and what is allowed", "[experimen
     CHECK(message.find('\n') == std::string::npos);
   };
   check(message_of("{"), {"counting.json", "is not JSON"});
+  check(message_of("{\"axes\": " + std::string(100000, '[') + std::string(100000, ']') + "}"),
+        {"counting.json: line 1, column 73: nests deeper than 64 levels"});
   check(message_of(with("\"cell\"", "\"cel\"")),
         {"counting.json: /cel: ", "there are experiment, question, cell, seed, axes"});
   check(message_of(with("\"cell\": \"Adds.\",", "")), {"counting.json: /cell: is missing"});

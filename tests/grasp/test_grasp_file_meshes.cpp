@@ -7,6 +7,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/path_text.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/hands/hand_io.hpp"
@@ -100,6 +101,58 @@ TEST_CASE("A hand with package:// and file:// meshes, two on one link, is record
 
   std::ofstream(palm_file, std::ios::app) << "# another file now\n";
   CHECK_THROWS_AS(grasp::read_grasps(folder.path() / "grasps.json"), geometry::IoError);
+}
+
+TEST_CASE("File names that are not UTF-8 come back from a grasp file", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder.path() / "caf\xe9 100%.off");
+  const fs::path hand = folder.path() / "h\xffnd.urdf";
+  fs::copy(hands::shipped_hand_file("barrett").parent_path(), folder.path(),
+           fs::copy_options::recursive);
+  fs::rename(folder.path() / "barrett.urdf", hand);
+  fs::rename(folder.path() / "barrett.graspfit.json", hands::sidecar_file_of(hand));
+  file.hand = hands::read_hand_model(hand);
+  file.imported = {"isaac_grasp 1.0", "file:\x80", std::string(64, '0')};
+  grasp::write_grasps(folder.path() / "grasps.json", file);
+  const std::string text = geometry::read_file(folder.path() / "grasps.json");
+  CHECK(geometry::is_utf8(text));
+  CHECK_THAT(text, Contains("/caf%E9%20100%25.off\"") && Contains("/h%FFnd.urdf\"") &&
+                       Contains("\"file:file%3A%80\""));
+
+  const grasp::GraspFile read = grasp::read_grasps(folder.path() / "grasps.json");
+  CHECK(read.object.file == file.object.file);
+  CHECK(read.surroundings.obstacles[0].file == file.object.file);
+  CHECK(read.hand.description_file == hand.string());
+  CHECK(read.imported->file == "file:\x80");
+  CHECK_NOTHROW(grasp::read_object(read.object));
+}
+
+TEST_CASE("A grasp file names shipped hands alike on every machine, and finds others beside it",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder.path() / "ball.off");
+  const std::string shipped = grasp::to_json(file);
+  CHECK_THAT(shipped, Contains("\"description_file\": \"barrett/barrett.urdf\"") &&
+                          Contains("\"sidecar_file\": \"barrett/barrett.graspfit.json\""));
+  std::ofstream(folder.path() / "grasps.json") << shipped;
+  CHECK(grasp::read_grasps(folder.path() / "grasps.json").hand.description_file ==
+        file.hand.description_file);
+
+  // A copy of the hand that moves with the grasp file.
+  const fs::path before = folder.path() / "before";
+  fs::copy(hands::shipped_hand_file("barrett").parent_path(), before, fs::copy_options::recursive);
+  std::ofstream(before / "barrett.urdf", std::ios::app) << "<!-- not the shipped one -->\n";
+  file.hand = hands::read_hand_model(before / "barrett.urdf");
+  grasp::write_grasps(before / "grasps.json", file);
+  CHECK_THAT(geometry::read_file(before / "grasps.json"),
+             Contains("\"description_file\": \"" + before.string() + "/barrett.urdf\""));
+  const fs::path after = folder.path() / "after";
+  fs::rename(before, after);
+  CHECK(grasp::read_grasps(after / "grasps.json").hand.description_file ==
+        (after / "barrett.urdf").string());
+  std::ofstream(after / "barrett.urdf", std::ios::app) << "<!-- another one -->\n";
+  CHECK_THROWS_WITH(grasp::read_grasps(after / "grasps.json"),
+                    Contains("before/barrett.urdf") && Contains("beside the grasp file"));
 }
 
 TEST_CASE("An object is read by its record, bit for bit, however it was scaled",

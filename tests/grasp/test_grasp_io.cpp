@@ -298,6 +298,10 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
 
   CHECK_THAT(refusal(path, ""), Contains("bad.json: is not JSON"));
   CHECK_THAT(refusal(path, good.substr(0, good.size() / 2)), Contains("is not JSON"));
+  // In a member that nobody reads, too: the whole file becomes a tree.
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  CHECK_THAT(refusal(path, "{\"unread\": " + deep + good.substr(1).insert(0, ",")),
+             Contains("bad.json: line 1, column 75: nests deeper than 64 levels"));
   CHECK_THAT(refusal(path, "[]"), Contains("/: is not an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
   CHECK_THAT(refusal(path, replaced(good, "\"version\": 4", "\"version\": 1")),

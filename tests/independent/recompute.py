@@ -2,7 +2,9 @@
 
 import dataclasses
 import hashlib
+import os
 import pathlib
+import urllib.parse
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -12,6 +14,7 @@ import measures
 import mesh_files
 import triangles
 
+SHIPPED_HANDS = pathlib.Path(__file__).resolve().parents[2] / "hands/models"
 TOUCHING = 1e-12       # surfaces nearer than this share a point as far as doubles can tell [m]
 FAR = 0.02             # links farther than this from the object do not matter [m]
 LEAST_NORMAL = 0.1     # mean normals shorter than this are none: both sides of a plate
@@ -96,8 +99,16 @@ def depth(first, second):
     return deepest
 
 
-def found_file(name, places):
+def path_of_text(text):
+    """A recorded path: where it is not UTF-8, as file: and percent-encoded bytes."""
+    if not text.startswith("file:"):
+        return text
+    return os.fsdecode(urllib.parse.unquote_to_bytes(text.removeprefix("file:")))
+
+
+def found_file(text, places):
     """A recorded path as it is, or below one of the folders."""
+    name = path_of_text(text)
     for place in (pathlib.Path("."), *places):
         if (place / name).exists():
             return place / name
@@ -140,7 +151,7 @@ class Scene:
         return Solid(vertices * item["meters_per_file_unit"], faces)
 
     def _read_hand(self, item):
-        places = [self.folder, self.folder.parent]
+        places = [self.folder, self.folder.parent, SHIPPED_HANDS]
         description = found_file(item["description_file"], places)
         require_sha256(description, item["description_sha256"])
         sidecar = found_file(item["sidecar_file"], places) if item["sidecar_file"] else None

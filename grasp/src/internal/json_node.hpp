@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -20,8 +21,8 @@ class JsonNode {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Parses a file's text. `file` is its name in messages.
-  static JsonNode parse(std::string file, const std::string& text);
+  /// The root of a file, which messages name by its path.
+  static JsonNode read(const std::filesystem::path& file);
 
   /// A member of this object; it must exist.
   JsonNode at(const std::string& key) const;
@@ -40,6 +41,7 @@ class JsonNode {
   int small_integer() const;
   bool flag() const;
   std::string text() const;
+  std::string path() const;  ///< Of a file, as geometry's `path_text` writes it.
   std::vector<std::string> texts() const;
   Eigen::Vector3d vector3() const;
   geometry::RigidTransform pose() const;  ///< {translation_m, rotation_wxyz}.

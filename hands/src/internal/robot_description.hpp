@@ -85,6 +85,7 @@ struct RobotDescription {
   std::string name;
   std::vector<DescribedLink> links;
   std::vector<DescribedJoint> joints;
+  double meters_per_unit = 1.0;  ///< Of the lengths in its file, which are meters here.
   /// Pairs of links that the description itself takes out of collision.
   std::vector<std::pair<std::string, std::string>> exclusions;
 };

@@ -53,6 +53,9 @@ struct ImportRecord {
 
 /// A grasp file (`grasps.json`): everything needed to recompute every number without this program.
 /// Its schema is grasp/grasps.schema.json.
+///
+/// Paths in it are as they were given, those of shipped hands relative to the folder of shipped
+/// hands, and each is written as its `geometry::path_text`; hashes say whether what is found is it.
 struct GraspFile {
   ObjectRecord object;
   SurroundingsRecord surroundings;
@@ -101,8 +104,8 @@ UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands
                                 const Surroundings& surroundings = {});
 
 /// Reads a grasp file and the hand it names; checks the hashes of the hand's files. A hand that is
-/// not where the record says is looked for relative to the grasp file, then among the shipped hands
-/// by the name of its description.
+/// not where the record says is looked for relative to the grasp file, then beside it, then among
+/// the shipped hands by the name of its description.
 /// @throws IoError (file, JSON path, what) for malformed files, other versions (1 is refused: its
 /// grasps lack what is measured today), hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);
