@@ -9,6 +9,7 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "hand_commands.hpp"
 #include "hand_loading.hpp"
+#include "progress_bar.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -35,7 +36,10 @@ ExitCode run_hand_check(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   const fs::path file = hands::find_hand_file(flags.positional());
-  const hands::HandCheck check = hands::check_hand(file);
+  const hands::HandCheck check = [&] {
+    const SecondsBar seconds(true, "checking " + file.string());
+    return hands::check_hand(file);
+  }();
   for (const hands::HandFinding& finding : check.findings) {
     std::printf("%s\n", finding_line(finding).c_str());
   }

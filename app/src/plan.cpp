@@ -19,6 +19,7 @@
 #include "hold_filter.hpp"
 #include "hold_flags.hpp"
 #include "interrupts.hpp"
+#include "no_grasp_advice.hpp"
 #include "object_loading.hpp"
 #include "output_folder.hpp"
 #include "pictures.hpp"
@@ -300,9 +301,10 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
 
   if (result.grasps.empty()) {
     const std::string accepted(grasp::name_of(options.acceptance));
-    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s\n",
+    const std::string advice = no_grasp_advice(result, options, object.mesh(), reading);
+    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s%s%s\n",
                  flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
-                 attempts_text(result).c_str());
+                 attempts_text(result).c_str(), advice.empty() ? "" : "; ", advice.c_str());
     return ended_with(kNoGrasp);
   }
   std::optional<grasp::HoldRecord> hold;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace graspfit::app {
 
@@ -37,6 +38,26 @@ void ProgressBar::clear() {
   std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
   has_line_ = false;
+}
+
+SecondsBar::SecondsBar(bool is_wanted, std::string what)
+    : bar_(is_wanted), what_(std::move(what)), thread_([this] { show_until_done(); }) {}
+
+SecondsBar::~SecondsBar() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_done_ = true;
+  }
+  done_.notify_one();
+  thread_.join();
+}
+
+void SecondsBar::show_until_done() {
+  std::unique_lock lock(mutex_);
+  for (int seconds = 1;; ++seconds) {
+    if (done_.wait_for(lock, std::chrono::seconds(1), [this] { return is_done_; })) return;
+    bar_.show(what_ + ", " + std::to_string(seconds) + " s");
+  }
 }
 
 }  // namespace graspfit::app

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace graspfit::app {
 
@@ -24,6 +27,26 @@ class ProgressBar {
   bool is_shown_;
   bool has_line_ = false;
   std::chrono::steady_clock::time_point last_drawn_{};
+};
+
+/// Shows what is being done, and from its first second on for how many, while it lives: for work
+/// that does not say how far it is. Where a ProgressBar shows nothing, nor does this.
+class SecondsBar {
+ public:
+  SecondsBar(bool is_wanted, std::string what);
+  ~SecondsBar();
+  SecondsBar(const SecondsBar&) = delete;
+  SecondsBar& operator=(const SecondsBar&) = delete;
+
+ private:
+  void show_until_done();
+
+  ProgressBar bar_;
+  std::string what_;
+  std::mutex mutex_;
+  std::condition_variable done_;
+  bool is_done_ = false;
+  std::thread thread_;  ///< The only one that draws.
 };
 
 }  // namespace graspfit::app

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/rest_pose.hpp"
 #include "graspfit/grasp/motion_io.hpp"
@@ -143,7 +144,14 @@ Measured measure(const grasp::TableScene& scene, const std::vector<RigidTransfor
   Measured measured;
   measured.stretches = 1;
   measured.travel = grasp::largest_travel(scene, stretch);
-  const auto parts = static_cast<std::int64_t>(std::max(1.0, std::ceil(measured.travel / step)));
+  const double frames = std::max(1.0, std::ceil(measured.travel / step));
+  // Written so that NaN fails.
+  if (!(frames <= 1e6)) {
+    throw geometry::InvalidInput("a stretch of " + geometry::shortest_decimal(measured.travel) +
+                                 " m has more than 1000000 frames; a larger frame_step_mm makes "
+                                 "fewer");
+  }
+  const auto parts = static_cast<std::int64_t>(frames);
   for (std::int64_t i = 0; i <= parts; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(parts);
     const grasp::MotionClearance here = grasp::clearance_at(scene, X_WO, stretch, share);

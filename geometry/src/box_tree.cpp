@@ -84,7 +84,7 @@ class Builder {
     extent.maxCoeff(&axis);
     const double low = middles.lower[axis];
     const double scale = kNumBins / extent[axis];
-    if (depth < 48 && extent[axis] > 0.0 && scale < 1e300) {
+    if (depth < 48 && extent[axis] > 0.0 && scale > 0.0 && scale < 1e300) {
       const auto bin = [&](const Item& item) {
         return std::min(kNumBins - 1, static_cast<int>((item.middle[axis] - low) * scale));
       };

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/random.hpp"
 
 namespace graspfit::geometry::internal {
@@ -97,7 +98,7 @@ double sample_spacing(const PieceHull& hull) {
 double deepest_on(const std::array<Vector3d, 3>& p, double spacing, const OutsideDepth& depth) {
   const double longest =
       std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
-  const int n = std::clamp(static_cast<int>(std::ceil(longest / spacing)), 1, kMostPerSide);
+  const int n = bounded_integer(std::ceil(longest / spacing), 1, kMostPerSide);
   double deepest = 0.0;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; i + j < n; ++j) {

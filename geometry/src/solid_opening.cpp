@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/distance_map.hpp"
 #include "internal/parallel_for.hpp"
 #include "internal/voxel_sets.hpp"
@@ -40,9 +41,10 @@ bool holds_ball_center(const MeshQuery& object, const VoxelLattice& lattice, Ind
 /// Blocks of voxels around some of them.
 class NearVoxels {
  public:
-  /// All voxels at most `reach` voxels from one that is added are near, and some farther ones.
+  /// All voxels at most `reach` voxels from one that is added are near, and some farther ones: all
+  /// there are, where it reaches as far as the lattice.
   NearVoxels(const VoxelLattice& lattice, double reach)
-      : edge_(static_cast<int>(std::ceil(reach))),
+      : edge_(bounded_integer(std::ceil(reach), 1, lattice.counts.maxCoeff())),
         counts_((lattice.counts.array() + edge_ - 1) / edge_),
         is_near_(static_cast<std::size_t>(counts_.prod()), 0) {}
 
@@ -77,7 +79,7 @@ void take_nearer(const VoxelLattice& lattice, const std::vector<Index>& voxels,
     low = low.cwiseMin(lattice.voxel(index));
     high = high.cwiseMax(lattice.voxel(index));
   }
-  const int room = static_cast<int>(std::ceil(reach));
+  const int room = bounded_integer(std::ceil(reach), 0, lattice.counts.maxCoeff());
   low = (low.array() - room).max(0);
   high = (high.array() + room).min(lattice.counts.array() - 1);
   VoxelGrid part;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 10'000'000;
 constexpr double kMostDarts = 1e8;
+constexpr double kMostCells = 0x1p53;  // along an axis: beyond, their numbers are not exact
 
 // Uniform points of a surface, each from a random stream of its own.
 class AreaSampler {
@@ -157,7 +158,14 @@ std::vector<SurfaceSample> sample_surface_evenly(const TriangleMesh& mesh,
         "EvenSamplingOptions: min_distance = " + shortest_decimal(options.min_distance) + " m on " +
         shortest_decimal(sampler.area()) + " m2 needs more than 1e8 darts");
   }
-  KeptPoints kept(bounding_box(mesh).min(), options.min_distance);
+  // A needle may be longer than its area tells, and cells need numbers.
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
+  if (!(box.sizes().maxCoeff() < kMostCells * options.min_distance)) {
+    throw InvalidInput(
+        "EvenSamplingOptions: min_distance = " + shortest_decimal(options.min_distance) +
+        " m on a surface " + shortest_decimal(box.sizes().maxCoeff()) + " m long is too small");
+  }
+  KeptPoints kept(box.min(), options.min_distance);
   std::vector<SurfaceSample> samples;
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(darts); ++i) {
     SurfaceSample sample = sampler.draw(i);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
@@ -138,7 +139,7 @@ class RegionSearch {
     neck.erase(std::unique(neck.begin(), neck.end()), neck.end());
     if (neck.empty()) return {};
     // A ring around less than the thickness is that of a hollow leg, or of a dent in a solid one.
-    const int growth = static_cast<int>(std::ceil(radius_));
+    const int growth = bounded_integer(std::ceil(radius_), 0, lattice_.counts.maxCoeff());
     Hold result{internal::topology(lattice_, neck, 1).num_pieces, false};
     if (result.num_necks == 1) {
       result.is_ring = internal::topology(lattice_, neck, growth).num_rings > 0;

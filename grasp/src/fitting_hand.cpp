@@ -23,14 +23,35 @@ using geometry::shortest_decimal;
 constexpr std::size_t kLeafSize = 8;
 constexpr double kPieceSize = 0.012;  // [m]; about a fingertip: its sides and end are pieces apart
 
+/// Into how many parts of `spacing` the longest edge of a face is cut.
+double parts_of_edge(const geometry::TriangleMesh& mesh, std::size_t face, double spacing) {
+  const auto [a, b, c] = geometry::corners(mesh, face);
+  return std::ceil(std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) / spacing);
+}
+
+/// Refuses a hand that is many times the object's size: its points would fill the memory.
+void require_few_points(const hands::HandModel& hand, const hands::Link& link, double spacing) {
+  constexpr double kMostPoints = 1e8;  // 2.4 GB
+  double num_points = 0.0;
+  for (std::size_t face = 0; face < link.mesh_L.faces.size(); ++face) {
+    const double n = parts_of_edge(link.mesh_L, face, spacing);
+    num_points += 0.5 * n * n;
+  }
+  if (num_points <= kMostPoints) return;
+  throw InvalidInput("hand " + hand.name + ": link " + link.name + " is " +
+                     shortest_decimal(geometry::longest_extent(link.mesh_L)) +
+                     " m long, too much for points " + shortest_decimal(spacing) +
+                     " m apart: its lengths are in another unit, or the object is far too small "
+                     "for it");
+}
+
 /// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
 /// `spacing`; then one point of each cell of half that size, the first.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
   std::vector<Vector3d> points = mesh.vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     const auto [a, b, c] = geometry::corners(mesh, face);
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const int n = static_cast<int>(std::ceil(longest / spacing));
+    const int n = static_cast<int>(parts_of_edge(mesh, face, spacing));
     for (int i = 0; i <= n; ++i) {
       for (int j = 0; i + j <= n; ++j) {
         const bool is_corner = (i == 0 && j == 0) || i == n || j == n;
@@ -38,13 +59,10 @@ std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double 
       }
     }
   }
-  std::set<std::array<std::int64_t, 3>> taken;
+  std::set<std::array<double, 3>> taken;  // whole numbers, of any size
   std::erase_if(points, [&](const Vector3d& point) {
     const Vector3d cell = (point / (0.5 * spacing)).array().floor();
-    return !taken
-                .insert({static_cast<std::int64_t>(cell[0]), static_cast<std::int64_t>(cell[1]),
-                         static_cast<std::int64_t>(cell[2])})
-                .second;
+    return !taken.insert({cell[0], cell[1], cell[2]}).second;
   });
   return points;
 }
@@ -87,6 +105,7 @@ FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
   }
   for (const hands::Link& link : hand.links) {
     LinkSamples& samples = samples_.emplace_back();
+    require_few_points(hand, link, sample_spacing);
     samples.points_L = surface_points(link.mesh_L, sample_spacing);
     for (const Vector3d& point : samples.points_L) {
       samples.reach = std::max(samples.reach, point.norm());

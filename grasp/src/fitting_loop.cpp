@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "internal/contact_test.hpp"
 #include "internal/finger_alignment.hpp"
@@ -15,6 +16,15 @@ namespace graspfit::grasp {
 
 using Eigen::Vector3d;
 using geometry::RigidTransform;
+
+namespace {
+
+/// A number of steps, but no more than an int holds, were they that short.
+int steps_of(double number) {
+  return geometry::bounded_integer(number, 0, std::numeric_limits<int>::max());
+}
+
+}  // namespace
 
 FittingLoop::FittingLoop(const FittingHand& hand, const ObjectModel& object,
                          const SurroundingsCollision& surroundings, GraspStyle style,
@@ -78,9 +88,7 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
   const double step = rule.step.value_or(voxel_size_);
   // Past the object, whose normalizing radius is half its diagonal, and the hand's own length.
   const double far = 2.0 * (object_.normalizing_radius + hands::largest_reach(model_));
-  // No more than an int holds, were the step that short.
-  const int steps_to_far = static_cast<int>(
-      std::min(std::ceil(far / step), static_cast<double>(std::numeric_limits<int>::max())));
+  const int steps_to_far = steps_of(std::ceil(far / step));
   const int most_steps = rule.most_steps.value_or(steps_to_far);
   if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
   if (rule.palm_may_touch && model_.palm.pad >= 0) {
@@ -175,8 +183,7 @@ bool FittingLoop::place() {
   }
   hands::HandConfiguration start = opened_from(model_, goal_);
   start.X_OH.pretranslate(Vector3d(-(extent + options_.clearance) * direction));
-  return retreat(start, voxel_size_,
-                 static_cast<int>(2.0 * hands::largest_reach(model_) / voxel_size_));
+  return retreat(start, voxel_size_, steps_of(2.0 * hands::largest_reach(model_) / voxel_size_));
 }
 
 /// Puts the hand at the first clear place from `start` on against the palm direction. False if none

@@ -57,13 +57,18 @@ double widest_opening(const PartDistances& distances, const RequestedParts& part
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const std::vector<int>& fingers, double widest) {
+  // Where no hand has such fingertips, or opens so little, the hand is in another unit.
+  constexpr double kWidestFingertip = 0.1;     // [m]
+  constexpr double kNarrowestOpening = 0.005;  // [m]
+  const double smallest = fingertip_width(hand, fingers);
   const std::string advice =
-      "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
+      smallest > kWidestFingertip || widest < kNarrowestOpening
+          ? "; the hand's lengths look like another unit than meters (graspfit hand check)"
+          : "; if the file is not in meters, say its unit (--mesh-unit) or its size (--longest)";
   if (geometry::bounding_box(mesh).sizes().minCoeff() > widest) {
     return "the object measures " + extents_of(mesh) + ", hand " + hand.name + " spans at most " +
            in_tenths_of_millimeters(widest) + advice;
   }
-  const double smallest = fingertip_width(hand, fingers);
   if (geometry::longest_extent(mesh) < smallest) {
     return "the object measures " + extents_of(mesh) + ", less than one fingertip of hand " +
            hand.name + " (" + in_tenths_of_millimeters(smallest) + ")" + advice;

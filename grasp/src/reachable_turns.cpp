@@ -6,6 +6,10 @@
 #include <limits>
 #include <numbers>
 
+#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/bounded_integer.hpp"
+#include "graspfit/geometry/errors.hpp"
+
 namespace graspfit::grasp::internal {
 namespace {
 
@@ -16,6 +20,7 @@ constexpr double kTableCell = 0.006;          // [m], like a cell of the tips' r
 constexpr double kTurn = 2.0 * kPi / kTurns;  // [rad]
 // Widens what is looked for, so that rounding takes nothing away [m] and [rad].
 constexpr double kRounding = 1e-9;
+constexpr double kMostCells = 0x1p26;  // 64 m squared
 
 /// In [0, kTurns) for any azimuth.
 int turn_of(double azimuth) {
@@ -56,8 +61,17 @@ ReachableTurns::ReachableTurns(const PalmAxes& palm, const hands::TipReach& tip,
     farthest = std::max(farthest, palm.aside(from_center));
   }
   first_ahead_ = least - reach;
-  num_ahead_ = static_cast<int>(std::ceil((largest - least + 2.0 * reach) / kTableCell)) + 1;
-  num_aside_ = static_cast<int>(std::ceil((farthest + reach) / kTableCell)) + 1;
+  const double num_ahead = std::ceil((largest - least + 2.0 * reach) / kTableCell) + 1;
+  const double num_aside = std::ceil((farthest + reach) / kTableCell) + 1;
+  // Written so that NaN fails.
+  if (!(num_ahead * num_aside <= kMostCells)) {
+    throw geometry::InvalidInput(
+        "ReachableTurns: a tip that gets " + geometry::shortest_decimal(farthest) +
+        " m away from the palm's axis reaches too far for cells of " +
+        geometry::shortest_decimal(kTableCell) + " m: the hand's lengths are in another unit");
+  }
+  num_ahead_ = static_cast<int>(num_ahead);
+  num_aside_ = static_cast<int>(num_aside);
   azimuths_.resize(static_cast<std::size_t>(num_ahead_) * static_cast<std::size_t>(num_aside_));
   for (const Vector3d& point_H : tip.visited_H()) {
     const Vector3d from_center = point_H - palm.center_H();
@@ -67,7 +81,7 @@ ReachableTurns::ReachableTurns(const PalmAxes& palm, const hands::TipReach& tip,
 
 void ReachableTurns::add(double ahead, double aside, double azimuth, double reach) {
   const auto cell_of = [](double length, int count) {
-    return std::clamp(static_cast<int>(std::floor(length / kTableCell)), 0, count - 1);
+    return geometry::bounded_integer(std::floor(length / kTableCell), 0, count - 1);
   };
   const int first = cell_of(ahead - reach - first_ahead_, num_ahead_);
   const int last = cell_of(ahead + reach - first_ahead_, num_ahead_);

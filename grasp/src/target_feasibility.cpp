@@ -67,11 +67,11 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
 
 /// Keeps the best place per cell and main direction of the normal, in order.
 void thin(std::vector<Place>& pool, const ObjectModel& object, double spacing) {
-  using Cell = std::tuple<int, int, int, int>;
+  using Cell = std::tuple<double, double, double, int>;  // whole numbers, of any size
   std::map<Cell, std::size_t> best;
   for (std::size_t i = 0; i < pool.size(); ++i) {
-    const Eigen::Vector3i cell =
-        ((pool[i].point_O - object.grid.lattice.origin) / spacing).array().floor().cast<int>();
+    const Eigen::Vector3d cell =
+        ((pool[i].point_O - object.grid.lattice.origin) / spacing).array().floor();
     Eigen::Index axis = 0;
     pool[i].inward_normal_O.cwiseAbs().maxCoeff(&axis);
     const int side = 2 * static_cast<int>(axis) + (pool[i].inward_normal_O[axis] > 0.0 ? 1 : 0);

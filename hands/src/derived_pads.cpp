@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/geometry/number_range.hpp"
 #include "internal/deriver.hpp"
 
 namespace graspfit::hands::internal {
@@ -124,8 +125,8 @@ void Deriver::add_pad(std::vector<SidecarPad>& list, const std::optional<FittedP
   };
   findings_.note("pad " + pad.name,
                  std::string("derived: ") + (pad.surface.empty() ? "flat" : "bulging") + ", " +
-                     std::to_string(static_cast<int>(std::round(found->area * 1e6))) +
-                     " mm^2, within " + millimeters(found->deviation) + " mm of the mesh");
+                     geometry::plain_decimal(std::round(found->area * 1e6)) + " mm^2, within " +
+                     millimeters(found->deviation) + " mm of the mesh");
 }
 
 SidecarPalm Deriver::palm(const std::vector<SidecarPad>& found,

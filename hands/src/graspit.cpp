@@ -66,6 +66,7 @@ class Reader : private XmlSource {
   RobotDescription parse(const std::string& text) {
     tinyxml2::XMLDocument document;
     const XMLElement& root = XmlSource::parse(text, "robot", "GraspIt! robot XML", document);
+    description_.meters_per_unit = kMillimeter;
     description_.name =
         root.Attribute("DBName") ? text_of(root, "DBName", "robot") : path_.stem().string();
     dofs(root);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_closing.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
@@ -199,6 +200,23 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
                       "to another tip; its closing signs or limits are wrong");
 }
 
+/// Fingers that self-collision keeps open: whoever closes the hand finds them straight.
+void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
+  constexpr double kStillOpen = 0.1;  // of the way
+  const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
+  for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
+    if (stop.finger < 0 || stop.share >= kStillOpen) continue;
+    const std::string a = name(stop.link_a);
+    const std::string b = name(stop.link_b);
+    findings.suspicious("finger " + hand.fingers[static_cast<std::size_t>(stop.finger)].name,
+                        "closing leaves it open: after " + rounded(100.0 * stop.share) +
+                            " % of its way link " + a + " meets link " + b +
+                            "; if that is how they are built, exclude the pair from collision in "
+                            "the sidecar: \"exclusions\": [[\"" +
+                            a + "\", \"" + b + "\"]]");
+  }
+}
+
 void look_for_tips_that_never_meet(const HandModel& hand, Findings& findings) {
   if (hand.fingers.size() < 2) {
     findings.suspicious("", "one finger only: nothing to hold an object against but the palm");
@@ -269,6 +287,7 @@ void look_at_whole(const HandModel& hand, Findings& findings) {
   for (std::size_t f = 0; f < hand.fingers.size(); ++f) look_at_closing_finger(hand, f, findings);
   look_for_tips_that_never_meet(hand, findings);
   look_for_overlaps(hand, findings);
+  look_for_blocked_fingers(hand, findings);
   tell_exclusions(hand, findings);
   tell_idle_joints(hand, findings);
 }

@@ -1,6 +1,7 @@
 #include "graspfit/hands/hand_closing.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -13,7 +14,10 @@ namespace graspfit::hands {
 namespace {
 
 /// Independent joints that close together and stop together.
-using Group = std::vector<int>;
+struct Group {
+  int finger = -1;  ///< −1: of no finger.
+  std::vector<int> joints;
+};
 
 /// One group per finger that has a closing joint of its own, then one per closing joint of none.
 std::vector<Group> closing_groups(const HandModel& model) {
@@ -24,18 +28,18 @@ std::vector<Group> closing_groups(const HandModel& model) {
     if (model.joints[static_cast<std::size_t>(moved)].closing_sign == 0) return;
     if (is_taken[static_cast<std::size_t>(moved)]) return;
     is_taken[static_cast<std::size_t>(moved)] = true;
-    group.push_back(moved);
+    group.joints.push_back(moved);
   };
   std::vector<Group> groups;
-  for (const Finger& finger : model.fingers) {
-    Group group;
-    for (const int joint : finger.joints) take(joint, group);
-    if (!group.empty()) groups.push_back(std::move(group));
+  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+    Group group{static_cast<int>(f), {}};
+    for (const int joint : model.fingers[f].joints) take(joint, group);
+    if (!group.joints.empty()) groups.push_back(std::move(group));
   }
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     Group group;
     take(static_cast<int>(j), group);
-    if (!group.empty()) groups.push_back(std::move(group));
+    if (!group.joints.empty()) groups.push_back(std::move(group));
   }
   return groups;
 }
@@ -48,6 +52,48 @@ HandModel without_open_overlaps(HandModel model) {
     if (!found.intersects) return model;
     model.exclusions.push_back({found.link_a, found.link_b});
   }
+}
+
+struct Closing {
+  HandConfiguration configuration;
+  std::vector<ClosingStop> stops;
+};
+
+Closing closing_of(const HandModel& model, double share) {
+  constexpr int kSteps = 64;
+  const HandConfiguration open = open_configuration(model);
+  const HandConfiguration closed = closed_configuration(model, share);
+  const std::vector<Group> groups = closing_groups(model);
+  const HandCollision collision(without_open_overlaps(model));
+
+  std::vector<int> steps(groups.size(), 0);
+  const auto configuration = [&] {
+    HandConfiguration result = open;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const double way = static_cast<double>(steps[g]) / kSteps;
+      for (const int joint : groups[g].joints) {
+        result.q[joint] = (1.0 - way) * open.q[joint] + way * closed.q[joint];
+      }
+    }
+    apply_couplings(model, result.q);
+    return result;
+  };
+  std::vector<ClosingStop> stops;
+  std::vector<bool> has_stopped(groups.size(), false);
+  for (int step = 1; step <= kSteps; ++step) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (has_stopped[g]) continue;
+      steps[g] = step;
+      const HandCollision::Result found =
+          collision.against_self(forward_kinematics(model, configuration()));
+      if (!found.intersects) continue;
+      steps[g] = step - 1;
+      has_stopped[g] = true;
+      stops.push_back(
+          {groups[g].finger, static_cast<double>(step - 1) / kSteps, found.link_a, found.link_b});
+    }
+  }
+  return {configuration(), std::move(stops)};
 }
 
 }  // namespace
@@ -72,36 +118,11 @@ HandConfiguration closed_configuration(const HandModel& model, double share) {
 }
 
 HandConfiguration closed_without_overlap(const HandModel& model, double share) {
-  constexpr int kSteps = 64;
-  const HandConfiguration open = open_configuration(model);
-  const HandConfiguration closed = closed_configuration(model, share);
-  const std::vector<Group> groups = closing_groups(model);
-  const HandCollision collision(without_open_overlaps(model));
+  return closing_of(model, share).configuration;
+}
 
-  std::vector<int> steps(groups.size(), 0);
-  const auto configuration = [&] {
-    HandConfiguration result = open;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const double way = static_cast<double>(steps[g]) / kSteps;
-      for (const int joint : groups[g]) {
-        result.q[joint] = (1.0 - way) * open.q[joint] + way * closed.q[joint];
-      }
-    }
-    apply_couplings(model, result.q);
-    return result;
-  };
-  std::vector<bool> has_stopped(groups.size(), false);
-  for (int step = 1; step <= kSteps; ++step) {
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (has_stopped[g]) continue;
-      steps[g] = step;
-      if (collision.against_self(forward_kinematics(model, configuration())).intersects) {
-        steps[g] = step - 1;
-        has_stopped[g] = true;
-      }
-    }
-  }
-  return configuration();
+std::vector<ClosingStop> closing_stops(const HandModel& model, double share) {
+  return closing_of(model, share).stops;
 }
 
 }  // namespace graspfit::hands

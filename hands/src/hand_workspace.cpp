@@ -29,6 +29,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTouchDepth = 1e-4;
 // Configurations tried for collisions are this far apart in distance [m].
 constexpr double kDiameterStep = 1e-3;
+constexpr double kFarthest = 1e4;  // [m]; a bin for every step up to it is as many as are kept
 // Contact points nearer than this have no line between them [m]; rounding is a millionth of it.
 constexpr double kSamePoint = 1e-9;
 // Most grid points of one finger; each costs forward kinematics.
@@ -330,19 +331,25 @@ class TipPair {
   DistanceRange facing_distances(const IsClear& is_clear) const {
     // Of each millimeter of distance, the configuration whose pads face each other best.
     std::vector<Start> bins;
-    for_each_row(
-        [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
-          for (std::size_t i = 0; i < all_b.size(); ++i) {
-            const double distance = (all_b[i].point - a.point).norm();
-            const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
-            if (!facing) continue;
-            const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
-            if (bin >= bins.size()) bins.resize(bin + 1);
-            if (!(*facing > bins[bin].value)) continue;
-            samples_b.set(static_cast<std::int64_t>(i), q);
-            bins[bin] = {*facing, q};
-          }
-        });
+    for_each_row([&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b,
+                     const Samples& samples_b) {
+      for (std::size_t i = 0; i < all_b.size(); ++i) {
+        const double distance = (all_b[i].point - a.point).norm();
+        const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
+        if (!facing) continue;
+        // Written so that NaN fails.
+        if (!(distance < kFarthest)) {
+          throw geometry::InvalidInput("hand " + hand_.model().name + ": tips come " +
+                                       geometry::shortest_decimal(distance) +
+                                       " m apart; the limits of its slides are in another unit");
+        }
+        const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
+        if (bin >= bins.size()) bins.resize(bin + 1);
+        if (!(*facing > bins[bin].value)) continue;
+        samples_b.set(static_cast<std::int64_t>(i), q);
+        bins[bin] = {*facing, q};
+      }
+    });
     const auto end = [&](auto begin, auto finish, double sign) -> std::optional<double> {
       std::optional<double> best;
       std::size_t num_starts = 0;

@@ -30,14 +30,15 @@ template <typename... Alternatives>
 Overloaded(Alternatives...) -> Overloaded<Alternatives...>;
 
 /// The file that `name` of a <mesh> means. `package://NAME/rest` is looked for in the folders named
-/// NAME above the description, then in the package's folder and the description's own.
+/// NAME above the description, then in the package's folder, the description's own, and beside it.
 fs::path mesh_path(const fs::path& description_file, const std::string& name,
                    const std::string& item) {
   const std::string scheme = "package://";
   const fs::path package = package_folder(description_file);
   const fs::path folder = fs::weakly_canonical(description_file).parent_path();
+  const std::vector<fs::path> readable = readable_folders(description_file);
   struct Candidate {
-    fs::path root;  ///< What the file must lie in.
+    std::vector<fs::path> folders;  ///< One of which the file must lie in.
     fs::path path;
   };
   std::vector<Candidate> candidates;
@@ -46,23 +47,24 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
     const fs::path package_name = *in_scheme.begin();
     const fs::path rest = in_scheme.lexically_relative(package_name);
     for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
-      if (at.filename() == package_name) candidates.push_back({at, at / rest});
+      if (at.filename() == package_name) candidates.push_back({{at}, at / rest});
     }
-    candidates.push_back({package, package / rest});
-    candidates.push_back({folder, folder / rest});
+    candidates.push_back({readable, package / rest});
+    candidates.push_back({{folder}, folder / rest});
+    const fs::path beside = (folder.parent_path() / rest).lexically_normal();
+    if (lies_in(beside, readable)) candidates.push_back({readable, beside});
   } else if (name.find("://") != std::string::npos && name.rfind("file://", 0) != 0) {
     throw InvalidInput(item + ": mesh " + name + ": only files and package:// are read");
   } else {
     const fs::path plain = name.rfind("file://", 0) == 0 ? name.substr(7) : name;
-    candidates.push_back({package, plain.is_absolute() ? plain : folder / plain});
+    candidates.push_back({readable, plain.is_absolute() ? plain : folder / plain});
   }
   std::error_code error;
   for (const Candidate& candidate : candidates) {
     const fs::path file = fs::weakly_canonical(candidate.path, error);
     if (error) throw IoError(item + ": mesh " + name + ": " + error.message());
-    if (!lies_in(file, candidate.root)) {
-      throw InvalidInput(item + ": mesh " + name + " lies outside the description's package " +
-                         candidate.root.string());
+    if (!lies_in(file, candidate.folders)) {
+      throw InvalidInput(item + ": mesh " + name + " " + outside_text(description_file, file));
     }
     if (fs::is_regular_file(file, error)) return file;
   }

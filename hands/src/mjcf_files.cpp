@@ -57,7 +57,7 @@ class FileChecker {
   explicit FileChecker(const fs::path& file)
       : file_(file.string()),
         folder_(fs::weakly_canonical(file).parent_path()),
-        package_(package_folder(file)) {}
+        readable_(readable_folders(file)) {}
 
   MjcfMeshFiles check(const std::string& text) {
     collect_from(text, file_);
@@ -80,9 +80,7 @@ class FileChecker {
                    const std::string& name) const {
     const std::string item = file_ + ": <" + element + "> " + name;
     const fs::path file = fs::weakly_canonical(folder_ / path);
-    if (!lies_in(file, package_)) {
-      throw InvalidInput(item + " lies outside the description's package " + package_.string());
-    }
+    if (!lies_in(file, readable_)) throw InvalidInput(item + " " + outside_text(file_, file));
     std::error_code error;
     if (!fs::is_regular_file(file, error)) {
       throw IoError(item + " is not there: no file " + file.string());
@@ -155,7 +153,7 @@ class FileChecker {
 
   std::string file_;
   fs::path folder_;
-  fs::path package_;
+  std::vector<fs::path> readable_;
   std::set<std::string> included_;
   std::vector<NamedFile> named_files_;
   fs::path mesh_folder_;

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 
 namespace graspfit::hands::internal {
@@ -117,8 +118,8 @@ RayGrid cast(const MeshQuery& link, const std::vector<MeshQuery>& others,
   const Vector2d size = box.box_S.sizes().head<2>();
   if (!(size.minCoeff() > 0.0)) return grid;
   grid.step = size.maxCoeff() / kNumRays;
-  grid.nx = std::max(1, static_cast<int>(std::ceil(size.x() / grid.step)));
-  grid.ny = std::max(1, static_cast<int>(std::ceil(size.y() / grid.step)));
+  grid.nx = geometry::bounded_integer(std::ceil(size.x() / grid.step), 1, kNumRays + 1);
+  grid.ny = geometry::bounded_integer(std::ceil(size.y() / grid.step), 1, kNumRays + 1);
   // Cells share the box evenly about its middle, so that a symmetric link has a symmetric grid.
   grid.corner = box.box_S.center().head<2>() - 0.5 * grid.step * Vector2d(grid.nx, grid.ny);
   for (int y = 0; y < grid.ny; ++y) {

@@ -129,8 +129,7 @@ class Item {
   std::string path_;
 };
 
-void check_format(const Item& root) {
-  const Item format = root.at("format");
+void check_format(const Item& format) {
   format.require_fields({"name", "version"});
   if (format.at("name").name() != kFormat) {
     format.fail("name is not \"" + std::string(kFormat) + "\"");
@@ -305,7 +304,8 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   const Item root(document, file, "");
   root.require_fields({"format", "hand", "description", "conventions", "fingers", "pads", "palm",
                        "closing", "couplings", "exclusions"});
-  check_format(root);
+  // A person who writes down a coupling or two need not write what this is: the file's name says.
+  if (const auto format = root.find("format")) check_format(*format);
 
   Sidecar sidecar;
   if (const auto description = root.find("description")) sidecar.description = description->text();

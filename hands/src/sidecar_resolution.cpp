@@ -135,11 +135,16 @@ class SidecarResolver {
   }
 
   void exclusions() {
+    // A pair counts once, however often, and in whatever order, description and sidecar have it.
     std::set<std::pair<int, int>> excluded;
+    const std::vector<CollisionExclusion> described = std::move(model_.exclusions);
+    model_.exclusions.clear();
+    const auto exclude = [&](int a, int b) {
+      if (excluded.insert(std::minmax(a, b)).second) model_.exclusions.push_back({a, b});
+    };
+    for (const CollisionExclusion& pair : described) exclude(pair.link_a, pair.link_b);
     for (const auto& [a, b] : *sidecar_.exclusions) {
-      model_.exclusions.push_back({link(a, "exclusions"), link(b, "exclusions")});
-      excluded.insert(
-          std::minmax(model_.exclusions.back().link_a, model_.exclusions.back().link_b));
+      exclude(link(a, "exclusions"), link(b, "exclusions"));
     }
     // Links that are fixed to each other never collide, whatever the file says. Frames without a
     // surface cannot; there may be many.
@@ -154,7 +159,7 @@ class SidecarResolver {
       if (own.mesh_L.faces.empty()) continue;
       std::vector<int>& before = solid_links[body[i]];
       for (const int other : before) {
-        if (excluded.insert({other, index}).second) model_.exclusions.push_back({other, index});
+        exclude(other, index);
       }
       before.push_back(index);
     }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
@@ -19,6 +20,7 @@ constexpr double kCell = 0.006;  // [m] finer than any fingertip is wide
 // Around the visited cells [cells]: places that a finger all but reaches are looked up, not
 // bounded.
 constexpr int kRoom = 4;
+constexpr double kMostCells = 0x1p26;  // 2.4 m cubed, in cells of 6 mm
 constexpr int kMostSamples = 1 << 14;
 constexpr int kMostPerJoint = 128;
 // A pad looks along a direction if its normal is within 50 degrees of it.
@@ -103,7 +105,15 @@ TipReach::TipReach(const std::vector<TipPose>& poses, double cell) : cell_(cell)
   geometry::VoxelGrid grid;
   grid.lattice.origin = box.min() - Vector3d::Constant((kRoom + 0.5) * cell);
   grid.lattice.voxel_size = cell;
-  grid.lattice.counts = ((box.sizes() / cell).array().ceil().cast<int>() + 2 * kRoom + 2).matrix();
+  const Eigen::Array3d counts = (box.sizes() / cell).array().ceil() + 2 * kRoom + 2;
+  // Written so that NaN fails.
+  if (!(counts.prod() <= kMostCells)) {
+    throw geometry::InvalidInput(
+        "TipReach: places " + geometry::shortest_decimal(box.sizes().maxCoeff()) +
+        " m apart are too far for cells of " + geometry::shortest_decimal(cell) +
+        " m: the hand's lengths are in another unit");
+  }
+  grid.lattice.counts = counts.cast<int>().matrix();
   std::vector<bool> is_known(static_cast<std::size_t>(grid.lattice.num_voxels()), false);
   for (const TipPose& pose : poses) {
     const Eigen::Vector3i voxel = grid.lattice.voxel_at(pose.point_H);

@@ -2,9 +2,11 @@
 
 import json
 import os
+import pty
 import re
 import shutil
 import struct
+import subprocess
 import xml.etree.ElementTree as ElementTree
 
 import program
@@ -31,6 +33,14 @@ def gripper_urdf(extra="", finger_joint="prismatic"):
             + joint("left_slide", "left", -0.04, 1)
             + joint("right_slide", "right", 0.04, -1, '<mimic joint="left_slide"/>')
             + extra + "</robot>")
+
+
+def gripper_in_millimeters():
+    """The same with every length 1000 times as large."""
+    def thousandfold(match):
+        return match[1] + " ".join(repr(1000 * float(x)) for x in match[2].split()) + '"'
+
+    return re.sub(r'(origin xyz="|size="|upper=")([^"]*)"', thousandfold, gripper_urdf())
 
 
 class List(program.ProgramTest):
@@ -181,6 +191,39 @@ class Check(program.ProgramTest):
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("bad.urdf", done.stderr)
 
+    def test_a_hand_in_millimeters_is_told_the_factor(self):
+        path = self.write("two_jaws.urdf", gripper_in_millimeters())
+        done = program.run("hand", "check", path)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        self.assertRegex(done.stdout, r"(?m)^suspicious  its links span 100 m, 1000 times too large for a hand: "
+                                      r"are its lengths millimeters\? .*scale=\"0\.001 0\.001 0\.001\"")
+        self.assertNotIn("-2147483648", done.stdout)
+
+    def test_on_a_terminal_the_seconds_are_shown_and_nothing_of_them_stays(self):
+        # Thousands of faces per jaw, open, so that reading them takes seconds.
+        vertices, faces = program.torus(0.05, 0.02, 400, 200)
+        self.write("jaw.off", program.off_text(vertices, faces[:-1]))
+        text = gripper_urdf().replace('<box size="0.01 0.02 0.06"/>',
+                                      '<mesh filename="jaw.off" scale="0.1 0.1 0.1"/>')
+        path = self.write("slow.urdf", text)
+        primary, secondary = pty.openpty()
+        env = {**os.environ, "TERM": "xterm"}
+        with subprocess.Popen([program.PROGRAM, "hand", "check", str(path)], stdout=subprocess.PIPE,
+                              stderr=secondary, env=env) as process:
+            os.close(secondary)
+            out = process.stdout.read().decode()
+            shown = b""
+            try:
+                while block := os.read(primary, 4096):
+                    shown += block
+            except OSError:  # the program has closed its end
+                pass
+        os.close(primary)
+        self.assertIn("slow.urdf: 0 faults", out)
+        lines = shown.decode().split("\r\033[K")
+        self.assertEqual(lines[:2], ["", f"checking {path}, 1 s"], shown)
+        self.assertEqual(lines[-1], "", shown)
+
     def test_what_is_no_description_is_one_line(self):
         self.assert_refused("hand", "check", self.folder / "gone.urdf", says="gone.urdf")
         self.assert_refused("hand", "check", "claw", says=["claw", "barrett"])
@@ -327,6 +370,47 @@ class WithoutSidecar(program.ProgramTest):
         self.assertEqual(len(lines), 1, done.stderr)
         self.assertIn("left_slide", lines[0])
         self.assertIn(done.returncode, (0, 3))
+
+
+    def test_a_hand_in_millimeters_is_suspected_where_it_grasps_nothing(self):
+        self.hand.write_text(gripper_in_millimeters())
+        done = program.run("plan", self.object, "--hand", self.hand, "--contacts", "2", "--resolution", "16",
+                           "--max-attempts", "3", "--quiet")
+        lines = done.stderr.splitlines()
+        self.assertIn("suspicious: its links span 100 m, 1000 times too large", lines[0])
+        self.assertIn(done.returncode, (2, 3), done.stderr)
+        self.assertIn("the hand's lengths look like another unit than meters", lines[-1])
+        self.assertNotIn("--mesh-unit", lines[-1])
+
+    def test_where_no_two_places_fit_the_sizes_are_told(self):
+        # A tetrahedron has no two faces that look away from each other.
+        corners = [(0.02, 0.02, 0.02), (0.02, -0.02, -0.02), (-0.02, 0.02, -0.02), (-0.02, -0.02, 0.02)]
+        faces = [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)]
+        tetrahedron = self.write("tetrahedron.off", program.off_text(corners, faces))
+        done = program.run("plan", tetrahedron, "--hand", self.hand, "--contacts", "2", "--resolution", "16",
+                           "--theta-max-deg", "5", "--max-attempts", "3", "--quiet")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("no second 3", done.stderr)
+        self.assertIn("these get 0 to 80 mm apart, and the object is 40 x 40 x 40 mm; --mesh-unit or --longest",
+                      done.stderr)
+
+    def test_names_that_are_not_utf_8_are_found_again(self):
+        folder = os.fsencode(self.folder)
+        os.rename(self.object, folder + b"/bl\xf6ck.off")
+        os.rename(self.hand, folder + b"/j\xe4ws.urdf")
+        done = subprocess.run([program.PROGRAM, "plan", b"bl\xf6ck.off", "--hand", b"j\xe4ws.urdf", "--contacts",
+                               "2", "--resolution", "16", "--accept", "usable", "--search", "first", "--count",
+                               "1", "--max-attempts", "200", "--quiet", "--out", "out"],
+                              cwd=self.folder, capture_output=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        record = json.loads((self.folder / "out/grasps.json").read_bytes().decode("utf-8"))
+        self.assertEqual((record["object"]["file"], record["hand"]["description_file"]),
+                         ("file:bl%F6ck.off", "file:j%E4ws.urdf"))
+        done = program.run("evaluate", "out/grasps.json", cwd=self.folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        os.rename(self.folder / "out/grasps.json", self.folder / "grasps.json")
+        done = program.run("evaluate", self.folder / "grasps.json", cwd="/")
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
 
 
 class Help(program.ProgramTest):

@@ -131,6 +131,11 @@ TEST_CASE("Surfaces without area and bad sampling options are refused",
     CHECK_THROWS_AS(sample_surface_evenly(mesh, {.min_distance = bad}), InvalidInput);
   }
   CHECK_THROWS_AS(sample_surface_evenly(mesh, {.min_distance = 1e-6}), InvalidInput);
+  // Few points by its area, but a needle of more cells than have numbers.
+  TriangleMesh needle;
+  needle.vertices = {{0, 0, 0}, {1e10, 0, 0}, {0, 1e-25, 0}};
+  needle.faces = {{0, 1, 2}};
+  CHECK_THROWS_AS(sample_surface_evenly(needle, {.min_distance = 1e-6}), InvalidInput);
   CHECK_THROWS_AS(sample_surface_evenly(mesh, {.min_distance = 1, .num_trials_per_point = 0}),
                   InvalidInput);
 }

@@ -210,6 +210,9 @@ TEST_CASE("Where the opening leaves nothing, nothing is weak and the result says
     CHECK(found.regions.empty());
     CHECK(found.is_weak == std::vector<bool>(tool.faces.size(), false));
   }
+  // However thick "thin" is: more voxels of the object's than an int can count.
+  CHECK(find_weak_regions(MeshQuery(ball(0.02, 3)), {.weak_thickness = 1e30}).outcome ==
+        WeakOutcome::NothingLeft);
   // A part of its own beside a body has no neck.
   const WeakRegions beside = find_weak_regions(
       MeshQuery(concatenated({ball(0.02, 3), moved(cylinder(0.002, 0.04), {0.04, 0, 0})})));

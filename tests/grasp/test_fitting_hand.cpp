@@ -17,6 +17,7 @@ namespace {
 using namespace graspfit;
 using Eigen::Vector3d;
 using geometry::RigidTransform;
+using testing::Contains;
 using testing::dense_points;
 using testing::Scene;
 
@@ -86,6 +87,20 @@ TEST_CASE("A fitting hand needs a positive spacing", "[grasp][hand_fitting]") {
   for (const double spacing : {0.0, -0.001, std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::infinity()}) {
     CHECK_THROWS_AS(grasp::FittingHand(hand, spacing), geometry::InvalidInput);
+  }
+}
+
+TEST_CASE("A hand that is thousands of times its points' spacing is refused by name",
+          "[grasp][hand_fitting]") {
+  hands::HandModel hand;
+  hand.name = "giant";
+  hand.links.resize(1);
+  hand.links[0].name = "palm";
+  for (const double size : {90.0, 1e12, 1e100}) {
+    CAPTURE(size);
+    hand.links[0].mesh_L = geometry::box({size, size, size});
+    CHECK_THROWS_WITH(grasp::FittingHand(hand, 0.002),
+                      Contains("hand giant: link palm is ") && Contains("in another unit"));
   }
 }
 

@@ -231,6 +231,23 @@ TEST_CASE("Mesh paths that lead nowhere or out of the package are refused with l
     files.urdf = with(files.urdf, "meshes/bar.obj", row.path);
     check_refused(write(folder, files), row.expected, {"pincer.urdf", "left", row.path, row.named});
   }
+  // What would let the description have the file is said: what begins a package, and where.
+  const auto with_path = [&](const std::string& path) {
+    HandFiles files;
+    files.urdf = with(files.urdf, "meshes/bar.obj", path);
+    return write(folder, files);
+  };
+  const std::string cure = "; an empty file package.xml in " +
+                           fs::weakly_canonical(folder.path()).string() + " makes one of both";
+  check_refused(with_path("../outside/bar.obj"), Refusal::Invalid, {cure});
+  check_refused(with_path("/etc/passwd"), Refusal::Invalid, {"; copy it there"});
+  folder.write("package.xml", "");
+  CHECK_NOTHROW(hands::read_hand(with_path("../outside/bar.obj")));
+  folder.write("package/package.xml", "");
+  check_refused(with_path("../outside/bar.obj"), Refusal::Invalid,
+                {"; move its package.xml to " + fs::weakly_canonical(folder.path()).string()});
+  fs::remove(folder.path() / "package.xml");
+  fs::remove(folder.path() / "package/package.xml");
   // The same mesh within the package is fine, however roundabout.
   for (const std::string& path : {std::string("package://pincer/meshes/bar.obj"),
                                   "file://" + (folder.path() / "package/meshes/bar.obj").string(),

@@ -19,7 +19,9 @@ TEST_CASE("What is wrong in a sidecar is named by its place and value", "[hands]
       {R"("version": 1)", R"("version": 2)", {"version"}},
       {R"("version": 1)", R"("version": "1")", {"version"}},
       {R"("version": 1)", R"("version": 1.5)", {"version"}},
-      {R"("format": {"name": "graspfit hand sidecar", "version": 1},)", "", {"format"}},
+      {R"("format": {"name": "graspfit hand sidecar", "version": 1},)",
+       R"("format": {"name": "graspfit hand sidecar"},)",
+       {"format", "version"}},
       {R"("name": "graspfit hand sidecar")", R"("name": "hand")", {"format"}},
       {R"("closing")", R"("closings")", {"closings"}},
       {R"("swing_joint")", R"("swing")", {"fingers", "swing"}},
@@ -112,15 +114,22 @@ TEST_CASE("A sidecar that is no JSON object is refused by what it is", "[hands][
   refused(std::string(50, '\0'), Refusal::Io);
   refused(kSmallHandSidecar + "{}", Refusal::Io);
   refused(std::string(200000, '['), Refusal::Io);
-  refused(std::string(200000, '[') + std::string(200000, ']'), Refusal::Invalid);
+  refused(std::string(200000, '[') + std::string(200000, ']'), Refusal::Io);
   refused("null", Refusal::Invalid);
   refused("[]", Refusal::Invalid);
   refused("3", Refusal::Invalid);
-  refused("{}", Refusal::Invalid);
   const fs::path urdf = write(folder, {});
   fs::remove(folder.path() / "package/pincer.graspfit.json");
   fs::create_directory(folder.path() / "package/pincer.graspfit.json");
   check_refused(urdf, Refusal::Io, {"pincer.graspfit.json"});
+}
+
+TEST_CASE("A sidecar that nests too deep is refused with place and limit",
+          "[hands][bad_hand_files]") {
+  const TemporaryFolder folder;
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  check_refused(write(folder, {.sidecar = "{\"deep\": " + deep + "}"}), Refusal::Io,
+                {"pincer.graspfit.json: line 1, column 73", "64 levels"});
 }
 
 /// `text` without what stands from `member` to the next member, or to the end.

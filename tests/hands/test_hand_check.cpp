@@ -1,9 +1,13 @@
 #include <algorithm>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/hand_check.hpp"
+#include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "sidecar_text.hpp"
 #include "support/catch.hpp"
@@ -204,6 +208,101 @@ TEST_CASE("A sound hand gives notes only, a damaged one says what looks wrong",
     CAPTURE(listed(check, FindingKind::Suspicious));
     CHECK(has(check, FindingKind::Suspicious, row.item, row.what));
   }
+}
+
+/// The pinch with every length multiplied: of its surfaces alone, or of its joints' places too.
+std::string scaled_pinch(double factor) {
+  std::string text;
+  std::string_view rest = kPinch;
+  // Lengths are in origins, sizes and inertias' places; axes and limits of turns are not.
+  for (;;) {
+    const std::size_t origin = rest.find("<origin xyz=\"");
+    const std::size_t size = rest.find("<box size=\"");
+    const std::size_t at = std::min(origin, size);
+    if (at == std::string_view::npos) return text + std::string(rest);
+    const std::size_t begin = rest.find('"', at) + 1;
+    const std::size_t end = rest.find('"', begin);
+    text += rest.substr(0, begin);
+    std::istringstream numbers{std::string(rest.substr(begin, end - begin))};
+    const char* separator = "";
+    for (double number = 0.0; numbers >> number; separator = " ") {
+      text += separator + geometry::shortest_decimal(factor * number);
+    }
+    rest.remove_prefix(end);
+  }
+}
+
+TEST_CASE("A hand in another unit is suspicious with the factor that mends it",
+          "[hands][hand_check]") {
+  // 0.11 m high when open: two links of 44 mm, the palm's 20 mm and joints between.
+  struct Row {
+    double factor;
+    std::string what;
+  };
+  for (const Row& row : std::vector<Row>{
+           {1000.0, "1000 times too large for a hand: are its lengths millimeters?"},
+           {100.0, "100 times too large for a hand: are its lengths centimeters?"},
+           {1.0 / 0.0254, "39.4 times too large for a hand: are its lengths inches?"},
+           {0.001, "1000 times too small for a hand: were its lengths taken for millimeters?"},
+           {0.01, "100 times too small for a hand: were its lengths taken for centimeters?"},
+           {15.0, "which no hand does: are its lengths meters?"}}) {
+    CAPTURE(row.factor);
+    const HandCheck check = check_text(scaled_pinch(row.factor), "");
+    CAPTURE(listed(check, FindingKind::Fault), listed(check, FindingKind::Suspicious));
+    CHECK(has(check, FindingKind::Suspicious, "", row.what));
+  }
+  const HandCheck millimeters = check_text(scaled_pinch(1000.0), "");
+  CHECK(has(millimeters, FindingKind::Suspicious, "",
+            "Write scale=\"0.001 0.001 0.001\" into every <mesh>"));
+  // Pads of square meters are no negative ones.
+  CHECK(has(millimeters, FindingKind::Note, "pad a2_pad", " mm^2"));
+  CHECK_FALSE(has(millimeters, FindingKind::Note, "pad a2_pad", "-"));
+  for (const double factor : {0.2, 1.0, 5.0}) {
+    CAPTURE(factor);
+    CHECK_FALSE(has(check_text(scaled_pinch(factor), ""), FindingKind::Suspicious, "", "span"));
+  }
+}
+
+TEST_CASE("A hand of kilometers is refused, and one of microns read", "[hands][hand_check]") {
+  const HandCheck huge = check_text(scaled_pinch(1e9), "");
+  CHECK_FALSE(huge.model.has_value());
+  CHECK(has(huge, FindingKind::Fault, "", "hands are read up to 10000 m"));
+  CHECK(has(check_text(scaled_pinch(1e-5), kPinchSidecar), FindingKind::Suspicious, "",
+            "which no hand does"));
+}
+
+TEST_CASE("The reader of a hand finds its size suspicious, too", "[hands][hand_check]") {
+  const TemporaryFolder folder;
+  const auto findings = hands::read_hand(folder.write("pinch.urdf", scaled_pinch(1000.0))).findings;
+  CHECK(std::any_of(findings.begin(), findings.end(), [](const HandFinding& finding) {
+    return finding.kind == FindingKind::Suspicious &&
+           finding.what.find("times too large") != std::string::npos;
+  }));
+}
+
+TEST_CASE("A finger that meeting links keep open is named with the links", "[hands][hand_check]") {
+  // A stop on the palm, 1 mm before the bent finger's way, that the open finger does not touch.
+  const std::string stop = R"(
+    <collision><origin xyz="-0.029 0 0.03"/><geometry><box size="0.01 0.02 0.02"/></geometry></collision>
+    <inertial><origin xyz="0 0 -0.011"/>)";
+  const std::string urdf = with(kPinch, "\n    <inertial><origin xyz=\"0 0 -0.011\"/>", stop);
+  const std::string sidecar =
+      with(kPinchSidecar, R"([["base", "a1"], ["a1", "a2"], )", R"([["a1", "a2"], )");
+  const HandCheck check = check_text(urdf, sidecar);
+  CAPTURE(listed(check, FindingKind::Fault), listed(check, FindingKind::Suspicious));
+  CHECK(has(check, FindingKind::Suspicious, "finger a", "closing leaves it open: after "));
+  CHECK(has(check, FindingKind::Suspicious, "finger a", "link base meets link a1"));
+  CHECK(has(check, FindingKind::Suspicious, "finger a", R"("exclusions": [["base", "a1"]])"));
+  CHECK_FALSE(has(check, FindingKind::Suspicious, "finger b", "closing leaves it open"));
+  CHECK_FALSE(
+      has(check_text(urdf, kPinchSidecar), FindingKind::Suspicious, "finger a", "leaves it open"));
+}
+
+TEST_CASE("A pair of links that is excluded twice counts once", "[hands][hand_check]") {
+  const HandCheck check = check_text(
+      kPinch, with(kPinchSidecar, R"(["base", "b1"])", R"(["base", "b1"], ["a1", "base"])"));
+  CHECK(
+      has(check, FindingKind::Note, "", "4 pairs of links are excluded from collision: base - a1"));
 }
 
 TEST_CASE("A hand whose limits only let it open does not close", "[hands][hand_check]") {

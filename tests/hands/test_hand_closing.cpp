@@ -54,6 +54,13 @@ TEST_CASE("Fingers that meet stop a step before they touch", "[hands][hand_closi
   const Eigen::VectorXd q = hands::closed_without_overlap(hand, 1.0).q;
   CHECK(q[0] == Approx(0.1 * 32 / 64).epsilon(1e-12));
   CHECK(q[1] == Approx(-0.1 * 31 / 64).epsilon(1e-12));
+  // The second one meets the first at its 32nd step, the first one goes no further at its 33rd.
+  const std::vector<hands::ClosingStop> stops = hands::closing_stops(hand, 1.0);
+  REQUIRE(stops.size() == 2);
+  CHECK((stops[0].finger == 1 && stops[0].share == 31.0 / 64));
+  CHECK((stops[1].finger == 0 && stops[1].share == 32.0 / 64));
+  for (const hands::ClosingStop& stop : stops) CHECK((stop.link_a == 1 && stop.link_b == 2));
+  CHECK(hands::closing_stops(rail(0.05), 1.0).empty());
   // Half closed they would just touch: all but the last step of 50/64 mm.
   const Eigen::VectorXd half = hands::closed_without_overlap(hand, 0.5).q;
   CHECK(half[0] == Approx(0.05).epsilon(1e-12));

@@ -142,6 +142,58 @@ TEST_CASE("Meshes are found beside the description and scaled, mirrored ones tur
   }
 }
 
+TEST_CASE("Meshes may lie in a folder meshes beside the description's own, and no farther",
+          "[hands][hand_io]") {
+  const Folder folder;
+  const std::string tetrahedron =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  folder.write("clone/meshes/visual/part.obj", tetrahedron);
+  folder.write("clone/other/part.obj", tetrahedron);
+  folder.write("meshes/part.obj", tetrahedron);
+  folder.write("clone/urdf/pinch.graspfit.json", kSidecar);
+  const auto hand_of = [&](const std::string& name) {
+    const std::string urdf = with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>",
+                                  "<mesh filename=\"" + name + "\" scale=\"0.01 0.02 0.03\"/>");
+    return hands::read_hand_model(folder.write("clone/urdf/pinch.urdf", urdf));
+  };
+  // The folder of the clone need not be named after the package.
+  for (const char* name : {"../meshes/visual/part.obj", "package://pinch/meshes/visual/part.obj"}) {
+    CAPTURE(name);
+    CHECK(hand_of(name).links[0].mesh_files ==
+          std::vector<std::string>{"../meshes/visual/part.obj"});
+  }
+  for (const char* name :
+       {"../other/part.obj", "../meshes/../other/part.obj", "../../meshes/part.obj"}) {
+    CAPTURE(name);
+    CHECK_THROWS_AS(hand_of(name), geometry::InvalidInput);
+  }
+  // A folder that only looks as if it were there.
+  fs::remove_all(folder.path() / "clone/meshes");
+  fs::create_directory_symlink(folder.path() / "clone/other", folder.path() / "clone/meshes");
+  CHECK_THROWS_AS(hand_of("../meshes/part.obj"), geometry::InvalidInput);
+}
+
+TEST_CASE("Couplings alone are a whole sidecar", "[hands][hand_io]") {
+  const Folder folder;
+  folder.write("claw.graspfit.json",
+               R"({"couplings": [{"joint": "right_hinge", "leader": "left_hinge"}]})");
+  const HandModel hand = hands::read_hand_model(folder.write("claw.urdf", R"(<robot name="claw">
+  <link name="palm"><collision><origin xyz="0 0 -0.015"/><geometry><box size="0.09 0.06 0.03"/></geometry></collision></link>
+  <link name="left"><collision><origin xyz="0 0 0.045"/><geometry><box size="0.012 0.025 0.09"/></geometry></collision></link>
+  <link name="right"><collision><origin xyz="0 0 0.045"/><geometry><box size="0.012 0.025 0.09"/></geometry></collision></link>
+  <joint name="left_hinge" type="revolute"><parent link="palm"/><child link="left"/>
+    <origin xyz="-0.035 0 0.001"/><axis xyz="0 1 0"/><limit lower="-0.5" upper="0.3"/></joint>
+  <joint name="right_hinge" type="revolute"><parent link="palm"/><child link="right"/>
+    <origin xyz="0.035 0 0.001"/><axis xyz="0 -1 0"/><limit lower="-0.5" upper="0.3"/></joint>
+</robot>)"));
+  REQUIRE(hand.joints[1].coupling.has_value());
+  CHECK(hand.joints[1].coupling->leader == 0);
+  CHECK(hand.joints[1].coupling->ratio == 1.0);
+  CHECK(hand.num_intrinsic_dof() == 1);
+  CHECK(hand.fingers.size() == 2);
+  CHECK(hand.pads.size() >= 2);
+}
+
 TEST_CASE("The sidecar's couplings override <mimic>, and chains lead to the first leader",
           "[hands][hand_io]") {
   const Folder folder;

@@ -38,6 +38,13 @@ TEST_CASE("A tip's reach is the cells that it visits, by the way its pad looks",
   CHECK(at(0.0, 0.0, Vector3d::UnitZ()) == std::numeric_limits<double>::infinity());
   CHECK(at(2.5, 0.0, x) > 1.0);  // beyond the lattice
   CHECK_THROWS_AS(hands::TipReach({}, cell), geometry::InvalidInput);
+  // A hand in millimeters, or of no size at all: more cells than fit into memory or an int.
+  for (const double far : {300.0, 1e300, std::numeric_limits<double>::infinity()}) {
+    const Vector3d corner = Vector3d::Constant(far);
+    CHECK_THROWS_AS(
+        hands::TipReach({{-corner, Vector3d::UnitX()}, {corner, Vector3d::UnitX()}}, cell),
+        geometry::InvalidInput);
+  }
 }
 
 TEST_CASE("Whatever its joints, a tip is where its reach says", "[hands][tip_reach]") {

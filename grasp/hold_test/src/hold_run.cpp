@@ -3,9 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cinttypes>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 
@@ -35,8 +39,9 @@ std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::Ve
 std::string millimeters(double length) {
   std::array<char, 32> text{};
   // Tenths of a millimeter as integers: the decimal point of the C library follows the locale.
-  const long tenths = std::lround(length * 1e4);
-  std::snprintf(text.data(), text.size(), "%ld.%ld mm", tenths / 10, tenths % 10);
+  const auto tenths =
+      geometry::bounded_integer<std::int64_t>(std::round(length * 1e4), 0, 1'000'000'000'000'000);
+  std::snprintf(text.data(), text.size(), "%" PRId64 ".%" PRId64 " mm", tenths / 10, tenths % 10);
   return text.data();
 }
 
@@ -55,7 +60,8 @@ void require_size(const hands::HandModel& hand, const HandConfiguration& configu
 }  // namespace
 
 int HoldRun::num_steps(double duration) const {
-  return std::max(1, static_cast<int>(std::lround(duration / protocol_.step)));
+  return geometry::bounded_integer(std::round(duration / protocol_.step), 1,
+                                   std::numeric_limits<int>::max());
 }
 
 RigidTransform HoldRun::X_HB() const { return physics_.hand().X_OH.inverse() * physics_.X_OB(); }

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "graspfit/geometry/bounded_integer.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "internal/hold_run.hpp"
 #include "internal/physics.hpp"
@@ -180,7 +181,8 @@ std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp& grasp, int direction
   }
   std::vector<HoldFrame> frames;
   const double step = impl_->protocol.step;
-  const int every = std::max(1, static_cast<int>(std::lround(interval / step)));
+  const int every =
+      geometry::bounded_integer(std::round(interval / step), 1, std::numeric_limits<int>::max());
   int num_steps = -1;
   const auto frame = [&] {
     return HoldFrame{impl_->physics.time(), impl_->physics.X_OB(), impl_->physics.hand()};

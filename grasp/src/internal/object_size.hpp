@@ -17,7 +17,8 @@ double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fin
 double widest_opening(const PartDistances& distances, const RequestedParts& parts);
 
 /// Why an object could not be held whatever its pose, with its extents: smaller than one fingertip,
-/// or thicker than `widest`, both along the axes of the mesh's own frame. Empty: it may be.
+/// or thicker than `widest`, both along the axes of the mesh's own frame; and what to do: say the
+/// object's unit, or, where no hand is like that, mend the hand's. Empty: it may be.
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const std::vector<int>& fingers, double widest);

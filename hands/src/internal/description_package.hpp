@@ -1,14 +1,29 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace graspfit::hands::internal {
 
-/// The folder that a description may refer to: that of the nearest package.xml above the file, or
-/// else the file's own folder. Symbolic links resolved.
+/// The folder that `package://` leads to: that of the nearest package.xml above the file, or else
+/// the file's own folder. Symbolic links resolved.
 std::filesystem::path package_folder(const std::filesystem::path& description_file);
+
+/// The folders that a description may refer to, and no others: whoever opens a stranger's hand does
+/// not open the files of his own that it names. They are the package's folder and, where no
+/// package.xml says what the package is, `meshes` beside the description's own folder: the layout
+/// of most packages, "urdf/hand.urdf" with "../meshes/". Symbolic links resolved.
+std::vector<std::filesystem::path> readable_folders(const std::filesystem::path& description_file);
+
+/// After the name of a file that lies in none of them: where that is not, and what would let the
+/// description refer to it. `file` with symbolic links resolved.
+std::string outside_text(const std::filesystem::path& description_file,
+                         const std::filesystem::path& file);
 
 /// Whether a path is `folder` or below it, by their texts: both with symbolic links resolved.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
+/// The same of any of several folders.
+bool lies_in(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders);
 
 }  // namespace graspfit::hands::internal

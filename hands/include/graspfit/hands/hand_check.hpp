@@ -26,7 +26,8 @@ struct HandCheck {
 /// of a sidecar. After a fault nothing is derived, and what needs the whole hand is not looked at.
 ///
 /// Suspicious, beside what the readers notice (axes that are not unit in a URDF: a lost
-/// transmission ratio; limits of no width; limits beyond a turn or a meter: other units):
+/// transmission ratio; limits of no width; limits beyond a turn or a meter, hands larger than 1 m
+/// or smaller than 1 cm: other units):
 /// - A hand that ends in a body without a mesh, or whose palm has none: nothing there can touch.
 /// - Center of mass farther outside a link's box than half its diagonal, and inertia whose
 ///   principal moments no body has (negative, or one larger than the other two together), or whose
@@ -47,6 +48,8 @@ struct HandCheck {
 /// - A closing joint that travels less than 0.1 rad or 1 mm, or whose travel takes the pad that it
 ///   moves backward; a finger without closing joint, or whose tip does not come nearer to the palm
 ///   or to any other tip by a tenth when it closes: closing signs or limits.
+/// - A finger that closing leaves within a tenth of its way from open because links meet that are
+///   apart while the hand is open (`closing_stops`): such pairs are named.
 /// - Thumb and fingers between whose tips no ball fits (`hand_workspace`): they do not meet. If the
 ///   thumb meets another finger, it is a note.
 /// - Links that overlap in the open configuration and are not excluded from collision.
@@ -55,7 +58,7 @@ struct HandCheck {
 /// links between joints without mesh, links without mass, joints of no finger, the pairs that are
 /// excluded from collision.
 ///
-/// Cost: that of reading, and one `hand_workspace`.
+/// Cost: that of reading, one `hand_workspace` and one `closing_stops`.
 /// @throws IoError only if the file cannot be read.
 HandCheck check_hand(const std::filesystem::path& description_file);
 
