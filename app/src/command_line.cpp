@@ -6,6 +6,7 @@
 #include <boost/program_options/value_semantic.hpp>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <system_error>
@@ -50,6 +51,20 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 std::vector<std::string> split_at_commas(const std::string& text) { return split(text, ','); }
+
+/// `given` is the word of the command line, "--resol=10".
+[[noreturn]] void fail_unknown(const Command& command, const std::string& given) {
+  std::vector<std::string> known = {"--help"};
+  for (const auto& option : command.options.options()) {
+    known.push_back("--" + option->long_name());
+  }
+  const std::string name = given.substr(0, given.find('='));
+  std::error_code error;
+  const bool is_file = std::filesystem::exists(given, error);
+  throw UsageError("unknown option " + name +
+                   (is_file ? "; the file of that name is given after --"
+                            : geometry::did_you_mean(name, known)));
+}
 
 }  // namespace
 
@@ -99,12 +114,7 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
         po::command_line_parser(arguments).options(all).positional(positional).style(style).run(),
         values_);
   } catch (const po::unknown_option& error) {
-    const std::string& name = error.get_option_name();
-    std::vector<std::string> known = {"--help"};
-    for (const auto& option : command.options.options()) {
-      known.push_back("--" + option->long_name());
-    }
-    throw UsageError("unknown option " + name + geometry::did_you_mean(name, known));
+    fail_unknown(command, error.get_option_name());
   } catch (const po::too_many_positional_options_error&) {
     throw UsageError(positional_name_.empty() ? "takes no argument without a flag"
                      : second_positional_name_.empty()
@@ -221,6 +231,11 @@ std::string help_text(const Command& command) {
        << " [options]\n\n"
        << command.summary << command.options
        << "\n  -h [ --help ]                       print this text\n";
+  if (!command.positional.empty()) {
+    text
+        << "  --                                  what follows is no option: a name may begin with "
+           "-\n";
+  }
   if (!command.epilog.empty()) text << '\n' << command.epilog;
   text << "\nExit codes: 0 success; 1 internal error; 2 input or flags that cannot be used (one "
           "line says why,\nnothing is written, except that grasps are kept if drawing their "

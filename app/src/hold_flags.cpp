@@ -79,7 +79,7 @@ po::options_description hold_protocol_options() {
       "where the squeeze comes from: the grasp file (forces that balance), as far beyond the "
       "grasp as the pre-grasp is before it, or none; without it the protocol's");
   add_option(options, "step", "SECONDS", std::nullopt,
-             "of the simulation; without it the protocol's");
+             "of the simulation, from 0.00001; without it the protocol's");
   add_repeatable_option(options, "set", "KNOB=VALUE",
                         "another value for a knob of the protocol, several numbers separated by "
                         "commas; may be given several times. Knobs: " +
@@ -104,7 +104,8 @@ hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
     changes.push_back({"--squeeze " + rule, "squeeze", rule});
   }
   if (flags.has("step")) {
-    const std::string seconds = shortest_decimal(flags.number("step", geometry::above(0)));
+    const geometry::NumberRange steps = geometry::at_least(hold_test::HoldProtocol::kShortestStep);
+    const std::string seconds = shortest_decimal(flags.number("step", steps));
     changes.push_back({"--step " + seconds, "step_s", seconds});
   }
   for (const std::string& setting : flags.texts("set")) {

@@ -69,6 +69,13 @@ void watch_interrupts() {
   }).detach();
 }
 
+void report_file_size_limit() {
+  // Ignored, the signal leaves the write to fail with EFBIG.
+  struct sigaction action {};
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, nullptr);
+}
+
 CleanupOnInterrupt::CleanupOnInterrupt(std::function<void()> cleanup) {
   const std::lock_guard lock(state().mutex);
   state().cleanups.emplace_back(this, std::move(cleanup));

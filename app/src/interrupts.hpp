@@ -13,6 +13,11 @@ namespace graspfit::app {
 /// exists.
 void watch_interrupts();
 
+/// From here on, a file that grows beyond what the system allows it (`ulimit -f`) is an error of
+/// the write that does it, reported and cleaned up like a full disk, and not a signal that ends the
+/// program without a word. Programs that this one starts inherit it.
+void report_file_size_limit();
+
 /// A cleanup that is in force while this object lives. Those made later run first.
 class CleanupOnInterrupt {
  public:

@@ -91,10 +91,12 @@ ExitCode run_and_report(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   graspfit::app::watch_interrupts();
+  graspfit::app::report_file_size_limit();
   const graspfit::app::ExitCode code =
       graspfit::app::run_and_report(std::vector<std::string>(argv + 1, argv + argc));
-  // A full disk or a closed pipe shows only now.
-  if (std::fflush(stdout) != 0 && code == graspfit::app::kSuccess) {
+  // A full disk or a closed pipe shows only now, or has shown while the buffer was filled.
+  const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (!is_written && code == graspfit::app::kSuccess) {
     std::fputs("graspfit: standard output could not be written\n", stderr);
     return graspfit::app::kInternalError;
   }

@@ -21,6 +21,7 @@ using Schema = nlohmann::ordered_json;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kMetersPerMillimeter = 1e-3;
+constexpr int kMostSteps = grasp::RefinementOptions::kMostSteps;
 
 /// To twelve digits: what a conversion of units adds behind them is not the setting's.
 std::string number_text(double value) {
@@ -363,14 +364,15 @@ std::vector<PlanningSetting> fitting_settings() {
           "largest-turn-deg", "deg", "of the palm while contacts are refined", at_least(0),
           [](PlannerOptions & o) -> auto& { return o.refinement.largest_turn; }, kRadiansPerDegree),
       integer(
-          "refine-iterations", "of contact refinement", at_least(1),
+          "refine-iterations", "of contact refinement", between(1, kMostSteps),
           [](PlannerOptions & o) -> auto& { return o.refinement.max_iterations; }),
       integer(
-          "slide-steps", "of touching pads toward their targets; 0: none", at_least(0),
+          "slide-steps", "of touching pads toward their targets; 0: none",
+          between(0, kMostSteps),
           [](PlannerOptions & o) -> auto& { return o.refinement.slide_steps; }),
       integer(
           "near-pad-steps", "of each further pad that nearly touches toward the surface; 0: none",
-          at_least(0), [](PlannerOptions & o) -> auto& { return o.refinement.near_pad_steps; }),
+          between(0, kMostSteps), [](PlannerOptions & o) -> auto& { return o.refinement.near_pad_steps; }),
       yes_or_no(
           "pre-grasps", "a grasp needs a pre-grasp with a free way in",
           [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),

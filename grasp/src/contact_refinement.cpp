@@ -507,12 +507,13 @@ void RefinementOptions::validate() const {
                  "above 0 m and below largest_gap");
   require_length(least_distance > 0.0 && least_distance <= wanted_gap, "least_distance",
                  least_distance, "above 0 m and at most wanted_gap");
-  internal::require(max_iterations >= 1, "RefinementOptions", "max_iterations", max_iterations,
-                    "at least 1");
-  internal::require(near_pad_steps >= 0, "RefinementOptions", "near_pad_steps", near_pad_steps,
-                    "at least 0");
-  internal::require(slide_steps >= 0, "RefinementOptions", "slide_steps", slide_steps,
-                    "at least 0");
+  const auto require_steps = [](int least, const char* field, int value, const char* rule) {
+    internal::require(value >= least && value <= kMostSteps, "RefinementOptions", field, value,
+                      rule);
+  };
+  require_steps(1, "max_iterations", max_iterations, "in [1, 1000]");
+  require_steps(0, "near_pad_steps", near_pad_steps, "in [0, 1000]");
+  require_steps(0, "slide_steps", slide_steps, "in [0, 1000]");
   require_length(reach > 0.0, "reach", reach, "finite and above 0 m");
   require_length(largest_shift >= 0.0, "largest_shift", largest_shift, "finite and at least 0 m");
   require_length(largest_turn >= 0.0, "largest_turn", largest_turn, "finite and at least 0 rad");

@@ -2,7 +2,9 @@
 
 import json
 import os
+import resource
 import shutil
+import subprocess
 
 import program
 from program import box, off_text, torus
@@ -161,7 +163,7 @@ class BadFlags(program.ProgramTest):
                 ("ideal-m-draws", "0"), ("angle-weight", "-1"), ("palm-reach-tolerance-mm", "-1"),
                 ("weak-thickness-mm", "0"), ("largest-gap-mm", "0"), ("wanted-gap-mm", "0", "0.2"),
                 ("least-distance-mm", "0"), ("largest-shift-mm", "-1"), ("largest-turn-deg", "-1"),
-                ("refine-iterations", "0"), ("pre-grasp-clearance-mm", "0"),
+                ("refine-iterations", "0", "1001"), ("slide-steps", "-1", "99999"), ("near-pad-steps", "1001"), ("pre-grasp-clearance-mm", "0"),
                 ("pre-grasp-retreat-mm", "-1"), ("distinct-translation-mm", "-1"),
                 ("distinct-rotation-deg", "-1"), ("distinct-joints", "-1"), ("seed", "-1", "18446744073709551616")):
             for value in values:
@@ -224,6 +226,8 @@ class BadFlags(program.ProgramTest):
                             says=["--protocol", 'did you mean "dexonomy-hard"?'])
         self.assert_refused("hold", self.object, "--set", "forceN=1", says='did you mean "force_N"?')
         self.refuse("--resolutoin", "20", says='unknown option --resolutoin; did you mean "--resolution"?')
+        self.refuse("--resolutoin=20", says='unknown option --resolutoin; did you mean "--resolution"?')
+        self.refuse("--resol=10", says='unknown option --resol; did you mean "--resolution"?')
         self.refuse("--hand", "barett", says='did you mean "barrett"?')
         self.refuse("--fingers", "thumb,finger1", says='did you mean "finger_1"?')
         self.refuse("--style", "presicion", says='did you mean "precision"?')
@@ -248,6 +252,20 @@ class BadFlags(program.ProgramTest):
         self.assert_refused("grab", self.object, says="grab")
         self.assert_refused(says="command")
 
+    def test_a_name_that_begins_with_a_dash_comes_after_two(self):
+        self.write_torus("-strange=name.off")
+        self.write_torus("--stranger.off")
+        for name in ("-strange=name.off", "--stranger.off"):
+            for command in (("plan", "--count", "1"), ("inspect",)):
+                with self.subTest(name=name, command=command):
+                    done = program.run(*command, "--", name, cwd=self.folder)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assert_refused(*command, name, cwd=self.folder,
+                                        says=["unknown option -", "the file of that name is given after --"])
+        self.assert_refused("plan", "--", "-strange=name.off", "--count", "1", cwd=self.folder,
+                            says="more than one OBJECT")
+        self.assertIn("a name may begin with -", program.run("plan", "--help").stdout)
+
     def test_output_folder_that_cannot_be_written(self):
         file = self.write("file", "keep me")
         self.assert_refused("plan", self.object, "--out", file, says="file")
@@ -262,6 +280,34 @@ class BadFlags(program.ProgramTest):
         locked = self.folder / "locked"
         locked.mkdir(mode=0o555)
         self.assert_refused("plan", self.object, "--out", locked / "out", says="locked")
+
+
+class FileSizeLimit(program.ProgramTest):
+    """What `ulimit -f` does: a file that would grow beyond it."""
+
+    def run_limited(self, size, *arguments, stdout=subprocess.PIPE):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        return subprocess.run([program.PROGRAM, *map(str, arguments)], stdout=stdout,
+                              stderr=subprocess.PIPE, text=True, preexec_fn=limit, check=False)
+
+    def test_it_is_said_and_leaves_nothing(self):
+        mesh = self.write_torus()
+        before = self.contents()
+        for size, arguments in ((1000, ("shape", "octopus", "--out", self.folder / "octopus.off")),
+                                (3000, ("plan", mesh, "--count", "2", "--out", self.folder / "out"))):
+            with self.subTest(arguments[0]):
+                done = self.run_limited(size, *arguments)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                self.assertRegex(done.stderr, f"^graspfit {arguments[0]}: .*File too large")
+                self.assertEqual(self.contents(), before)
+
+    def test_of_standard_output_it_is_said(self):
+        with open(self.folder / "out.txt", "w", encoding="utf-8") as stream:
+            done = self.run_limited(1000, "plan", "--help", stdout=stream)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, "graspfit: standard output could not be written\n"))
 
 
 class NoGrasp(program.ProgramTest):

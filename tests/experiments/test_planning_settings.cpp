@@ -87,6 +87,7 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
       {R"(, "fingers": [])", {"fingers", "at least one value"}},
       {R"(, "file": "ball.obj")", {"", "either a file or a shape"}},
+      {R"(, "slide-steps": 99999)", {"slide-steps", "is 99999, must be in [0, 1000]"}},
       {R"(, "refine": "yes")", {"refine", "must be true or false"}}};
   for (const auto& [members, expected] : cases) {
     INFO(members);

@@ -52,6 +52,8 @@ TEST_CASE("A bad knob is refused by name", "[hold_test]") {
   };
   const Case cases[] = {
       {"step", [](HoldProtocol& p) { p.step = 0.0; }},
+      {"step", [](HoldProtocol& p) { p.step = 1e-12; }},
+      {"hold_time", [](HoldProtocol& p) { p.hold_time = 1e9; }},
       {"sliding_friction", [](HoldProtocol& p) { p.sliding_friction = -0.1; }},
       {"object_mass", [](HoldProtocol& p) { p.object_mass = 0.0; }},
       {"solimp", [](HoldProtocol& p) { p.hand_solimp[1] = 1.5; }},

@@ -97,7 +97,7 @@ void HoldProtocol::validate() const {
   const auto not_negative = [](double value, std::string_view field) {
     require(value >= 0.0, field, value, "finite and >= 0");
   };
-  positive(step, "step");
+  require(step >= kShortestStep, "step", step, "finite and >= 1e-05");
   not_negative(sliding_friction, "sliding_friction");
   not_negative(torsional_friction, "torsional_friction");
   positive(impratio, "impratio");
@@ -120,15 +120,19 @@ void HoldProtocol::validate() const {
   not_negative(slide_armature, "slide_armature");
   positive(link_density, "link_density");
   not_negative(extrapolation, "extrapolation");
-  require(approach_time >= step, "approach_time", approach_time, "finite and >= step");
-  require(squeeze_time >= step, "squeeze_time", squeeze_time, "finite and >= step");
+  const auto require_time = [](double time, double least, std::string_view field,
+                               std::string_view rule) {
+    require(time >= least && time <= kLongestTime, field, time, rule);
+  };
+  require_time(approach_time, step, "approach_time", "in [step, 1000]");
+  require_time(squeeze_time, step, "squeeze_time", "in [step, 1000]");
   not_negative(force, "force");
   not_negative(gravity, "gravity");
   positive(lift_height, "lift_height");
-  require(lift_time >= step, "lift_time", lift_time, "finite and >= step");
-  require(hold_time >= (load == HoldLoad::Lift ? lift_time : step), "hold_time", hold_time,
-          "finite and >= step, of a protocol that lifts >= lift_time");
-  require(check_interval >= step, "check_interval", check_interval, "finite and >= step");
+  require_time(lift_time, step, "lift_time", "in [step, 1000]");
+  require_time(hold_time, load == HoldLoad::Lift ? lift_time : step, "hold_time",
+               "in [step, 1000], of a protocol that lifts >= lift_time");
+  require_time(check_interval, step, "check_interval", "in [step, 1000]");
   positive(largest_shift, "largest_shift");
   positive(largest_turn, "largest_turn");
   not_negative(largest_penetration, "largest_penetration");

@@ -17,12 +17,16 @@ struct RefinementOptions {
   double wanted_gap = 2e-5;      ///< To which claimed pads are brought [m], in (0, largest_gap).
   double largest_gap = 1e-4;     ///< A claimed pad within this has contact [m], > 0.
   double least_distance = 1e-6;  ///< Kept between all that must not touch [m], > 0.
-  int max_iterations = 60;       ///< ≥ 1.
-  /// Steps in which pads that touch are then slid toward their targets, ≥ 0; 0: they stay where
-  /// they first touch. Larger M, more work.
+  /// Largest number of steps of each kind below, more than ten times the usual ones: every step
+  /// asks exact queries of every pad, and an attempt has to end.
+  static constexpr int kMostSteps = 1000;
+
+  int max_iterations = 60;  ///< In [1, kMostSteps].
+  /// Steps in which pads that touch are then slid toward their targets, in [0, kMostSteps]; 0: they
+  /// stay where they first touch. Larger M, more work.
   int slide_steps = 0;
   /// Steps in which each further pad that nearly touches (its clip volume holds surface) is then
-  /// brought to touch too, where all others keep touching, ≥ 0; 0: they stay where they are.
+  /// brought to touch too, where all others keep touching, in [0, kMostSteps]; 0: they stay.
   int near_pad_steps = 12;
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.

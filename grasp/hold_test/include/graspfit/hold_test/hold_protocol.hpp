@@ -29,7 +29,12 @@ struct HoldProtocol {
   HoldLoad load = HoldLoad::SixForces;
   SqueezeRule squeeze = SqueezeRule::Forces;
 
-  double step = 0.004;               ///< Of the simulation [s].
+  /// Shortest step and longest phase [s]: with a hundred thousand steps a second, the two seconds
+  /// under load of one grasp take minutes already, and steps are counted in an int.
+  static constexpr double kShortestStep = 1e-5;
+  static constexpr double kLongestTime = 1000.0;
+
+  double step = 0.004;               ///< Of the simulation [s], >= kShortestStep.
   double sliding_friction = 0.6;     ///< Coulomb's μ of all bodies.
   double torsional_friction = 0.02;  ///< [m]
   double impratio = 10.0;            ///< Of frictional to normal constraint impedance (MuJoCo).
@@ -55,6 +60,7 @@ struct HoldProtocol {
   double link_density = 800.0;  ///< Of links whose description says no mass [kg/m³].
 
   double extrapolation = 1.0;  ///< See SqueezeRule.
+  // Times are >= step and <= kLongestTime.
   double approach_time = 0.4;  ///< Pre-grasp to grasp, linear [s].
   double squeeze_time = 0.4;   ///< Grasp to squeeze, linear [s].
   double force = 1.0;          ///< Of HoldLoad::SixForces [N].
