@@ -17,12 +17,17 @@ ExitCode run_experiment_status(const std::vector<std::string>& arguments);
 ExitCode run_experiment_merge(const std::vector<std::string>& arguments);
 ExitCode run_experiment_verify(const std::vector<std::string>& arguments);
 
-/// --quick and --set.
+/// --quick, --set, --object and --longest.
 boost::program_options::options_description config_change_options();
 
-/// The configuration of an experiment with these changes.
+/// The configuration of an experiment with these changes, as it is described.
 experiments::ExperimentConfig load_experiment_config(const experiments::Experiment& experiment,
                                                      const Flags& flags);
+
+/// The same, as it is run on this machine: without a data folder, values that need it are left out
+/// where others remain.
+experiments::ExperimentConfig load_config_to_run(const experiments::Experiment& experiment,
+                                                 const Flags& flags);
 
 /// What a command on one experiment was called with.
 struct ExperimentCall {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiment_commands.hpp"
+#include "graspfit/experiments/data_needs.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "text_table.hpp"
 
@@ -76,6 +77,66 @@ std::string settings_text(const Experiment& experiment, const ExperimentConfig& 
   return indented_table(rows);
 }
 
+const char* source_text(experiments::DataSource source) {
+  switch (source) {
+    case experiments::DataSource::BuiltIn:
+      return "built in";
+    case experiments::DataSource::Packaged:
+      return "libcgal-demo";
+    case experiments::DataSource::DataFolder:
+      return "data folder";
+    case experiments::DataSource::DataFolderOrPackaged:
+      return "data folder or libcgal-demo";
+    case experiments::DataSource::OwnFile:
+      return "your file";
+  }
+  return "";
+}
+
+/// "data folder, built in": where what settings name comes from, each once; empty if they name no
+/// data.
+std::string sources_text(const std::string& settings) {
+  std::vector<std::string> sources;
+  for (const experiments::DataNeed& need : experiments::data_needs(settings)) {
+    const std::string source = source_text(need.source);
+    if (std::find(sources.begin(), sources.end(), source) == sources.end()) {
+      sources.push_back(source);
+    }
+  }
+  std::string text;
+  for (const std::string& source : sources) text += (text.empty() ? "" : ", ") + source;
+  return text;
+}
+
+/// A row per axis, source of its values' data and whether they are there; and one for the settings
+/// of all cells.
+std::string data_text(const ExperimentConfig& config) {
+  std::vector<std::vector<std::string>> rows;
+  const auto add = [&](const std::string& where, const std::string& settings,
+                       const std::string& label) {
+    const std::string sources = sources_text(settings);
+    if (sources.empty()) return;
+    const std::string there = experiments::has_all_data(settings) ? "there" : "missing";
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& other) {
+      return other[0] == where && other[1] == sources && other[2] == there;
+    });
+    if (row == rows.end()) {
+      rows.push_back({where, sources, there, label});
+    } else {
+      row->back() += ' ' + label;
+    }
+  };
+  for (const experiments::Axis& axis : config.sweep.axes) {
+    for (const experiments::AxisValue& value : axis.values) {
+      add(axis.name, value.settings, value.label);
+    }
+  }
+  add("all cells", config.sweep.settings, "by the settings of all");
+  if (rows.empty()) return "  none\n";
+  rows.insert(rows.begin(), {"axis", "from", "now", "values"});
+  return indented_table(rows);
+}
+
 }  // namespace
 
 ExitCode run_experiment_describe(const std::vector<std::string>& arguments) {
@@ -95,6 +156,12 @@ ExitCode run_experiment_describe(const std::vector<std::string>& arguments) {
     std::printf("\n");
   }
   std::printf("  settings of all: %s\n", config.sweep.settings.c_str());
+  std::printf("\nData, the data folder being %s:\n%s", experiments::data_folder().c_str(),
+              data_text(config).c_str());
+  if (const ExperimentConfig to_run = load_config_to_run(experiment, call->flags);
+      !to_run.left_out.empty()) {
+    std::printf("  a run here, without that folder: %s\n", to_run.left_out.c_str());
+  }
   std::printf("\nColumns of %s.csv after the axes, cell_seed, status and reason:\n%s",
               experiment.slug.c_str(), columns_text(experiment.columns).c_str());
   std::printf("\nColumns of %s.timing.csv after the axes, wall_s and cpu_s:\n%s",

@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "experiment_commands.hpp"
+#include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/experiments/run_manifest.hpp"
 #include "graspfit/experiments/sweep_runner.hpp"
 #include "graspfit/experiments/sweep_shards.hpp"
@@ -32,9 +33,10 @@ void add_results_flags(po::options_description& options, bool has_quick) {
 
 /// --publish and --quiet of commands that write tables.
 void add_table_flags(po::options_description& options, const std::string& quiet_meaning) {
-  add_switch(options, "publish",
-             "afterwards copy the tables into notebooks-data; refused for --quick, --set, missing "
-             "data and sources that are not committed");
+  add_switch(
+      options, "publish",
+      "afterwards copy the tables into notebooks-data; refused for --quick, --set, --object, "
+      "missing data and sources that are not committed");
   add_switch(options, "quiet", quiet_meaning);
 }
 
@@ -51,8 +53,14 @@ Command run_command() {
       "that are finished are\nkept on disk at once; after an interruption the same "
       "command does the rest. Results are\nthe same bytes for any --jobs and any shards.\n",
       option_group(),
-      "Meshes and hands that are not part of the repository are looked for in "
-      "$GRASPFIT_DATA; cells\nthat lack theirs are skipped, and the rows say so.\n"};
+      "Meshes and hands that are not part of the repository are looked for in $GRASPFIT_DATA, a "
+      "few "
+      "meshes\nalso in $GRASPFIT_PACKAGED_MESHES, libcgal-demo's. Without that data folder objects "
+      "that need it\nare left out, others come instead, and one line says so; \"describe\" says "
+      "what "
+      "needs which data.\nWhere there is one, cells that lack theirs are skipped, and the rows say "
+      "so. "
+      "If all are, it is\nan error.\n"};
   command.options.add(config_change_options()).add(how);
   return command;
 }
@@ -172,6 +180,16 @@ void print_comparison(const experiments::PublishedComparison& table) {
   }
 }
 
+/// Says which values a run lacks for want of data, if any.
+void print_left_out(const ExperimentConfig& config) {
+  if (config.left_out.empty()) return;
+  std::fprintf(
+      stderr,
+      "graspfit experiment: note: there is no data folder %s (GRASPFIT_DATA): %s; this run "
+      "is never published\n",
+      experiments::data_folder().c_str(), config.left_out.c_str());
+}
+
 /// "2 of these failed", and how many of them the next run tries again.
 std::string failures_text(const experiments::RunProgress& done) {
   std::string text = std::to_string(done.num_failed) + " of these failed";
@@ -179,6 +197,24 @@ std::string failures_text(const experiments::RunProgress& done) {
     text += " (" + std::to_string(done.num_not_final) + " to be tried again by the next run)";
   }
   return text;
+}
+
+experiments::ConfigRequest config_request(const Flags& flags) {
+  experiments::ConfigRequest request;
+  request.is_quick = flags.has("quick");
+  for (const std::string& text : flags.texts("set")) {
+    request.changes.push_back(experiments::parse_axis_change(text));
+  }
+  for (const std::string& file : flags.texts("object")) request.object_files.emplace_back(file);
+  if (flags.has("longest")) {
+    if (request.object_files.empty()) throw UsageError("--longest means nothing without --object");
+    request.object_longest = flags.number("longest", geometry::above(0));
+  }
+  return request;
+}
+
+fs::path config_file(const Experiment& experiment) {
+  return experiments::config_folder() / (experiment.slug + ".json");
 }
 
 }  // namespace
@@ -189,17 +225,24 @@ po::options_description config_change_options() {
   add_repeatable_option(options, "set", "AXIS=A,B,...",
                         "other values for an axis, by their names or, for a plain setting, any; "
                         "the name of a setting makes a new axis; may be given several times");
+  add_repeatable_option(options, "object", "FILE",
+                        "a mesh instead of the values of the axis object, or beside those that "
+                        "--set object=... picks; may be given again for further ones");
+  add_option(options, "longest", "LENGTH_M", std::nullopt,
+             "of each --object: scaled so that its bounding box's longest edge is this long [m]; "
+             "without it, and where the experiment sets no sizes, files are in meters");
   return options;
 }
 
 ExperimentConfig load_experiment_config(const Experiment& experiment, const Flags& flags) {
-  experiments::ConfigRequest request;
-  request.is_quick = flags.has("quick");
-  for (const std::string& text : flags.texts("set")) {
-    request.changes.push_back(experiments::parse_axis_change(text));
-  }
-  const fs::path file = experiments::config_folder() / (experiment.slug + ".json");
-  return experiments::read_config(experiment, file, request);
+  return experiments::read_config(experiment, config_file(experiment), config_request(flags));
+}
+
+ExperimentConfig load_config_to_run(const Experiment& experiment, const Flags& flags) {
+  experiments::ConfigRequest request = config_request(flags);
+  std::error_code error;
+  request.leaves_out_missing_data = !fs::is_directory(experiments::data_folder(), error);
+  return experiments::read_config(experiment, config_file(experiment), request);
 }
 
 bool is_help_printed(const Command& command, const Flags& flags) {
@@ -223,9 +266,10 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   if (flags.has("publish") && flags.has("shard")) {
     throw UsageError("--publish means nothing with --shard; merge has it");
   }
-  const ExperimentConfig config = load_experiment_config(experiment, flags);
+  const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
+  print_left_out(config);
 
   experiments::RunOptions options;
   options.jobs = flags.integer("jobs", geometry::between(1, experiments::RunOptions::kMostJobs));
@@ -274,9 +318,10 @@ ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
   const std::optional<ExperimentCall> call = experiment_call(command, arguments);
   if (!call) return kSuccess;
   const auto& [flags, experiment] = *call;
-  const ExperimentConfig config = load_experiment_config(experiment, flags);
+  const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
+  print_left_out(config);
   const fs::path folder = results_folder(flags);
   const experiments::RunProgress done =
       experiments::merge_shards(experiment, config, manifest_of("merge", arguments), folder);

@@ -70,13 +70,17 @@ std::string config_schema() {
   Json slugs = Json::array();
   for (const Experiment& experiment : all_experiments()) slugs.push_back(experiment.slug);
   const Json text = {{"type", "string"}, {"minLength", 1}};
-  const Json quick = {
-      {"type", "object"},
-      {"properties",
-       {{"axes", {{"type", "object"}, {"additionalProperties", reference("labels")}}},
-        {"settings", reference("settings")},
-        {"seeds", reference("seeds")}}},
-      {"additionalProperties", false}};
+  const Json picks = {
+      {"type", "array"},
+      {"minItems", 1},
+      {"items",
+       {{"anyOf", {{{"type", {"number", "string", "boolean"}}}, reference("named_value")}}}}};
+  const Json quick = {{"type", "object"},
+                      {"properties",
+                       {{"axes", {{"type", "object"}, {"additionalProperties", picks}}},
+                        {"settings", reference("settings")},
+                        {"seeds", reference("seeds")}}},
+                      {"additionalProperties", false}};
   const Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                        {"title", "Configuration of a graspfit experiment"},
                        {"description", "Written by graspfit experiment schema"},

@@ -1,31 +1,41 @@
 #include "graspfit/experiments/experiment_config.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "graspfit/experiments/data_needs.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/json_bounds.hpp"
 #include "graspfit/geometry/nearest_name.hpp"
+#include "internal/axis_label.hpp"
 #include "internal/config_node.hpp"
+#include "internal/object_axis.hpp"
 
 namespace graspfit::experiments {
 namespace {
 
 namespace fs = std::filesystem;
 using internal::ConfigNode;
+using internal::is_label;
+using internal::kObjectAxis;
 using SortedJson = nlohmann::json;
 
 constexpr std::size_t kMostCells = 1000000;  // A sweep beyond that is a mistake in its axes.
+
+/// Settings that say what an object is: one of them, so naming one leaves the others behind.
+constexpr std::array kObjectSources = {"file", "packaged", "shape"};
 
 /// An axis with where its values were written, for messages.
 struct PlacedAxis {
   Axis axis;
   std::vector<std::string> places;  ///< One per value.
+  bool is_picked = false;           ///< By `quick` or the command line: asked for as it is.
 };
 
 /// The configuration while it is put together.
@@ -35,14 +45,6 @@ struct Draft {
   std::map<std::string, std::string> setting_places;
   std::vector<PlacedAxis> axes;
 };
-
-bool is_label(const std::string& text) {
-  const bool is_dots = text.find_first_not_of('.') == std::string::npos;  // a folder's name too
-  return !is_dots && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '.' || c == '+' || c == '-';
-  });
-}
 
 std::string plain_label(const SortedJson& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -94,9 +96,9 @@ std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
 }
 
 /// Keeps the values with these labels, in their old order.
-void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
+void keep_values(const std::vector<ConfigNode>& labels, PlacedAxis& placed) {
   std::set<std::ptrdiff_t> kept;
-  for (const ConfigNode& label : labels.items()) {
+  for (const ConfigNode& label : labels) {
     const std::string name =
         label.json().is_primitive() ? plain_label(SortedJson(label.json())) : "";
     const std::ptrdiff_t index = find_value(placed.axis, name);
@@ -112,6 +114,28 @@ void keep_values(const ConfigNode& labels, PlacedAxis& placed) {
     remaining.places.push_back(placed.places[static_cast<std::size_t>(index)]);
   }
   placed = std::move(remaining);
+}
+
+/// What `quick` has of an axis: values by their labels, in their old order, then its own.
+void pick_values(const ConfigNode& picks, PlacedAxis& placed) {
+  PlacedAxis own;
+  std::vector<ConfigNode> labels;
+  for (const ConfigNode& pick : picks.items()) {
+    if (!pick.json().is_object()) {
+      labels.push_back(pick);
+      continue;
+    }
+    AxisValue value = read_axis_value(placed.axis.name, pick);
+    if (find_value(placed.axis, value.label) >= 0 || find_value(own.axis, value.label) >= 0) {
+      pick.fail("is the second value named " + value.label);
+    }
+    own.axis.values.push_back(std::move(value));
+    own.places.push_back(pick.place());
+  }
+  keep_values(labels, placed);
+  std::move(own.axis.values.begin(), own.axis.values.end(), std::back_inserter(placed.axis.values));
+  std::move(own.places.begin(), own.places.end(), std::back_inserter(placed.places));
+  placed.is_picked = true;
 }
 
 ConfigNode::Json parse(const std::string& file, const std::string& text) {
@@ -142,7 +166,7 @@ std::vector<AxisValue> values_of(const ConfigNode& item, const std::string& name
     other.axis.values.push_back(read_axis_value(name, value));
     other.places.push_back(value.place());
   }
-  if (item.has("only")) keep_values(item.at("only"), other);
+  if (item.has("only")) keep_values(item.at("only").items(), other);
   return other.axis.values;
 }
 
@@ -179,6 +203,12 @@ void read_settings(const ConfigNode& node, Draft& draft) {
   }
 }
 
+/// Leaves behind what settings of all cells say of the object, if `key` says it, too.
+void forget_other_objects(const std::string& key, Draft& draft) {
+  if (std::find(kObjectSources.begin(), kObjectSources.end(), key) == kObjectSources.end()) return;
+  for (const char* const source : kObjectSources) draft.settings.erase(source);
+}
+
 PlacedAxis seed_axis(const ConfigNode& node) {
   constexpr std::uint64_t kMostSeeds = 100000;
   const std::uint64_t count = node.unsigned_integer();
@@ -208,7 +238,12 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
     if (seeds == nullptr) quick.at("seeds").fail("there are no \"seeds\" to have fewer of");
     *seeds = seed_axis(quick.at("seeds"));
   }
-  if (quick.has("settings")) read_settings(quick.at("settings"), draft);
+  if (quick.has("settings")) {
+    for (const auto& [key, value] : quick.at("settings").members()) {
+      forget_other_objects(key, draft);
+    }
+    read_settings(quick.at("settings"), draft);
+  }
   if (!quick.has("axes")) return;
   for (const auto& [name, labels] : quick.at("axes").members()) {
     PlacedAxis* const placed = find_axis(draft, name);
@@ -217,7 +252,7 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
       for (const PlacedAxis& axis : draft.axes) names.push_back(axis.axis.name);
       labels.fail("there is no axis of that name" + geometry::did_you_mean(name, names));
     }
-    keep_values(labels, *placed);
+    pick_values(labels, *placed);
   }
 }
 
@@ -276,6 +311,7 @@ void refuse_mistyped(const Experiment& experiment, const AxisChange& change, con
 void apply_change(const AxisChange& change, Draft& draft) {
   PlacedAxis changed;
   changed.axis.name = change.axis;
+  changed.is_picked = true;
   const PlacedAxis* const old = find_axis(draft, change.axis);
   std::set<std::string> labels;
   for (const std::string& text : change.values) {
@@ -298,10 +334,97 @@ void apply_change(const AxisChange& change, Draft& draft) {
     return;
   }
   draft.settings.erase(change.axis);
+  forget_other_objects(change.axis, draft);
   // Seeds stay last.
   const auto seeds = std::find_if(draft.axes.begin(), draft.axes.end(),
                                   [](const PlacedAxis& axis) { return axis.axis.name == "seed"; });
   draft.axes.insert(change.axis == "seed" ? draft.axes.end() : seeds, std::move(changed));
+}
+
+/// Which axis other than the objects' own sets their sizes; null if none does.
+const PlacedAxis* size_axis_of(const Draft& draft) {
+  const auto sets_size = [](const AxisValue& value) {
+    return SortedJson::parse(value.settings).contains("size_m");
+  };
+  const auto found =
+      std::find_if(draft.axes.begin(), draft.axes.end(), [&](const PlacedAxis& placed) {
+        const std::vector<AxisValue>& values = placed.axis.values;
+        return placed.axis.name != kObjectAxis &&
+               std::any_of(values.begin(), values.end(), sets_size);
+      });
+  return found == draft.axes.end() ? nullptr : &*found;
+}
+
+bool lacks_data(const AxisValue& value) { return !has_all_data(value.settings); }
+
+/// Adds objects that every machine has where the axis of objects lacks some.
+void add_default_objects(Draft& draft) {
+  PlacedAxis* const placed = find_axis(draft, kObjectAxis);
+  if (placed == nullptr || placed->is_picked) return;
+  std::vector<AxisValue>& values = placed->axis.values;
+  if (std::none_of(values.begin(), values.end(), lacks_data)) return;
+  const bool has_sizes = size_axis_of(draft) != nullptr || draft.settings.contains("size_m");
+  for (AxisValue& object : internal::default_objects(has_sizes)) {
+    if (find_value(placed->axis, object.label) >= 0) continue;
+    values.push_back(std::move(object));
+    placed->places.push_back("default objects");
+  }
+}
+
+/// Leaves out values that lack data, where others remain and nobody asked for them. The axes that
+/// have become others, for people; `num_values` is how many values they had.
+std::string leave_out_missing_data(Draft& draft,
+                                   const std::map<std::string, std::size_t>& num_values) {
+  std::string text;
+  for (PlacedAxis& placed : draft.axes) {
+    const std::vector<AxisValue>& values = placed.axis.values;
+    const auto num_lacking =
+        static_cast<std::size_t>(std::count_if(values.begin(), values.end(), lacks_data));
+    if (placed.is_picked || num_lacking == 0 || num_lacking == values.size()) continue;
+    PlacedAxis remaining;
+    remaining.axis.name = placed.axis.name;
+    std::string labels;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (lacks_data(values[i])) continue;
+      labels += (labels.empty() ? "" : ", ") + values[i].label;
+      remaining.axis.values.push_back(values[i]);
+      remaining.places.push_back(placed.places[i]);
+    }
+    placed = std::move(remaining);
+    text += (text.empty() ? "" : "; ") + placed.axis.name + " is " + labels + ", without " +
+            std::to_string(num_lacking) + " of " + std::to_string(num_values.at(placed.axis.name));
+  }
+  return text;
+}
+
+/// Meshes of the command line on the axis of objects: instead of its values, or beside those that
+/// a change has picked.
+void apply_object_files(const Experiment& experiment, const ConfigRequest& request, Draft& draft) {
+  PlacedAxis* const placed = find_axis(draft, kObjectAxis);
+  if (placed == nullptr) {
+    std::string names;
+    for (const PlacedAxis& other : draft.axes) {
+      names += (names.empty() ? "" : ", ") + other.axis.name;
+    }
+    throw geometry::InvalidInput("--object: " + experiment.slug + " has no axis " + kObjectAxis +
+                                 "; there are " + names);
+  }
+  if (const PlacedAxis* const sizes = size_axis_of(draft);
+      sizes != nullptr && request.object_longest) {
+    throw geometry::InvalidInput("--longest: axis " + sizes->axis.name + " of " + experiment.slug +
+                                 " sets the objects' sizes; pick some with --set " +
+                                 sizes->axis.name + "=...");
+  }
+  const bool is_picked =
+      std::any_of(request.changes.begin(), request.changes.end(),
+                  [](const AxisChange& change) { return change.axis == kObjectAxis; });
+  if (!is_picked) *placed = PlacedAxis{{kObjectAxis, {}}, {}, false};
+  placed->is_picked = true;
+  for (AxisValue& value : internal::object_file_values(request.object_files, request.object_longest,
+                                                       placed->axis.values)) {
+    placed->axis.values.push_back(std::move(value));
+    placed->places.push_back("--object");
+  }
 }
 
 /// Settings belong to one axis: two that set the same would hide one another.
@@ -431,14 +554,24 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
     if (!root.has("quick")) root.at("quick");
     apply_quick(root.at("quick"), draft);
   }
+  std::map<std::string, std::size_t> num_values;
+  for (const PlacedAxis& placed : draft.axes) {
+    num_values[placed.axis.name] = placed.axis.values.size();
+  }
+  if (request.leaves_out_missing_data) add_default_objects(draft);
   for (const AxisChange& change : request.changes) {
     refuse_mistyped(experiment, change, draft);
     apply_change(change, draft);
   }
+  if (!request.object_files.empty()) apply_object_files(experiment, request, draft);
+  if (request.leaves_out_missing_data) {
+    config.left_out = leave_out_missing_data(draft, num_values);
+  }
   require_separate_axes(draft);
 
   config.is_quick = request.is_quick;
-  config.is_modified = !request.changes.empty();
+  config.is_modified =
+      !request.changes.empty() || !request.object_files.empty() || !config.left_out.empty();
   config.sweep = sweep_of(draft, experiment.slug, root.at("seed").unsigned_integer());
   check_cells(experiment, draft, config.sweep);
   return config;

@@ -19,7 +19,7 @@ double scale_of(const ObjectSettings& settings, const geometry::TriangleMesh& me
   if (settings.size) {
     const double extent = settings.size_axis ? extents[*settings.size_axis] : extents.maxCoeff();
     if (!(extent > 0.0)) {
-      throw geometry::DegenerateGeometry(settings.file + settings.shape +
+      throw geometry::DegenerateGeometry(settings.file + settings.packaged + settings.shape +
                                          ": has no extent along its size_axis");
     }
     scale = *settings.size / extent;
@@ -43,7 +43,8 @@ grasp::ObjectFile shape_object(const ObjectSettings& settings) {
 }
 
 grasp::ObjectFile file_object(const ObjectSettings& settings) {
-  const fs::path file = internal::data_file(settings.file);
+  const fs::path file = settings.packaged.empty() ? internal::data_file(settings.file)
+                                                  : internal::packaged_mesh(settings.packaged);
   grasp::ObjectReadOptions options;
   if (settings.size || settings.largest_thickness) {
     options.meters_per_file_unit = scale_of(settings, geometry::read_mesh(file).mesh);
@@ -63,6 +64,13 @@ void turn(const ObjectSettings& settings, grasp::ObjectFile& object) {
   object.mesh = geometry::transformed(object.mesh, X_TO);
 }
 
+/// The file that a cell's object comes from; none for a shape or where it is not there.
+std::optional<fs::path> object_file_of(const ObjectSettings& settings) {
+  if (!settings.file.empty()) return internal::find_data_file(settings.file);
+  if (!settings.packaged.empty()) return internal::find_packaged_mesh(settings.packaged);
+  return std::nullopt;
+}
+
 fs::path hand_file(const std::string& hand) {
   const bool is_in_data_folder = hand.find('/') != std::string::npos;
   return is_in_data_folder ? internal::data_file(hand) : hands::find_hand_file(hand);
@@ -74,7 +82,7 @@ std::string ObjectSettings::key() const {
   const auto text = [](const std::optional<double>& length) {
     return length ? geometry::shortest_decimal(*length) : "";
   };
-  return file + '\n' + shape + '\n' + text(size) + '\n' +
+  return file + '\n' + packaged + '\n' + shape + '\n' + text(size) + '\n' +
          (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness) +
          '\n' + text(rotation_xyz.x()) + ' ' + text(rotation_xyz.y()) + ' ' +
          text(rotation_xyz.z());
@@ -99,9 +107,7 @@ fs::path data_folder() { return internal::data_folder(); }
 
 std::vector<fs::path> planning_inputs(const PlanningSettings& settings) {
   std::vector<fs::path> files;
-  if (!settings.object.file.empty()) {
-    files.push_back(internal::data_folder() / settings.object.file);
-  }
+  if (const auto file = object_file_of(settings.object)) files.push_back(*file);
   try {
     const fs::path description = hand_file(settings.hand);
     files.push_back(description);

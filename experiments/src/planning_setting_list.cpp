@@ -98,6 +98,12 @@ std::vector<PlanningSetting> object_and_hand_settings() {
       {{"file", "", "the object's mesh in the data folder"},
        text(),
        [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
+      {{"packaged", "", "instead of file: a mesh of libcgal-demo, by the name of its file"},
+       text(),
+       [](PlanningSettings& s, const SettingValue& v) {
+         s.object.packaged = v.text();
+         if (v.text().find('/') != std::string::npos) v.fail("must be a file's name, no path");
+       }},
       {{"shape", "", "instead of file: a shape of graspfit shape"},
        text(),
        [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
@@ -367,12 +373,12 @@ std::vector<PlanningSetting> fitting_settings() {
           "refine-iterations", "of contact refinement", between(1, kMostSteps),
           [](PlannerOptions & o) -> auto& { return o.refinement.max_iterations; }),
       integer(
-          "slide-steps", "of touching pads toward their targets; 0: none",
-          between(0, kMostSteps),
+          "slide-steps", "of touching pads toward their targets; 0: none", between(0, kMostSteps),
           [](PlannerOptions & o) -> auto& { return o.refinement.slide_steps; }),
       integer(
           "near-pad-steps", "of each further pad that nearly touches toward the surface; 0: none",
-          between(0, kMostSteps), [](PlannerOptions & o) -> auto& { return o.refinement.near_pad_steps; }),
+          between(0, kMostSteps),
+          [](PlannerOptions & o) -> auto& { return o.refinement.near_pad_steps; }),
       yes_or_no(
           "pre-grasps", "a grasp needs a pre-grasp with a free way in",
           [](PlannerOptions & o) -> auto& { return o.pre_grasps; }),

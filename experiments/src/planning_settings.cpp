@@ -164,8 +164,9 @@ PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
     if (is_outside) given.fail("must be " + range_text(*found));
     found->apply(settings, given);
   }
-  if (settings.object.file.empty() == settings.object.shape.empty()) {
-    throw SettingError("", "an object is either a file or a shape; set one of the two");
+  const ObjectSettings& object = settings.object;
+  if (!object.file.empty() + !object.packaged.empty() + !object.shape.empty() != 1) {
+    throw SettingError("", "an object is a file, a packaged mesh or a shape; set one of the three");
   }
   if (settings.hand.empty()) throw SettingError("", "there is no setting hand");
   settings.options.seed = seed;

@@ -289,7 +289,7 @@ void write_best_grasps(const std::filesystem::path& folder, const Planned& plann
                        std::size_t count) {
   // A grasp file says how its object comes from a file: a shape has none, a turned one no record.
   const ObjectSettings& object = planned.settings.object;
-  if (planned.result.grasps.empty() || object.file.empty()) return;
+  if (planned.result.grasps.empty() || !object.shape.empty()) return;
   if (!object.rotation_xyz.isZero(0.0)) return;
   grasp::PlannerResult best = planned.result;
   best.grasps.resize(std::min(count, best.grasps.size()));

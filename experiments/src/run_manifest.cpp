@@ -129,7 +129,8 @@ std::string to_json(const RunManifest& manifest, const ExperimentConfig& config,
 
 void require_publishable(const ExperimentConfig& config, const fs::path& sources) {
   if (config.is_quick) refuse("--quick runs a few cells only");
-  if (config.is_modified) refuse("--set changes the configuration");
+  if (!config.left_out.empty()) refuse("data are not there: " + config.left_out);
+  if (config.is_modified) refuse("--set and --object change the configuration");
   std::error_code error;
   const fs::path configs = sources / "experiments/configs";
   if (!fs::equivalent(fs::path(config.file).parent_path(), configs, error)) {

@@ -53,26 +53,6 @@ CellRecord run_cell(const Experiment& experiment, const Cell& cell, const fs::pa
   }
 }
 
-/// "object=bunny hand=barrett".
-std::string labels_text(const ParameterSweep& sweep, const Cell& cell) {
-  std::string text;
-  for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
-    text += (text.empty() ? "" : " ") + sweep.axes[a].name + '=' + cell.labels[a];
-  }
-  return text;
-}
-
-/// The text of a CSV field.
-std::string text_of(const std::string& field) {
-  if (!field.starts_with('"')) return field;
-  std::string text;
-  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
-    text += field[i];
-    if (field[i] == '"') ++i;  // quotes are doubled
-  }
-  return text;
-}
-
 /// A run in progress.
 class Run {
  public:
@@ -146,7 +126,7 @@ class Run {
     if (record.status == "failed" && !record.is_final) ++progress_.num_not_final;
     if ((is_skipped || record.status == "failed") && index < first_without_result_) {
       first_without_result_ = index;
-      progress_.first_reason = labels_text(sweep_, cell) + ": " + text_of(record.reason);
+      progress_.first_reason = cell.key + ": " + internal::text_of_field(record.reason);
     }
     if (callback_) callback_(progress_);
   }
@@ -269,6 +249,7 @@ RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& conf
   if (options.shard) {
     internal::write_manifest(config, manifest, done, folder);
   } else {
+    internal::require_some_result(done);
     internal::write_tables(experiment, config, manifest, done, journal, folder);
   }
   return done;

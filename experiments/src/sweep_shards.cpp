@@ -73,7 +73,7 @@ void require_all(const ParameterSweep& sweep, const CellJournal& journal, const 
                                " first; run their shards, or without --shard all that is left");
 }
 
-RunProgress counts_of(const CellJournal& journal) {
+RunProgress counts_of(const ParameterSweep& sweep, const CellJournal& journal) {
   RunProgress counts;
   counts.num_cells = journal.num_cells();
   for (std::size_t i = 0; i < counts.num_cells; ++i) {
@@ -82,6 +82,9 @@ RunProgress counts_of(const CellJournal& journal) {
     if (record.status != "skipped") ++counts.num_done;
     if (record.status == "failed") ++counts.num_failed;
     if (record.status == "failed" && !record.is_final) ++counts.num_not_final;
+    if (record.status != "ok" && counts.first_reason.empty()) {
+      counts.first_reason = sweep.cell(i).key + ": " + internal::text_of_field(record.reason);
+    }
   }
   counts.num_resumed = counts.num_done;
   return counts;
@@ -151,7 +154,8 @@ RunProgress merge_shards(const Experiment& experiment, const ExperimentConfig& c
     }
   }
   require_all(config.sweep, journal, folder);
-  const RunProgress counts = counts_of(journal);
+  const RunProgress counts = counts_of(config.sweep, journal);
+  internal::require_some_result(counts);
   manifest.inputs = journal.inputs();
   internal::write_tables(experiment, config, manifest, counts, journal, folder);
   return counts;

@@ -132,6 +132,22 @@ void make_folder(const fs::path& folder) {
   if (error) throw geometry::IoError(folder.string() + ": " + error.message());
 }
 
+std::string text_of_field(const std::string& field) {
+  if (!field.starts_with('"')) return field;
+  std::string text;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
+    text += field[i];
+    if (field[i] == '"') ++i;  // quotes are doubled
+  }
+  return text;
+}
+
+void require_some_result(const RunProgress& counts) {
+  if (counts.num_skipped == 0 || counts.num_skipped < counts.num_cells) return;
+  throw MissingData("all " + std::to_string(counts.num_cells) +
+                    " cells were skipped, so there is no table; the first, " + counts.first_reason);
+}
+
 void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,
                     const RunProgress& counts, const fs::path& folder) {
   const nlohmann::ordered_json json = {{"total", counts.num_cells},

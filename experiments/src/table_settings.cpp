@@ -39,7 +39,7 @@ RestSettings rest_of(const SettingValue& value) {
 PlanningSettings object_settings(const Cell& cell, const nlohmann::json& cell_settings,
                                  const SettingValue& value) {
   nlohmann::json merged = cell_settings;
-  for (const char* key : {"file", "shape", "size_m", "size_axis"}) {
+  for (const char* key : {"file", "packaged", "shape", "size_m", "size_axis"}) {
     if (cell_settings.contains(key)) {
       throw SettingError(key, "must be among those of an object of `objects`");
     }
@@ -59,7 +59,8 @@ std::vector<Column> table_setting_names() {
   return {
       {"title", "", "what pictures and pages are headed with"},
       {"objects", "",
-       "array of {name, file or shape, size_m, size_axis, start, goal}; start and goal are "
+       "array of {name, file, packaged or shape, size_m, size_axis, start, goal}; start and goal "
+       "are "
        "{up: direction of the mesh that is up, of all ways of resting the nearest; turn_deg: "
        "about z; at_m: [x, y] under the center of mass}"},
       {"home", "",
@@ -90,7 +91,7 @@ TableSettings table_settings(const Cell& cell) {
   std::set<std::string> names;
   for (const SettingValue& item : value("objects").items()) {
     item.require_members_among(
-        {"name", "file", "shape", "size_m", "size_axis", "start", "goal", "note"});
+        {"name", "file", "packaged", "shape", "size_m", "size_axis", "start", "goal", "note"});
     const PlanningSettings planning = object_settings(cell, json, item);
     settings.hand = planning.hand;
     settings.tidying.move.planner = planning.options;

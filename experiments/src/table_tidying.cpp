@@ -112,8 +112,8 @@ Table load_table(const TableSettings& settings) {
     start.push_back(pose(object.start));
     goal.push_back(pose(object.goal));
     objects.push_back({object.name, geometry::MeshQuery(file->mesh), center});
-    const bool is_shape = !object.object.shape.empty();
-    records.push_back({object.name, is_shape ? file->record.file : object.object.file,
+    const std::string& in_data_folder = object.object.file;
+    records.push_back({object.name, in_data_folder.empty() ? file->record.file : in_data_folder,
                        file->record.sha256, file->record.meters_per_file_unit, start.back(),
                        goal.back()});
   }

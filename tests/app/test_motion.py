@@ -2,15 +2,8 @@
 
 import csv
 import json
-import os
-import pathlib
-import shutil
 
-from program import SOURCE_DIR, ProgramTest, main, run
-
-
-def data_folder():
-    return pathlib.Path(os.environ.get("GRASPFIT_DATA", SOURCE_DIR.parent / "shared"))
+from program import ProgramTest, main, run
 
 
 class Motion(ProgramTest):
@@ -18,8 +11,6 @@ class Motion(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        if not (data_folder() / "meshes/paper/flower_pot.obj").is_file():
-            self.skipTest("no meshes; set GRASPFIT_DATA")
         out = self.folder / "out"
         done = run("experiment", "run", "table_tidying", "--quick", "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -64,14 +55,9 @@ class Motion(ProgramTest):
         self.assertIn('"check":"not_free"', page.read_text(encoding="utf-8"))
 
         # Another mesh than the one that was moved.
-        folder = self.folder / "meshes/paper"
-        folder.mkdir(parents=True)
-        for name in ("flower_pot.obj", "bottle.obj"):
-            shutil.copy(data_folder() / "meshes/paper" / name, folder / name)
-        (folder / "bottle.obj").chmod(0o644)
-        with open(folder / "bottle.obj", "a", encoding="utf-8") as stream:
-            stream.write("# changed\n")
-        self.assert_refused("motion", self.motion, "--meshes", self.folder, says=["bottle.obj", "SHA-256"])
+        motion["objects"][1].update(file=self.write_torus("bottle.off").name, sha256="0" * 64)
+        other = self.write("other.json", json.dumps(motion))
+        self.assert_refused("motion", other, "--meshes", self.folder, says=["bottle.off", "SHA-256"])
 
 
 class BadFlags(ProgramTest):

@@ -92,6 +92,30 @@ TEST_CASE("Quick and changed configurations say so", "[experiments][config]") {
   CHECK(config_of().identity() == config_of().identity());
 }
 
+TEST_CASE("Quick may have values of its own beside those of the axis", "[experiments][config]") {
+  const auto sweep_with = [](const std::string& picks) {
+    const TemporaryFolder folder;
+    return read_config(counting_experiment(), folder.write("counting.json", with("[\"b\"]", picks)),
+                       {true, {}})
+        .sweep;
+  };
+  const ParameterSweep sweep = sweep_with(R"([{"name": "d", "amount": 9}, "b"])");
+  REQUIRE(sweep.axes[0].values.size() == 2);
+  CHECK(sweep.axes[0].values[0].label == "b");
+  CHECK(nlohmann::json::parse(sweep.cell(4).settings).at("amount") == 9);
+  CHECK(sweep_with(R"([{"name": "d", "amount": 9}])").axes[0].values.size() == 1);
+  CHECK_THROWS_WITH(
+      sweep_with(R"([{"name": "a", "amount": 9}])"),
+      graspfit::testing::Contains("/quick/axes/letter/0: is the second value named a"));
+}
+
+TEST_CASE("Meshes of the command line need an axis of objects", "[experiments][config]") {
+  ConfigRequest request;
+  request.object_files = {"mug.obj"};
+  CHECK(message_of(kCountingConfig, request) ==
+        "--object: counting has no axis object; there are letter, step, seed");
+}
+
 TEST_CASE("Configuration errors name file, key and what is allowed", "[experiments][config]") {
   const auto check = [](const std::string& message, const std::vector<std::string>& parts) {
     INFO(message);

@@ -2,10 +2,17 @@
 #include <numbers>
 #include <set>
 
+#include "graspfit/experiments/data_needs.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
+#include "internal/data_files.hpp"
 #include "internal/planning_setting_list.hpp"
 #include "support/catch.hpp"
+#include "support/environment_variable.hpp"
+#include "support/skip.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/test_data.hpp"
 
 using namespace graspfit::experiments;
 namespace grasp = graspfit::grasp;
@@ -74,7 +81,7 @@ TEST_CASE("The paper's angle keeps its bits on the way through degrees",
 TEST_CASE("Settings that cannot be used say which and what is allowed",
           "[experiments][planning_settings]") {
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
-      {R"(, "styles": "power")", {"styles", "is no setting; there are file, shape"}},
+      {R"(, "styles": "power")", {"styles", "is no setting; there are file, packaged, shape"}},
       {R"(, "style": "pinch")", {"style", "is \"pinch\", must be one of precision|power"}},
       {R"(, "resolution": 20.5)", {"resolution", "must be an integer"}},
       {R"(, "resolution": 1)", {"resolution", "is 1, must be in [4, 512]"}},
@@ -86,7 +93,9 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       {R"(, "size_axis": "w")", {"size_axis", "must be one of x|y|z"}},
       {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
       {R"(, "fingers": [])", {"fingers", "at least one value"}},
-      {R"(, "file": "ball.obj")", {"", "either a file or a shape"}},
+      {R"(, "file": "ball.obj")", {"", "a file, a packaged mesh or a shape; set one"}},
+      {R"(, "packaged": "cube.off")", {"", "a file, a packaged mesh or a shape; set one"}},
+      {R"(, "packaged": "../cube.off")", {"packaged", "must be a file's name, no path"}},
       {R"(, "slide-steps": 99999)", {"slide-steps", "is 99999, must be in [0, 1000]"}},
       {R"(, "refine": "yes")", {"refine", "must be true or false"}}};
   for (const auto& [members, expected] : cases) {
@@ -197,6 +206,56 @@ TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings
   CHECK_THROWS_WITH(load_object(missing), graspfit::testing::Contains("GRASPFIT_DATA"));
   CHECK_THROWS_AS(load_object(missing), MissingData);
   CHECK_THROWS_AS(load_hand("hands/no_such_hand.urdf"), MissingData);
+  missing = {};
+  missing.packaged = "no_such_mesh.off";
+  CHECK_THROWS_WITH(load_object(missing), graspfit::testing::Contains("GRASPFIT_PACKAGED_MESHES"));
+  CHECK_THROWS_AS(load_object(missing), MissingData);
+}
+
+TEST_CASE("Settings say what they need and whether it is there",
+          "[experiments][planning_settings]") {
+  const auto needs_of = [](const std::string& settings) { return data_needs(settings); };
+  CHECK(needs_of(R"({"hand": "barrett", "resolution": 20, "note": "file"})").empty());
+  const auto shape = needs_of(R"({"shape": "torus", "size_m": 0.1})");
+  REQUIRE(shape.size() == 1);
+  CHECK(shape[0].source == DataSource::BuiltIn);
+  CHECK(shape[0].is_there);
+  const auto own = needs_of(R"({"file": "/no/such/mesh.off"})");
+  CHECK(own.at(0).source == DataSource::OwnFile);
+  CHECK_FALSE(own.at(0).is_there);
+  const auto packaged = needs_of(R"({"packaged": "no_such_mesh.off"})");
+  CHECK(packaged.at(0).source == DataSource::Packaged);
+  CHECK_FALSE(packaged.at(0).is_there);
+  CHECK_FALSE(has_all_data(R"({"packaged": "no_such_mesh.off"})"));
+  CHECK(needs_of(R"({"file": "meshes/paper/bunny.off"})").at(0).source ==
+        DataSource::DataFolderOrPackaged);
+  // Nested, and hands that are not shipped.
+  const auto nested = needs_of(
+      R"({"objects": [{"shape": "mug"}, {"file": "meshes/none.obj"}], "hand": "hands/none.urdf"})");
+  REQUIRE(nested.size() == 3);
+  CHECK(nested[0].name == "hands/none.urdf");
+  CHECK(nested[0].source == DataSource::DataFolder);
+  CHECK(nested[1].source == DataSource::BuiltIn);
+  CHECK(nested[2].name == "meshes/none.obj");
+  CHECK(nested[2].source == DataSource::DataFolder);
+}
+
+TEST_CASE("Meshes that libcgal-demo has, too, are read from there, and only the same bytes",
+          "[experiments][planning_settings]") {
+  const auto bunny = graspfit::testing::packaged_mesh("bunny00.off");
+  if (!bunny) GRASPFIT_SKIP_TEST("no packaged meshes; set GRASPFIT_PACKAGED_MESHES");
+  const graspfit::testing::TemporaryFolder folder;
+  const std::string text = graspfit::geometry::read_file(*bunny);
+  const auto find_with = [&](const std::string& bytes) {
+    folder.write("bunny00.off", bytes);
+    const graspfit::testing::EnvironmentVariable data("GRASPFIT_DATA",
+                                                      (folder.path() / "none").string());
+    const graspfit::testing::EnvironmentVariable packaged("GRASPFIT_PACKAGED_MESHES",
+                                                          folder.path().string());
+    return internal::find_data_file("meshes/paper/bunny.off");
+  };
+  CHECK(find_with(text) == folder.path() / "bunny00.off");
+  CHECK_FALSE(find_with(text + "# another version\n").has_value());
 }
 
 TEST_CASE("Every axis that sweeps are made of is a setting by name",

@@ -12,6 +12,7 @@
 
 #include "counting_experiment.hpp"
 #include "graspfit/experiments/sweep_runner.hpp"
+#include "graspfit/experiments/sweep_shards.hpp"
 #include "graspfit/geometry/atomic_file.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
@@ -234,6 +235,29 @@ TEST_CASE("Data that is missing is skipped, said, and tried again", "[experiment
   CHECK(read_file(out / "counting.csv") == expected);
 }
 
+TEST_CASE("A run whose cells are all skipped is an error, and a later one makes up for it",
+          "[experiments][sweep_runner]") {
+  const TemporaryFolder folder;
+  const std::string expected = undisturbed_table(folder);
+  const ExperimentConfig config = config_in(folder);
+  const fs::path out = folder.path() / "results";
+  Experiment without = counting_experiment();
+  without.run = [](const Cell&, const fs::path&) -> CellResult {
+    throw MissingData("b.off is not there; set \"IT\"");
+  };
+  CHECK_THROWS_WITH(run_sweep(without, config, {}, {out, 2}),
+                    "all 24 cells were skipped, so there is no table; the first, letter=a step=0 "
+                    "seed=1: b.off is not there; set \"IT\"");
+  CHECK_FALSE(fs::exists(out / "counting.csv"));
+  // Of a shard it is none, of their merged whole it is.
+  const fs::path parts = folder.path() / "parts";
+  CHECK(run_sweep(without, config, {}, {parts, 1, Shard{1, 1}}).num_skipped == 24);
+  CHECK_THROWS_WITH(merge_shards(without, config, {}, parts),
+                    graspfit::testing::Contains("all 24 cells were skipped"));
+  CHECK(run_sweep(counting_experiment(), config, {}, {out, 2}).num_resumed == 0);
+  CHECK(read_file(out / "counting.csv") == expected);
+}
+
 TEST_CASE("Cells that failed for a reason that may pass are counted, not published, tried again",
           "[experiments][sweep_runner]") {
   const TemporaryFolder folder;
@@ -292,7 +316,8 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
     }
     throw MissingData("nothing");
   };
-  run_sweep(nested, config_in(folder), {}, {folder.path() / "busy", 1});
+  CHECK_THROWS_AS(run_sweep(nested, config_in(folder), {}, {folder.path() / "busy", 1}),
+                  MissingData);
   CHECK_THAT(refusal, graspfit::testing::Contains("is in use by another run"));
 }
 

@@ -4,11 +4,11 @@
 
 #include "graspfit/experiments/experiment.hpp"
 #include "internal/method_summary.hpp"
+#include "internal/object_axis.hpp"
 
 namespace graspfit::experiments::internal {
 
-/// Axes that tables over methods have.
-inline constexpr const char* kObjectAxis = "object";
+/// The axis of methods; that of objects is `kObjectAxis`.
 inline constexpr const char* kMethodAxis = "planner";
 
 /// An experiment whose cell is one run of one planning method on one object until it has as many

@@ -24,6 +24,13 @@ void require_own_folder(const std::filesystem::path& folder, const std::string& 
 /// Makes a folder. @throws IoError.
 void make_folder(const std::filesystem::path& folder);
 
+/// The text that a CSV field of a journal is.
+std::string text_of_field(const std::string& field);
+
+/// Refuses to make tables without results. @throws MissingData, with the first reason, if all cells
+/// were skipped.
+void require_some_result(const RunProgress& counts);
+
 /// The files of `run_sweep` from a journal that knows all cells: tables, then the manifest. Memory
 /// holds one row, but for details that a summary is made of. `manifest` gets the tables' hashes.
 void write_tables(const Experiment& experiment, const ExperimentConfig& config,

@@ -15,8 +15,10 @@ namespace graspfit::experiments {
 
 /// What an object of a cell is.
 struct ObjectSettings {
-  std::string file;   ///< In the data folder; empty: `shape`.
-  std::string shape;  ///< Of `geometry::named_shape`, in meters.
+  // One of these three; the others are empty.
+  std::string file;      ///< In the data folder, or an absolute path.
+  std::string packaged;  ///< A mesh of libcgal-demo by the name of its file.
+  std::string shape;     ///< Of `geometry::named_shape`, in meters.
   std::optional<double>
       size;  ///< Length of the bounding box along `size_axis` [m]; empty: as it is.
   std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
@@ -40,7 +42,7 @@ struct PlanningSettings {
 
 /// Names of all settings with their units and meanings:
 ///
-///     file or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
+///     file, packaged or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
 ///     rotation_deg, hand
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as

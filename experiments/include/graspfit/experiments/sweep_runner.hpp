@@ -70,7 +70,8 @@ struct RunOptions {
 ///
 /// @throws InvalidInput if the folder holds results of another configuration, another build or
 /// other inputs; IoError if it is in use by another run or cannot be written, if threads for `jobs`
-/// cannot be started, or if an input changes during the run.
+/// cannot be started, or if an input changes during the run; MissingData, and no tables, if all
+/// cells were skipped. A shard of skipped cells is no error: another one may have results.
 RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& config,
                       RunManifest manifest, const RunOptions& options,
                       const std::function<void(const RunProgress&)>& progress = {});

@@ -17,7 +17,8 @@ namespace graspfit::experiments {
 ///
 /// @throws InvalidInput if there are no shards, if they are of another configuration, another build
 /// or other inputs, if two have different results of a cell, or if cells are missing (those there
-/// are have been taken over then); IoError if a shard or the folder is in use.
+/// are have been taken over then); IoError if a shard or the folder is in use; MissingData if all
+/// cells were skipped.
 RunProgress merge_shards(const Experiment& experiment, const ExperimentConfig& config,
                          RunManifest manifest, const std::filesystem::path& folder);
 
