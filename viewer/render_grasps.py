@@ -273,9 +273,9 @@ def pre_grasp_parts(grasp, parts):
 class Painter(Canvas):
     """Draws grasps into pictures of one size."""
 
-    def __init__(self, width, height, up, scene):
+    def __init__(self, width, height, up, scene, note=""):
         super().__init__(width, height)
-        self.up, self.scene = up, scene
+        self.up, self.scene, self.note = up, scene, note
 
     def paint(self, grasp, parts):
         """PNG file of one grasp as bytes."""
@@ -391,6 +391,8 @@ class Painter(Canvas):
             measures += f"   penetration {1000 * grasp['penetration']:.2f} mm"
         self.text(top, title, 24 * s, 40 * s, 19, COLORS["ink"], bold=True)
         self.text(top, measures, 24 * s, 12 * s, 16, COLORS["ink"])
+        if self.note:
+            self.text(top, self.note, (self.width - 24) * s, 42 * s, 13, COLORS["ink"], align="right")
         bottom = self.renderer(window, (0.0, 0.0, 1.0, 0.055), 0)
         self.add_legend(
             bottom,
@@ -423,6 +425,7 @@ def main():
     parser.add_argument(
         "--up", choices="xyz", default="y", help="axis of O that points up in the picture (default y)"
     )
+    parser.add_argument("--note", metavar="TEXT", default="", help="a line at the upper right")
     arguments = parser.parse_args()
     try:
         file = arguments.folder
@@ -440,7 +443,7 @@ def main():
             if not path.is_file():
                 raise BadInput(f"{path}: No such file")
         go_under_xvfb()
-        painter = Painter(arguments.width, arguments.height, "xyz".index(arguments.up), scene)
+        painter = Painter(arguments.width, arguments.height, "xyz".index(arguments.up), scene, arguments.note)
         for grasp in scene["grasps"]:
             name = f"grasp_{grasp['number']:03d}"
             picture = painter.paint(grasp, read_parts(file.parent / f"{name}.obj"))

@@ -12,6 +12,7 @@
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_metric.hpp"
 #include "metric_report.hpp"
+#include "object_loading.hpp"
 #include "recorded_files.hpp"
 #include "text_table.hpp"
 
@@ -224,6 +225,7 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
   const auto tool = flags.choice<grasp::WrenchTool>("convention");
   const grasp::GraspFile file = grasp::read_grasps(flags.positional());
   const geometry::TriangleMesh mesh = load_recorded_object(flags, file);
+  warn_of_differences("evaluate", file.object, file.surroundings.obstacles);
   const grasp::RecordedScene scene(file, mesh, load_recorded_surroundings(flags, file));
 
   std::vector<Comparison> comparisons;

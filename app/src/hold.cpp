@@ -20,6 +20,7 @@
 #include "graspfit/hold_test/hold_test.hpp"
 #include "graspfit/viewer/replay_page.hpp"
 #include "hold_flags.hpp"
+#include "object_loading.hpp"
 #include "output_folder.hpp"
 #include "pictures.hpp"
 #include "progress_bar.hpp"
@@ -298,6 +299,8 @@ ExitCode run_hold(const std::vector<std::string>& arguments) {
   bench.file = grasp::read_grasps(flags.positional());
   require_grasps(request, bench.file.grasps.size());
   bench.mesh_O = load_recorded_object(flags, bench.file);
+  progress.clear();
+  warn_of_differences("hold", bench.file.object);
   progress.show("convex pieces");
   bench.hand = hold_test::prepare_hold_hand(bench.file.hand, request.pieces);
   bench.object = hold_test::prepare_hold_object(bench.mesh_O, request.pieces);

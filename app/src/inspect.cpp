@@ -12,6 +12,7 @@
 #include "graspfit/geometry/shape_diameter.hpp"
 #include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/object_difference.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "object_loading.hpp"
 #include "output_folder.hpp"
@@ -99,6 +100,10 @@ void print_mesh(const grasp::ObjectFile& object) {
                             rounded_text(step.hausdorff_bound) + " m");
   }
   if (record.repairs.empty()) print_row("repair", "nothing changed");
+  if (const auto reason = grasp::reason_against_wrap(record)) print_row("wrap", *reason);
+  if (const auto difference = grasp::difference_from_file(record)) {
+    print_row("difference", *difference);
+  }
   print_row("after repair", analysis_text(record.analysis));
   print_row("extents", extents_text(object.mesh));
   print_row("box", vector_text(record.analysis.box.min(), 6) + " to " +

@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/grasp/object_difference.hpp"
+#include "text_table.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -110,7 +113,9 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
   if (!flags.has("obstacle") && !flags.is_default("obstacle-unit")) {
     throw UsageError("--obstacle-unit means nothing without --obstacle");
   }
+  // Repair is as for the object, so that what a refusal advises can be done.
   grasp::ObjectReadOptions options;
+  options.repair = object_read_options(flags).repair;
   options.meters_per_file_unit = meters_per(flags, "obstacle-unit");
   for (const std::string& file : flags.texts("obstacle")) {
     grasp::ObjectFile obstacle = grasp::read_object_file(file, options);
@@ -135,12 +140,25 @@ void require_solid(const grasp::ObjectFile& object) {
       "; --repair repair mends what it can");
 }
 
+void warn_of_differences(const std::string& command, const grasp::ObjectRecord& object,
+                         const std::vector<grasp::ObjectRecord>& obstacles) {
+  const auto say = [&command](const std::optional<std::string>& line) {
+    if (line) std::fprintf(stderr, "graspfit %s: %s\n", command.c_str(), line->c_str());
+  };
+  say(grasp::reason_against_wrap(object));
+  say(grasp::difference_from_file(object));
+  for (const grasp::ObjectRecord& obstacle : obstacles) say(grasp::difference_from_file(obstacle));
+}
+
 std::string extents_text(const geometry::TriangleMesh& mesh) {
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
+  constexpr double kSmall = 1e-3;  // [m]
+  const bool is_small = size.maxCoeff() < kSmall;
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     if (axis > 0) text += " x ";
-    text += shortest_decimal(std::round(size[axis] * 1e6) / 1e6);
+    text += is_small ? significant_decimal(size[axis], 4)
+                     : shortest_decimal(std::round(size[axis] * 1e6) / 1e6);
   }
   return text + " m";
 }

@@ -2,6 +2,7 @@
 
 #include <boost/program_options/options_description.hpp>
 #include <string>
+#include <vector>
 
 #include "command_line.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
@@ -36,7 +37,12 @@ grasp::ObjectFile load_object(const Flags& flags);
 /// left as it is may not).
 void require_solid(const grasp::ObjectFile& object);
 
-/// "0.15 x 0.148 x 0.116 m", rounded to a micrometer.
+/// Says on the error output, in a line each, where the solids of these records differ from their
+/// files, and why a wrap that was asked for was not made.
+void warn_of_differences(const std::string& command, const grasp::ObjectRecord& object,
+                         const std::vector<grasp::ObjectRecord>& obstacles = {});
+
+/// "0.15 x 0.148 x 0.116 m", rounded to a micrometer; four digits each below a millimeter.
 std::string extents_text(const geometry::TriangleMesh& mesh);
 
 }  // namespace graspfit::app

@@ -83,8 +83,11 @@ void require_pictures(const std::string& flag) {
   }
 }
 
-void draw_pictures(const fs::path& folder) {
-  run_script("--pictures", {find_script("--pictures", kGraspScript).string(), folder.string()});
+void draw_pictures(const fs::path& folder, const std::string& note) {
+  std::vector<std::string> arguments = {find_script("--pictures", kGraspScript).string(),
+                                        folder.string()};
+  if (!note.empty()) arguments.push_back("--note=" + note);
+  run_script("--pictures", arguments);
 }
 
 void require_animations(const std::string& flag) {

@@ -10,8 +10,9 @@ namespace graspfit::app {
 void require_pictures(const std::string& flag);
 
 /// Draws grasp_NNN.png of every grasp of `folder`/grasps.json into `folder`, with VTK by the script
-/// that comes with the viewer. @throws IoError with the script's own words if it fails.
-void draw_pictures(const std::filesystem::path& folder);
+/// that comes with the viewer. `note` is a line in each of them; empty: none.
+/// @throws IoError with the script's own words if it fails.
+void draw_pictures(const std::filesystem::path& folder, const std::string& note);
 
 /// Draws a hand's poses into the file `picture` from a scene of viewer::hand_scene_json. Nothing is
 /// left behind if that fails. @throws IoError with the script's own words if it fails.

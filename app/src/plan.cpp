@@ -14,6 +14,7 @@
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/object_difference.hpp"
 #include "graspfit/viewer/page.hpp"
 #include "hand_loading.hpp"
 #include "hold_filter.hpp"
@@ -178,12 +179,13 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
     page.model = &object;
     page.clip_thickness = file.clip_thickness;
     page.surroundings = &surroundings;
+    page.note = grasp::difference_from_file(file.object).value_or("");
     viewer::write_page(folder / "grasps.html", page);
   }
   if (flags.has("pictures")) {
     progress.show("drawing pictures");
     try {
-      draw_pictures(folder);
+      draw_pictures(folder, grasp::difference_from_file(file.object).value_or(""));
     } catch (const geometry::IoError& error) {
       // Minutes of planning are not thrown away for want of a display.
       out.commit("grasps.json");
@@ -285,6 +287,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   const grasp::ObjectFile object_file = load_object(flags);
   require_solid(object_file);
   const LoadedSurroundings around = load_surroundings(flags, object_file.mesh);
+  progress.clear();
+  warn_of_differences("plan", object_file.record, around.record.obstacles);
   progress.show("voxels and contact scores");
   grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =

@@ -137,6 +137,41 @@ class Inspect(InspectTest):
         self.assertIn("wrapped ", self.row(text, "repair"))
         self.assertIn("closed, manifold, outward", self.row(text, "after repair"))
 
+    def test_refusals_name_what_helps(self):
+        vertices, faces = program.box(0.1, 0.08, 0.06)
+        path = self.write("tray.off", program.off_text(vertices, faces[2:]))
+        self.assert_refused("inspect", path, says=["--max-hole 1 fills it", "--wrap"])
+        self.inspect(path, "--max-hole", "1")
+        self.assert_refused("inspect", self.write("cup.fbx", "?"), says=["Blender", "assimp export"])
+
+    def test_a_wrap_that_is_not_needed_says_why(self):
+        vertices, faces = program.box(0.04, 0.04, 0.16)
+        path = self.write("open.off", program.off_text(vertices, faces[2:]))
+        self.assertEqual(self.row(self.inspect(path, "--wrap"), "wrap"),
+                         "--wrap: not needed: the mesh was closed by filling 1 hole")
+        self.assertEqual(self.row(self.inspect(self.write_torus(), "--wrap"), "wrap"),
+                         "--wrap: not needed: the mesh is closed as it is")
+        self.assertEqual(
+            self.row(self.inspect(self.write_torus(), "--wrap", "--repair", "strict"), "wrap"),
+            "--wrap: not made: only --repair repair changes the mesh")
+
+    def test_tiny_extents_are_not_rounded_away(self):
+        text = self.inspect(self.write_torus(), "--longest", "1e-9", "--no-thickness")
+        self.assertEqual(self.row(text, "extents"), "1e-09 x 1e-09 x 2.857e-10 m")
+
+    def test_pipes_are_refused_at_once(self):
+        path = self.folder / "pipe.stl"
+        os.mkfifo(path)
+        for command in ("inspect", "plan"):
+            self.assert_refused(command, path, says=["pipe.stl", "is not a regular file"])
+        for command in ("evaluate", "hold"):
+            self.assert_refused(command, path, says=["pipe.stl", "is not a regular file"])
+
+    def test_a_glb_of_22_bytes_is_refused_at_once(self):
+        path = self.write("x.glb", b"glTF" + (2).to_bytes(4, "little") + (22).to_bytes(4, "little") +
+                          (4200000000).to_bytes(4, "little") + b"JSON{}")
+        self.assert_refused("inspect", path, says="chunk 0 states 4200000000 bytes, 2 are left")
+
 
 class VtkFiles(InspectTest):
     def test_files_open_in_vtk_and_agree_with_the_report(self):

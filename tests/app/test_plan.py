@@ -49,6 +49,24 @@ class Plan(program.ProgramTest):
                 ply = (self.folder / planner / "guidance.ply").read_text()
                 self.assertIn(f"element vertex {len(lines) - 1}\n", ply)
 
+    def test_a_solid_that_differs_from_the_file_is_said_everywhere(self):
+        # One face of the torus is missing: 1 of 512 pairs, about 14 mm wide, filled flat.
+        vertices, faces = program.torus(sides=8, rings=16)
+        self.write("torus.off", program.off_text(vertices, faces[2:]))
+        done = self.plan("--page")
+        said = re.fullmatch(r"graspfit plan: (torus\.off: the solid differs from the file: filled 1 "
+                            r"hole \(volume [+-]?0(\.\d)? %, surface up to (\d\.?\d*) % of the "
+                            r"extent\))\n", done.stderr)
+        self.assertTrue(said, done.stderr)
+        self.assertGreater(float(said[3]), 1.0)
+        page = (self.folder / "out/grasps.html").read_text()
+        self.assertIn('"note":"' + said[1] + '"', page)
+        again = program.run("evaluate", self.folder / "out/grasps.json")
+        self.assertEqual(again.stderr, f"graspfit evaluate: {said[1]}\n")
+        held = program.run("hold", self.folder / "out/grasps.json", "--grasp", "1")
+        if held.returncode == 0:
+            self.assertEqual(held.stderr, f"graspfit hold: {said[1]}\n")
+
     def test_flags_of_another_planner_are_refused(self):
         for flags in (("--gs-sampling", "box-rays"), ("--planner", "gs", "--ma-samples", "5"),
                       ("--planner", "none"), ("--export-guidance",)):

@@ -45,6 +45,13 @@ TEST_CASE("Names cannot break out of the page's text or data", "[viewer][page]")
   CHECK_THAT(html, Contains("\\u003c/script>\\u003c!--"));
 }
 
+TEST_CASE("A note is in the page's data, and without one there is none", "[viewer][page]") {
+  viewer::PageInput input = sample_input();
+  CHECK(page_html(input).find("\"note\":") == std::string::npos);
+  input.note = "cup.off: the solid differs from the file: filled 5 holes";
+  CHECK_THAT(page_html(input), Contains("\"note\":\"" + input.note + "\""));
+}
+
 TEST_CASE("Link meshes are in the page once, however many grasps there are", "[viewer][page]") {
   viewer::PageInput input = sample_input();
   input.grasps.resize(1);

@@ -17,6 +17,7 @@ namespace graspfit::viewer {
 /// What a page shows. All positions in the object frame O, in meters.
 struct PageInput {
   std::string title;                 ///< Heading and window title, plain text in UTF-8.
+  std::string note;                  ///< A line below the heading, plain text; empty: none.
   geometry::TriangleMesh object_O;   ///< With at least one face.
   hands::HandModel hand;             ///< Link meshes are stored once, poses per grasp: of itself,
                                      ///< and of its pre-grasp and squeeze where it has them.
