@@ -7,6 +7,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/json_bounds.hpp"
+#include "graspfit/geometry/path_text.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "internal/derivation.hpp"
 #include "internal/hand_size.hpp"
@@ -100,7 +101,8 @@ std::string completed_sidecar_text(const HandSources& sources, Findings& finding
   const HandModel& tree = *sources.tree;
   const std::string description =
       sources.sidecar.description.empty()
-          ? "Derived by graspfit from " + fs::path(tree.description_file).filename().string() +
+          ? "Derived by graspfit from " +
+                geometry::path_text(fs::path(tree.description_file).filename().string()) +
                 "; edit what is wrong, delete a member to derive it again."
           : sources.sidecar.description;
   return sidecar_text(completed(tree, sources.sidecar, findings), tree.name, description);

@@ -360,7 +360,8 @@ std::string sidecar_text(const Sidecar& sidecar, const std::string& hand,
     root["exclusions"] = nlohmann::ordered_json::array();
     for (const auto& [a, b] : *sidecar.exclusions) root["exclusions"].push_back({a, b});
   }
-  return root.dump(1) + '\n';
+  // The name of a hand may be that of a file, whose bytes are anything.
+  return root.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace graspfit::hands::internal
