@@ -17,6 +17,7 @@
 #include "internal/finding_text.hpp"
 #include "internal/findings.hpp"
 #include "internal/hand_assembly.hpp"
+#include "internal/hand_size.hpp"
 #include "internal/joint_tree.hpp"
 
 namespace graspfit::hands {
@@ -315,8 +316,12 @@ HandCheck check_hand(const std::filesystem::path& description_file) {
     look_at_masses(*sources.tree, findings);
     if (!sources.sidecar.couplings) internal::look_for_lost_couplings(joints, findings);
   }
-  if (check.model) {
+  const bool is_hand_sized = sources.tree && !findings.has_faults() &&
+                             internal::extent_at_rest(*sources.tree) <= internal::kLargestHand;
+  if (check.model && is_hand_sized) {
     findings.attempt([&] { look_at_whole(*check.model, findings); });
+  } else if (check.model) {
+    findings.note("", "how it closes is looked at once its lengths are meters");
   }
   check.findings = findings.list();
   std::stable_sort(check.findings.begin(), check.findings.end(),

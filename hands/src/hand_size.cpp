@@ -16,7 +16,6 @@ namespace graspfit::hands::internal {
 
 namespace {
 
-constexpr double kLargestHand = 1.0;    // [m]
 constexpr double kSmallestHand = 0.01;  // [m]
 constexpr double kFarthest = 1e4;       // [m]
 
@@ -27,17 +26,6 @@ struct Unit {
 };
 constexpr std::array<Unit, 3> kUnits = {
     {{"millimeters", 1e-3}, {"centimeters", 1e-2}, {"inches", 0.0254}}};
-
-double extent_at_rest(const HandModel& tree) {
-  const auto X_HL = forward_kinematics(tree, open_configuration(tree));
-  Eigen::AlignedBox3d box;
-  for (std::size_t l = 0; l < tree.links.size(); ++l) {
-    for (const Eigen::Vector3d& vertex : tree.links[l].mesh_L.vertices) {
-      box.extend(X_HL[l] * vertex);
-    }
-  }
-  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
-}
 
 /// The unit that makes a hand of this extent: too large, its lengths were read as meters; too
 /// small, they were meters and taken for that unit.
@@ -62,6 +50,17 @@ std::string scale_text(double factor) {
 }
 
 }  // namespace
+
+double extent_at_rest(const HandModel& tree) {
+  const auto X_HL = forward_kinematics(tree, open_configuration(tree));
+  Eigen::AlignedBox3d box;
+  for (std::size_t l = 0; l < tree.links.size(); ++l) {
+    for (const Eigen::Vector3d& vertex : tree.links[l].mesh_L.vertices) {
+      box.extend(X_HL[l] * vertex);
+    }
+  }
+  return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+}
 
 void look_at_size(const HandModel& tree, double meters_per_unit, Findings& findings) {
   const double extent = extent_at_rest(tree);

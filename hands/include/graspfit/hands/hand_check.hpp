@@ -23,7 +23,8 @@ struct HandCheck {
 /// a reader accepts and its author hardly meant. Bad content is reported, never thrown.
 ///
 /// Faults are those of `read_hand`, all of a description's links, joints and meshes, and the first
-/// of a sidecar. After a fault nothing is derived, and what needs the whole hand is not looked at.
+/// of a sidecar. After a fault nothing is derived, and what needs the whole hand is not looked at,
+/// nor is it of a hand larger than 1 m.
 ///
 /// Suspicious, beside what the readers notice (axes that are not unit in a URDF: a lost
 /// transmission ratio; limits of no width; limits beyond a turn or a meter, hands larger than 1 m
