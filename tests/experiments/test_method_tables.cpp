@@ -83,7 +83,8 @@ TEST_CASE("Tables over methods refuse settings that select grasps", "[experiment
              graspfit::testing::Contains("fitting|gs-targets|gs|ma|ma-full-retreat"));
 }
 
-TEST_CASE("The four tables compare the same methods with the same seed", "[experiments][methods]") {
+TEST_CASE("The four tables compare the same methods, but for rejection by M, with the same seed",
+          "[experiments][methods]") {
   const auto configs = graspfit::testing::source_directory() / "experiments/configs";
   for (const char* const slug :
        {"table1", "table1_refined", "table1_readings", "table1_all_objects"}) {
@@ -93,8 +94,11 @@ TEST_CASE("The four tables compare the same methods with the same seed", "[exper
     CHECK(methods.name == "planner");
     Fields labels;
     for (const AxisValue& value : methods.values) labels.push_back(value.label);
-    CHECK(labels == Fields{"gs-targets", "gs", "ma", "ma-full-retreat", "fitting",
-                           "fitting-reject-deviation", "fitting-reject-m"});
+    Fields expected = {"gs-targets",      "gs",      "ma",
+                       "ma-full-retreat", "fitting", "fitting-reject-deviation"};
+    // What selects by the measure that is averaged is compared once.
+    if (std::string(slug) == "table1") expected.push_back("fitting-reject-m");
+    CHECK(labels == expected);
     if (std::string(slug) == "table1_all_objects") continue;
     CHECK(sweep.axes[0].values.size() == 4);
     CHECK(sweep.axes[1].values.size() ==

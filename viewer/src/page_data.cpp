@@ -239,11 +239,11 @@ std::string page_data(const PageInput& input) {
   if (!center_of_mass_O && input.model) center_of_mass_O = input.model->mass.center_of_mass;
 
   Json data = {{"object", to_json(input.object_O)},
-                     {"center_of_mass", center_of_mass_O ? to_json(*center_of_mass_O) : Json()},
-                     {"hand", hand_data(input.hand, input.clip_thickness)},
-                     {"voxels", input.model ? voxels(*input.model) : Json()},
-                     {"surroundings", surroundings(input.surroundings)},
-                     {"grasps", grasps(input)}};
+               {"center_of_mass", center_of_mass_O ? to_json(*center_of_mass_O) : Json()},
+               {"hand", hand_data(input.hand, input.clip_thickness)},
+               {"voxels", input.model ? voxels(*input.model) : Json()},
+               {"surroundings", surroundings(input.surroundings)},
+               {"grasps", grasps(input)}};
   if (!input.note.empty()) data["note"] = input.note;
   return script_text(data);
 }

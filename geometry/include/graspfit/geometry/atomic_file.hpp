@@ -6,8 +6,8 @@
 
 namespace graspfit::geometry {
 
-/// Writes `content` to `file` as `AtomicFileWriter` does: a reader, a crash or a kill never sees half
-/// of it; links are followed, pipes and devices written into.
+/// Writes `content` to `file` as `AtomicFileWriter` does: a reader, a crash or a kill never sees
+/// half of it; links are followed, pipes and devices written into.
 /// @throws IoError (file and reason) if that fails; no temporary file stays behind.
 void write_file_atomically(const std::filesystem::path& file, std::string_view content);
 

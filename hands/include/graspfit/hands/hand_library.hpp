@@ -15,8 +15,8 @@ std::vector<std::string> shipped_hands();
 /// of that name.
 std::filesystem::path shipped_hand_file(const std::string& name);
 
-/// A file of a shipped hand, by its path, relative to the folder of shipped hands, wherever that is:
-/// "barrett/barrett.urdf". Any other path as it is. By the texts of the paths.
+/// A file of a shipped hand, by its path, relative to the folder of shipped hands, wherever that
+/// is: "barrett/barrett.urdf". Any other path as it is. By the texts of the paths.
 std::filesystem::path path_in_library(const std::filesystem::path& file);
 
 /// The description of a hand by the name of a shipped one ("barrett"), or the path as given.
