@@ -44,7 +44,7 @@ std::string file_settings(const fs::path& file, const std::optional<double>& lon
 
 std::vector<AxisValue> default_objects(bool has_sizes) {
   Json elephant = {{"packaged", "elephant.off"}};
-  if (!has_sizes) elephant["size_m"] = 0.15;
+  if (!has_sizes) elephant["size_m"] = 0.12;  // a gripper closes around it
   std::vector<AxisValue> objects = {{"elephant", elephant.dump()}};
   for (const char* const shape : {"box", "bottle", "mug", "torus"}) {
     objects.push_back({std::string("shape_") + shape, Json{{"shape", shape}}.dump()});

@@ -13,7 +13,7 @@ namespace graspfit::experiments::internal {
 inline constexpr const char* kObjectAxis = "object";
 
 /// Objects that every machine has: shapes in their own sizes and, where it is unpacked, a mesh of
-/// libcgal-demo, 0.15 m long. Its size is left out if `has_sizes`: something else sets one then.
+/// libcgal-demo, 0.12 m long. Its size is left out if `has_sizes`: something else sets one then.
 std::vector<AxisValue> default_objects(bool has_sizes);
 
 /// Values of that axis that are meshes of the command line, as they are or scaled so that the
