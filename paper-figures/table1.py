@@ -39,7 +39,7 @@ def draw(source):
         f"Three methods, Barrett hand (4 DOF), up to {table['grasps'].max():.0f} usable grasps each, at the level of voxels", 3, len(OBJECTS), 10.0, 7.0,
         f"{NOTE}\nLeft of each panel: the paper's numbers (hatched). GS and MA are reconstructions; MA as published and with full retreat. Bars: one standard error."
         "\nTimes by the clock, failures included, preparation apart; other machines. Overlap: of the true meshes, hand in object or in itself;"
-        "\nthe methods work on voxels and none looks at it. MA as published stops at most 15 mm from where it began, inside the object.",
+        "\nin the object at most a voxel's edge, but for MA as published: it closes at most 15 mm from where it began, even inside the object.",
         left=0.06, right=0.99, head=0.95, foot=0.3, wspace=0.2, hspace=0.16,
     )  # fmt: skip
     width = 0.9 / len(METHODS)

@@ -2,20 +2,17 @@
 """The hands of the published Table 1 are closed on the object (A32): test_table1_state.py TABLES.
 
 Medians over all grasps of a method: pads lie on the surface with a share of their area, and touch
-it to a fifth of a clip volume's depth. No link is in a full voxel, so none is deeper in the object
-than a partial voxel's diagonal and the guard's samples let through, and nearly all are no deeper than
-its edge; only MA as published, which backs off by 15 mm at most and then closes, may be.
+it to a fifth of a clip volume's depth. No link is in a full voxel, and none is deeper in the object
+than a voxel's edge; only MA as published, which backs off by 15 mm at most and then closes, may be.
 """
 
 import csv
-import math
 import pathlib
 import statistics
 import sys
 import unittest
 
 AS_PUBLISHED = "ma"
-SAMPLE_SPACING = 0.5  # of the points that stand for a link [voxels]
 
 
 class Table1(unittest.TestCase):
@@ -54,8 +51,7 @@ class Table1(unittest.TestCase):
                 continue
             self.assertGreaterEqual(min(float(grasp["d_min_voxels"]) for grasp in grasps), 0.0)
             edges = [float(grasp["penetration"]) / grasp["voxel"] for grasp in grasps]
-            self.assertLessEqual(max(edges), math.sqrt(3.0) + SAMPLE_SPACING)
-            self.assertGreater(sum(edge <= 1.0 for edge in edges) / len(edges), 0.9)
+            self.assertLessEqual(max(edges), 1.0)
 
     def test_ma_as_published_is_the_exception_for_a_reason(self):
         inside = [grasp for grasp in self.grasps
