@@ -44,20 +44,28 @@ class Tables:
 # Tables of planning methods.
 
 
+#: How a row's second label is written, by the axis that it is of.
+LABELS = {"size": " | {} m", "reading": " | `{}`"}
+
+
 def method_rows(tables, name, row, cell):
-    """One row per object and `row`, one cell per method."""
+    """One row per object and, if there is one, value of the axis `row`; one cell per method that the table has."""
     summary = tables.table(f"{name}.summary")
-    summary = summary.set_index(["object", row, "planner"])
-    for obj, second in dict.fromkeys(index[:-1] for index in summary.index):
-        cells = " | ".join(cell(summary.loc[(obj, second, method)]) for method in METHODS)
-        yield f"| {OBJECTS[obj]} | {second} m | {cells} |"
+    methods = [method for method in METHODS if method in set(summary["planner"])]
+    labels = ["object", row] if row else ["object"]
+    summary = summary.set_index([*labels, "planner"])
+    for key in dict.fromkeys(index[:-1] for index in summary.index):
+        cells = " | ".join(cell(summary.loc[(*key, method)]) for method in methods)
+        second = LABELS[row].format(key[1]) if row else ""
+        yield f"| {OBJECTS.get(key[0], key[0].replace('_', ' '))}{second} | {cells} |"
 
 
 def quality(row):
     if row["grasps"] == 0:
         return "none"
     error = "" if pandas.isna(row["se_m"]) else f" ± {digits(row['se_m'])}"
-    return f"{digits(row['mean_m'])}{error} ({digits(row['m_over_paper'])})"
+    over_paper = "" if pandas.isna(row["m_over_paper"]) else f" ({digits(row['m_over_paper'])})"
+    return f"{digits(row['mean_m'])}{error}{over_paper}"
 
 
 def orders(tables, name, row, method, objects=None, seconds=None, measure="mean_m"):
@@ -67,7 +75,7 @@ def orders(tables, name, row, method, objects=None, seconds=None, measure="mean_
         summary = summary[summary["object"].isin(objects)]
     if seconds:
         summary = summary[summary[row].isin(seconds)]
-    means = summary.pivot(index=["object", row], columns="planner", values=measure)
+    means = summary.pivot(index=["object", row] if row else ["object"], columns="planner", values=measure)
     for baseline in BASELINES:
         both = means[[method, baseline]].dropna() if baseline in means else means.iloc[:0]
         yield baseline, int((both[method] > both[baseline]).sum()), len(both)
@@ -110,6 +118,24 @@ def table1(tables):
     yield f"Per attempt fitting without rejection is {order_sentence(tables, 'table1', 'size', 'fitting', measure='m_per_attempt')}"
     ma = tables.table("table1.details")[lambda grasps: grasps["planner"] == AS_PUBLISHED]
     yield f"{percent((ma['d_min_voxels'] < 0).mean())} of its grasps have links in full voxels"
+
+
+def table1_readings(tables):
+    yield from method_rows(tables, "table1_readings", "reading", quality)
+    for reading in ("7dof", "recommended"):
+        yield f"`{reading}` {order_sentence(tables, 'table1_readings', 'reading', HEADLINE, seconds=(reading,))}"
+
+
+def table1_refined(tables):
+    yield from method_rows(tables, "table1_refined", "size", quality)
+    yield f"fitting with rejection by deviation is {order_sentence(tables, 'table1_refined', 'size', HEADLINE)} rows"
+
+
+def table1_all_objects(tables):
+    yield from method_rows(tables, "table1_all_objects", None, quality)
+    yield f"fitting with rejection by deviation is {order_sentence(tables, 'table1_all_objects', None, HEADLINE)} objects"
+    yield f"without rejection {order_sentence(tables, 'table1_all_objects', None, 'fitting')}"
+    yield f"per attempt it is {order_sentence(tables, 'table1_all_objects', None, 'fitting', measure='m_per_attempt')}"
 
 
 # Cases.

@@ -25,13 +25,16 @@ PAPER_OF_TABLE1 = r"0\.96|0\.61|0\.52|1\.18|0\.85|0\.92|1\.36|1\.22|1\.06"
 NAMES = (r"\bA\d+\b", r"\bM[123]?\b", r"[Ss]ection \d+(\.\d)?", r"Figs?\. \d+")
 #: Section of the page, what of the tables stands in it, and what other numbers may.
 SECTIONS = {
-    "## Results: the tables and what made them": (statements.made_by, (r"\b52c2df6\b", r"\bf6680b5\b")),
+    "## Results: the tables and what made them": (statements.made_by, (r"\b52c2df6\b", r"\bf6680b5\b", r"\b6688b61\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
     "## Special cases": (
         lambda tables: [*statements.special_cases(tables), *statements.force_closure(tables)],
         (r"20 seeds, 12 attempts each, 40 at the horse, 50", r"12 cm", r"30 cm", r"first 100", r"μ = 0\.4", r"45°", r"21\.8°", r"`--slide-steps` 8", r"0\.6"),
     ),
     "### Table 1": (statements.table1, (*TABLE1_NAMES, PAPER_OF_TABLE1, r"above 1\.")),
+    "### Table 1, other readings": (statements.table1_readings, (*TABLE1_NAMES, PAPER_OF_TABLE1)),
+    "### Table 1, refined": (statements.table1_refined, TABLE1_NAMES),
+    "### Table 1, all objects": (statements.table1_all_objects, TABLE1_NAMES),
     "## Figures, tables and claims": (
         statements.claims,
         (r"9, 15, 30 cm", r"\d+(\.\d)? cm", r"1, 4 and 20", r"2478", r"27 would", r"30 voxels", r"3\.4 GHz", r"0\.3 to 3\.7 s", r"under 1 s",
