@@ -2,8 +2,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -11,33 +9,14 @@
 #include "graspfit/geometry/mesh_io.hpp"
 #include "internal/checked_glb.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace graspfit::geometry;
 using graspfit::testing::Contains;
+using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
-
-// A folder of its own that is gone at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    path_ = fs::temp_directory_path() / ("graspfit_glb_" + std::to_string(std::random_device{}()));
-    fs::create_directories(path_);
-  }
-  ~ScratchFolder() { fs::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
 
 // A triangle: 36 bytes of positions (0 0 0), (1 0 0), (0 1 0), then indices 0 1 2 as bytes, in a
 // buffer of 40 bytes; a sparse accessor puts its point 1 to (0 0 0).
@@ -110,8 +89,8 @@ std::string error_of(const fs::path& file) {
 }  // namespace
 
 TEST_CASE("A glTF file and the GLB of the same bytes are the same mesh", "[geometry][gltf]") {
-  const ScratchFolder folder;
-  const TriangleMesh mesh = read_mesh(folder.file("a.gltf", kTriangle)).mesh;
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = read_mesh(folder.write("a.gltf", kTriangle)).mesh;
   CHECK(mesh.vertices == std::vector<Eigen::Vector3d>{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}});
   CHECK(mesh.faces == std::vector<Face>{{0, 1, 2}});
 
@@ -126,22 +105,22 @@ TEST_CASE("A glTF file and the GLB of the same bytes are the same mesh", "[geome
   json.erase(at, json.find("\"}]}", at) + 1 - at);
   const std::string binary = glb(chunk("JSON", json) + chunk(kBinary.c_str(), bytes).substr(0, 7) +
                                  std::string(1, '\0') + bytes);
-  CHECK(read_mesh(folder.file("a.glb", binary)).mesh == mesh);
+  CHECK(read_mesh(folder.write("a.glb", binary)).mesh == mesh);
 
   // In a file beside it, its name in percent signs, and below it.
-  folder.file("my bytes.bin", bytes + "more");
+  folder.write("my bytes.bin", bytes + "more");
   const auto with_uri = [&](const std::string& name) {
     return replaced(json, "\"byteLength\":40", "\"byteLength\":40,\"uri\":\"" + name + "\"");
   };
-  CHECK(read_mesh(folder.file("b.gltf", with_uri("my%20bytes.bin"))).mesh == mesh);
-  fs::create_directory(folder / "sub");
-  folder.file("sub/c.bin", bytes);
-  CHECK(read_mesh(folder.file("c.gltf", with_uri("sub/c.bin"))).mesh == mesh);
-  CHECK(read_mesh(folder.file("d.gltf", with_uri("./sub/c.bin"))).mesh == mesh);
+  CHECK(read_mesh(folder.write("b.gltf", with_uri("my%20bytes.bin"))).mesh == mesh);
+  fs::create_directory(folder.path() / "sub");
+  folder.write("sub/c.bin", bytes);
+  CHECK(read_mesh(folder.write("c.gltf", with_uri("sub/c.bin"))).mesh == mesh);
+  CHECK(read_mesh(folder.write("d.gltf", with_uri("./sub/c.bin"))).mesh == mesh);
 
   // A sparse accessor puts its second point onto the first.
   const std::string sparse = replaced(kTriangle, "\"POSITION\":0", "\"POSITION\":2");
-  CHECK(read_mesh(folder.file("e.gltf", sparse)).mesh.vertices ==
+  CHECK(read_mesh(folder.write("e.gltf", sparse)).mesh.vertices ==
         std::vector<Eigen::Vector3d>{{0, 0, 5}, {0, 1, 5}});
 
   // Nothing of this is a shape.
@@ -149,17 +128,17 @@ TEST_CASE("A glTF file and the GLB of the same bytes are the same mesh", "[geome
       kTriangle, "\"scene\":0,",
       R"("scene":0,"cameras":[{"type":"none"}],"materials":[7],"animations":[{"channels":{}}],)"
       R"("images":[{"uri":"/etc/passwd"}],"skins":3,)");
-  CHECK(read_mesh(folder.file("f.gltf", more)).mesh == mesh);
+  CHECK(read_mesh(folder.write("f.gltf", more)).mesh == mesh);
 }
 
 TEST_CASE("Buffers of glTF come from the file's own folder and nowhere else", "[geometry][gltf]") {
-  const ScratchFolder folder;
-  fs::create_directory(folder / "inner");
-  folder.file("outer.bin", std::string(40, '\0'));
-  folder.file("inner/short.bin", std::string(39, '\0'));
-  fs::create_directory(folder / "inner/folder.bin");
-  fs::create_symlink("../outer.bin", folder / "inner/link.bin");
-  REQUIRE(mkfifo((folder / "inner/pipe.bin").c_str(), 0600) == 0);
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "inner");
+  folder.write("outer.bin", std::string(40, '\0'));
+  folder.write("inner/short.bin", std::string(39, '\0'));
+  fs::create_directory(folder.path() / "inner/folder.bin");
+  fs::create_symlink("../outer.bin", folder.path() / "inner/link.bin");
+  REQUIRE(mkfifo((folder.path() / "inner/pipe.bin").c_str(), 0600) == 0);
   std::string json = kTriangle;
   const std::size_t begin = json.find("data:");
   const std::string uri = json.substr(begin, json.find('"', begin) - begin);
@@ -186,7 +165,7 @@ TEST_CASE("Buffers of glTF come from the file's own folder and nowhere else", "[
   };
   for (const auto& row : cases) {
     INFO(row[0]);
-    const fs::path file = folder.file("inner/x.gltf", replaced(json, uri, row[0]));
+    const fs::path file = folder.write("inner/x.gltf", replaced(json, uri, row[0]));
     CHECK_THAT(error_of(file), Contains(row[1]));
   }
 }
@@ -274,15 +253,15 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
        "its JSON is nested more than 100 deep"},
       {"\"scene\":0,", "\"scene\":0,,", "its JSON does not parse: parse error at line 2"},
   };
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (const Case& row : cases) {
     INFO(row.says);
-    const fs::path file = folder.file("x.gltf", replaced(kTriangle, row.from, row.to));
+    const fs::path file = folder.write("x.gltf", replaced(kTriangle, row.from, row.to));
     CHECK_THAT(error_of(file), Contains(row.says));
   }
   // Just within its limits.
   CHECK(
-      read_mesh(folder.file(
+      read_mesh(folder.write(
                     "deep.gltf",
                     replaced(kTriangle,
                              "\"nodes\":[{\"children\":[1]},{\"mesh\":0,\"translation\":[0,0,5]}],",
@@ -309,9 +288,9 @@ TEST_CASE("A scene that shows few bytes many times is refused before it is built
       R"(,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":)" +
       std::to_string(12 * num_points) + R"(}],"buffers":[{"byteLength":)" +
       std::to_string(12 * num_points) + R"(,"uri":"x.bin"}]})";
-  const ScratchFolder folder;
-  folder.file("x.bin", std::string(12 * num_points, '\0'));
-  CHECK(error_of(folder.file("x.gltf", json)) ==
+  const TemporaryFolder folder;
+  folder.write("x.bin", std::string(12 * num_points, '\0'));
+  CHECK(error_of(folder.write("x.gltf", json)) ==
         "scene 0 shows more than 20000000 vertices or corners");
 }
 
@@ -339,17 +318,17 @@ TEST_CASE("A GLB is refused at once where its container lies", "[geometry][gltf]
       {glb(chunk("JSON", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4}]})")),
        "buffer 0 has no uri and the file no chunk of bytes"},
   };
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   for (const Case& row : cases) {
     INFO(row.says);
-    CHECK_THAT(error_of(folder.file("x.glb", row.bytes)), Contains(row.says));
+    CHECK_THAT(error_of(folder.write("x.glb", row.bytes)), Contains(row.says));
   }
-  CHECK(read_mesh(folder.file("good.glb", good)).mesh.faces.size() == 1);
+  CHECK(read_mesh(folder.write("good.glb", good)).mesh.faces.size() == 1);
   // Any byte of it changed is read or refused, in one line.
   for (std::size_t i = 0; i < good.size(); i += 3) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));
-    const fs::path file = folder.file("bad.glb", bad);
+    const fs::path file = folder.write("bad.glb", bad);
     try {
       read_mesh(file);
     } catch (const IoError& error) {
