@@ -15,6 +15,7 @@ import argparse
 import math
 import pathlib
 import sys
+import textwrap
 
 sys.dont_write_bytecode = True  # the folder may be the sources' or root's
 from frame_picture import decode_poses, gif, mapped, put, rotated  # noqa: E402
@@ -34,6 +35,8 @@ from vtk_picture import (  # noqa: E402
 )
 
 CAPTION, CHART = 62, 92  # heights of the strips above and below the view [pixels]
+NOTE_LINE = 16  # height of each line of a note in the strip above [pixels]
+NOTE_LETTER = 5  # width of its letters on average [pixels]
 FRAME_TIME = 0.04  # of the test per frame of the picture [s]
 SLOWNESS = 2.0  # of the picture, over real time
 AFTERWARDS = 0.2  # shown after a limit was passed [s]
@@ -84,6 +87,8 @@ class Painter(Canvas):
         vertices = scene["object"]["vertices"]
         low, high = ([pick(v[k] for v in vertices) for k in range(3)] for pick in (min, max))
         self.size = math.dist(low, high)
+        self.note = textwrap.wrap(self.scene.get("note", ""), (self.width - 32) // NOTE_LETTER)
+        self.caption = CAPTION + NOTE_LINE * len(self.note)
         self.scene_window = self.window()
         self.build()
 
@@ -95,8 +100,8 @@ class Painter(Canvas):
             for mesh, color, specular in [(self.scene["object"], "object", 0.05)]
             + [(link["mesh"], "hand", 0.18) for link in self.scene["hand"]["links"]]
         ]
-        frame = (0.0, CHART / self.height, 1.0, 1.0 - CAPTION / self.height)
-        aspect = self.width / (self.height - CHART - CAPTION)
+        frame = (0.0, CHART / self.height, 1.0, 1.0 - self.caption / self.height)
+        aspect = self.width / (self.height - CHART - self.caption)
         back = self.side()
         up = [0.0, 0.0, 1.0] if abs(back[2]) < 0.97 else [0.0, 1.0, 0.0]
         camera, _ = self.camera(back, up, self.points_in_view(), aspect)
@@ -172,16 +177,19 @@ class Painter(Canvas):
 
     def add_caption(self, window):
         s = self.scale
-        top = self.renderer(window, (0.0, 1.0 - CAPTION / self.height, 1.0, 1.0), 0)
+        top = self.renderer(window, (0.0, 1.0 - self.caption / self.height, 1.0, 1.0), 0)
+        below = NOTE_LINE * len(self.note) * s
         protocol, load = self.scene["protocol"], self.load
-        self.text(top, self.scene["title"], 16 * s, 36 * s, 17, COLORS["ink"], bold=True)
+        self.text(top, self.scene["title"], 16 * s, 36 * s + below, 17, COLORS["ink"], bold=True)
         pull = "lifted" if protocol["is_lift"] else f"{protocol['force']:g} N along {load['name']}"
         ends = {"held": "held", "load": "lost under load", "approach": "lost before the load"}
         words = f"{protocol['name']}, {pull}: {ends.get(load['stage'], load['stage'])}"
         if load["stage"] == "load" and load["failed_at"] is not None:
             words += f" within {load['failed_at']:.3g} s"
         color = COLORS["stable" if load["stage"] == "held" else "contact"]
-        self.text(top, words, 16 * s, 12 * s, 15, color)
+        self.text(top, words, 16 * s, 12 * s + below, 15, color)
+        for row, line in enumerate(reversed(self.note)):
+            self.text(top, line, 16 * s, (8 + NOTE_LINE * row) * s, 12, COLORS["ink"])
 
     def draw_chart(self, frame, shown):
         """Shift and turn over their limits, up to now; the line is the limit."""

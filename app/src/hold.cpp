@@ -15,6 +15,7 @@
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/object_difference.hpp"
 #include "graspfit/hold_test/hold_batch.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
@@ -262,6 +263,7 @@ void write_replays(const Request& request, const Bench& bench,
     viewer::ReplayInput replay;
     replay.title = fs::path(bench.file.object.file).stem().string() + ", " + bench.file.hand.name +
                    " hand, grasp " + rank;
+    replay.note = grasp::difference_from_file(bench.file.object).value_or("");
     replay.object_O = bench.mesh_O;
     replay.object = bench.object;
     replay.hand = bench.hand;

@@ -63,9 +63,12 @@ class Plan(program.ProgramTest):
         self.assertIn('"note":"' + said[1] + '"', page)
         again = program.run("evaluate", self.folder / "out/grasps.json")
         self.assertEqual(again.stderr, f"graspfit evaluate: {said[1]}\n")
-        held = program.run("hold", self.folder / "out/grasps.json", "--grasp", "1")
+        held = program.run("hold", self.folder / "out/grasps.json", "--replay", "1",
+                           "--out", self.folder / "held")
         if held.returncode == 0:
             self.assertEqual(held.stderr, f"graspfit hold: {said[1]}\n")
+            replay = (self.folder / "held/replay_001.html").read_text()
+            self.assertIn('"note":"' + said[1] + '"', replay)
 
     def test_flags_of_another_planner_are_refused(self):
         for flags in (("--gs-sampling", "box-rays"), ("--planner", "gs", "--ma-samples", "5"),

@@ -56,6 +56,14 @@ TEST_CASE("A replay's shifts and turns are the object's as the palm sees it",
   CHECK(data["directions"][0]["times"].size() == 51);
 }
 
+TEST_CASE("A note is in the replay's data, and without one there is none",
+          "[viewer][replay_page]") {
+  viewer::ReplayInput input = sample_replay();
+  CHECK_FALSE(nlohmann::json::parse(viewer::replay_scene_json(input)).contains("note"));
+  input.note = "cup.off: the solid differs from the file: filled 5 holes";
+  CHECK(nlohmann::json::parse(viewer::replay_scene_json(input))["note"] == input.note);
+}
+
 TEST_CASE("The direction that a replay starts with failed first or came nearest to a limit",
           "[viewer][replay_page]") {
   const viewer::ReplayInput input = sample_replay();

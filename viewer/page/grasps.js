@@ -383,7 +383,6 @@ function makeList() {
   byId('summary').textContent =
       `${data.hand.name} hand · ${order.length} grasp${order.length === 1 ? '' : 's'}, ` +
       `${usable} usable, ${valid} valid · object ${size.join(' × ')} mm`;
-  if (data.note) byId('summary').after(element('p', {id: 'note'}, data.note));
 }
 
 // Buttons for pre-grasp, grasp and squeeze; those that the selected grasp lacks are off.

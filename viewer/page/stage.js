@@ -800,9 +800,10 @@ function makeSection(id, caption, ...children) {
   return section;
 }
 
-// Makes the scene, a button for each of `views`, [name, caption, explanation], and listens; `view`
+// Shows the note, makes the scene, a button for each of `views`, [name, caption, explanation], and listens; `view`
 // looks along what a button's name says.
 function startStage(view, views) {
+  if (data.note) byId('summary').after(element('p', {id: 'note'}, data.note));
   for (const [name, caption, title] of views) {
     const button = element('button', {type: 'button', title}, caption);
     button.dataset.view = name;

@@ -173,21 +173,22 @@ std::string replay_scene_json(const ReplayInput& input) {
   for (std::size_t d = 0; d < input.replays.size(); ++d) {
     directions.push_back(direction_json(input, d));
   }
-  const Json data = {{"title", input.title},
-                     {"object", to_json(input.object_O)},
-                     {"center_of_mass", to_json(input.object.center_of_mass_O)},
-                     {"hand", hand_data(input.hand.model, 0.0)},
-                     {"pieces",
-                      {{"object", pieces_json(input.object.shape)},
-                       {"num_object", input.object.shape.pieces.size()},
-                       {"links", link_pieces}}},
-                     {"protocol", protocol_json(input.protocol)},
-                     {"verdict",
-                      {{"stage", hold_test::name_of(input.verdict.stage)},
-                       {"reason", input.verdict.reason},
-                       {"squeeze_force", input.verdict.squeeze_force}}},
-                     {"shown", telling_direction(input.verdict, input.protocol)},
-                     {"directions", directions}};
+  Json data = {{"title", input.title},
+               {"object", to_json(input.object_O)},
+               {"center_of_mass", to_json(input.object.center_of_mass_O)},
+               {"hand", hand_data(input.hand.model, 0.0)},
+               {"pieces",
+                {{"object", pieces_json(input.object.shape)},
+                 {"num_object", input.object.shape.pieces.size()},
+                 {"links", link_pieces}}},
+               {"protocol", protocol_json(input.protocol)},
+               {"verdict",
+                {{"stage", hold_test::name_of(input.verdict.stage)},
+                 {"reason", input.verdict.reason},
+                 {"squeeze_force", input.verdict.squeeze_force}}},
+               {"shown", telling_direction(input.verdict, input.protocol)},
+               {"directions", directions}};
+  if (!input.note.empty()) data["note"] = input.note;
   return script_text(data);
 }
 

@@ -15,6 +15,7 @@ namespace graspfit::viewer {
 /// A hold test of one grasp as it ran, to be looked at. Positions in the object frame O, in meters.
 struct ReplayInput {
   std::string title;                ///< Heading and window title, plain text in UTF-8.
+  std::string note;                 ///< A line below the heading, plain text; empty: none.
   geometry::TriangleMesh object_O;  ///< With at least one face.
   hold_test::HoldObject object;     ///< As the engine sees it.
   hold_test::HoldHand hand;
