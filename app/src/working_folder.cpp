@@ -1,7 +1,6 @@
 #include "working_folder.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,23 +12,18 @@
 #include <vector>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/file_lock.hpp"
 
 namespace graspfit::app {
 namespace {
 
 namespace fs = std::filesystem;
+using geometry::FileLock;
 
 constexpr const char* kPrefix = ".graspfit-";
 
 int open_folder(const fs::path& folder) {
   return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-}
-
-bool is_at(int descriptor, const fs::path& path) {
-  struct stat opened {};
-  struct stat named {};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 void remove_abandoned(const fs::path& parent) {
@@ -42,7 +36,7 @@ void remove_abandoned(const fs::path& parent) {
   for (const fs::path& folder : found) {
     const int descriptor = open_folder(folder);
     if (descriptor < 0) continue;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, error);
+    if (geometry::lock_file(descriptor, folder) == FileLock::Ours) fs::remove_all(folder, error);
     ::close(descriptor);
   }
 }
@@ -61,12 +55,8 @@ WorkingFolder::WorkingFolder(const fs::path& parent) {
     path_ = name;
     lock_ = open_folder(path_);
     if (lock_ < 0) throw geometry::IoError(std::strerror(errno));
-    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {
-      if (is_at(lock_, path_)) return;
-    } else if (errno != EWOULDBLOCK) {
-      // Without locks nobody takes it for abandoned.
-      return;
-    }
+    // Without locks nobody takes it for abandoned.
+    if (geometry::lock_file(lock_, path_) != FileLock::Others) return;
     // Somebody took it for abandoned before it was locked.
     ::close(lock_);
   }

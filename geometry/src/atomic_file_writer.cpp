@@ -1,8 +1,6 @@
 #include "graspfit/geometry/atomic_file_writer.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,6 +10,7 @@
 #include <system_error>
 
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/file_lock.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -56,13 +55,6 @@ Destination destination_of(const fs::path& file) {
   return {path, false};
 }
 
-bool is_at(int descriptor, const std::string& path) {
-  struct stat opened {};
-  struct stat named {};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
-
 /// A new file at `path`, or the one that a killed writer has left there: a writer that lives has
 /// locked its own. −1, with the reason in errno, if there is none to have: EEXIST if somebody has
 /// it.
@@ -75,9 +67,9 @@ int open_own(const std::string& path) {
     errno = EEXIST;
     if (descriptor < 0) return -1;
   }
-  const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-  // Some file systems lock nothing; there only a new file is known to be ours.
-  const bool is_ours = is_locked ? is_at(descriptor, path) : is_new && errno != EWOULDBLOCK;
+  const FileLock lock = lock_file(descriptor, path);
+  // Where nothing can be locked, only a new file is known to be ours.
+  const bool is_ours = lock == FileLock::Ours || (lock == FileLock::Unavailable && is_new);
   if (is_ours && ::ftruncate(descriptor, 0) == 0) return descriptor;
   ::close(descriptor);
   errno = EEXIST;

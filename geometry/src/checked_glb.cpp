@@ -13,6 +13,7 @@
 
 #include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/errors.hpp"
+#include "graspfit/geometry/json_bounds.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -20,7 +21,6 @@ namespace {
 using Json = nlohmann::json;
 using std::uint64_t;
 
-constexpr int kMostNesting = 100;
 constexpr int kMostNodeDepth = 100;
 constexpr uint64_t kMostBufferBytes = uint64_t{1} << 30;
 constexpr uint64_t kMostVertices = 20'000'000;
@@ -91,30 +91,9 @@ Container opened(std::string_view content) {
   return container;
 }
 
-/// Refuses deep nesting before anything that recurses sees the text.
-void check_nesting(std::string_view text) {
-  int depth = 0;
-  bool is_in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (is_in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') is_in_string = false;
-    } else if (c == '"') {
-      is_in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMostNesting) {
-        fail("its JSON is nested more than " + std::to_string(kMostNesting) + " deep");
-      }
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-}
-
 Json parsed(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  check_nesting(text);
+  require_bounded_json(text, "not a glTF mesh: its JSON");
   try {
     Json json = Json::parse(text);
     if (!json.is_object()) fail("its JSON is not an object");
