@@ -174,9 +174,15 @@ class PlyBody {
   PlyHeader::Format format_;
 };
 
+// "face 3"; names that are not PLY's own may be any bytes.
+std::string numbered(const PlyElement& element, std::int64_t i) {
+  const bool is_known =
+      element.name == "vertex" || element.name == "face" || element.name == "tristrips";
+  return (is_known ? element.name : TextScanner::quoted(element.name)) + " " + std::to_string(i);
+}
+
 std::string truncated(const PlyElement& element, std::int64_t i) {
-  return "the file ends at " + element.name + " " + std::to_string(i) + " of " +
-         std::to_string(element.count);
+  return "the file ends at " + numbered(element, i) + " of " + std::to_string(element.count);
 }
 
 // Reads one element, handing every number to use(property index, position in a list, list size,
@@ -193,7 +199,7 @@ void read_element(PlyBody& body, const PlyElement& element, std::int64_t i, cons
       if (!value) throw IoError(truncated(element, i));
       size = *value;
       if (!(size >= 0.0) || size != std::floor(size) || size > 1e9) {
-        throw IoError(element.name + " " + std::to_string(i) + ": bad list length");
+        throw IoError(numbered(element, i) + ": bad list length");
       }
     }
     use(p, -1, size, 0.0);

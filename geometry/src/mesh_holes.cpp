@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -111,7 +112,9 @@ std::vector<std::size_t> shortest_way_back(
     }
   }
   std::vector<std::size_t> way;
-  if (!reached.contains(start.begin())) return way;
+  // Ways that are longer than any number lead nowhere.
+  const auto back = reached.find(start.begin());
+  if (back == reached.end() || std::isinf(back->second.distance)) return way;
   for (std::int32_t at = start.begin(); at != start.end();) {
     way.push_back(reached.at(at).by);
     at = chains[way.back()].begin();

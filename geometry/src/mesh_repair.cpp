@@ -332,15 +332,41 @@ class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor
   std::int64_t facets_left_;
 };
 
+bool has_area(const TriangleMesh& mesh) {
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    if (!internal::is_degenerate(mesh, face)) return true;
+  }
+  return false;
+}
+
 /// Wraps the faces and orients the wrap outward. No faces if CGAL does not come to a good end.
-TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, double extent) {
+TriangleMesh alpha_wrap(const TriangleMesh& given, double alpha_rel, double offset_rel,
+                        double extent) {
+  if (!std::isfinite(extent)) return {};
+  // CGAL's exact numbers end the program where products of coordinates leave the range of doubles.
+  // So a mesh is wrapped at an extent of 1/2 to 1, which rounds nothing, and what is nearer to zero
+  // than kLeast there becomes zero.
+  constexpr double kLeast = 1e-45;
+  int exponent = 0;
+  std::frexp(extent, &exponent);
+  TriangleMesh mesh = given;
+  for (Vector3d& vertex : mesh.vertices) {
+    for (double& x : vertex) {
+      x = std::ldexp(x, -exponent);
+      if (std::abs(x) < kLeast) x = 0.0;
+    }
+  }
+  // CGAL leaves degenerate faces out, and requires that others remain.
+  if (!has_area(mesh)) return {};
+  const double alpha = std::ldexp(alpha_rel * extent, -exponent);
+  const double offset = std::ldexp(offset_rel * extent, -exponent);
   std::vector<Kernel::Point_3> points;
   for (const Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
   CGAL::Surface_mesh<Kernel::Point_3> wrap;
   // A surface has on the order of (extent / alpha)^2 facets of size alpha. Wraps of scans, cars
   // and open tubes take 20 to 80 times as many steps.
   constexpr double kMostStepsRel = 2000.0;
-  const double size = extent / alpha;
+  const double size = 1.0 / alpha_rel;
   WrapLimit limit(static_cast<std::int64_t>(kMostStepsRel * (size * size + 10.0)));
   // CGAL 5 looks for the visitor among the parameters of the output, CGAL 6 among those of the
   // input; where it does not look, it says nothing.
@@ -356,7 +382,8 @@ TriangleMesh alpha_wrap(const TriangleMesh& mesh, double alpha, double offset, d
   TriangleMesh result;
   for (const auto vertex : wrap.vertices()) {
     const Kernel::Point_3& p = wrap.point(vertex);
-    result.vertices.emplace_back(p.x(), p.y(), p.z());
+    result.vertices.emplace_back(std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent),
+                                 std::ldexp(p.z(), exponent));
   }
   for (const auto face : wrap.faces()) {
     Face& corners = result.faces.emplace_back();
@@ -443,6 +470,11 @@ std::vector<HoleRim> concatenation(std::vector<HoleRim> rims, const std::vector<
   return rims;
 }
 
+/// Of the longest extent of the mesh, as the limit of filling is.
+double rim_extent_rel(const TriangleMesh& mesh, const HoleRim& rim) {
+  return internal::rim_extent(mesh, rim) / longest_extent(mesh);
+}
+
 std::string percent(double share) {
   return shortest_decimal(std::round(1000.0 * share) / 10.0) + " %";
 }
@@ -450,9 +482,15 @@ std::string percent(double share) {
 /// The repair of one mesh, step by step.
 class Repair {
  public:
+  /// What a refusal says beyond its reason.
+  enum class Advice {
+    None,
+    Tried  ///< Other options that help: they are tried out.
+  };
+
   /// `mesh` and `options` outlive the repair.
-  Repair(const TriangleMesh& mesh, const MeshRepairOptions& options)
-      : given_(mesh), options_(options), extent_(longest_extent(mesh)) {
+  Repair(const TriangleMesh& mesh, const MeshRepairOptions& options, Advice advice)
+      : given_(mesh), options_(options), advice_(advice), extent_(longest_extent(mesh)) {
     result_.mesh = mesh;
   }
 
@@ -527,8 +565,8 @@ class Repair {
     constexpr double kMostLostRel = 0.1;
     const auto loses_to = [&](double volume) { return volume_ < (1.0 - kMostLostRel) * volume; };
     mend(MeetingHoles::AfterSplitting);
-    if (largest_meeting_ == 0.0 || (is_solid() && !loses_to(open_volume_))) return;
-    Repair other(given_, options_);
+    if (largest_meeting_rel_ == 0.0 || (is_solid() && !loses_to(open_volume_))) return;
+    Repair other(given_, options_, Advice::None);
     other.result_.before = result_.before;
     other.volume_ = volume_of(given_, result_.before.is_closed);
     other.mend(MeetingHoles::BeforeSplitting);
@@ -537,7 +575,7 @@ class Repair {
       volume_ = other.volume_;
     } else if (is_solid() && !other.is_solid()) {
       is_filling_folded_ = true;
-      largest_open_ = other.largest_hole();
+      largest_open_rel_ = other.largest_hole_rel();
     }
   }
 
@@ -551,7 +589,7 @@ class Repair {
     add_step("turned faces", make_consistent(mesh), 0.0);
     const std::vector<HoleRim> meeting = internal::holes_of(mesh).meeting;
     for (const HoleRim& rim : meeting) {
-      largest_meeting_ = std::max(largest_meeting_, internal::rim_extent(mesh, rim));
+      largest_meeting_rel_ = std::max(largest_meeting_rel_, rim_extent_rel(mesh, rim));
     }
     if (!meeting.empty()) open_volume_ = volume_of(mesh, false);
     std::size_t num_filled = 0;
@@ -629,12 +667,9 @@ class Repair {
   }
 
   void wrap() {
-    const double alpha = options_.wrap->alpha_rel * extent_;
-    const double offset = options_.wrap->offset_rel * extent_;
     if (!(extent_ > 0.0)) return;
-    // CGAL leaves degenerate faces out, and requires that others remain.
-    if (result_.before.num_degenerate_faces == result_.before.num_faces) return;
-    TriangleMesh wrapped = alpha_wrap(given_, alpha, offset, extent_);
+    TriangleMesh wrapped =
+        alpha_wrap(given_, options_.wrap->alpha_rel, options_.wrap->offset_rel, extent_);
     if (wrapped.faces.empty()) return;
     const MeshAnalysis analysis = analyzed(wrapped);
     if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given_)) return;
@@ -668,11 +703,10 @@ class Repair {
       throw DegenerateGeometry("the mesh encloses no volume: its faces cancel each other" +
                                advice_to_wrap("; "));
     }
-    const double largest = largest_hole();
+    const double share = largest_hole_rel();
     std::string text;
     std::string advice;
-    if (largest > 0.0) {
-      const double share = share_of_extent(largest);
+    if (share > 0.0) {
       text = "; its largest hole spans " + rounded(share) + " of its longest extent, holes up to " +
              shortest_decimal(options_.max_hole_extent_rel) + " are filled";
       advice = advice_to_fill(share);
@@ -684,44 +718,43 @@ class Repair {
 
   void refuse_folded_filling() const {
     if (!is_filling_folded_) return;
-    const std::string advice = advice_to_fill(share_of_extent(largest_open_));
+    const std::string advice = advice_to_fill(largest_open_rel_);
     throw InvalidInput("the mesh is not closed, and filling its holes would leave a skin: " +
                        percent(volume_ / open_volume_) +
                        " of the volume that the surface encloses; its largest hole spans " +
-                       rounded(share_of_extent(largest_open_)) +
-                       " of its longest extent, holes up to " +
+                       rounded(largest_open_rel_) + " of its longest extent, holes up to " +
                        shortest_decimal(options_.max_hole_extent_rel) + " are filled" +
                        (advice.empty() ? "" : "; ") + advice + advice_to_wrap("; "));
   }
 
-  /// Extent of the largest hole that is left [m]. Where holes that meet were too large to be
-  /// filled, those are the holes, and not the borders of the patches that came apart there.
-  double largest_hole() const {
-    if (share_of_extent(largest_meeting_) > options_.max_hole_extent_rel) return largest_meeting_;
+  /// Extent of the largest hole that is left, over that of the mesh. Where holes that meet were too
+  /// large to be filled, those are the holes, and not the borders of the patches that came apart
+  /// there.
+  double largest_hole_rel() const {
+    if (largest_meeting_rel_ > options_.max_hole_extent_rel) return largest_meeting_rel_;
     double largest = 0.0;
     const internal::Holes holes = internal::holes_of(result_.mesh);
     for (const HoleRim& rim : concatenation(holes.single, holes.meeting)) {
-      largest = std::max(largest, internal::rim_extent(result_.mesh, rim));
+      largest = std::max(largest, rim_extent_rel(result_.mesh, rim));
     }
     return largest;
   }
 
   /// What a larger limit for holes would do: tried out, so that it is true.
   std::string advice_to_fill(double share) const {
-    if (share <= options_.max_hole_extent_rel || options_.mode != RepairMode::Repair) return "";
+    if (advice_ == Advice::None || options_.mode != RepairMode::Repair) return "";
+    if (!(share > options_.max_hole_extent_rel)) return "";
     MeshRepairOptions wider = options_;
     wider.max_hole_extent_rel = std::min(1.0, std::ceil(1000.0 * share) / 1000.0);
     wider.self_intersections = SelfIntersections::Leave;
     wider.wrap.reset();
     try {
-      repair_mesh(given_, wider);
+      Repair(given_, wider, Advice::None).run();
     } catch (const Error&) {
       return "";
     }
     return "--max-hole " + shortest_decimal(wider.max_hole_extent_rel) + " fills it";
   }
-
-  double share_of_extent(double length) const { return length / longest_extent(result_.mesh); }
 
   static std::string rounded(double share) {
     return shortest_decimal(std::round(1000.0 * share) / 1000.0);
@@ -736,13 +769,15 @@ class Repair {
 
   const TriangleMesh& given_;
   const MeshRepairOptions& options_;
+  const Advice advice_;
   const double extent_;
   RepairedMesh result_;
   double volume_ = 0.0;  ///< Of the mesh as it is now, holes closed by cones [m³].
   bool is_filling_folded_ = false;
-  double largest_meeting_ = 0.0;  ///< Extent of the largest hole that meets another [m].
-  double largest_open_ = 0.0;     ///< Where the filling is folded: of the hole that it left [m].
-  double open_volume_ = 0.0;      ///< As `volume_`, before anything is split and filled [m³].
+  double largest_meeting_rel_ = 0.0;  ///< Extent of the largest hole that meets another, over
+                                      ///< that of the mesh that it was in.
+  double largest_open_rel_ = 0.0;     ///< Where the filling is folded: of the hole that it left.
+  double open_volume_ = 0.0;          ///< As `volume_`, before anything is split and filled [m³].
 };
 
 void check_range(const char* field, double value, double least, double most) {
@@ -765,7 +800,7 @@ void MeshRepairOptions::validate() const {
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options) {
   options.validate();
   if (mesh.faces.empty()) throw InvalidInput("the mesh has no faces");
-  return Repair(mesh, options).run();
+  return Repair(mesh, options, Repair::Advice::Tried).run();
 }
 
 }  // namespace graspfit::geometry

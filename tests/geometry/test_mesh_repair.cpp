@@ -458,6 +458,28 @@ TEST_CASE("Filling a flat hole changes no volume, wherever the mesh stands",
   }
 }
 
+TEST_CASE("A wrap scales with its mesh by powers of two, to the bit, and ends at any size",
+          "[geometry][mesh_repair]") {
+  TriangleMesh open = box({1, 2, 3});
+  open.faces.pop_back();
+  const MeshRepairOptions options{.max_hole_extent_rel = 0.0,
+                                  .wrap = AlphaWrap{.alpha_rel = 0.2, .offset_rel = 0.05}};
+  const TriangleMesh wrapped = repair_mesh(open, options).mesh;
+  const auto scaled = [](TriangleMesh mesh, int exponent) {
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      for (double& x : vertex) x = std::ldexp(x, exponent);
+    }
+    return mesh;
+  };
+  for (const int exponent : {-60, 60}) {
+    CHECK(repair_mesh(scaled(open, exponent), options).mesh == scaled(wrapped, exponent));
+  }
+  // Volumes are no doubles any more.
+  for (const int exponent : {-1000, 1000}) {
+    CHECK_THROWS_AS(repair_mesh(scaled(open, exponent), options), InvalidInput);
+  }
+}
+
 TEST_CASE("A refusal names the limit for holes that does, and only if it does",
           "[geometry][mesh_repair]") {
   const auto message = [](const TriangleMesh& mesh, const MeshRepairOptions& options) {
