@@ -51,7 +51,7 @@ boost::program_options::options_description object_options() {
              "faces that cross: not looked for, counted, or cut so that only what bounds the solid "
              "stays; the solid is the same");
   add_switch(options, "wrap",
-             "last resort for a mesh that stays open or has no volume: a closed surface around it");
+             "last resort for a mesh that would be refused: a closed surface around it");
   const geometry::AlphaWrap wrap;
   add_option(options, "wrap-alpha", "SHARE", shortest_decimal(wrap.alpha_rel),
              "with --wrap: narrowest gap that it enters, over the object's extent, 0.001 to 1");

@@ -228,13 +228,17 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   return best;
 }
 
-Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
-  internal::Winding winding(point);
+internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
+  Winding winding(point);
   traverse(
-      impl_->tree,
+      query.impl().tree,
       [&](const BoxTree::Node& node) { return winding.may_meet(node.lower, node.upper); },
       [&](const BoxTree::Triangle& triangle) { winding.add(triangle.corners); });
-  return winding.result();
+  return winding;
+}
+
+Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
+  return internal::winding_around(*this, point).result();
 }
 
 double MeshQuery::signed_distance(const Eigen::Vector3d& point) const {

@@ -1,17 +1,9 @@
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/alpha_wrap_3.h>
-#include <CGAL/exceptions.h>
-#include <CGAL/utility.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <map>
 #include <string>
 
 #include "graspfit/geometry/atomic_file.hpp"
@@ -20,393 +12,20 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
-#include "internal/crossing_faces.hpp"
-#include "internal/disjoint_sets.hpp"
+#include "internal/alpha_wrapping.hpp"
 #include "internal/mesh_edges.hpp"
 #include "internal/mesh_holes.hpp"
+#include "internal/mesh_operations.hpp"
+#include "internal/misfilled_share.hpp"
 #include "internal/one_sided_distance.hpp"
 #include "internal/predicates.hpp"
-#include "internal/vertex_welding.hpp"
 
 namespace graspfit::geometry {
 namespace {
 
-using Eigen::Vector3d;
-using internal::DisjointSets;
-using internal::FaceSide;
-using internal::for_each_edge;
 using internal::HoleRim;
-using internal::sorted_sides;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-/// Whether the three numbers run upward, up to rotation.
-bool is_even(const Face& f) {
-  return (f[0] < f[1] && f[1] < f[2]) || (f[1] < f[2] && f[2] < f[0]) ||
-         (f[2] < f[0] && f[0] < f[1]);
-}
-
-/// Each function below changes the mesh and returns how many things it changed.
-
-/// Returns how many vertices became another one, and the farthest way of one of them.
-std::pair<std::size_t, double> weld(TriangleMesh& mesh, double distance) {
-  const std::vector<Vector3d> before = mesh.vertices;
-  const std::vector<std::int32_t> target = distance > 0.0
-                                               ? internal::weld_near(mesh.vertices, distance)
-                                               : internal::weld_equal(mesh.vertices);
-  for (Face& face : mesh.faces) {
-    for (std::int32_t& vertex : face) vertex = target[vertex];
-  }
-  double farthest = 0.0;
-  for (std::size_t v = 0; v < before.size(); ++v) {
-    farthest = std::max(farthest, (before[v] - mesh.vertices[target[v]]).norm());
-  }
-  return {before.size() - mesh.vertices.size(), farthest * (1.0 + 0x1p-50)};
-}
-
-std::size_t remove_unused_vertices(TriangleMesh& mesh) {
-  std::vector<std::int32_t> new_index(mesh.vertices.size(), -1);
-  for (const Face& face : mesh.faces) {
-    for (const std::int32_t vertex : face) new_index[vertex] = 0;
-  }
-  std::int32_t next = 0;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (new_index[v] < 0) continue;
-    mesh.vertices[next] = mesh.vertices[v];
-    new_index[v] = next++;
-  }
-  const std::size_t removed = mesh.vertices.size() - static_cast<std::size_t>(next);
-  mesh.vertices.resize(static_cast<std::size_t>(next));
-  for (Face& face : mesh.faces) {
-    for (std::int32_t& vertex : face) vertex = new_index[vertex];
-  }
-  return removed;
-}
-
-/// Faces with a repeated vertex bound nothing and go. Collinear faces with three vertices carry the
-/// connection between their neighbors and stay: removing one would open the surface.
-std::size_t remove_collapsed_faces(TriangleMesh& mesh) {
-  return std::erase_if(mesh.faces, internal::has_repeated_vertex);
-}
-
-/// What becomes of a surface of which every face has its opposite.
-enum class TwoSided {
-  Halved,  ///< It was drawn on both sides throughout: one of each pair stays.
-  Removed  ///< It is a sheet without thickness.
-};
-
-/// Faces on the same three vertices cancel in pairs of opposite orientation; of those left one
-/// stays.
-std::size_t remove_doubled_faces(TriangleMesh& mesh, TwoSided two_sided) {
-  struct Tally {
-    int balance = 0;
-    int kept = 0;
-  };
-  const auto key = [](Face face) {
-    std::sort(face.begin(), face.end());
-    return face;
-  };
-  std::map<Face, Tally> tallies;
-  for (const Face& face : mesh.faces) tallies[key(face)].balance += is_even(face) ? 1 : -1;
-  const bool is_two_sided = std::all_of(tallies.begin(), tallies.end(),
-                                        [](const auto& t) { return t.second.balance == 0; });
-  if (is_two_sided && two_sided == TwoSided::Halved) {
-    return std::erase_if(mesh.faces,
-                         [&](const Face& face) { return tallies[key(face)].kept++ > 0; });
-  }
-  return std::erase_if(mesh.faces, [&](const Face& face) {
-    Tally& tally = tallies[key(face)];
-    const bool is_majority = is_even(face) ? tally.balance > 0 : tally.balance < 0;
-    return !is_majority || tally.kept++ > 0;
-  });
-}
-
-void flip(Face& face) { std::swap(face[1], face[2]); }
-
-/// Turns faces until neighbors over two-face edges agree, the first face of each part as it is.
-/// Returns the faces turned.
-std::size_t make_consistent(TriangleMesh& mesh) {
-  const std::vector<FaceSide> sides = sorted_sides(mesh);
-  std::vector<std::vector<std::pair<std::int32_t, bool>>> neighbors(mesh.faces.size());
-  for_each_edge(sides, [&](auto first, auto last) {
-    if (last - first != 2) return;
-    const auto second = first + 1;
-    const bool agree = first->runs_up() != second->runs_up();
-    neighbors[first->face].emplace_back(second->face, agree);
-    neighbors[second->face].emplace_back(first->face, agree);
-  });
-  std::vector<int> state(mesh.faces.size(), 0);  // 0 unseen, +1 keep, −1 turn
-  for (std::size_t start = 0; start < mesh.faces.size(); ++start) {
-    if (state[start] != 0) continue;
-    state[start] = 1;
-    std::vector<std::int32_t> component = {static_cast<std::int32_t>(start)};
-    for (std::size_t next = 0; next < component.size(); ++next) {
-      for (const auto& [neighbor, agree] : neighbors[component[next]]) {
-        if (state[neighbor] != 0) continue;
-        state[neighbor] = agree ? state[component[next]] : -state[component[next]];
-        component.push_back(neighbor);
-      }
-    }
-    // The majority was right.
-    const auto turned =
-        std::count_if(component.begin(), component.end(), [&](auto f) { return state[f] < 0; });
-    if (2 * turned > static_cast<std::ptrdiff_t>(component.size())) {
-      for (const std::int32_t face : component) state[face] = -state[face];
-    }
-  }
-  std::size_t num_turned = 0;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    if (state[face] < 0) {
-      flip(mesh.faces[face]);
-      ++num_turned;
-    }
-  }
-  return num_turned;
-}
-
-/// Sides of one edge in the order in which their faces stand around it, counter-clockwise seen from
-/// its higher vertex; exact. Of faces in one place those that run up come first: seen along the
-/// edge they end a wedge of solid, and the others begin one.
-std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSide> sides) {
-  const Vector3d& low = mesh.vertices[sides.front().low()];
-  const Vector3d& high = mesh.vertices[sides.front().high()];
-  const auto third = [&mesh](const FaceSide& side) -> const Vector3d& {
-    return mesh.vertices[mesh.faces[side.face][(side.corner + 2) % 3]];
-  };
-  const auto has_area = [&](const FaceSide& side) {
-    return !internal::are_collinear(low, high, third(side));
-  };
-  const auto found = std::find_if(sides.begin(), sides.end(), has_area);
-  if (found == sides.end()) return sides;
-  const Vector3d reference = third(*found);
-  struct Item {
-    FaceSide side;
-    int half;  ///< From the reference: 0 there, 1 up to half a turn, 2 there, 3 beyond; −1 no area.
-  };
-  std::vector<Item> items;
-  for (const FaceSide& side : sides) {
-    int half = -1;
-    if (has_area(side)) {
-      const int turn = internal::orientation(low, high, reference, third(side));
-      bool is_ahead = false;
-      for (int u = 0; u < 3 && turn == 0; ++u) {
-        const int v = (u + 1) % 3;
-        const int seen = internal::orientation_2d(low, high, reference, u, v);
-        is_ahead = seen != 0 && seen == internal::orientation_2d(low, high, third(side), u, v);
-        if (seen != 0) break;
-      }
-      half = turn > 0 ? 1 : turn < 0 ? 3 : is_ahead ? 0 : 2;
-    }
-    items.push_back({side, half});
-  }
-  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
-    if (a.half != b.half) return a.half < b.half;
-    if (a.half == 1 || a.half == 3) {
-      const int turn = internal::orientation(low, high, third(a.side), third(b.side));
-      if (turn != 0) return turn > 0;
-    }
-    return a.side.runs_up() && !b.side.runs_up();
-  });
-  for (std::size_t i = 0; i < items.size(); ++i) sides[i] = items[i].side;
-  return sides;
-}
-
-/// Gives every fan of faces around a vertex a vertex of its own. Around an edge with more than two
-/// faces the two that bound the same wedge of solid stay together, so that solids which touch along
-/// an edge come apart. Returns the vertices added.
-std::size_t split_nonmanifold(TriangleMesh& mesh) {
-  const std::vector<FaceSide> sides = sorted_sides(mesh);
-  DisjointSets fans(3 * mesh.faces.size());
-  const auto join = [&](const FaceSide& a, const FaceSide& b) {
-    for (const std::int32_t vertex : {a.low(), a.high()}) {
-      fans.unite(a.corner_at(vertex), b.corner_at(vertex));
-    }
-  };
-  for_each_edge(sides, [&](auto first, auto last) {
-    const auto count = last - first;
-    if (count == 2) join(*first, *(first + 1));
-    if (count <= 2) return;
-    const std::vector<FaceSide> around = sorted_around(mesh, {first, last});
-    // Seen along the edge, a face that runs down it has the solid on its counter-clockwise side;
-    // the next face then runs up and closes that wedge.
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      const FaceSide& opening = around[i];
-      const FaceSide& closing = around[(i + 1) % around.size()];
-      if (!opening.runs_up() && closing.runs_up()) join(opening, closing);
-    }
-  });
-  std::vector<std::int32_t> fan_of(mesh.vertices.size(), -1);
-  std::map<std::int32_t, std::int32_t> vertex_of_fan;
-  std::size_t added = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (std::int32_t k = 0; k < 3; ++k) {
-      const std::int32_t fan = fans.root(static_cast<std::int32_t>(3 * f) + k);
-      std::int32_t& vertex = mesh.faces[f][k];
-      if (fan_of[vertex] < 0) fan_of[vertex] = fan;
-      if (fan_of[vertex] == fan) continue;
-      const auto [entry, is_new] =
-          vertex_of_fan.try_emplace(fan, static_cast<std::int32_t>(mesh.vertices.size()));
-      if (is_new) {
-        mesh.vertices.push_back(Vector3d(mesh.vertices[vertex]));
-        ++added;
-      }
-      vertex = entry->second;
-    }
-  }
-  return added;
-}
-
-/// Triangles that close a hole, by their places in its rim. A rim without area, as where a vertex
-/// of one face lies on an edge of another, gets triangles without area.
-std::vector<Face> patch_of(const TriangleMesh& mesh, const HoleRim& rim) {
-  const auto point = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
-  std::size_t num_on_line = 2;
-  while (num_on_line < rim.size() &&
-         internal::are_collinear(point(0), point(1), point(num_on_line))) {
-    ++num_on_line;
-  }
-  std::vector<Face> patch;
-  if (rim.size() == 3 || num_on_line == rim.size()) {
-    for (std::int32_t i = 2; i < static_cast<std::int32_t>(rim.size()); ++i) {
-      patch.push_back({0, i - 1, i});
-    }
-    return patch;
-  }
-  std::vector<Kernel::Point_3> points;
-  for (std::size_t i = 0; i < rim.size(); ++i) {
-    points.emplace_back(point(i).x(), point(i).y(), point(i).z());
-  }
-  std::vector<CGAL::Triple<int, int, int>> triangles;
-  CGAL::Polygon_mesh_processing::triangulate_hole_polyline(points, std::back_inserter(triangles));
-  for (const auto& t : triangles) {
-    // The patch runs along the rim where its corners are numbered upward.
-    Face face = {t.first, t.second, t.third};
-    if (!is_even(face)) flip(face);
-    patch.push_back(face);
-  }
-  return patch;
-}
-
-/// Fills those holes that are up to `largest_extent` [m]. Returns how many.
-std::size_t fill_holes(TriangleMesh& mesh, const std::vector<HoleRim>& rims,
-                       double largest_extent) {
-  std::size_t filled = 0;
-  for (const HoleRim& rim : rims) {
-    if (internal::rim_extent(mesh, rim) > largest_extent) continue;
-    const std::vector<Face> patch = patch_of(mesh, rim);
-    for (const Face& f : patch) mesh.faces.push_back({rim[f[0]], rim[f[1]], rim[f[2]]});
-    if (!patch.empty()) ++filled;
-  }
-  return filled;
-}
-
-std::size_t turn_inside_out_parts(TriangleMesh& mesh) {
-  if (mesh.faces.empty()) return 0;
-  const std::vector<FaceSide> sides = sorted_sides(mesh);
-  const std::vector<std::int32_t> parts = internal::parts_of_faces(mesh, sides);
-  const std::int32_t last_part = *std::max_element(parts.begin(), parts.end());
-  std::vector<bool> is_closed(static_cast<std::size_t>(last_part) + 1, true);
-  for_each_edge(sides, [&](auto first, auto last) {
-    if (last - first != 2) is_closed[parts[first->face]] = false;
-  });
-  const std::vector<std::int32_t> turned = internal::inside_out_parts(mesh, parts, is_closed);
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    if (std::binary_search(turned.begin(), turned.end(), parts[face])) flip(mesh.faces[face]);
-  }
-  return turned.size();
-}
-
-/// Ends a wrap that does not end by itself: CGAL's refinement goes round in circles where rounding
-/// puts a new point on an old one, as on a needle of 3e8 times its thickness.
-class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
- public:
-  struct Exceeded {};
-
-  explicit WrapLimit(std::int64_t most_facets) : facets_left_(most_facets) {}
-
-  template <class Wrapper, class Gate>
-  void before_facet_treatment(const Wrapper&, const Gate&) {
-    if (--facets_left_ < 0) throw Exceeded();
-  }
-
- private:
-  std::int64_t facets_left_;
-};
-
-bool has_area(const TriangleMesh& mesh) {
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    if (!internal::is_degenerate(mesh, face)) return true;
-  }
-  return false;
-}
-
-/// Wraps the faces and orients the wrap outward. No faces if CGAL does not come to a good end.
-TriangleMesh alpha_wrap(const TriangleMesh& given, double alpha_rel, double offset_rel,
-                        double extent) {
-  if (!std::isfinite(extent)) return {};
-  // CGAL's exact numbers end the program where products of coordinates leave the range of doubles.
-  // So a mesh is wrapped at an extent of 1/2 to 1, which rounds nothing, and what is nearer to zero
-  // than kLeast there becomes zero.
-  constexpr double kLeast = 1e-45;
-  int exponent = 0;
-  std::frexp(extent, &exponent);
-  TriangleMesh mesh = given;
-  for (Vector3d& vertex : mesh.vertices) {
-    for (double& x : vertex) {
-      x = std::ldexp(x, -exponent);
-      if (std::abs(x) < kLeast) x = 0.0;
-    }
-  }
-  // CGAL leaves degenerate faces out, and requires that others remain.
-  if (!has_area(mesh)) return {};
-  const double alpha = std::ldexp(alpha_rel * extent, -exponent);
-  const double offset = std::ldexp(offset_rel * extent, -exponent);
-  std::vector<Kernel::Point_3> points;
-  for (const Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
-  CGAL::Surface_mesh<Kernel::Point_3> wrap;
-  // A surface has on the order of (extent / alpha)^2 facets of size alpha. Wraps of scans, cars
-  // and open tubes take 20 to 80 times as many steps.
-  constexpr double kMostStepsRel = 2000.0;
-  const double size = 1.0 / alpha_rel;
-  WrapLimit limit(static_cast<std::int64_t>(kMostStepsRel * (size * size + 10.0)));
-  // CGAL 5 looks for the visitor among the parameters of the output, CGAL 6 among those of the
-  // input; where it does not look, it says nothing.
-  const auto visited = CGAL::parameters::visitor(std::ref(limit));
-  try {
-    CGAL::alpha_wrap_3(points, mesh.faces, alpha, offset, wrap, visited, visited);
-  } catch (const WrapLimit::Exceeded&) {
-    return {};
-  } catch (const CGAL::Failure_exception&) {
-    // In builds with assertions CGAL says where rounding defeated it before it starts going round.
-    return {};
-  }
-  TriangleMesh result;
-  for (const auto vertex : wrap.vertices()) {
-    const Kernel::Point_3& p = wrap.point(vertex);
-    result.vertices.emplace_back(std::ldexp(p.x(), exponent), std::ldexp(p.y(), exponent),
-                                 std::ldexp(p.z(), exponent));
-  }
-  for (const auto face : wrap.faces()) {
-    Face& corners = result.faces.emplace_back();
-    int k = 0;
-    for (const auto vertex : wrap.vertices_around_face(wrap.halfedge(face))) {
-      corners[k++] = static_cast<std::int32_t>(vertex.idx());
-    }
-  }
-  return result;
-}
-
-/// Whether all faces of `mesh` lie strictly inside the closed surface `wrap`. Exact.
-bool encloses(const TriangleMesh& wrap, const TriangleMesh& mesh) {
-  std::vector<std::int32_t> side(wrap.faces.size(), 0);
-  side.resize(wrap.faces.size() + mesh.faces.size(), 1);
-  if (!internal::crossing_faces(concatenated({wrap, mesh}), side).empty()) return false;
-  const MeshQuery query(wrap);
-  return std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Face& face) {
-    return std::all_of(face.begin(), face.end(), [&](std::int32_t vertex) {
-      return query.containment(mesh.vertices[vertex]) == Containment::Inside;
-    });
-  });
-}
+using internal::TwoSided;
+using Triangle = std::array<Eigen::Vector3d, 3>;
 
 std::string defects_of(const MeshAnalysis& analysis) {
   std::string text;
@@ -479,6 +98,30 @@ std::string percent(double share) {
   return shortest_decimal(std::round(1000.0 * share) / 10.0) + " %";
 }
 
+/// The faces of `mesh` that are among `triangles`, by their corners in whatever order.
+std::vector<Triangle> found_in(const TriangleMesh& mesh, std::vector<Triangle> triangles) {
+  const auto is_before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  const auto sorted = [&](Triangle triangle) {
+    std::sort(triangle.begin(), triangle.end(), is_before);
+    return triangle;
+  };
+  const auto comes_first = [&](const Triangle& a, const Triangle& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), is_before);
+  };
+  for (Triangle& triangle : triangles) triangle = sorted(triangle);
+  std::sort(triangles.begin(), triangles.end(), comes_first);
+  std::vector<Triangle> found;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const Triangle triangle = corners(mesh, face);
+    if (std::binary_search(triangles.begin(), triangles.end(), sorted(triangle), comes_first)) {
+      found.push_back(triangle);
+    }
+  }
+  return found;
+}
+
 /// The repair of one mesh, step by step.
 class Repair {
  public:
@@ -509,7 +152,7 @@ class Repair {
     if (!(volume_ > 0.0)) {
       throw DegenerateGeometry("the mesh encloses no volume" + advice_to_wrap("; "));
     }
-    refuse_folded_filling();
+    refuse_failure();
     return std::move(result_);
   }
 
@@ -523,7 +166,11 @@ class Repair {
     return is_closed ? signed_volume(mesh) : internal::coned_volume(mesh);
   }
 
-  bool is_solid() const { return result_.after.is_closed && volume_ > 0.0 && !is_filling_folded_; }
+  bool is_misfilled() const { return misfilled_rel_ > options_.max_misfilled_rel; }
+  bool is_stripped() const { return removed_rel_ > options_.max_removed_rel; }
+  bool is_solid() const {
+    return result_.after.is_closed && volume_ > 0.0 && !is_misfilled() && !is_stripped();
+  }
 
   void add_step(const char* what, std::size_t count, double hausdorff_bound) {
     if (count == 0) return;
@@ -557,51 +204,50 @@ class Repair {
   /// Mends the mesh and judges the result. Where holes meet at vertices, there are two ways to
   /// close the surface. Solids that only touch come apart as they should; a surface of patches
   /// that hang together by vertices does so too, and then every patch is closed by a filling along
-  /// its own inside, which leaves a hollow skin. A filling that folds inward loses volume, by
-  /// which the two ways are told apart.
+  /// its own inside, which leaves a hollow skin. The way that is nearer to what the surface means
+  /// is taken.
   void mend_either_way() {
-    // Solids that touch lose less than a thousandth in scans and models from many sources; a skin
-    // loses most of the volume.
-    constexpr double kMostLostRel = 0.1;
-    const auto loses_to = [&](double volume) { return volume_ < (1.0 - kMostLostRel) * volume; };
     mend(MeetingHoles::AfterSplitting);
-    if (largest_meeting_rel_ == 0.0 || (is_solid() && !loses_to(open_volume_))) return;
+    if (largest_meeting_rel_ == 0.0 || is_solid()) return;
     Repair other(given_, options_, Advice::None);
     other.result_.before = result_.before;
     other.volume_ = volume_of(given_, result_.before.is_closed);
     other.mend(MeetingHoles::BeforeSplitting);
-    if (other.is_solid() && (!is_solid() || loses_to(other.volume_))) {
+    if (other.is_solid()) {
       result_ = std::move(other.result_);
       volume_ = other.volume_;
-    } else if (is_solid() && !other.is_solid()) {
-      is_filling_folded_ = true;
+      misfilled_rel_ = other.misfilled_rel_;
+      removed_rel_ = other.removed_rel_;
+    } else if (is_misfilled()) {
       largest_open_rel_ = other.largest_hole_rel();
     }
   }
 
   void mend(MeetingHoles meeting_holes) {
     TriangleMesh& mesh = result_.mesh;
-    const auto [num_welded, farthest] = weld(mesh, options_.weld_distance_rel * extent_);
+    const auto [num_welded, farthest] = internal::weld(mesh, options_.weld_distance_rel * extent_);
     add_step("welded vertices", num_welded, farthest);
     drop_collapsed_faces();
     drop_doubled_faces(TwoSided::Halved);
-    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
-    add_step("turned faces", make_consistent(mesh), 0.0);
+    add_step("removed unused vertices", internal::remove_unused_vertices(mesh), 0.0);
+    add_step("turned faces", internal::make_consistent(mesh), 0.0);
     const std::vector<HoleRim> meeting = internal::holes_of(mesh).meeting;
     for (const HoleRim& rim : meeting) {
       largest_meeting_rel_ = std::max(largest_meeting_rel_, rim_extent_rel(mesh, rim));
     }
-    if (!meeting.empty()) open_volume_ = volume_of(mesh, false);
     std::size_t num_filled = 0;
     if (meeting_holes == MeetingHoles::BeforeSplitting) num_filled += fill(meeting);
-    add_step("split non-manifold vertices", split_nonmanifold(mesh), 0.0);
+    add_step("split non-manifold vertices", internal::split_nonmanifold(mesh), 0.0);
     const internal::Holes holes = internal::holes_of(mesh);
     num_filled += fill(concatenation(holes.single, holes.meeting));
     // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
     if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);
-    add_step("removed unused vertices", remove_unused_vertices(mesh), 0.0);
-    add_step("turned parts", turn_inside_out_parts(mesh), 0.0);
+    add_step("removed unused vertices", internal::remove_unused_vertices(mesh), 0.0);
+    add_step("turned parts", internal::turn_inside_out_parts(mesh), 0.0);
     if (!result_.steps.empty()) result_.after = analyzed(mesh);
+    if (result_.after.is_closed && num_filled > 0) {
+      misfilled_rel_ = internal::misfilled_share(mesh, found_in(mesh, fillings_));
+    }
   }
 
   /// Fills the holes that are small enough. Returns how many.
@@ -610,13 +256,16 @@ class Repair {
     if (rims.empty() || mesh.faces.empty()) return 0;
     const TriangleMesh open = mesh;
     const std::size_t count =
-        fill_holes(mesh, rims, options_.max_hole_extent_rel * longest_extent(mesh));
+        internal::fill_holes(mesh, rims, options_.max_hole_extent_rel * longest_extent(mesh));
     // Faces without area reach no farther than the rim and the other faces of their patch.
     std::vector<Face> patches;
     for (std::size_t face = open.faces.size(); face < mesh.faces.size(); ++face) {
       if (!internal::is_degenerate(mesh, face)) patches.push_back(mesh.faces[face]);
     }
     add_step("filled holes", count, reach_of(patches, open));
+    for (Triangle& triangle : internal::triangles_of(mesh.vertices, patches)) {
+      fillings_.push_back(std::move(triangle));
+    }
     return count;
   }
 
@@ -625,17 +274,26 @@ class Repair {
     for (const Face& face : result_.mesh.faces) {
       if (internal::has_repeated_vertex(face)) collapsed.push_back(face);
     }
-    const std::size_t count = remove_collapsed_faces(result_.mesh);
-    add_step("removed degenerate faces", count,
-             reach_of(loose_segments(collapsed, result_.mesh.faces), result_.mesh));
+    const std::size_t count = internal::remove_collapsed_faces(result_.mesh);
+    add_removal("removed degenerate faces", count, loose_segments(collapsed, result_.mesh.faces));
   }
 
   void drop_doubled_faces(TwoSided two_sided) {
     const std::vector<Face> faces = result_.mesh.faces;
-    const std::size_t count = remove_doubled_faces(result_.mesh, two_sided);
+    const std::size_t count = internal::remove_doubled_faces(result_.mesh, two_sided);
     if (count == 0) return;
-    add_step("removed doubled faces", count,
-             reach_of(faces_beyond(faces, result_.mesh.faces), result_.mesh));
+    add_removal("removed doubled faces", count, faces_beyond(faces, result_.mesh.faces));
+  }
+
+  void add_removal(const char* what, std::size_t count, std::vector<Face> faces) {
+    add_step(what, count, reach_of(faces, result_.mesh));
+    // Both sides of a sheet count once.
+    for (Face& face : faces) std::sort(face.begin(), face.end());
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    const double removed = surface_area({result_.mesh.vertices, std::move(faces)});
+    const double kept = surface_area(result_.mesh);
+    if (removed > 0.0) removed_rel_ = std::max(removed_rel_, removed / (removed + kept));
   }
 
   /// Replaces the surface by the boundary of the solid that it means, if that is in order and
@@ -649,10 +307,10 @@ class Repair {
     std::size_t left = before;
     for (int round = 0; round < kMaxRounds && left > 0; ++round) {
       TriangleMesh resolved = solid_boundary(result_.mesh);
-      remove_doubled_faces(resolved, TwoSided::Removed);
-      remove_unused_vertices(resolved);
+      internal::remove_doubled_faces(resolved, TwoSided::Removed);
+      internal::remove_unused_vertices(resolved);
       if (resolved.faces.empty()) break;
-      split_nonmanifold(resolved);
+      internal::split_nonmanifold(resolved);
       const MeshAnalysis analysis = analyzed(resolved);
       const bool is_sound = analysis.is_outward && analysis.is_manifold;
       if (!is_sound || *analysis.num_self_intersections >= left) break;
@@ -669,12 +327,15 @@ class Repair {
   void wrap() {
     if (!(extent_ > 0.0)) return;
     TriangleMesh wrapped =
-        alpha_wrap(given_, options_.wrap->alpha_rel, options_.wrap->offset_rel, extent_);
+        internal::alpha_wrap(given_, options_.wrap->alpha_rel, options_.wrap->offset_rel, extent_);
     if (wrapped.faces.empty()) return;
     const MeshAnalysis analysis = analyzed(wrapped);
-    if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) || !encloses(wrapped, given_)) return;
+    if (!is_good(analysis) || !(signed_volume(wrapped) > 0.0) ||
+        !internal::encloses(wrapped, given_))
+      return;
     result_.steps.clear();
-    is_filling_folded_ = false;
+    misfilled_rel_ = 0.0;
+    removed_rel_ = 0.0;
     volume_ = volume_of(given_, result_.before.is_closed);
     const double bound =
         hausdorff_distance(MeshQuery(given_), MeshQuery(wrapped), distance_options()).upper;
@@ -716,15 +377,26 @@ class Repair {
                        defects_of(result_.after) + text + (advice.empty() ? "" : "; ") + advice);
   }
 
-  void refuse_folded_filling() const {
-    if (!is_filling_folded_) return;
-    const std::string advice = advice_to_fill(largest_open_rel_);
-    throw InvalidInput("the mesh is not closed, and filling its holes would leave a skin: " +
-                       percent(volume_ / open_volume_) +
-                       " of the volume that the surface encloses; its largest hole spans " +
-                       rounded(largest_open_rel_) + " of its longest extent, holes up to " +
-                       shortest_decimal(options_.max_hole_extent_rel) + " are filled" +
-                       (advice.empty() ? "" : "; ") + advice + advice_to_wrap("; "));
+  void refuse_failure() const {
+    if (is_misfilled()) {
+      std::string text;
+      if (largest_open_rel_ > 0.0) {
+        text = "; its largest hole spans " + rounded(largest_open_rel_) +
+               " of its longest extent, holes up to " +
+               shortest_decimal(options_.max_hole_extent_rel) + " are filled";
+      }
+      const std::string advice = advice_to_fill(largest_open_rel_);
+      throw InvalidInput(
+          "the mesh is not closed, and filling its holes would miss the solid that "
+          "its surface means by " +
+          percent(misfilled_rel_) + " of the volume" + text + (advice.empty() ? "" : "; ") +
+          advice + advice_to_wrap("; "));
+    }
+    if (is_stripped()) {
+      throw InvalidInput(percent(removed_rel_) +
+                         " of the mesh's surface are sheets without thickness" +
+                         advice_to_wrap("; "));
+    }
   }
 
   /// Extent of the largest hole that is left, over that of the mesh. Where holes that meet were too
@@ -773,11 +445,12 @@ class Repair {
   const double extent_;
   RepairedMesh result_;
   double volume_ = 0.0;  ///< Of the mesh as it is now, holes closed by cones [m³].
-  bool is_filling_folded_ = false;
+  std::vector<Triangle> fillings_;
+  double misfilled_rel_ = 0.0;  ///< See `misfilled_share`.
+  double removed_rel_ = 0.0;    ///< Area of what was removed, over that of the surface with it.
   double largest_meeting_rel_ = 0.0;  ///< Extent of the largest hole that meets another, over
                                       ///< that of the mesh that it was in.
-  double largest_open_rel_ = 0.0;     ///< Where the filling is folded: of the hole that it left.
-  double open_volume_ = 0.0;          ///< As `volume_`, before anything is split and filled [m³].
+  double largest_open_rel_ = 0.0;     ///< Of the hole that the other way left.
 };
 
 void check_range(const char* field, double value, double least, double most) {
@@ -792,6 +465,8 @@ void check_range(const char* field, double value, double least, double most) {
 void MeshRepairOptions::validate() const {
   check_range("weld_distance_rel", weld_distance_rel, 0.0, 0.01);
   check_range("max_hole_extent_rel", max_hole_extent_rel, 0.0, 1.0);
+  check_range("max_misfilled_rel", max_misfilled_rel, 0.0, 1.0);
+  check_range("max_removed_rel", max_removed_rel, 0.0, 1.0);
   if (!wrap) return;
   check_range("wrap.alpha_rel", wrap->alpha_rel, 1e-3, 1.0);
   check_range("wrap.offset_rel", wrap->offset_rel, 1e-4, 1.0);

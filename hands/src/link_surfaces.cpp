@@ -200,6 +200,8 @@ struct ClosingReport {
 TriangleMesh closed_surface(const TriangleMesh& mesh, ClosingReport& report) {
   geometry::MeshRepairOptions options;
   options.max_hole_extent_rel = 1.0;  // the ends of a tube are as wide as the tube
+  options.max_misfilled_rel = 1.0;    // a link that is filled somehow is nearer to it than a shell
+  options.max_removed_rel = 1.0;
   try {
     const geometry::RepairedMesh repaired = geometry::repair_mesh(mesh, options);
     report.add(repaired, 0.0);

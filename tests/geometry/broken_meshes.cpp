@@ -138,6 +138,35 @@ TriangleMesh tiled_box(int size, double raised, int num_sides) {
   return mesh;
 }
 
+// The eight octants of a unit ball, each of n² triangles with vertices of its own, drawn apart by
+// `gap` along each axis.
+TriangleMesh ball_octants(int n, double gap) {
+  TriangleMesh mesh;
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vector3d sign(octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1);
+    const bool is_turned = sign.prod() < 0;
+    std::map<std::array<int, 2>, Index> index_of;
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; i + j <= n; ++j) {
+        index_of[{i, j}] = static_cast<Index>(mesh.vertices.size());
+        const Vector3d direction = Vector3d(i, j, n - i - j).normalized();
+        mesh.vertices.push_back(sign.cwiseProduct(direction + Vector3d::Constant(gap / 2.0)));
+      }
+    }
+    const auto add = [&](const Face& face) {
+      mesh.faces.push_back(is_turned ? reversed(face) : face);
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        add({index_of[{i, j}], index_of[{i + 1, j}], index_of[{i, j + 1}]});
+        if (i + j + 2 > n) continue;
+        add({index_of[{i + 1, j}], index_of[{i + 1, j + 1}], index_of[{i, j + 1}]});
+      }
+    }
+  }
+  return mesh;
+}
+
 // Every face with three vertices of its own; `place` may move the copy.
 TriangleMesh soup(const TriangleMesh& mesh,
                   const std::function<Vector3d(const Vector3d&, int)>& place) {
@@ -558,6 +587,11 @@ std::vector<BrokenMesh> broken_meshes() {
        tiled_box(1, 0.0, 6)},
       {"tiles", "a box of 24 such tiles with raised middles", tiled_box(2, 0.125, 6)},
       {"tiles_without_side", "the same without one side of the box", tiled_box(2, 0.125, 5)},
+      {"wide_sheet", "a cube and a sheet of 2 by 2 above it, drawn on both sides",
+       with_faces(with_vertices(cube(), {{0, 0, 3}, {2, 0, 3}, {2, 2, 3}, {0, 2, 3}}),
+                  {{8, 9, 10}, {8, 10, 11}, {8, 10, 9}, {8, 11, 10}})},
+      {"octants", "a ball's eight octants, 2^-9 apart, that share no vertex",
+       ball_octants(6, 0x1p-9)},
       // Faces.
       {"face_twice", "a face is there twice", with_faces(cube(), {kBlockFaces[0]})},
       {"face_on_both_sides", "a face is there a second time, reversed",

@@ -41,6 +41,7 @@ class Winding {
     return number_ != 0 ? Containment::Inside : Containment::Outside;
   }
   bool is_on_surface() const { return is_on_surface_; }
+  int number() const { return number_; }
 
  private:
   // On which side of the line from u to v the moved point is, in the (y, z) plane: the first of
@@ -57,5 +58,8 @@ class Winding {
   int number_ = 0;
   bool is_on_surface_ = false;
 };
+
+/// The surface of a closed mesh around a point.
+Winding winding_around(const MeshQuery& query, const Eigen::Vector3d& point);
 
 }  // namespace graspfit::geometry::internal

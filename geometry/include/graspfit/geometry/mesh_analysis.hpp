@@ -86,10 +86,15 @@ struct MeshRepairOptions {
   double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
+  double max_misfilled_rel = 0.25;   ///< Most of its volume by which the solid may differ from what
+                                     ///< the surface means without its fillings, in [0, 1]. Six
+                                     ///< patches of a sphere, each closed along its own inside,
+                                     ///< leave a skin that lacks a third and more.
+  double max_removed_rel = 0.25;     ///< Most of the surface's area that may go for being without
+                                     ///< thickness (sheets, stray triangles), in [0, 1].
   SelfIntersections self_intersections = SelfIntersections::Leave;
   std::optional<AlphaWrap> wrap =
-      std::nullopt;       ///< The last resort, only where the mesh would be refused as not
-                          ///< closed or without volume. Empty: refuse.
+      std::nullopt;       ///< The last resort, only where the mesh would be refused. Empty: refuse.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -124,20 +129,21 @@ struct RepairedMesh {
 /// unused vertices, orientation made consistent, non-manifold edges and vertices split (solids that
 /// touch along an edge come apart), holes filled up to the stated size, doubled faces and unused
 /// vertices once more (what fills a sheet without thickness is its mirror image), inside-out parts
-/// turned, self-intersections resolved if asked for. Where holes meet at vertices, the result is
-/// judged by its volume against that of the surface with every hole closed by a cone: if splitting
-/// lost more than a tenth, or left the surface open, the holes that meet are filled before the
-/// vertices are split. Patches that hang together by single vertices, as where the border of one
-/// is subdivided and its neighbor's is not, would come apart otherwise, and a filling along the
-/// inside of each would leave a hollow skin. If that cannot be closed either, the skin is no
-/// success: it is wrapped if asked for, or refused. Collinear faces stay: they carry the
+/// turned, self-intersections resolved if asked for. The result is judged by
+/// `max_misfilled_rel`, where what the surface means is where its generalized winding number
+/// without the fillings rounds to another number than zero (a flat hole makes no difference), and
+/// by `max_removed_rel`. Where holes meet at vertices and the first limit is not kept, they are
+/// filled before the vertices are split: patches that hang together by single vertices, as where
+/// the border of one is subdivided and its neighbor's is not, would come apart otherwise, and a
+/// filling along the inside of each would leave a hollow skin. Beyond a limit the repair is no
+/// success: the mesh is wrapped if asked for, or refused. Collinear faces stay: they carry the
 /// connection between their neighbors. Parts that overlap or lie in each other are kept: their
 /// union is meant, and an inward part inside an outward one is a cavity. A mesh that is closed,
 /// outward and manifold and has no degenerate, doubled or unused parts comes back as it is, byte
 /// for byte, crossing or not, close vertices or not, unless self-intersections are to be resolved.
 /// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
 /// large the largest hole is, which limit for holes would do, by its option of the program, and
-/// whether a wrap is to be had), if filling would leave a skin, if `Strict` meets any defect, or if
+/// whether a wrap is to be had), if a limit above is not kept, if `Strict` meets any defect, or if
 /// the mesh has no faces.
 /// @throws DegenerateGeometry if the mesh has no volume.
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options = {});
