@@ -269,12 +269,12 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
-  print_left_out(config);
 
   experiments::RunOptions options;
   options.jobs = flags.integer("jobs", geometry::between(1, experiments::RunOptions::kMostJobs));
   options.folder = results_folder(flags);
   if (flags.has("shard")) options.shard = experiments::parse_shard(flags.text("shard"));
+  print_left_out(config);
   const experiments::RunManifest manifest = manifest_of("run", arguments);
 
   ProgressBar bar(!flags.has("quiet"));
@@ -321,10 +321,10 @@ ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
   const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = experiments::source_folder();
   if (flags.has("publish")) experiments::require_publishable(config, sources);
-  print_left_out(config);
   const fs::path folder = results_folder(flags);
   const experiments::RunProgress done =
       experiments::merge_shards(experiment, config, manifest_of("merge", arguments), folder);
+  print_left_out(config);
   if (flags.has("publish")) {
     experiments::publish(experiment, config, folder, sources, published_folder());
   }
