@@ -204,8 +204,8 @@ class Repair {
   /// Mends the mesh and judges the result. Where holes meet at vertices, there are two ways to
   /// close the surface. Solids that only touch come apart as they should; a surface of patches
   /// that hang together by vertices does so too, and then every patch is closed by a filling along
-  /// its own inside, which leaves a hollow skin. The way that is nearer to what the surface means
-  /// is taken.
+  /// its own inside, which leaves a hollow skin. So where the first way is no success, the other
+  /// is tried.
   void mend_either_way() {
     mend(MeetingHoles::AfterSplitting);
     if (largest_meeting_rel_ == 0.0 || is_solid()) return;
@@ -245,9 +245,22 @@ class Repair {
     add_step("removed unused vertices", internal::remove_unused_vertices(mesh), 0.0);
     add_step("turned parts", internal::turn_inside_out_parts(mesh), 0.0);
     if (!result_.steps.empty()) result_.after = analyzed(mesh);
-    if (result_.after.is_closed && num_filled > 0) {
-      misfilled_rel_ = internal::misfilled_share(mesh, found_in(mesh, fillings_));
+    if (!result_.after.is_closed || mesh.faces.empty()) return;
+    if (num_filled > 0) misfilled_rel_ = internal::misfilled_share(mesh, found_in(mesh, fillings_));
+    removed_rel_ = removed_share();
+  }
+
+  /// Area of what was removed, over that of the surface with it. Walls inside the solid do not
+  /// count: where solids share faces, they go and nothing is lost.
+  double removed_share() const {
+    if (removed_.empty()) return 0.0;
+    const MeshQuery solid(result_.mesh);
+    double removed = 0.0;
+    for (const auto& [a, b, c] : removed_) {
+      if (solid.containment((a + b + c) / 3.0) == Containment::Inside) continue;
+      removed += 0.5 * (b - a).cross(c - a).norm();
     }
+    return removed > 0.0 ? removed / (removed + surface_area(result_.mesh)) : 0.0;
   }
 
   /// Fills the holes that are small enough. Returns how many.
@@ -263,8 +276,8 @@ class Repair {
       if (!internal::is_degenerate(mesh, face)) patches.push_back(mesh.faces[face]);
     }
     add_step("filled holes", count, reach_of(patches, open));
-    for (Triangle& triangle : internal::triangles_of(mesh.vertices, patches)) {
-      fillings_.push_back(std::move(triangle));
+    for (const Triangle& triangle : internal::triangles_of(mesh.vertices, patches)) {
+      fillings_.push_back(triangle);
     }
     return count;
   }
@@ -291,9 +304,9 @@ class Repair {
     for (Face& face : faces) std::sort(face.begin(), face.end());
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    const double removed = surface_area({result_.mesh.vertices, std::move(faces)});
-    const double kept = surface_area(result_.mesh);
-    if (removed > 0.0) removed_rel_ = std::max(removed_rel_, removed / (removed + kept));
+    for (const Triangle& triangle : internal::triangles_of(result_.mesh.vertices, faces)) {
+      removed_.push_back(triangle);
+    }
   }
 
   /// Replaces the surface by the boundary of the solid that it means, if that is in order and
@@ -446,8 +459,9 @@ class Repair {
   RepairedMesh result_;
   double volume_ = 0.0;  ///< Of the mesh as it is now, holes closed by cones [m³].
   std::vector<Triangle> fillings_;
-  double misfilled_rel_ = 0.0;  ///< See `misfilled_share`.
-  double removed_rel_ = 0.0;    ///< Area of what was removed, over that of the surface with it.
+  std::vector<Triangle> removed_;     ///< For being without thickness.
+  double misfilled_rel_ = 0.0;        ///< See `misfilled_share`.
+  double removed_rel_ = 0.0;          ///< See `removed_share`.
   double largest_meeting_rel_ = 0.0;  ///< Extent of the largest hole that meets another, over
                                       ///< that of the mesh that it was in.
   double largest_open_rel_ = 0.0;     ///< Of the hole that the other way left.

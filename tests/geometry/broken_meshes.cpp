@@ -138,6 +138,32 @@ TriangleMesh tiled_box(int size, double raised, int num_sides) {
   return mesh;
 }
 
+// n³ unit cubes side by side that share vertices, and so have their inner walls twice.
+TriangleMesh cube_grid(int n) {
+  TriangleMesh mesh;
+  const auto vertex = [n](int i, int j, int k) {
+    return static_cast<Index>((i * (n + 1) + j) * (n + 1) + k);
+  };
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      for (int k = 0; k <= n; ++k) mesh.vertices.emplace_back(i, j, k);
+    }
+  }
+  for (int cell = 0; cell < n * n * n; ++cell) {
+    const int i = cell / (n * n);
+    const int j = cell / n % n;
+    const int k = cell % n;
+    for (const Face& face : kBlockFaces) {
+      Face& corners = mesh.faces.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Index b = face[c];
+        corners[c] = vertex(i + (b & 1), j + (b >> 1 & 1), k + (b >> 2));
+      }
+    }
+  }
+  return mesh;
+}
+
 // The eight octants of a unit ball, each of n² triangles with vertices of its own, drawn apart by
 // `gap` along each axis.
 TriangleMesh ball_octants(int n, double gap) {
@@ -587,6 +613,7 @@ std::vector<BrokenMesh> broken_meshes() {
        tiled_box(1, 0.0, 6)},
       {"tiles", "a box of 24 such tiles with raised middles", tiled_box(2, 0.125, 6)},
       {"tiles_without_side", "the same without one side of the box", tiled_box(2, 0.125, 5)},
+      {"cube_grid", "27 cubes side by side, whose 54 inner walls are there twice", cube_grid(3)},
       {"wide_sheet", "a cube and a sheet of 2 by 2 above it, drawn on both sides",
        with_faces(with_vertices(cube(), {{0, 0, 3}, {2, 0, 3}, {2, 2, 3}, {0, 2, 3}}),
                   {{8, 9, 10}, {8, 10, 11}, {8, 10, 9}, {8, 11, 10}})},

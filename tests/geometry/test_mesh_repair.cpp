@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,6 +12,7 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_distance.hpp"
 #include "internal/mesh_holes.hpp"
+#include "internal/misfilled_share.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::geometry;
@@ -263,6 +265,10 @@ TEST_CASE("Repair options out of range are refused by name", "[geometry][mesh_re
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
     CHECK_THROWS_WITH(repair_mesh(mesh, {.max_hole_extent_rel = bad}),
                       graspfit::testing::Contains("max_hole"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.max_misfilled_rel = bad}),
+                      graspfit::testing::Contains("max_misfilled_rel"));
+    CHECK_THROWS_WITH(repair_mesh(mesh, {.max_removed_rel = bad}),
+                      graspfit::testing::Contains("max_removed_rel"));
     CHECK_THROWS_WITH(repair_mesh(mesh, {.weld_distance_rel = bad}),
                       graspfit::testing::Contains("weld"));
     CHECK_THROWS_WITH(repair_mesh(mesh, {.wrap = AlphaWrap{.alpha_rel = bad}}),
@@ -455,6 +461,59 @@ TEST_CASE("Filling a flat hole changes no volume, wherever the mesh stands",
     CHECK(steps_of(repaired) == "filled holes 1");
     CHECK(std::abs(repaired.steps[0].volume_change) < 1e-13);
     CHECK(repaired.steps[0].hausdorff_bound == Approx(0.5).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("What a filling misses is the volume between it and the surface's own solid",
+          "[geometry][mesh_repair]") {
+  const auto triangles = [](const TriangleMesh& mesh, auto&& is_filling) {
+    std::vector<std::array<Eigen::Vector3d, 3>> found;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+      const auto c = corners(mesh, face);
+      if (std::all_of(c.begin(), c.end(), is_filling)) found.push_back(c);
+    }
+    return found;
+  };
+  // A flat filling, which is open to all above it, misses nothing.
+  const TriangleMesh block = box({1, 1, 1});
+  const auto lid = triangles(block, [](const Eigen::Vector3d& p) { return p[2] == 0.5; });
+  REQUIRE(lid.size() == 2);
+  CHECK(internal::misfilled_share(block, lid) == 0.0);
+  CHECK(internal::misfilled_share(block, {}) == 0.0);
+  // A pit of square section under a square hole. From within it the hole covers less than half of
+  // all directions, so that all of the pit is inside what the surface means.
+  for (const double depth : {0.25, 0.5, 0.75}) {
+    constexpr double kHalf = 0.375;
+    TriangleMesh pitted;
+    for (const double half : {0.5, kHalf}) {
+      for (const double z : {half == 0.5 ? -0.5 : 0.5 - depth, 0.5}) {
+        for (const double y : {-half, half}) {
+          for (const double x : {-half, half}) pitted.vertices.emplace_back(x, y, z);
+        }
+      }
+    }
+    const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+      pitted.faces.push_back({a, b, c});
+      pitted.faces.push_back({a, c, d});
+    };
+    const std::array<std::int32_t, 4> around = {0, 1, 3, 2};
+    add(0, 2, 3, 1);
+    add(8, 9, 11, 10);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::int32_t a = around[k];
+      const std::int32_t b = around[(k + 1) % 4];
+      add(a, b, b + 4, a + 4);
+      add(a + 4, b + 4, b + 12, a + 12);
+      add(a + 12, b + 12, b + 8, a + 8);
+    }
+    const double pit = 4.0 * kHalf * kHalf * depth;
+    REQUIRE(analyze(pitted).is_outward);
+    REQUIRE(signed_volume(pitted) == Approx(1.0 - pit));
+    const auto filling = triangles(pitted, [](const Eigen::Vector3d& p) {
+      return std::abs(p[0]) == kHalf && std::abs(p[1]) == kHalf;
+    });
+    REQUIRE(filling.size() == 10);
+    CHECK(internal::misfilled_share(pitted, filling) == Approx(pit).margin(0.05));
   }
 }
 

@@ -91,7 +91,8 @@ struct MeshRepairOptions {
                                      ///< patches of a sphere, each closed along its own inside,
                                      ///< leave a skin that lacks a third and more.
   double max_removed_rel = 0.25;     ///< Most of the surface's area that may go for being without
-                                     ///< thickness (sheets, stray triangles), in [0, 1].
+                                     ///< thickness (sheets, stray triangles; walls inside the
+                                     ///< solid do not count), in [0, 1].
   SelfIntersections self_intersections = SelfIntersections::Leave;
   std::optional<AlphaWrap> wrap =
       std::nullopt;       ///< The last resort, only where the mesh would be refused. Empty: refuse.
@@ -132,10 +133,10 @@ struct RepairedMesh {
 /// turned, self-intersections resolved if asked for. The result is judged by
 /// `max_misfilled_rel`, where what the surface means is where its generalized winding number
 /// without the fillings rounds to another number than zero (a flat hole makes no difference), and
-/// by `max_removed_rel`. Where holes meet at vertices and the first limit is not kept, they are
-/// filled before the vertices are split: patches that hang together by single vertices, as where
-/// the border of one is subdivided and its neighbor's is not, would come apart otherwise, and a
-/// filling along the inside of each would leave a hollow skin. Beyond a limit the repair is no
+/// by `max_removed_rel`. Where holes meet at vertices and the result is open or no success, they
+/// are filled before the vertices are split: patches that hang together by single vertices, as
+/// where the border of one is subdivided and its neighbor's is not, would come apart otherwise, and
+/// a filling along the inside of each would leave a hollow skin. Beyond a limit the repair is no
 /// success: the mesh is wrapped if asked for, or refused. Collinear faces stay: they carry the
 /// connection between their neighbors. Parts that overlap or lie in each other are kept: their
 /// union is meant, and an inward part inside an outward one is a cavity. A mesh that is closed,
