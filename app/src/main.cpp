@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "command_table.hpp"
-#include "commands.hpp"
-#include "exit_codes.hpp"
-#include "graspfit/geometry/errors.hpp"
-#include "interrupts.hpp"
+#include "cli/command_table.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/interrupts.hpp"
+#include "commands/commands.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -74,7 +74,7 @@ ExitCode run_and_report(const std::vector<std::string>& arguments) {
     return run(arguments);
   } catch (const UsageError& error) {
     print_error(command, error.what());
-  } catch (const geometry::Error& error) {
+  } catch (const base::Error& error) {
     print_error(command, error.what());
   } catch (const std::bad_alloc&) {
     print_error(command, "out of memory");

@@ -38,7 +38,8 @@ void plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_na
   grasp::prepare_object(mesh, hand, options);  // weak features come from the cache from here on
   grasp::ObjectModelTimings model;
   const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options, &model);
-  const grasp::PlannerResult result = grasp::plan_grasps(object, hand, options, {}, 1);
+  const grasp::PlannerResult result =
+      grasp::plan_grasps(object, hand, options, {}, {.num_threads = 1});
   REQUIRE(result.grasps.size() == kGrasps);
   const grasp::PlannerTimings& t = result.timings;
   const double per_grasp_s = t.total_s / kGrasps;

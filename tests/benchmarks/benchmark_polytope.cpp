@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/random.hpp"
+#include "graspfit/contact/epsilon_linf.hpp"
+#include "graspfit/contact/grasp_balance.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/contact/min_weight.hpp"
 #include "graspfit/geometry/convex_polytope.hpp"
-#include "graspfit/geometry/random.hpp"
-#include "graspfit/grasp/epsilon_linf.hpp"
-#include "graspfit/grasp/grasp_balance.hpp"
-#include "graspfit/grasp/grasp_wrench_space.hpp"
-#include "graspfit/grasp/min_weight.hpp"
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
 #include "timing.hpp"
@@ -38,15 +38,15 @@ constexpr double kMilli = 1e3;
 constexpr double kMicro = 1e6;
 constexpr int kSets = 41;
 
-Vector3d random_point(geometry::Random& random) {
+Vector3d random_point(base::Random& random) {
   Vector3d point;
   for (double& x : point) x = random.uniform(-1.0, 1.0);
   return point;
 }
 
-std::vector<grasp::Contact> contacts_on_ball(geometry::Random& random, int count) {
-  std::vector<grasp::Contact> contacts(static_cast<std::size_t>(count));
-  for (grasp::Contact& contact : contacts) {
+std::vector<contact::Contact> contacts_on_ball(base::Random& random, int count) {
+  std::vector<contact::Contact> contacts(static_cast<std::size_t>(count));
+  for (contact::Contact& contact : contacts) {
     const Vector3d normal = random_point(random).normalized();
     contact.inward_normal_O = -normal;
     contact.point_O = normal + 0.2 * random_point(random);
@@ -54,8 +54,8 @@ std::vector<grasp::Contact> contacts_on_ball(geometry::Random& random, int count
   return contacts;
 }
 
-std::vector<grasp::Contact> contacts_on_box(geometry::Random& random, int count) {
-  std::vector<grasp::Contact> contacts(static_cast<std::size_t>(count));
+std::vector<contact::Contact> contacts_on_box(base::Random& random, int count) {
+  std::vector<contact::Contact> contacts(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const Vector3d normal = (i % 2 != 0 ? 1.0 : -1.0) * Vector3d::Unit(i % 3);
     contacts[i].inward_normal_O = -normal;
@@ -65,8 +65,8 @@ std::vector<grasp::Contact> contacts_on_box(geometry::Random& random, int count)
   return contacts;
 }
 
-grasp::Wrenches wrenches_of(const std::vector<grasp::Contact>& contacts) {
-  return grasp::contact_wrenches(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
+contact::Wrenches wrenches_of(const std::vector<contact::Contact>& contacts) {
+  return contact::contact_wrenches(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
 }
 
 void compare(const std::string& name, const std::function<MatrixXd()>& next_points) {
@@ -83,19 +83,19 @@ void compare(const std::string& name, const std::function<MatrixXd()>& next_poin
               median(ours) / median(theirs), median(our_facets), median(their_facets));
 }
 
-using NextContacts = std::function<std::vector<grasp::Contact>()>;
+using NextContacts = std::function<std::vector<contact::Contact>()>;
 
 /// Contacts to epsilon: wrenches, hull, nearest facet. Qhull gets the wrenches for nothing.
 void compare_epsilon(const std::string& name, const NextContacts& next_contacts) {
   std::vector<double> ours, theirs;
   double largest_difference = 0.0;
   for (int set = 0; set < kSets; ++set) {
-    const std::vector<grasp::Contact> contacts = next_contacts();
-    const grasp::Wrenches wrenches = wrenches_of(contacts);
+    const std::vector<contact::Contact> contacts = next_contacts();
+    const contact::Wrenches wrenches = wrenches_of(contacts);
     double epsilon = 0.0;
     double other = 0.0;
     ours.push_back(seconds_of([&] {
-      epsilon = grasp::epsilon_quality(grasp::grasp_wrench_space(
+      epsilon = contact::epsilon_quality(contact::grasp_wrench_space(
           contacts, Vector3d::Zero(), {.friction = 0.5, .torque_scale = 1.0}));
     }));
     theirs.push_back(seconds_of([&] {
@@ -112,13 +112,14 @@ void compare_epsilon(const std::string& name, const NextContacts& next_contacts)
 void time_measures(const std::string& name, const NextContacts& next_contacts) {
   std::vector<double> linf, weight, points;
   for (int set = 0; set < kSets; ++set) {
-    const std::vector<grasp::Contact> contacts = next_contacts();
-    const grasp::Wrenches wrenches = wrenches_of(contacts);
-    grasp::LInfinityEpsilon epsilon;
+    const std::vector<contact::Contact> contacts = next_contacts();
+    const contact::Wrenches wrenches = wrenches_of(contacts);
+    contact::LInfinityEpsilon epsilon;
     const double seconds = seconds_of([&] {
-      epsilon = grasp::epsilon_linf(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
+      epsilon =
+          contact::epsilon_linf(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
     });
-    weight.push_back(seconds_of([&] { grasp::min_weight(wrenches); }));
+    weight.push_back(seconds_of([&] { contact::min_weight(wrenches); }));
     if (epsilon.upper == 0.0) continue;  // seen at once
     linf.push_back(seconds);
     points.push_back(epsilon.num_points);
@@ -136,7 +137,7 @@ double microseconds(const std::function<void()>& work) {
 }
 
 TEST_CASE("Convex hulls in six dimensions beside Qhull", "[!benchmark][polytope]") {
-  geometry::Random random(5);
+  base::Random random(5);
   std::printf("\nHulls in 6-D\n");
   for (const int count : {3, 5}) {
     const std::string size = std::to_string(count) + " x 8 ";
@@ -162,17 +163,18 @@ TEST_CASE("Convex hulls in six dimensions beside Qhull", "[!benchmark][polytope]
 
   std::printf("\nGrasps on a ball, 8 edges, microseconds\n");
   for (const int count : {2, 3, 4, 5}) {
-    const std::vector<grasp::Contact> contacts = contacts_on_ball(random, count);
-    const grasp::Wrenches wrenches = wrenches_of(contacts);
-    const grasp::GraspWrenchSpace space = grasp::grasp_wrench_space(
+    const std::vector<contact::Contact> contacts = contacts_on_ball(random, count);
+    const contact::Wrenches wrenches = wrenches_of(contacts);
+    const contact::GraspWrenchSpace space = contact::grasp_wrench_space(
         contacts, Vector3d::Zero(), {.friction = 0.5, .torque_scale = 1.0});
     bool is_no = false;
-    const double early = microseconds([&] { is_no = grasp::is_surely_no_force_closure(wrenches); });
-    const double epsilon = microseconds([&] { grasp::epsilon_quality(space); });
-    const grasp::Wrench load = -grasp::Wrench::Unit(2);
+    const double early =
+        microseconds([&] { is_no = contact::is_surely_no_force_closure(wrenches); });
+    const double epsilon = microseconds([&] { contact::epsilon_quality(space); });
+    const contact::Wrench load = -contact::Wrench::Unit(2);
     const double balance = microseconds([&] {
-      grasp::balance_forces(contacts, Vector3d::Zero(), load,
-                            {.friction = 0.5, .least_normal_sum = 10.0, .torque_scale = 1.0});
+      contact::balance_forces(contacts, Vector3d::Zero(), load,
+                              {.friction = 0.5, .least_normal_sum = 10.0, .torque_scale = 1.0});
     });
     std::printf("  %d contacts: early no %.1f (%s), epsilon of a space %.1f, balance %.1f\n", count,
                 early, is_no ? "no" : "not sure", epsilon, balance);

@@ -10,7 +10,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "graspfit/experiments/sweep_runner.hpp"
+#include "graspfit/experiments/experiment_registry.hpp"
+#include "graspfit/sweep/sweep_runner.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 #include "timing.hpp"
@@ -19,20 +20,18 @@ using namespace graspfit;
 
 TEST_CASE("Two jobs against one", "[!benchmark][sweep]") {
   const testing::TemporaryFolder folder;
-  const experiments::Experiment& experiment = experiments::find_experiment("parameter_sweeps");
+  const sweep::Experiment& experiment = experiments::find_experiment("parameter_sweeps");
   const auto file = folder.write("parameter_sweeps.json", R"({
     "experiment": "parameter_sweeps", "question": "-", "cell": "-", "seed": 1, "seeds": 36,
     "settings": {"hand": "barrett", "contacts": 3, "shape": "torus", "count": 12,
                  "max-attempts": 12, "weak-thickness-mm": 0, "parameter": "resolution"},
     "axes": {"resolution": [30]}
   })");
-  const experiments::ExperimentConfig config = experiments::read_config(experiment, file);
+  const sweep::ExperimentConfig config = sweep::read_config(experiment, file);
   int run = 0;
   const auto seconds = [&](int jobs) {
     const auto out = folder.path() / std::to_string(run++);
-    return testing::seconds_of([&] {
-      experiments::run_sweep(experiment, config, {}, {out, jobs});
-    });
+    return testing::seconds_of([&] { sweep::run_sweep(experiment, config, {}, {out, jobs}); });
   };
   seconds(1);  // fills the cache
   std::vector<double> ratios;

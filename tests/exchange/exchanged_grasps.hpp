@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
-#include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -20,7 +20,7 @@ inline grasp::GraspFile random_grasps(const hands::HandModel& hand, const Tempor
   grasp::GraspFile file;
   file.object = grasp::read_object_file(object).record;
   file.hand = hand;
-  geometry::Random random(7);
+  base::Random random(7);
   for (int i = 0; i < count; ++i) {
     grasp::Grasp grasp;
     hands::HandConfiguration& configuration = grasp.configuration;

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "exchanged_grasps.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/exchange/graspit_world.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
@@ -72,7 +72,7 @@ TEST_CASE("A world holds the palm's pose in millimeters, the object at the origi
   REQUIRE(document.Parse(named.c_str()) == tinyxml2::XML_SUCCESS);
   CHECK(text_at(document.RootElement(), {"graspableBody", "filename"}) == "models/objects/mug.xml");
   CHECK(text_at(document.RootElement(), {"robot", "filename"}) == "models/robots/B & B.xml");
-  CHECK_THROWS_AS(exchange::graspit_world_xml(file, 3), geometry::InvalidInput);
+  CHECK_THROWS_AS(exchange::graspit_world_xml(file, 3), base::InvalidInput);
 }
 
 TEST_CASE(

@@ -1,7 +1,7 @@
 #include <vector>
 
+#include "graspfit/base/errors.hpp"
 #include "graspfit/exchange/imported_grasps.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -131,7 +131,7 @@ TEST_CASE("What cannot be imported is refused", "[exchange][imported_grasps]") {
   const std::vector<ImportedGrasp> grasps = {pinch(scene.hand, "close", 5e-5)};
   scene.options.fingers = {"pinky"};
   CHECK_THROWS_AS(import_grasps(scene.object, scene.hand, grasps, kSource, scene.options),
-                  geometry::InvalidInput);
+                  base::InvalidInput);
   scene.options.fingers.clear();
   grasp::ObjectFile open = scene.object;
   open.record.analysis.is_closed = false;
@@ -140,5 +140,5 @@ TEST_CASE("What cannot be imported is refused", "[exchange][imported_grasps]") {
   std::vector<ImportedGrasp> beyond = grasps;
   beyond[0].configuration.q.setConstant(1.0);
   CHECK_THROWS_AS(import_grasps(scene.object, scene.hand, beyond, kSource, scene.options),
-                  geometry::InvalidInput);
+                  base::InvalidInput);
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "exchanged_grasps.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "support/catch.hpp"
 #include "support/damaged.hpp"
 #include "support/temporary_folder.hpp"
@@ -51,7 +51,7 @@ std::string refusal(const TemporaryFolder& folder, const hands::HandModel& hand,
                     const std::string& text) {
   try {
     read_isaac_grasps(folder.write("grasps.yaml", text), hand);
-  } catch (const geometry::IoError& error) {
+  } catch (const base::IoError& error) {
     return error.what();
   }
   return "accepted";
@@ -183,7 +183,7 @@ TEST_CASE("A file that cannot be used is refused with file, line, place and valu
   }
   CHECK_THAT(refusal(folder, hand, ""), Contains("YAML documents"));
   CHECK_THAT(refusal(folder, hand, "[1, 2]"), Contains("/: is not a map"));
-  CHECK_THROWS_AS(read_isaac_grasps(folder.path() / "none.yaml", hand), geometry::IoError);
+  CHECK_THROWS_AS(read_isaac_grasps(folder.path() / "none.yaml", hand), base::IoError);
 }
 
 TEST_CASE("A clutch lets its joint close further, not less", "[exchange][isaac_grasp]") {
@@ -238,7 +238,7 @@ TEST_CASE("Damaged isaac_grasp files are read or refused, never more", "[exchang
   const std::vector<std::string> words = {
       "{",     "}",   "[",  "]", ": ", "&a ",  "*a", "<<: ", "|",    "\n",  "- ", "---",
       "!!int", "1e9", "\"", "'", "\t", "\xff", "?",  "~",    ".inf", "0x1", "%",  "\0"};
-  geometry::Random random(3);
+  base::Random random(3);
   int num_refused = 0;
   for (int i = 0; i < 2000; ++i) {
     std::string text = kExample;

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graspfit/experiments/experiment_config.hpp"
+#include "graspfit/sweep/experiment_config.hpp"
 
 namespace graspfit::testing {
 
@@ -26,8 +26,8 @@ inline const std::string kCountingConfig = R"({
 
 /// An experiment without geometry. A cell adds its settings and its seed; the cell with letter=c
 /// and step=1 fails. A setting that is no number is refused.
-inline experiments::Experiment counting_experiment() {
-  using namespace experiments;
+inline sweep::Experiment counting_experiment() {
+  using namespace sweep;
   Experiment experiment;
   experiment.slug = "counting";
   experiment.columns = {{"sum", "1", "of amount, step and base"},
@@ -46,7 +46,7 @@ inline experiments::Experiment counting_experiment() {
   experiment.run = [](const Cell& cell, const std::filesystem::path&) {
     const nlohmann::json settings = nlohmann::json::parse(cell.settings);
     if (cell.labels[0] == "c" && cell.labels[1] == "1") {
-      throw geometry::InvalidInput("no sum for \"c\", says the test");
+      throw base::InvalidInput("no sum for \"c\", says the test");
     }
     CellResult result{ResultRow({{"sum", "", ""}, {"digits", "", ""}, {"text", "", ""}}),
                       ResultRow({{"nothing_s", "s", ""}})};

@@ -1,11 +1,12 @@
 #include <set>
 
 #include "counting_experiment.hpp"
-#include "graspfit/experiments/experiment.hpp"
+#include "graspfit/experiments/experiment_registry.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 using graspfit::testing::counting_experiment;
 using graspfit::testing::kCountingConfig;
@@ -18,7 +19,7 @@ std::string message_of(const std::string& text, const ConfigRequest& request = {
   const auto file = folder.write("counting.json", text);
   try {
     read_config(counting_experiment(), file, request);
-  } catch (const graspfit::geometry::Error& error) {
+  } catch (const graspfit::base::Error& error) {
     return error.what();
   }
   return "no error";
@@ -187,7 +188,7 @@ TEST_CASE("Changes of axes are taken apart to the last character", "[experiments
   CHECK(parse_axis_change("a=1,b").values == std::vector<std::string>{"1", "b"});
   for (const char* const text : {"a", "=1", "a=", "a=1,", "a=,1", "a=1,,2"}) {
     INFO(text);
-    CHECK_THROWS_AS(parse_axis_change(text), graspfit::geometry::InvalidInput);
+    CHECK_THROWS_AS(parse_axis_change(text), graspfit::base::InvalidInput);
   }
 }
 

@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/experiments/experiment.hpp"
+#include "cells/planning_table.hpp"
+#include "graspfit/experiments/experiment_registry.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
-#include "internal/planning_table.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit;
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 
 namespace {
@@ -50,7 +51,7 @@ double number(const Fields& fields, const std::string& name) {
   return value;
 }
 
-std::string contact(const std::string& direction, const std::string& weak = "false") {
+std::string contact_json(const std::string& direction, const std::string& weak = "false") {
   return R"({"direction": )" + direction +
          R"(, "boundary_distance_rel": 0.7, "area_rel": 0.4, "weak": )" + weak + "}";
 }
@@ -73,8 +74,9 @@ TEST_CASE("M of contact sets on a ball is what the formulas say",
           "[experiments][measured_contacts]") {
   // M1 = 0.7 + 2 * 0.4 = 1.5. An equilateral triple has 30 degrees on its three pairs: M2 = 3 (1 -
   // 30/45) = 1. It is regular and centered: M3 = 1.
-  const Result good = run("measured_contacts",
-                          contact_set({contact(kEast), contact(kNorthWest), contact(kSouthWest)}));
+  const Result good =
+      run("measured_contacts",
+          contact_set({contact_json(kEast), contact_json(kNorthWest), contact_json(kSouthWest)}));
   CHECK(number(good.row, "m1") == Approx(1.5).margin(kRounding));
   CHECK(number(good.row, "m2") == Approx(1.0).margin(kRounding));
   CHECK(number(good.row, "m3") == Approx(1.0).margin(kRounding));
@@ -85,19 +87,19 @@ TEST_CASE("M of contact sets on a ball is what the formulas say",
 
   // One of three on a fragile part: a third of M1 is gone.
   const Result fragile =
-      run("measured_contacts",
-          contact_set({contact(kEast, "true"), contact(kNorthWest), contact(kSouthWest)}));
+      run("measured_contacts", contact_set({contact_json(kEast, "true"), contact_json(kNorthWest),
+                                            contact_json(kSouthWest)}));
   CHECK(number(fragile.row, "m1") == Approx(1.0).margin(kRounding));
   CHECK(number(fragile.row, "m") == Approx(1.0).margin(kRounding));
   CHECK(number(fragile.details[0], "strength") == 0.0);
 
   const Result opposite =
-      run("measured_contacts", contact_set({contact(kEast), contact("[-2, 0, 0]")}));
+      run("measured_contacts", contact_set({contact_json(kEast), contact_json("[-2, 0, 0]")}));
   CHECK(number(opposite.row, "m") == Approx(1.5).margin(kRounding));
 
   // Central angles of 45 degrees leave 67.5 degrees between line and normal.
   const Result loose =
-      run("measured_contacts", contact_set({contact(kEast), contact("[1, 1, 0]")}));
+      run("measured_contacts", contact_set({contact_json(kEast), contact_json("[1, 1, 0]")}));
   CHECK(number(loose.row, "stable_pairs") == 0.0);
   CHECK(number(loose.row, "m") == 0.0);
 }
@@ -107,7 +109,7 @@ TEST_CASE("Contact sets that make no sense are refused by name",
   const auto refused = [](const std::string& settings, const std::string& why) {
     CHECK_THROWS_WITH(run("measured_contacts", settings), testing::Contains(why));
   };
-  refused(contact_set({contact("[0, 0, 0]")}), "must not be zero");
+  refused(contact_set({contact_json("[0, 0, 0]")}), "must not be zero");
   refused(R"({"radius_m": 0, "pads_of": "barrett", "contact_set": []})", "must be > 0");
   refused(R"({"radius_m": 1, "pads_of": "barrett"})", "there is no setting contact_set");
   refused(R"({"radius_m": 1, "pads_of": "barrett", "contact_set": [], "size_m": 1})",

@@ -1,11 +1,12 @@
 #include <set>
 #include <string>
 
+#include "cells/grasp_measures.hpp"
 #include "graspfit/grasp/grasp_metric.hpp"
-#include "internal/grasp_measures.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit;
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 
 TEST_CASE("Every metric but those of pose robustness is a column with its unit and meaning",

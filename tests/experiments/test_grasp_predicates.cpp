@@ -7,9 +7,9 @@
 #include "support/catch.hpp"
 
 using namespace graspfit::experiments;
-using graspfit::grasp::Contact;
+using graspfit::contact::Contact;
+using graspfit::contact::kPalm;
 using graspfit::grasp::Grasp;
-using graspfit::grasp::kPalm;
 
 namespace {
 

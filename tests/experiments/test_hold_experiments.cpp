@@ -1,11 +1,13 @@
 #include <set>
 
-#include "graspfit/experiments/experiment_config.hpp"
-#include "internal/grasp_measures.hpp"
-#include "internal/hold_cell.hpp"
+#include "cells/grasp_measures.hpp"
+#include "cells/hold_cell.hpp"
+#include "graspfit/experiments/experiment_registry.hpp"
+#include "graspfit/sweep/experiment_config.hpp"
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 using graspfit::experiments::internal::correlated_measures;
 

@@ -1,13 +1,15 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/experiments/experiment_config.hpp"
-#include "internal/method_summary.hpp"
-#include "internal/paper_table1.hpp"
-#include "internal/planning_table.hpp"
+#include "cells/method_summary.hpp"
+#include "cells/paper_table1.hpp"
+#include "cells/planning_table.hpp"
+#include "graspfit/experiments/experiment_registry.hpp"
+#include "graspfit/sweep/experiment_config.hpp"
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 
 namespace {

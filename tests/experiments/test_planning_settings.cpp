@@ -2,18 +2,19 @@
 #include <numbers>
 #include <set>
 
-#include "graspfit/experiments/data_needs.hpp"
+#include "graspfit/base/atomic_file.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
-#include "internal/data_files.hpp"
-#include "internal/planning_setting_list.hpp"
+#include "graspfit/sweep/data_files.hpp"
+#include "graspfit/sweep/data_needs.hpp"
+#include "settings/planning_setting_list.hpp"
 #include "support/catch.hpp"
 #include "support/environment_variable.hpp"
 #include "support/skip.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 namespace grasp = graspfit::grasp;
 
@@ -123,11 +124,11 @@ TEST_CASE("Ranges of settings end where the planner's own checks do",
     settings.options.refinement.least_distance = 1e-13;
     settings.options.refinement.wanted_gap =
         setting.name.name == "least-distance-mm" ? 1e-5 : 5e-13;
-    setting.apply(settings, internal::SettingValue(setting.name.name, json));
+    setting.apply(settings, graspfit::sweep::SettingValue(setting.name.name, json));
     try {
       settings.options.validate();
       return true;
-    } catch (const graspfit::geometry::InvalidInput&) {
+    } catch (const graspfit::base::InvalidInput&) {
       return false;
     }
   };
@@ -245,14 +246,14 @@ TEST_CASE("Meshes that libcgal-demo has, too, are read from there, and only the 
   const auto bunny = graspfit::testing::packaged_mesh("bunny00.off");
   if (!bunny) GRASPFIT_SKIP_TEST("no packaged meshes; set GRASPFIT_PACKAGED_MESHES");
   const graspfit::testing::TemporaryFolder folder;
-  const std::string text = graspfit::geometry::read_file(*bunny);
+  const std::string text = graspfit::base::read_file(*bunny);
   const auto find_with = [&](const std::string& bytes) {
     folder.write("bunny00.off", bytes);
     const graspfit::testing::EnvironmentVariable data("GRASPFIT_DATA",
                                                       (folder.path() / "none").string());
     const graspfit::testing::EnvironmentVariable packaged("GRASPFIT_PACKAGED_MESHES",
                                                           folder.path().string());
-    return internal::find_data_file("meshes/paper/bunny.off");
+    return graspfit::sweep::find_data_file("meshes/paper/bunny.off");
   };
   CHECK(find_with(text) == folder.path() / "bunny00.off");
   CHECK_FALSE(find_with(text + "# another version\n").has_value());

@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "cells/planning_table.hpp"
 #include "graspfit/grasp/grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/planning_table.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit;

@@ -1,12 +1,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "graspfit/geometry/random.hpp"
-#include "internal/prediction_statistics.hpp"
+#include "cells/prediction_statistics.hpp"
+#include "graspfit/base/random.hpp"
 #include "support/catch.hpp"
 
 using namespace graspfit::experiments::internal;
-using graspfit::geometry::Random;
+using graspfit::base::Random;
 
 namespace {
 

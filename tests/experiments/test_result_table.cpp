@@ -1,10 +1,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "graspfit/experiments/result_table.hpp"
+#include "graspfit/sweep/result_table.hpp"
 #include "support/catch.hpp"
 
-using namespace graspfit::experiments;
+using namespace graspfit::sweep;
 
 TEST_CASE("CSV fields read back as what they are", "[experiments][result_table]") {
   CHECK(csv_field({}).empty());

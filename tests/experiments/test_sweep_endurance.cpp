@@ -8,13 +8,13 @@
 #include <thread>
 
 #include "counting_experiment.hpp"
-#include "graspfit/experiments/sweep_runner.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/sweep/sweep_runner.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace graspfit::experiments;
-using graspfit::geometry::read_file;
+using namespace graspfit::sweep;
+using graspfit::base::read_file;
 using graspfit::testing::counting_experiment;
 using graspfit::testing::kCountingConfig;
 using graspfit::testing::TemporaryFolder;

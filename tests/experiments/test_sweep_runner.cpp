@@ -11,14 +11,16 @@
 #include <thread>
 
 #include "counting_experiment.hpp"
-#include "graspfit/experiments/sweep_runner.hpp"
-#include "graspfit/experiments/sweep_shards.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/sha256.hpp"
+#include "graspfit/sweep/data_files.hpp"
+#include "graspfit/sweep/sweep_runner.hpp"
+#include "graspfit/sweep/sweep_shards.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace graspfit::experiments;
-using graspfit::geometry::read_file;
+using namespace graspfit::sweep;
+using graspfit::base::read_file;
 using graspfit::testing::counting_experiment;
 using graspfit::testing::kCountingConfig;
 using graspfit::testing::TemporaryFolder;
@@ -266,7 +268,7 @@ TEST_CASE("Cells that failed for a reason that may pass are counted, not publish
   Experiment crowded = counting_experiment();
   crowded.run = [run = crowded.run](const Cell& cell, const fs::path& cells) -> CellResult {
     if (cell.labels[0] == "a") throw std::bad_alloc();
-    if (cell.labels[0] == "b") throw graspfit::geometry::IoError("no space left");
+    if (cell.labels[0] == "b") throw graspfit::base::IoError("no space left");
     return run(cell, cells);
   };
   const RunProgress first = run_sweep(crowded, config, {}, {out, 2});
@@ -311,7 +313,7 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
   nested.run = [&](const Cell&, const fs::path&) -> CellResult {
     try {
       run_sweep(counting_experiment(), config_in(folder), {}, {folder.path() / "busy", 1});
-    } catch (const graspfit::geometry::IoError& error) {
+    } catch (const graspfit::base::IoError& error) {
       refusal = error.what();
     }
     throw MissingData("nothing");
@@ -364,8 +366,8 @@ TEST_CASE("Inputs of one name in the data folder and among the sources are told 
   const fs::path other = source_folder() / "CITATION.cff";
   const auto inputs = inputs_with(folder.path().string(), {data, own, other});
   CHECK(inputs.size() == 3);
-  CHECK(inputs.at("LICENSE") == graspfit::geometry::sha256_hex("of meshes"));
-  CHECK(inputs.at("sources/LICENSE") == graspfit::geometry::sha256_hex(read_file(own)));
+  CHECK(inputs.at("LICENSE") == graspfit::base::sha256_hex("of meshes"));
+  CHECK(inputs.at("sources/LICENSE") == graspfit::base::sha256_hex(read_file(own)));
   CHECK(inputs.count("CITATION.cff") == 1);
 
   // Everything lies in the root of the file system: that is no data folder that others have.
@@ -383,8 +385,7 @@ TEST_CASE("Inputs are hashed before the first cell and checked after the last",
   experiment.inputs = [input](const Cell&) { return std::vector{input}; };
   run_sweep(experiment, config_in(folder), {}, {out, 1});
   const auto manifest = nlohmann::json::parse(read_file(out / "counting.manifest.json"));
-  CHECK(manifest.at("inputs_sha256").at(input.string()) ==
-        graspfit::geometry::sha256_hex("before"));
+  CHECK(manifest.at("inputs_sha256").at(input.string()) == graspfit::base::sha256_hex("before"));
 
   for (const bool is_removed : {false, true}) {
     const fs::path other = folder.path() / (is_removed ? "removed" : "changed");

@@ -10,14 +10,14 @@
 #include <thread>
 
 #include "counting_experiment.hpp"
-#include "graspfit/experiments/sweep_shards.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/sweep/sweep_shards.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace graspfit::experiments;
-using graspfit::geometry::InvalidInput;
-using graspfit::geometry::read_file;
+using namespace graspfit::sweep;
+using graspfit::base::InvalidInput;
+using graspfit::base::read_file;
 using graspfit::testing::counting_experiment;
 using graspfit::testing::kCountingConfig;
 using graspfit::testing::TemporaryFolder;
@@ -163,7 +163,7 @@ TEST_CASE("A merge counts cells that failed for a reason that may pass", "[exper
   const ExperimentConfig config = config_in(folder);
   Experiment crowded = counting_experiment();
   crowded.run = [run = crowded.run](const Cell& cell, const fs::path& cells) -> CellResult {
-    if (cell.labels[0] == "a") throw graspfit::geometry::IoError("no space left");
+    if (cell.labels[0] == "a") throw graspfit::base::IoError("no space left");
     return run(cell, cells);
   };
   const fs::path out = folder.path() / "out";
@@ -269,7 +269,7 @@ TEST_CASE("A run that starts while its status is asked for is not refused",
   std::string refusal;
   try {
     run_sweep(counting_experiment(), config, {}, {out, 1});
-  } catch (const graspfit::geometry::IoError& error) {
+  } catch (const graspfit::base::IoError& error) {
     refusal = error.what();
   }
   asking.join();

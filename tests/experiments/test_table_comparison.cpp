@@ -1,13 +1,13 @@
 #include "counting_experiment.hpp"
-#include "graspfit/experiments/run_manifest.hpp"
-#include "graspfit/experiments/sweep_runner.hpp"
-#include "graspfit/experiments/table_comparison.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/sweep/run_manifest.hpp"
+#include "graspfit/sweep/sweep_runner.hpp"
+#include "graspfit/sweep/table_comparison.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
-using namespace graspfit::experiments;
-using graspfit::geometry::InvalidInput;
+using namespace graspfit::sweep;
+using graspfit::base::InvalidInput;
 using graspfit::testing::TemporaryFolder;
 
 namespace {
@@ -46,8 +46,8 @@ Experiment detailed_experiment() {
 
 /// Takes the last lines from a table, and its hash from the manifest beside it.
 void cut(const std::filesystem::path& table, int num_lines) {
-  using graspfit::geometry::read_file;
-  using graspfit::geometry::write_file_atomically;
+  using graspfit::base::read_file;
+  using graspfit::base::write_file_atomically;
   std::string text = read_file(table);
   for (int i = 0; i < num_lines; ++i) text.erase(text.rfind('\n', text.size() - 2) + 1);
   write_file_atomically(table, text);
@@ -206,13 +206,13 @@ TEST_CASE("A table that is not the one its manifest was written for is named",
   CHECK(compare_both().size() == 3);
   for (const char* const name : {"run", "published"}) {
     const auto table = folder.path() / name / "counting.details.csv";
-    const std::string text = graspfit::geometry::read_file(table);
-    graspfit::geometry::write_file_atomically(table, text + "a,0,1,3\n");
+    const std::string text = graspfit::base::read_file(table);
+    graspfit::base::write_file_atomically(table, text + "a,0,1,3\n");
     CHECK_THROWS_WITH(compare_both(),
                       graspfit::testing::Contains(table.string() + ": is not the table"));
     CHECK_THROWS_WITH(require_tables_of_manifest(folder.path() / name / "counting.manifest.json"),
                       graspfit::testing::Contains("tables_sha256"));
-    graspfit::geometry::write_file_atomically(table, text);
+    graspfit::base::write_file_atomically(table, text);
   }
   // Manifests from before that say nothing of tables.
   cut(folder.path() / "published/counting.timing.csv", 1);

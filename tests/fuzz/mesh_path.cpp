@@ -5,12 +5,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/distance_map.hpp"
-#include "graspfit/geometry/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
-#include "internal/mesh_formats.hpp"
+#include "mesh_io/mesh_formats.hpp"
 
 namespace graspfit::testing {
 namespace {
@@ -117,7 +117,7 @@ std::string take_mesh_path(std::string_view input) {
       query(repaired.mesh);
     }
     return "good";
-  } catch (const Error& refusal) {
+  } catch (const base::Error& refusal) {
     const std::string what = refusal.what();
     require(!what.empty() && what.find('\n') == std::string::npos, "a refusal is one line");
     return what;

@@ -9,7 +9,7 @@ namespace graspfit::testing {
 /// queried. `input` is one letter for the format (o OFF, b OBJ, p PLY, s STL; any other counts as
 /// one of them) and the file.
 ///
-/// Returns what came of it: a refusal in one line (`geometry::Error`) or "good". Any other
+/// Returns what came of it: a refusal in one line (`base::Error`) or "good". Any other
 /// exception gets out, and so does std::logic_error where a result breaks its promise.
 std::string take_mesh_path(std::string_view input);
 

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/shapes.hpp"
-#include "internal/mesh_formats.hpp"
+#include "mesh_io/mesh_formats.hpp"
 
 namespace graspfit::testing {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 using namespace geometry;
 
 std::string words(const Eigen::Vector3d& p) {
-  return shortest_decimal(p[0]) + " " + shortest_decimal(p[1]) + " " + shortest_decimal(p[2]);
+  return base::shortest_decimal(p[0]) + " " + base::shortest_decimal(p[1]) + " " +
+         base::shortest_decimal(p[2]);
 }
 
 std::string text_ply(const TriangleMesh& mesh) {

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/random.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/random.hpp"
 #include "mesh_path.hpp"
 #include "seeds.hpp"
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
-using graspfit::geometry::Random;
+using graspfit::base::Random;
 using graspfit::testing::take_mesh_path;
 
 namespace {
@@ -68,7 +68,7 @@ TEST_CASE("What fuzzing once found is read or refused in one line", "[geometry][
   REQUIRE(!files.empty());
   for (const auto& file : files) {
     INFO(file);
-    CHECK_NOTHROW(take_mesh_path(graspfit::geometry::read_file(file)));
+    CHECK_NOTHROW(take_mesh_path(graspfit::base::read_file(file)));
   }
 }
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
 #include "seeds.hpp"
 
 int main(int argc, char** argv) {
@@ -13,6 +13,6 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   for (const auto& [name, input] : graspfit::testing::seeds()) {
-    graspfit::geometry::write_file_atomically(folder / name, input);
+    graspfit::base::write_file_atomically(folder / name, input);
   }
 }

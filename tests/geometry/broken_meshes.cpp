@@ -1,4 +1,4 @@
-#include "broken_meshes.hpp"
+#include "geometry/broken_meshes.hpp"
 
 #include <algorithm>
 #include <array>

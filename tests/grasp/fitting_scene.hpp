@@ -41,15 +41,25 @@ struct Scene {
                            const grasp::PalmPlacement& placement,
                            const grasp::FittingOptions& options = {},
                            grasp::GraspStyle style = grasp::GraspStyle::Precision) const {
-    return grasp::fit_hand(fitting_hand, object, nothing, style, assigned_targets, placement,
-                           contact_options, options);
+    return grasp::fit_hand(grasp_scene(), style, assigned_targets, placement, options);
+  }
+  grasp::GraspScene grasp_scene() const { return {fitting_hand, object, nothing, contact_options}; }
+  /// Of all pads where the hand has ended, those of requested parts marked as targets.
+  std::vector<contact::Contact> contacts(const grasp::FittingResult& result) const {
+    std::vector<contact::Contact> contacts = contact::estimate_contacts(
+        hand, hands::forward_kinematics(hand, result.configuration), object.query, contact_options);
+    const std::vector<int> pads = grasp::requested_pads(hand, parts);
+    for (contact::Contact& contact : contacts) {
+      contact.is_target = std::find(pads.begin(), pads.end(), contact.pad) != pads.end();
+    }
+    return contacts;
   }
 
   hands::HandModel hand;
   grasp::ObjectModel object;
   grasp::FittingHand fitting_hand;
   hands::HandCollision collision;
-  grasp::ContactEstimationOptions contact_options;
+  contact::ContactEstimationOptions contact_options;
   grasp::RequestedParts parts;  ///< Thumb first.
   grasp::SurroundingsCollision nothing;
 };

@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <limits>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/base/sha256.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
-#include "graspfit/geometry/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/hand_library.hpp"
 
 namespace graspfit::testing {
@@ -36,8 +39,8 @@ inline grasp::PlannerOptions unusual_options() {
   options.acceptance = grasp::Acceptance::Usable;
   options.rejection = grasp::Rejection::Quality;
   options.largest_deviation = 0.017;
-  options.counted_pads = grasp::CountedPads::TipsAndPalm;
-  options.contact_pieces = grasp::ContactPieces::Separate;
+  options.counted_pads = contact::CountedPads::TipsAndPalm;
+  options.contact_pieces = contact::ContactPieces::Separate;
   options.fitting.contact_state = grasp::ContactState::FirstGraze;
   options.fitting.palm_after_contact = grasp::PalmAfterContact::Frozen;
   options.refinement.near_pad_steps = 5;
@@ -95,8 +98,8 @@ inline grasp::PlannerOptions unusual_options() {
   options.distinct.slide_scale = 0.2;
   options.friction = 0.7;
   options.squeeze_friction = 0.3;
-  options.quality.regularity = grasp::Regularity::EdgeOnly;
-  options.quality.units = grasp::MeasureUnits::Centimeters;
+  options.quality.regularity = contact::Regularity::EdgeOnly;
+  options.quality.units = contact::MeasureUnits::Centimeters;
   options.quality.alpha = 0.1;
   return options;
 }
@@ -116,13 +119,13 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
   file.link_mesh_sha256.resize(file.hand.links.size());
   for (std::size_t i = 0; i < file.hand.links.size(); ++i) {
     if (file.hand.links[i].mesh_files.empty()) continue;
-    file.link_mesh_sha256[i] = geometry::sha256_hex(
-        geometry::read_file(std::filesystem::path(file.hand.description_file).parent_path() /
-                            file.hand.links[i].mesh_files.at(0)));
+    file.link_mesh_sha256[i] = base::sha256_hex(
+        base::read_file(std::filesystem::path(file.hand.description_file).parent_path() /
+                        file.hand.links[i].mesh_files.at(0)));
   }
   file.options = unusual_options();
-  file.options.quality.units = grasp::MeasureUnits::Normalized;
-  file.options.counted_pads = grasp::CountedPads::All;
+  file.options.quality.units = contact::MeasureUnits::Normalized;
+  file.options.counted_pads = contact::CountedPads::All;
   file.options.weak.reset();  // a search takes seconds
   file.surroundings.table_z_O = -0.2;
   file.surroundings.obstacles.push_back(object.record);
@@ -144,7 +147,7 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
   grasp::Surroundings surroundings;
   surroundings.table_z_O = file.surroundings.table_z_O;
   const grasp::RecordedScene scene(file, object.mesh, surroundings);
-  geometry::Random random(3);
+  base::Random random(3);
   for (int i = 0; i < 4; ++i) {
     hands::HandConfiguration configuration = hands::open_configuration(file.hand);
     for (Eigen::Index j = 0; j < configuration.q.size(); ++j) {
@@ -166,23 +169,23 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
     measured.refinement_iterations = 10 + i;
     if (i == 1) {
       measured.pre_grasp = grasp::PreGrasp{hands::open_configuration(file.hand), 0.011, 0.7, 0.03};
-      measured.squeeze = grasp::Squeeze{
+      measured.squeeze = contact::Squeeze{
           configuration,
           Eigen::Matrix3Xd::Random(3, static_cast<Eigen::Index>(measured.contacts.size())), 0.125,
           false, true};
     }
     if (i == 3) {
       measured.wrench = {0.0625, 0.5, true, 6, {}};
-      measured.wrench.convention.tool = grasp::WrenchTool::GraspIt;
+      measured.wrench.convention.tool = contact::WrenchTool::GraspIt;
       measured.wrench.convention.reference_point_O = Eigen::Vector3d(0.1, 0.2, 0.3);
       measured.wrench.convention.options = {.num_cone_edges = 6,
                                             .friction = 0.7,
                                             .torque_scale = 0.05,
-                                            .force_scaling = grasp::ForceScaling::UnitEdge,
+                                            .force_scaling = contact::ForceScaling::UnitEdge,
                                             .force_limit = 2.0,
-                                            .outside = grasp::OutsideValue::MinusOne};
+                                            .outside = contact::OutsideValue::MinusOne};
       measured.penetration.surroundings_touched = true;
-      measured.targets.contacts[1].finger = grasp::kPalm;
+      measured.targets.contacts[1].finger = contact::kPalm;
     }
     if (!measured.contacts.empty()) measured.contacts[0].weak = i == 2;
     file.grasps.push_back(measured);

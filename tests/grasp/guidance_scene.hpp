@@ -5,6 +5,7 @@
 
 #include "grasp/fitting_scene.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
+#include "graspfit/grasp/planner_options.hpp"
 
 /// \file
 /// A planning method at work, without the planner around it.
@@ -16,13 +17,9 @@ struct Guided {
          const std::string& hand_name = "barrett")
       : options(std::move(planner_options)),
         scene(mesh, hand_name, options),
-        guidance(grasp::find_planning_method(options.planner)
-                     .make({.object = scene.object,
-                            .hand = scene.fitting_hand,
-                            .surroundings = scene.nothing,
-                            .parts = scene.parts,
-                            .options = options,
-                            .contact_options = scene.contact_options})) {}
+        guidance(grasp::planning_methods()
+                     .at(options.planner)
+                     .make({scene.grasp_scene(), scene.parts, options})) {}
 
   grasp::PlannerOptions options;
   Scene scene;

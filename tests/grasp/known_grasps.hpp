@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "graspfit/grasp/wrench_convention.hpp"
-#include "random_contacts.hpp"
+#include "contact/random_contacts.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
 
 /// \file
 /// Sets of contacts whose measures are known in closed form, named as in the project's table of
@@ -11,7 +11,7 @@
 
 namespace graspfit::testing {
 
-using Contacts = std::vector<grasp::Contact>;
+using Contacts = std::vector<contact::Contact>;
 
 /// Points of the unit sphere held along its normals.
 inline Contacts on_sphere(const std::vector<Eigen::Vector3d>& directions) {
@@ -36,7 +36,7 @@ inline Contacts on_tetrahedron() {
 }
 
 /// What tools scale by: the unit ball.
-inline grasp::WrenchObject unit_ball() {
+inline contact::WrenchObject unit_ball() {
   return {.center_of_mass_O = Eigen::Vector3d::Zero(),
           .largest_radius = 1.0,
           .extents_O = Eigen::Vector3d::Constant(2.0)};

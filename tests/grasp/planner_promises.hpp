@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "grasp/target_oracle.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/grasp/grasp_measure.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
@@ -84,7 +85,7 @@ inline std::string all_fields(const Grasp& grasp) {
         << contact.link << ' ' << contact.pad << ' ' << contact.finger << ' ' << contact.is_target
         << ' ' << (contact.weak ? (*contact.weak ? "weak" : "strong") : "unknown") << '\n';
   }
-  const grasp::ContactQuality& quality = grasp.quality;
+  const contact::ContactQuality& quality = grasp.quality;
   out << quality.m1 << ' ' << quality.m2 << ' ' << quality.m3 << ' ' << quality.m << ' '
       << quality.regularity << ' ' << quality.centroid_distance << ' '
       << quality.scaled_centroid_distance << '\n';
@@ -130,7 +131,7 @@ struct Run {
         collision(hand) {}
 
   PlannerResult plan(int num_threads = 0) const {
-    return grasp::plan_grasps(object, hand, options, surroundings, num_threads);
+    return grasp::plan_grasps(object, hand, options, surroundings, {.num_threads = num_threads});
   }
 
   PlannerOptions options;
@@ -150,7 +151,7 @@ inline grasp::MeasuringScene measuring_scene(const Run& run,
       .object = run.object.query,
       .surroundings = surroundings,
       .weak = run.object.weak ? &*run.object.weak : nullptr,
-      .wrench_object = grasp::wrench_object(run.object.mesh(), run.object.mass.center_of_mass),
+      .wrench_object = contact::wrench_object(run.object.mesh(), run.object.mass.center_of_mass),
       .friction = run.options.friction,
       .quality_context = {run.object.mass.center_of_mass, run.object.normalizing_radius, &run.hand},
       .quality_options = run.options.quality,
@@ -296,7 +297,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     if (options.rejection == grasp::Rejection::Deviation) {
       for (const auto& target : g.targets.contacts) {
         const bool is_near =
-            std::any_of(g.contacts.begin(), g.contacts.end(), [&](const grasp::Contact& contact) {
+            std::any_of(g.contacts.begin(), g.contacts.end(), [&](const contact::Contact& contact) {
               return contact.finger == target.finger && contact.is_target &&
                      (contact.point_O - target.point_O).norm() <= *options.largest_deviation;
             });
@@ -324,7 +325,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     // Configuration.
     try {
       hands::validate(hand, g.configuration);
-    } catch (const geometry::InvalidInput& error) {
+    } catch (const base::InvalidInput& error) {
       wrong(error.what());
     }
     const Vector3d direction = g.configuration.X_OH.linear() * hand.palm.direction_H;
@@ -392,7 +393,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     }
     // The measure of the contacts that are stored, computed directly.
     const auto direct =
-        grasp::contact_quality(g.contacts, scene.quality_context, scene.quality_options);
+        contact::contact_quality(g.contacts, scene.quality_context, scene.quality_options);
     compare("m of the stored contacts", g.quality.m, direct.m);
   }
   return broken;

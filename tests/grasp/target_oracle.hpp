@@ -84,7 +84,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
   if (parts.palm) {
     const grasp::TargetContact palm = contacts.back();
     contacts.pop_back();
-    if (palm.finger != grasp::kPalm) report("the last target is not the palm's");
+    if (palm.finger != contact::kPalm) report("the last target is not the palm's");
     for (const grasp::TargetContact& target : contacts) {
       const Eigen::Vector3d from_palm = target.point_O - palm.point_O;
       if (!(from_palm.dot(palm.outward_normal_O) < 0.0)) report("a target behind the palm");

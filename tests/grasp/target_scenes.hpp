@@ -96,8 +96,8 @@ inline std::vector<Place> on_unit_circle(const std::vector<double>& angles_deg) 
 inline TargetSelection select(const grasp::ObjectModel& object, const PartDistances& distances,
                               const RequestedParts& parts, const TargetOptions& options,
                               std::uint64_t seed) {
-  geometry::Random random(seed);
-  return grasp::select_target_contacts(object, distances, parts, options, random);
+  base::Random random(seed);
+  return grasp::TargetSelector(object, distances, parts, options).select(random);
 }
 
 inline std::vector<int> patches_of(const grasp::TargetContacts& targets) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_check.hpp"
 #include "graspfit/hands/hand_io.hpp"
@@ -20,9 +20,9 @@
 
 namespace graspfit::testing {
 
-using geometry::Error;
-using geometry::InvalidInput;
-using geometry::IoError;
+using base::Error;
+using base::InvalidInput;
+using base::IoError;
 namespace fs = std::filesystem;
 
 /// The small hand's files, one of them broken or not.

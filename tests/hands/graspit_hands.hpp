@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/geometry/random.hpp"
+#include "graspfit/base/random.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_io.hpp"
 
@@ -26,7 +26,7 @@ inline bool mentions(const std::vector<hands::HandFinding>& findings, hands::Fin
 
 /// Every joint anywhere between its limits, followers as well.
 inline hands::HandConfiguration random_configuration(const hands::HandModel& hand,
-                                                     geometry::Random& random) {
+                                                     base::Random& random) {
   hands::HandConfiguration c;
   c.q.resize(static_cast<Eigen::Index>(hand.joints.size()));
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {

@@ -1,4 +1,4 @@
-#include "kdl_hand.hpp"
+#include "hands/kdl_hand.hpp"
 
 #include <urdf_parser/urdf_parser.h>
 

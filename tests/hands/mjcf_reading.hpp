@@ -18,15 +18,15 @@
 #include <thread>
 #include <vector>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "description/joint_motion.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
-#include "graspfit/geometry/random.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_io.hpp"
-#include "internal/joint_motion.hpp"
-#include "internal/mjcf.hpp"
-#include "internal/urdf.hpp"
+#include "import/mjcf.hpp"
+#include "import/urdf.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
 #include "support/temporary_folder.hpp"
@@ -37,9 +37,9 @@
 
 namespace graspfit::testing {
 
+using base::InvalidInput;
+using base::IoError;
 using Eigen::Vector3d;
-using geometry::InvalidInput;
-using geometry::IoError;
 using geometry::RigidTransform;
 using hands::FindingKind;
 using hands::internal::DescribedJoint;
@@ -81,7 +81,7 @@ struct Reading {
 inline Reading read(const fs::path& file) {
   Findings findings(Findings::AtFault::Throw);
   Reading reading;
-  reading.robot = hands::internal::parse_mjcf(geometry::read_file(file), file, findings);
+  reading.robot = hands::internal::parse_mjcf(base::read_file(file), file, findings);
   reading.findings = findings.list();
   return reading;
 }
@@ -173,7 +173,7 @@ class Mujoco {
   mjData* data_ = nullptr;
 };
 
-inline Positions random_positions(const RobotDescription& robot, geometry::Random& random) {
+inline Positions random_positions(const RobotDescription& robot, base::Random& random) {
   Positions q;
   for (const DescribedJoint& joint : robot.joints) {
     if (joint.type == DescribedJoint::Type::Fixed) continue;
@@ -211,7 +211,7 @@ const std::string kTwoFingers = R"(
 
 /// A tree of bodies with up to three joints each, frames, anchors, axes and refs at random.
 inline std::string random_tree(std::uint64_t seed) {
-  geometry::Random random(seed);
+  base::Random random(seed);
   std::ostringstream text;
   text << std::setprecision(17);
   const auto numbers = [&](const char* name, int count) {

@@ -3,8 +3,8 @@
 #include <variant>
 #include <vector>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
 #include "support/catch.hpp"
@@ -12,7 +12,7 @@
 namespace graspfit {
 namespace {
 
-using geometry::shortest_decimal;
+using base::shortest_decimal;
 using hold_test::HoldProtocol;
 using hold_test::knob_names;
 using hold_test::knob_value;
@@ -62,7 +62,7 @@ TEST_CASE("Knobs that there are not and texts that are no value are refused by n
   HoldProtocol protocol;
   CHECK_THROWS_WITH(set_knob(protocol, "mass", "1"),
                     Contains("mass") && Contains("object_mass_kg"));
-  CHECK_THROWS_AS(knob_value(protocol, ""), geometry::InvalidInput);
+  CHECK_THROWS_AS(knob_value(protocol, ""), base::InvalidInput);
   for (const auto& [name, text] :
        std::vector<std::pair<std::string, std::string>>{{"force_N", ""},
                                                         {"force_N", "1,5"},

@@ -1,11 +1,11 @@
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hold_test/hold_protocol.hpp"
 #include "support/catch.hpp"
 
 namespace {
 
 using namespace graspfit::hold_test;
-using graspfit::geometry::InvalidInput;
+using graspfit::base::InvalidInput;
 
 TEST_CASE("Every shipped protocol has its name, says where its numbers come from, and is valid",
           "[hold_test]") {

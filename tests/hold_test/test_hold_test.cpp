@@ -2,7 +2,7 @@
 #include <future>
 #include <limits>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "hold_scenes.hpp"
 #include "support/catch.hpp"
 
@@ -232,7 +232,7 @@ TEST_CASE("Joint positions that are not the hand's are refused", "[hold_test]") 
                     testing::Contains("two jaws") && testing::Contains("2 joints"));
   grasp = pinch(5.0);
   grasp.squeeze->configuration.q[0] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS(test.test(grasp), geometry::InvalidInput);
+  CHECK_THROWS_AS(test.test(grasp), base::InvalidInput);
 }
 
 }  // namespace

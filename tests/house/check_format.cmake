@@ -12,7 +12,7 @@ if(NOT version MATCHES "version 14\\.")
 endif()
 
 set(sources "")
-foreach(folder IN ITEMS geometry hands grasp viewer app experiments tests)
+foreach(folder IN ITEMS base geometry hands grasp viewer app experiments tests)
   file(GLOB_RECURSE found ${SOURCE_DIR}/${folder}/*.hpp ${SOURCE_DIR}/${folder}/*.cpp)
   list(APPEND sources ${found})
 endforeach()

@@ -10,7 +10,7 @@ import re
 import sys
 
 SOURCE = pathlib.Path(sys.argv[1])
-PRODUCT = ("geometry", "hands", "grasp", "experiments", "viewer", "app")
+PRODUCT = ("base", "geometry", "hands", "grasp", "experiments", "viewer", "app")
 # What scripts of these folders import must come with the program or its pictures.
 PRODUCT_SCRIPTS = ("viewer",)
 IN_PROGRAM = {"build", "build?", "picture"}

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/geometry/random.hpp"
+#include "graspfit/base/random.hpp"
 
 namespace graspfit::testing {
 
 /// A few bytes changed, cut out, doubled, or replaced by one of `words`.
 inline std::string damaged(std::string text, const std::vector<std::string>& words,
-                           geometry::Random& random) {
+                           base::Random& random) {
   for (std::uint64_t n = 1 + random.index(4); n > 0 && !text.empty(); --n) {
     const std::size_t at = random.index(text.size());
     const std::size_t length = 1 + random.index(12);

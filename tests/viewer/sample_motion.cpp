@@ -11,8 +11,8 @@ namespace graspfit::testing {
 namespace {
 
 using geometry::RigidTransform;
-using grasp::MotionPhase;
-using grasp::MotionStretch;
+using motion::MotionPhase;
+using motion::MotionStretch;
 
 RigidTransform at(double x, double y, double z, double turn = 0.0) {
   RigidTransform X = RigidTransform::Identity();
@@ -34,8 +34,8 @@ hands::HandConfiguration over(const hands::HandModel& hand, const RigidTransform
   return configuration;
 }
 
-grasp::RecordedMove move(const hands::HandModel& hand, int object, double m,
-                         const RigidTransform& from, const RigidTransform& to) {
+motion::RecordedMove move(const hands::HandModel& hand, int object, double m,
+                          const RigidTransform& from, const RigidTransform& to) {
   const auto raised = [](RigidTransform X) {
     X.translation().z() += 0.1;
     return X;
@@ -70,8 +70,8 @@ viewer::MotionInput sample_motion() {
                                                at(0.0, 0.15, 0.002)};
   const std::array<RigidTransform, 3> goal = {at(0.1, 0, 0.04, 0.5 * std::numbers::pi),
                                               at(0.1, 0.1, 0.02), at(0.2, 0.15, 0.002)};
-  std::vector<grasp::SceneObject> objects;
-  grasp::MotionFile file;
+  std::vector<motion::SceneObject> objects;
+  motion::MotionFile file;
   file.title = "Two moves & a <flat> box";
   file.hand = sample.hand.name;
   for (const hands::Joint& joint : sample.hand.joints) file.joints.push_back(joint.name);
@@ -83,7 +83,7 @@ viewer::MotionInput sample_motion() {
   file.moves = {move(sample.hand, 0, 0.5, start[0], goal[0]),
                 move(sample.hand, 1, 0.25, start[1], goal[1])};
   file.unmoved = {{2, "it is too flat"}};
-  return {grasp::TableScene(sample.hand, std::move(objects)), std::move(file)};
+  return {motion::TableScene(sample.hand, std::move(objects)), std::move(file)};
 }
 
 }  // namespace graspfit::testing

@@ -87,7 +87,7 @@ grasp::Grasp grasp_at(double q, int num_contacts) {
   for (int i = 0; i < num_contacts; ++i) {
     const double angle = 2 * std::numbers::pi * i / 3;
     const Eigen::Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
-    grasp::Contact contact;
+    contact::Contact contact;
     contact.point_O = kBallRadius * outward;
     contact.inward_normal_O = -outward;
     contact.area = 40e-6 + 10e-6 * i;
@@ -137,7 +137,7 @@ SampleScene sample_scene() {
   start.opening = 0.5;
   start.retreat = 0.03;
   valid.pre_grasp = start;
-  grasp::Squeeze squeeze;
+  contact::Squeeze squeeze;
   squeeze.configuration = valid.configuration;
   squeeze.configuration.q.setConstant(0.1);
   squeeze.forces_O = Eigen::Matrix3Xd::Zero(3, 3);

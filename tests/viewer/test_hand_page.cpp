@@ -1,7 +1,7 @@
 #include <limits>
 #include <string>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/viewer/hand_page.hpp"
 #include "sample_scene.hpp"
 #include "support/catch.hpp"
@@ -43,7 +43,7 @@ TEST_CASE("A hand's page refuses scenes that do not fit", "[viewer][hand_page]")
   for (const double thickness : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     scene = sample_hand_scene();
     scene.clip_thickness = thickness;
-    CHECK_THROWS_AS(hand_page_html(scene), geometry::InvalidInput);
+    CHECK_THROWS_AS(hand_page_html(scene), base::InvalidInput);
   }
 }
 

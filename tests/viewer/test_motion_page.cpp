@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/viewer/motion_page.hpp"
 #include "sample_motion.hpp"
 #include "support/catch.hpp"
@@ -32,7 +32,7 @@ TEST_CASE("A motion's frames are as near as asked for and belong to one phase ea
   for (const auto& move : input.file.moves) {
     for (const auto& stretch : move.stretches) {
       frames += static_cast<int>(
-          std::max(4.0, std::ceil(grasp::largest_travel(input.scene, stretch) / 0.02)));
+          std::max(4.0, std::ceil(motion::largest_travel(input.scene, stretch) / 0.02)));
     }
   }
   CHECK(data["num_frames"] == frames);
@@ -77,7 +77,7 @@ TEST_CASE("A motion's page refuses what does not fit together", "[viewer][motion
     std::string message;
     try {
       viewer::motion_scene_json(input);
-    } catch (const geometry::InvalidInput& error) {
+    } catch (const base::InvalidInput& error) {
       message = error.what();
     }
     return message;

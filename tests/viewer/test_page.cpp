@@ -1,8 +1,8 @@
 #include <limits>
 #include <string>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/viewer/page.hpp"
 #include "sample_scene.hpp"
 #include "support/catch.hpp"
@@ -69,9 +69,9 @@ TEST_CASE("A written page is what page_html returns", "[viewer][page]") {
   const auto folder = std::filesystem::temp_directory_path() / "graspfit_test_page";
   std::filesystem::create_directories(folder);
   viewer::write_page(folder / "page.html", sample_input());
-  CHECK(geometry::read_file(folder / "page.html") == page_html(sample_input()));
+  CHECK(base::read_file(folder / "page.html") == page_html(sample_input()));
   CHECK_THROWS_AS(viewer::write_page(folder / "missing" / "page.html", sample_input()),
-                  geometry::IoError);
+                  base::IoError);
   std::filesystem::remove_all(folder);
 }
 
@@ -99,7 +99,7 @@ TEST_CASE("Input that makes no sense is refused in one line", "[viewer][page]") 
   }
   SECTION("contact of a link that is not there") {
     input.grasps[0].contacts[0].link = 9;
-    CHECK_THROWS_AS(page_html(input), geometry::InvalidInput);
+    CHECK_THROWS_AS(page_html(input), base::InvalidInput);
   }
   SECTION("thickness") {
     input.clip_thickness = GENERATE(-0.001, std::numeric_limits<double>::quiet_NaN(),

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/viewer/replay_page.hpp"
 #include "sample_replay.hpp"
 #include "support/catch.hpp"
@@ -89,7 +89,7 @@ TEST_CASE("A replay refuses what does not fit together", "[viewer][replay_page]"
     std::string message;
     try {
       replay_page_html(input);
-    } catch (const geometry::InvalidInput& error) {
+    } catch (const base::InvalidInput& error) {
       message = error.what();
     }
     return message;

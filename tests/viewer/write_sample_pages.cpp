@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/viewer/hand_page.hpp"
 #include "graspfit/viewer/motion_page.hpp"
 #include "graspfit/viewer/page.hpp"
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     viewer::write_hand_page(folder / "hand.html", testing::sample_hand_scene());
     viewer::write_replay_page(folder / "replay.html", testing::sample_replay());
     viewer::write_motion_page(folder / "motion.html", testing::sample_motion());
-  } catch (const geometry::Error& error) {
+  } catch (const base::Error& error) {
     std::cerr << "write_sample_pages: " << error.what() << '\n';
     return 1;
   }

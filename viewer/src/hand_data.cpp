@@ -1,4 +1,4 @@
-#include "internal/hand_data.hpp"
+#include "hand_data.hpp"
 
 #include <algorithm>
 #include <map>

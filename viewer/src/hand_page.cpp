@@ -3,18 +3,18 @@
 #include <cmath>
 #include <utility>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/hand_data.hpp"
-#include "internal/page_template.hpp"
+#include "hand_data.hpp"
+#include "page_template.hpp"
 
 namespace graspfit::viewer {
 namespace {
 
 void validate(const HandScene& scene) {
   const auto refuse = [](const std::string& what) {
-    throw geometry::InvalidInput("hand_scene_json: " + what);
+    throw base::InvalidInput("hand_scene_json: " + what);
   };
   if (scene.poses.empty()) refuse("no pose of hand " + scene.hand.name);
   if (!(scene.clip_thickness >= 0.0) || !std::isfinite(scene.clip_thickness)) {
@@ -120,7 +120,7 @@ std::string hand_page_html(const HandScene& scene) {
 }
 
 void write_hand_page(const std::filesystem::path& file, const HandScene& scene) {
-  geometry::write_file_atomically(file, hand_page_html(scene));
+  base::write_file_atomically(file, hand_page_html(scene));
 }
 
 }  // namespace graspfit::viewer

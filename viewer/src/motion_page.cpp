@@ -5,12 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "frame_data.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/frame_data.hpp"
-#include "internal/hand_data.hpp"
-#include "internal/page_template.hpp"
+#include "hand_data.hpp"
+#include "page_template.hpp"
 
 namespace graspfit::viewer {
 namespace {
@@ -19,7 +20,7 @@ using geometry::RigidTransform;
 
 void validate(const MotionInput& input) {
   const auto refuse = [](const std::string& what) {
-    throw geometry::InvalidInput("motion_scene_json: " + what);
+    throw base::InvalidInput("motion_scene_json: " + what);
   };
   if (input.file.moves.empty()) refuse("the motion has no move");
   if (!(input.frame_step > 0.0)) refuse("frame_step is not a length above 0 m");
@@ -52,10 +53,9 @@ int num_frames(double travel, double frame_step) {
   constexpr double kMost = 1e5;
   const double frames = std::max(kFewest, std::ceil(travel / frame_step));
   if (!(frames <= kMost)) {
-    throw geometry::InvalidInput("motion_scene_json: a stretch of " +
-                                 geometry::shortest_decimal(travel) + " m in frames of " +
-                                 geometry::shortest_decimal(frame_step) +
-                                 " m has more than 100000 frames");
+    throw base::InvalidInput("motion_scene_json: a stretch of " + base::shortest_decimal(travel) +
+                             " m in frames of " + base::shortest_decimal(frame_step) +
+                             " m has more than 100000 frames");
   }
   return static_cast<int>(frames);
 }
@@ -63,9 +63,9 @@ int num_frames(double travel, double frame_step) {
 /// Poses of all bodies, frame by frame.
 class Frames {
  public:
-  explicit Frames(const grasp::TableScene& scene) : scene_(scene) {}
+  explicit Frames(const motion::TableScene& scene) : scene_(scene) {}
 
-  void add(std::vector<RigidTransform> X_WO, int object, const grasp::MotionState& state) {
+  void add(std::vector<RigidTransform> X_WO, int object, const motion::MotionState& state) {
     X_WO.at(static_cast<std::size_t>(object)) = state.X_WO;
     for (const RigidTransform& X : X_WO) append_pose(X, objects_);
     for (const RigidTransform& X : hands::forward_kinematics(scene_.hand(), state.hand)) {
@@ -78,23 +78,23 @@ class Frames {
   Json links() const { return base64_of(links_); }
 
  private:
-  const grasp::TableScene& scene_;
+  const motion::TableScene& scene_;
   int count_ = 0;
   std::vector<float> objects_;
   std::vector<float> links_;
 };
 
 /// Adds a move's frames; the phases with the frames in which they end.
-Json add_move(const MotionInput& input, const grasp::RecordedMove& move,
+Json add_move(const MotionInput& input, const motion::RecordedMove& move,
               const std::vector<RigidTransform>& X_WO, Frames& frames) {
   Json phases = Json::array();
-  for (const grasp::MotionStretch& stretch : move.stretches) {
-    const int parts = num_frames(grasp::largest_travel(input.scene, stretch), input.frame_step);
+  for (const motion::MotionStretch& stretch : move.stretches) {
+    const int parts = num_frames(motion::largest_travel(input.scene, stretch), input.frame_step);
     for (int i = 1; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
-      frames.add(X_WO, move.object, grasp::state_at(input.scene, stretch, share));
+      frames.add(X_WO, move.object, motion::state_at(input.scene, stretch, share));
     }
-    phases.push_back({{"name", grasp::phase_name(stretch.phase)}, {"last", frames.count() - 1}});
+    phases.push_back({{"name", motion::phase_name(stretch.phase)}, {"last", frames.count() - 1}});
   }
   return phases;
 }
@@ -103,14 +103,14 @@ Json add_move(const MotionInput& input, const grasp::RecordedMove& move,
 
 std::string motion_scene_json(const MotionInput& input) {
   validate(input);
-  const grasp::MotionFile& file = input.file;
-  const auto poses = grasp::object_poses(file);
+  const motion::MotionFile& file = input.file;
+  const auto poses = motion::object_poses(file);
   Frames frames(input.scene);
-  const grasp::MotionStretch& start = file.moves.front().stretches.front();
-  frames.add(poses.front(), file.moves.front().object, grasp::state_at(input.scene, start, 0.0));
+  const motion::MotionStretch& start = file.moves.front().stretches.front();
+  frames.add(poses.front(), file.moves.front().object, motion::state_at(input.scene, start, 0.0));
   Json moves = Json::array();
   for (std::size_t k = 0; k < file.moves.size(); ++k) {
-    const grasp::RecordedMove& move = file.moves[k];
+    const motion::RecordedMove& move = file.moves[k];
     const int first = frames.count() - 1;
     const Json phases = add_move(input, move, poses[k], frames);
     moves.push_back({{"object", move.object},
@@ -121,13 +121,13 @@ std::string motion_scene_json(const MotionInput& input) {
                      {"phases", phases}});
   }
   Json objects = Json::array();
-  for (const grasp::SceneObject& object : input.scene.objects()) {
+  for (const motion::SceneObject& object : input.scene.objects()) {
     objects.push_back({{"name", object.name},
                        {"mesh", to_json(object.surface_O.mesh())},
                        {"center", to_json(object.center_of_mass_O)}});
   }
   Json unmoved = Json::array();
-  for (const grasp::UnmovedObject& object : file.unmoved) {
+  for (const motion::UnmovedObject& object : file.unmoved) {
     unmoved.push_back({{"object", object.object}, {"reason", object.reason}});
   }
   const Json data = {{"title", file.title},
@@ -149,7 +149,7 @@ std::string motion_page_html(const MotionInput& input) {
 }
 
 void write_motion_page(const std::filesystem::path& file, const MotionInput& input) {
-  geometry::write_file_atomically(file, motion_page_html(input));
+  base::write_file_atomically(file, motion_page_html(input));
 }
 
 }  // namespace graspfit::viewer

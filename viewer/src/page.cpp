@@ -1,8 +1,8 @@
 #include "graspfit/viewer/page.hpp"
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "internal/page_data.hpp"
-#include "internal/page_template.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "page_data.hpp"
+#include "page_template.hpp"
 
 namespace graspfit::viewer {
 
@@ -11,7 +11,7 @@ std::string page_html(const PageInput& input) {
 }
 
 void write_page(const std::filesystem::path& file, const PageInput& input) {
-  geometry::write_file_atomically(file, page_html(input));
+  base::write_file_atomically(file, page_html(input));
 }
 
 }  // namespace graspfit::viewer

@@ -1,18 +1,18 @@
-#include "internal/page_data.hpp"
+#include "page_data.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/hand_data.hpp"
+#include "hand_data.hpp"
 
 namespace graspfit::viewer {
 namespace {
 
-using geometry::InvalidInput;
+using base::InvalidInput;
 using geometry::RigidTransform;
 
 std::string finger_name(const hands::HandModel& hand, int finger) {
@@ -22,7 +22,7 @@ std::string finger_name(const hands::HandModel& hand, int finger) {
 Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
   Json list = Json::array();
   for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
-    const grasp::Contact& contact = grasp.contacts[i];
+    const contact::Contact& contact = grasp.contacts[i];
     Json entry = {{"point", to_json(contact.point_O)},
                   {"normal", to_json(contact.inward_normal_O)},
                   {"finger", finger_name(input.hand, contact.finger)},
@@ -33,7 +33,7 @@ Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
                   {"target", contact.is_target},
                   {"weak", contact.weak ? Json(*contact.weak) : Json()}};
     if (i < grasp.quality.terms.size()) {
-      const grasp::SustainabilityTerm& term = grasp.quality.terms[i];
+      const contact::SustainabilityTerm& term = grasp.quality.terms[i];
       entry["term"] = {{"d", term.boundary_distance}, {"a", term.area}, {"s", term.strength}};
     }
     list.push_back(std::move(entry));
@@ -54,9 +54,9 @@ Json targets(const PageInput& input, const grasp::Grasp& grasp) {
   return list;
 }
 
-Json quality(const grasp::ContactQuality& quality) {
+Json quality(const contact::ContactQuality& quality) {
   Json pairs = Json::array();
-  for (const grasp::StablePair& pair : quality.stable_pairs) {
+  for (const contact::StablePair& pair : quality.stable_pairs) {
     pairs.push_back({{"first", pair.first}, {"second", pair.second}, {"angle", pair.angle}});
   }
   return {{"m", quality.m},
@@ -101,7 +101,7 @@ Json pre_grasp(const hands::HandModel& hand, const std::optional<grasp::PreGrasp
   return json;
 }
 
-Json squeeze(const hands::HandModel& hand, const std::optional<grasp::Squeeze>& squeeze) {
+Json squeeze(const hands::HandModel& hand, const std::optional<contact::Squeeze>& squeeze) {
   if (!squeeze) return {};
   Json json = configuration(hand, squeeze->configuration);
   json["residual"] = squeeze->residual;
@@ -116,11 +116,11 @@ Json squeeze(const hands::HandModel& hand, const std::optional<grasp::Squeeze>& 
 }
 
 /// Nothing where it was not measured, which leaves the torque scale unset.
-Json wrench(const grasp::WrenchQuality& wrench) {
+Json wrench(const contact::WrenchQuality& wrench) {
   if (std::isnan(wrench.convention.options.torque_scale)) return {};
   return {{"epsilon", wrench.epsilon},
           {"is_force_closure", wrench.is_force_closure},
-          {"convention", grasp::describe(wrench.convention)}};
+          {"convention", contact::describe(wrench.convention)}};
 }
 
 Json grasps(const PageInput& input) {
@@ -201,7 +201,7 @@ void validate(const PageInput& input) {
     require_joints(name, grasp.configuration.q);
     if (grasp.pre_grasp) require_joints("pre-grasp of " + name, grasp.pre_grasp->configuration.q);
     if (grasp.squeeze) require_joints("squeeze of " + name, grasp.squeeze->configuration.q);
-    for (const grasp::Contact& contact : grasp.contacts) {
+    for (const contact::Contact& contact : grasp.contacts) {
       if (!is_index(contact.link, hand.links.size(), 0) ||
           !is_index(contact.finger, hand.fingers.size(), -1)) {
         refuse(name + " has a contact of link " + std::to_string(contact.link) + " and finger " +
@@ -215,7 +215,7 @@ void validate(const PageInput& input) {
       }
     }
     const int num_contacts = static_cast<int>(grasp.contacts.size());
-    for (const grasp::StablePair& pair : grasp.quality.stable_pairs) {
+    for (const contact::StablePair& pair : grasp.quality.stable_pairs) {
       if (!is_index(pair.first, num_contacts, 0) || !is_index(pair.second, num_contacts, 0)) {
         refuse(name + " has a stable pair of contacts " + std::to_string(pair.first) + " and " +
                std::to_string(pair.second) + " of " + std::to_string(num_contacts));

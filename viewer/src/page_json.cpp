@@ -1,4 +1,4 @@
-#include "internal/page_json.hpp"
+#include "page_json.hpp"
 
 #include <bit>
 #include <type_traits>

@@ -1,4 +1,4 @@
-#include "internal/page_template.hpp"
+#include "page_template.hpp"
 
 #include <initializer_list>
 #include <utility>

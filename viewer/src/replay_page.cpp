@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "frame_data.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hold_test/hold_batch.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
-#include "internal/frame_data.hpp"
-#include "internal/hand_data.hpp"
-#include "internal/page_template.hpp"
+#include "hand_data.hpp"
+#include "page_template.hpp"
 
 namespace graspfit::viewer {
 namespace {
@@ -23,7 +23,7 @@ using hold_test::HoldFrame;
 
 void validate(const ReplayInput& input) {
   const auto refuse = [](const std::string& what) {
-    throw geometry::InvalidInput("replay_scene_json: " + what);
+    throw base::InvalidInput("replay_scene_json: " + what);
   };
   if (input.object_O.faces.empty()) refuse("the object has no faces");
   if (input.verdict.directions.empty()) refuse("the verdict has no direction");
@@ -197,7 +197,7 @@ std::string replay_page_html(const ReplayInput& input) {
 }
 
 void write_replay_page(const std::filesystem::path& file, const ReplayInput& input) {
-  geometry::write_file_atomically(file, replay_page_html(input));
+  base::write_file_atomically(file, replay_page_html(input));
 }
 
 }  // namespace graspfit::viewer

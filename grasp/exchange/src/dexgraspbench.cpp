@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "internal/npz.hpp"
-#include "internal/pose_numbers.hpp"
+#include "io/pose_numbers.hpp"
+#include "npz.hpp"
 
 namespace graspfit::exchange {
 namespace {

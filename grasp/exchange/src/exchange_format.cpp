@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/exchange/graspit_world.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
-#include "internal/yaml_text.hpp"
+#include "yaml_text.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -84,7 +84,7 @@ constexpr const char* kNoMeasures =
 void add_scale(const grasp::GraspFile& file, const std::string& what,
                std::vector<std::string>& limits) {
   if (file.object.meters_per_file_unit == 1.0) return;
-  limits.push_back(what + " by " + geometry::shortest_decimal(file.object.meters_per_file_unit) +
+  limits.push_back(what + " by " + base::shortest_decimal(file.object.meters_per_file_unit) +
                    " to be in meters: the poses are for that size");
 }
 

@@ -1,4 +1,4 @@
-#include "internal/graspit_robot_file.hpp"
+#include "graspit_robot_file.hpp"
 
 #include <tinyxml2.h>
 
@@ -6,8 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/sha256.hpp"
 
 namespace graspfit::exchange::internal {
 namespace {
@@ -41,10 +42,10 @@ Expression expression(const std::string& text) {
 }  // namespace
 
 std::optional<std::vector<GraspItDof>> graspit_dofs(const hands::HandModel& hand) {
-  const std::string text = geometry::read_file(hand.description_file);
-  if (geometry::sha256_hex(text) != hand.description_sha256) {
-    throw geometry::IoError(hand.description_file + ": is not the file that hand " + hand.name +
-                            " was read from: its SHA-256 is another one");
+  const std::string text = base::read_file(hand.description_file);
+  if (base::sha256_hex(text) != hand.description_sha256) {
+    throw base::IoError(hand.description_file + ": is not the file that hand " + hand.name +
+                        " was read from: its SHA-256 is another one");
   }
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());

@@ -7,15 +7,15 @@
 #include <filesystem>
 #include <optional>
 
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
-#include "internal/graspit_robot_file.hpp"
-#include "internal/pose_numbers.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspit_robot_file.hpp"
+#include "io/pose_numbers.hpp"
 
 namespace graspfit::exchange {
 namespace {
 
-using geometry::shortest_decimal;
+using base::shortest_decimal;
 using internal::GraspItDof;
 using tinyxml2::XMLElement;
 
@@ -101,8 +101,8 @@ bool is_graspit_hand(const hands::HandModel& hand) {
 std::string graspit_world_xml(const grasp::GraspFile& file, std::size_t index,
                               const GraspItWorldOptions& options) {
   if (index >= file.grasps.size()) {
-    throw geometry::InvalidInput("graspit_world_xml: grasp " + std::to_string(index + 1) + " of " +
-                                 std::to_string(file.grasps.size()));
+    throw base::InvalidInput("graspit_world_xml: grasp " + std::to_string(index + 1) + " of " +
+                             std::to_string(file.grasps.size()));
   }
   const hands::HandConfiguration& configuration = file.grasps[index].configuration;
   tinyxml2::XMLDocument document;

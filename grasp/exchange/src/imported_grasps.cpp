@@ -4,11 +4,12 @@
 #include <numeric>
 #include <utility>
 
-#include "graspfit/geometry/errors.hpp"
+#include "approach/checked_pre_grasp.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
-#include "internal/checked_pre_grasp.hpp"
-#include "internal/recorded_hand.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+#include "io/recorded_hand.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -19,7 +20,7 @@ using grasp::PlannerOptions;
 
 void require_solid(const grasp::ObjectRecord& object) {
   if (object.analysis.is_closed && object.analysis.is_outward) return;
-  throw geometry::InvalidInput("import_grasps: " + object.file + " is not a closed outward solid");
+  throw base::InvalidInput("import_grasps: " + object.file + " is not a closed outward solid");
 }
 
 /// Everything of the file but its grasps.
@@ -32,8 +33,8 @@ GraspFile empty_file(const grasp::ObjectFile& object, const hands::HandModel& ha
   file.options = options;
   const grasp::RequestedParts requested = grasp::requested_parts(hand, options);
   if (requested.palm && hand.palm.pad < 0) {
-    throw geometry::InvalidInput("import_grasps: hand " + hand.name +
-                                 " has no pad on its palm to touch with");
+    throw base::InvalidInput("import_grasps: hand " + hand.name +
+                             " has no pad on its palm to touch with");
   }
   for (const int finger : requested.fingers) file.fingers.push_back(hand.fingers[finger].name);
   file.palm = requested.palm;
@@ -60,14 +61,14 @@ class Completion {
         collision_(file.hand),
         surroundings_(file.hand, grasp::Surroundings{}),
         center_of_mass_(geometry::mass_properties(mesh).center_of_mass),
-        torque_scale_(grasp::wrench_object(mesh, center_of_mass_).largest_radius) {}
+        torque_scale_(contact::wrench_object(mesh, center_of_mass_).largest_radius) {}
 
   void add_to(Grasp& grasp, const ImportedGrasp& imported, std::vector<std::string>& notes) const {
     if (options_.pre_grasps) add_pre_grasp(grasp, imported, notes);
     if (grasp.contacts.empty()) return;
     grasp.squeeze =
-        grasp::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
-                                     torque_scale_, options_.squeeze_friction, options_.squeeze);
+        contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
+                                       torque_scale_, options_.squeeze_friction, options_.squeeze);
   }
 
  private:

@@ -3,17 +3,18 @@
 #include <cmath>
 #include <limits>
 
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
-#include "graspfit/geometry/errors.hpp"
-#include "internal/option_check.hpp"
-#include "internal/pose_numbers.hpp"
-#include "internal/yaml_node.hpp"
+#include "io/pose_numbers.hpp"
+#include "yaml_node.hpp"
 
 namespace graspfit::exchange {
 namespace {
 
-using geometry::shortest_decimal;
+using base::shortest_decimal;
 using internal::YamlNode;
 
 void check_format(const YamlNode& root) {
@@ -121,8 +122,8 @@ class Reader {
 
 void IsaacReadOptions::validate() const {
   const auto require = [](std::string_view field, double value) {
-    grasp::internal::require(value >= 0.0 && std::isfinite(value), "IsaacReadOptions", field, value,
-                             "finite and >= 0");
+    base::require(value >= 0.0 && std::isfinite(value), "IsaacReadOptions", field, value,
+                  "finite and >= 0");
   };
   require("largest_norm_error", largest_norm_error);
   require("largest_limit_excess", largest_limit_excess);
@@ -133,7 +134,7 @@ std::vector<ImportedGrasp> read_isaac_grasps(const std::filesystem::path& path,
                                              const hands::HandModel& hand,
                                              const IsaacReadOptions& options) {
   options.validate();
-  const YamlNode root = YamlNode::parse(path.string(), geometry::read_file(path));
+  const YamlNode root = YamlNode::parse(path.string(), base::read_file(path));
   check_format(root);
   const Reader reader(hand, options);
   const YamlNode grasps = root.at("grasps");

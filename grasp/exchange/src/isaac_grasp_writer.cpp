@@ -1,7 +1,7 @@
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
-#include "graspfit/geometry/atomic_file.hpp"
-#include "internal/pose_numbers.hpp"
-#include "internal/yaml_text.hpp"
+#include "io/pose_numbers.hpp"
+#include "yaml_text.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -26,7 +26,7 @@ std::string isaac_grasp_yaml(const grasp::GraspFile& file) {
   const grasp::ObjectRecord& object = file.object;
   std::string text = "# Grasps of " + in_quotes(object.file) + " (SHA-256 " + object.sha256 +
                      "),\n# each coordinate times " +
-                     geometry::shortest_decimal(object.meters_per_file_unit) +
+                     base::shortest_decimal(object.meters_per_file_unit) +
                      " to be in meters, by the hand " + in_quotes(file.hand.name) +
                      ".\n# Confidence is M / (1 + M) of graspfit's measure M, no probability.\n"
                      "format: isaac_grasp\n"

@@ -1,7 +1,7 @@
 #include "graspfit/exchange/moveit_grasp.hpp"
 
-#include "internal/pose_numbers.hpp"
-#include "internal/yaml_text.hpp"
+#include "io/pose_numbers.hpp"
+#include "yaml_text.hpp"
 
 namespace graspfit::exchange {
 namespace {

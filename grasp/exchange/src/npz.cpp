@@ -1,4 +1,4 @@
-#include "internal/npz.hpp"
+#include "npz.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::exchange::internal {
 namespace {
@@ -124,8 +124,8 @@ void NpzWriter::add_member(std::string_view name, std::string_view type,
 
 std::string NpzWriter::bytes() const {
   if (members_.size() + directory_.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw geometry::InvalidInput("NPZ: " + std::to_string(members_.size()) +
-                                 " bytes are more than the 4 GiB of an archive");
+    throw base::InvalidInput("NPZ: " + std::to_string(members_.size()) +
+                             " bytes are more than the 4 GiB of an archive");
   }
   std::string end;
   append(std::uint32_t{0x06054b50}, end);

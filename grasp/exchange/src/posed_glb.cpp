@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "internal/pose_numbers.hpp"
+#include "io/pose_numbers.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -79,8 +79,8 @@ class Document {
     text.append((4 - text.size() % 4) % 4, ' ');  // chunks end where 4 divides the place
     const std::size_t size = 12 + 8 + text.size() + 8 + binary_.size();
     if (size > std::numeric_limits<std::uint32_t>::max()) {
-      throw geometry::InvalidInput("posed_scene_glb: " + std::to_string(size) +
-                                   " bytes are more than the 4 GiB of a GLB file");
+      throw base::InvalidInput("posed_scene_glb: " + std::to_string(size) +
+                               " bytes are more than the 4 GiB of a GLB file");
     }
     std::string glb;
     glb.reserve(size);

@@ -1,11 +1,11 @@
-#include "internal/yaml_node.hpp"
+#include "yaml_node.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <set>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::exchange::internal {
 namespace {
@@ -23,21 +23,21 @@ YamlNode YamlNode::parse(std::string file, const std::string& text) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() != 1) {
-      throw geometry::IoError(*name + ": has " + std::to_string(documents.size()) +
-                              " YAML documents, not one");
+      throw base::IoError(*name + ": has " + std::to_string(documents.size()) +
+                          " YAML documents, not one");
     }
     return {name, documents[0], ""};
   } catch (const YAML::Exception& error) {
     const std::string line =
         error.mark.is_null() ? "" : "line " + std::to_string(error.mark.line + 1) + ": ";
-    throw geometry::IoError(*name + ": " + line + "is not YAML: " + in_one_line(error.msg));
+    throw base::IoError(*name + ": " + line + "is not YAML: " + in_one_line(error.msg));
   }
 }
 
 void YamlNode::fail(const std::string& what) const {
   const YAML::Mark mark = node_.Mark();
   const std::string line = mark.is_null() ? "" : "line " + std::to_string(mark.line + 1) + ": ";
-  throw geometry::IoError(
+  throw base::IoError(
       in_one_line(*file_ + ": " + line + (place_.empty() ? "/" : place_) + ": " + what));
 }
 

@@ -1,9 +1,9 @@
-#include "internal/yaml_text.hpp"
+#include "yaml_text.hpp"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/number_text.hpp"
 
 namespace graspfit::exchange::internal {
 
@@ -12,7 +12,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string yaml_number(double value) {
-  std::string text = geometry::shortest_decimal(value);
+  std::string text = base::shortest_decimal(value);
   if (text.find('.') == std::string::npos) {
     const std::size_t exponent = text.find('e');
     text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");

@@ -7,12 +7,12 @@
 #include <numeric>
 #include <thread>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::hold_test {
 namespace {
 
-using geometry::InvalidInput;
+using base::InvalidInput;
 
 std::vector<std::size_t> wanted_indices(const HoldBatchOptions& options, std::size_t num_grasps) {
   std::vector<std::size_t> indices = options.indices;

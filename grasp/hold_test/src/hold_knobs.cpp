@@ -8,12 +8,12 @@
 #include <sstream>
 #include <system_error>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::hold_test {
 namespace {
 
-using geometry::InvalidInput;
+using base::InvalidInput;
 
 constexpr std::array kSqueezeRules = {SqueezeRule::Forces, SqueezeRule::Extrapolation,
                                       SqueezeRule::None};

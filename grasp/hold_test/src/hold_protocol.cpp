@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::hold_test {
 
@@ -85,7 +85,7 @@ void require(bool is_met, std::string_view field, double value, std::string_view
   std::ostringstream message;
   message.imbue(std::locale::classic());
   message << "HoldProtocol: " << field << " is " << value << "; it must be " << rule;
-  throw geometry::InvalidInput(message.str());
+  throw base::InvalidInput(message.str());
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ HoldProtocol hold_protocol(const std::string& name) {
     if (protocol.name == name) return protocol;
     known += (known.empty() ? "" : ", ") + protocol.name;
   }
-  throw geometry::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " + known);
+  throw base::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " + known);
 }
 
 }  // namespace graspfit::hold_test

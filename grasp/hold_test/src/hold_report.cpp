@@ -2,14 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include "graspfit/geometry/atomic_file.hpp"
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/hold_test/hold_knobs.hpp"
-#include "internal/json_text.hpp"
+#include "io/json_text.hpp"
 
 namespace graspfit::hold_test {
 namespace {
 
-using geometry::shortest_decimal;
+using base::shortest_decimal;
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }

@@ -1,4 +1,4 @@
-#include "internal/hold_run.hpp"
+#include "hold_run.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "graspfit/geometry/bounded_integer.hpp"
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/bounded_integer.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 
 namespace graspfit::hold_test::internal {
@@ -40,7 +40,7 @@ std::string millimeters(double length) {
   std::array<char, 32> text{};
   // Tenths of a millimeter as integers: the decimal point of the C library follows the locale.
   const auto tenths =
-      geometry::bounded_integer<std::int64_t>(std::round(length * 1e4), 0, 1'000'000'000'000'000);
+      base::bounded_integer<std::int64_t>(std::round(length * 1e4), 0, 1'000'000'000'000'000);
   std::snprintf(text.data(), text.size(), "%" PRId64 ".%" PRId64 " mm", tenths / 10, tenths % 10);
   return text.data();
 }
@@ -51,17 +51,17 @@ void require_size(const hands::HandModel& hand, const HandConfiguration& configu
       configuration.q.allFinite() && configuration.X_OH.matrix().allFinite()) {
     return;
   }
-  throw geometry::InvalidInput(
-      std::string("HoldTest: the ") + what + " has " + std::to_string(configuration.q.size()) +
-      " joint positions or numbers that are not finite; hand " + hand.name + " has " +
-      std::to_string(hand.joints.size()) + " joints");
+  throw base::InvalidInput(std::string("HoldTest: the ") + what + " has " +
+                           std::to_string(configuration.q.size()) +
+                           " joint positions or numbers that are not finite; hand " + hand.name +
+                           " has " + std::to_string(hand.joints.size()) + " joints");
 }
 
 }  // namespace
 
 int HoldRun::num_steps(double duration) const {
-  return geometry::bounded_integer(std::round(duration / protocol_.step), 1,
-                                   std::numeric_limits<int>::max());
+  return base::bounded_integer(std::round(duration / protocol_.step), 1,
+                               std::numeric_limits<int>::max());
 }
 
 RigidTransform HoldRun::X_HB() const { return physics_.hand().X_OH.inverse() * physics_.X_OB(); }

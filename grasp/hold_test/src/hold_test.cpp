@@ -8,10 +8,10 @@
 #include <tuple>
 #include <utility>
 
-#include "graspfit/geometry/bounded_integer.hpp"
-#include "graspfit/geometry/errors.hpp"
-#include "internal/hold_run.hpp"
-#include "internal/physics.hpp"
+#include "graspfit/base/bounded_integer.hpp"
+#include "graspfit/base/errors.hpp"
+#include "hold_run.hpp"
+#include "physics.hpp"
 
 namespace graspfit::hold_test {
 
@@ -113,9 +113,9 @@ bool is_available() { return true; }
 HoldTest::HoldTest(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol) {
   protocol.validate();
   if (hand.links.size() != hand.model.links.size()) {
-    throw geometry::InvalidInput("HoldTest: " + std::to_string(hand.links.size()) +
-                                 " links in pieces; hand " + hand.model.name + " has " +
-                                 std::to_string(hand.model.links.size()));
+    throw base::InvalidInput("HoldTest: " + std::to_string(hand.links.size()) +
+                             " links in pieces; hand " + hand.model.name + " has " +
+                             std::to_string(hand.model.links.size()));
   }
   impl_ = std::make_unique<Impl>(hand, object, protocol);
 }
@@ -143,11 +143,11 @@ HoldVerdict HoldTest::test(const grasp::Grasp& grasp) {
 
 HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {
   if (impl_->protocol.load != HoldLoad::SixForces) {
-    throw geometry::InvalidInput("HoldTest::margin: protocol " + impl_->protocol.name +
-                                 " lifts; a margin needs one that loads along six directions");
+    throw base::InvalidInput("HoldTest::margin: protocol " + impl_->protocol.name +
+                             " lifts; a margin needs one that loads along six directions");
   }
   if (!(largest > 0.0) || !std::isfinite(largest)) {
-    throw geometry::InvalidInput("HoldTest::margin: largest must be finite and > 0 N");
+    throw base::InvalidInput("HoldTest::margin: largest must be finite and > 0 N");
   }
   HoldVerdict approach;
   impl_->run.approach(grasp, approach);
@@ -172,17 +172,17 @@ HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {
 
 std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp& grasp, int direction, double interval) {
   if (direction < 0 || direction >= impl_->num_directions()) {
-    throw geometry::InvalidInput("HoldTest::replay: direction " + std::to_string(direction) +
-                                 "; protocol " + impl_->protocol.name + " has " +
-                                 std::to_string(impl_->num_directions()));
+    throw base::InvalidInput("HoldTest::replay: direction " + std::to_string(direction) +
+                             "; protocol " + impl_->protocol.name + " has " +
+                             std::to_string(impl_->num_directions()));
   }
   if (!(interval > 0.0) || !std::isfinite(interval)) {
-    throw geometry::InvalidInput("HoldTest::replay: interval must be finite and > 0 s");
+    throw base::InvalidInput("HoldTest::replay: interval must be finite and > 0 s");
   }
   std::vector<HoldFrame> frames;
   const double step = impl_->protocol.step;
   const int every =
-      geometry::bounded_integer(std::round(interval / step), 1, std::numeric_limits<int>::max());
+      base::bounded_integer(std::round(interval / step), 1, std::numeric_limits<int>::max());
   int num_steps = -1;
   const auto frame = [&] {
     return HoldFrame{impl_->physics.time(), impl_->physics.X_OB(), impl_->physics.hand()};

@@ -1,4 +1,4 @@
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
 
 namespace graspfit::hold_test {
@@ -6,7 +6,7 @@ namespace graspfit::hold_test {
 namespace {
 
 [[noreturn]] void refuse() {
-  throw geometry::InvalidInput(
+  throw base::InvalidInput(
       "HoldTest: this build has no MuJoCo, the physics engine of the hold test: install "
       "libmujoco-dev and libgl-dev, then configure with GRASPFIT_WITH_MUJOCO=ON");
 }

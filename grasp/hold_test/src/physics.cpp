@@ -1,4 +1,4 @@
-#include "internal/physics.hpp"
+#include "physics.hpp"
 
 #include <mujoco/mujoco.h>
 
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 
-#include "graspfit/geometry/errors.hpp"
-#include "internal/mujoco_model.hpp"
-#include "internal/scene_text.hpp"
+#include "graspfit/base/errors.hpp"
+#include "import/mujoco_model.hpp"
+#include "scene_text.hpp"
 
 namespace graspfit::hold_test::internal {
 
@@ -44,8 +44,8 @@ hands::internal::MujocoModel load(const HoldHand& hand, const HoldObject& object
                                   const HoldProtocol& protocol) {
   try {
     return hands::internal::load_mujoco_text("hold_test.xml", scene_text(hand, object, protocol));
-  } catch (const geometry::IoError& error) {
-    throw geometry::InvalidInput("HoldTest: hand " + hand.model.name + ": " + error.what());
+  } catch (const base::IoError& error) {
+    throw base::InvalidInput("HoldTest: hand " + hand.model.name + ": " + error.what());
   }
 }
 

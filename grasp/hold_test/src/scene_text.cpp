@@ -1,4 +1,4 @@
-#include "internal/scene_text.hpp"
+#include "scene_text.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>

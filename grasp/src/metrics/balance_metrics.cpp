@@ -1,5 +1,5 @@
-#include "graspfit/grasp/grasp_balance.hpp"
-#include "internal/metric_list.hpp"
+#include "graspfit/contact/grasp_balance.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -11,12 +11,13 @@ std::vector<GraspMetric> balance_metrics() {
            .better = BetterValue::Smaller,
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
-             const WrenchConvention& convention = *input.convention();
-             return balance_forces(input.touching(), convention.reference_point_O, Wrench::Zero(),
-                                   {.num_cone_edges = convention.options.num_cone_edges,
-                                    .friction = convention.options.friction,
-                                    .least_normal_sum = 1.0,
-                                    .torque_scale = convention.options.torque_scale})
+             const contact::WrenchConvention& convention = *input.convention();
+             return contact::balance_forces(input.touching(), convention.reference_point_O,
+                                            contact::Wrench::Zero(),
+                                            {.num_cone_edges = convention.options.num_cone_edges,
+                                             .friction = convention.options.friction,
+                                             .least_normal_sum = 1.0,
+                                             .torque_scale = convention.options.torque_scale})
                  .residual_norm;
            },
            .convention = describe_convention}};

@@ -3,13 +3,13 @@
 #include <numeric>
 #include <tuple>
 
-#include "internal/metric_list.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
 
 using Value = std::optional<double>;
-using Contacts = std::span<const Contact>;
+using Contacts = std::span<const contact::Contact>;
 
 GraspMetric of_contacts(std::string name, std::string unit, std::string meaning, BetterValue better,
                         double (*value)(Contacts)) {
@@ -25,16 +25,16 @@ GraspMetric of_contacts(std::string name, std::string unit, std::string meaning,
           .convention = nullptr};
 }
 
-bool has_smaller_gap(const Contact& a, const Contact& b) { return a.gap < b.gap; }
+bool has_smaller_gap(const contact::Contact& a, const contact::Contact& b) { return a.gap < b.gap; }
 
 double largest_gap(Contacts contacts) {
   return std::max_element(contacts.begin(), contacts.end(), has_smaller_gap)->gap;
 }
 
-double sum(Contacts contacts, double Contact::*field) {
+double sum(Contacts contacts, double contact::Contact::*field) {
   return std::accumulate(
       contacts.begin(), contacts.end(), 0.0,
-      [field](double total, const Contact& contact) { return total + contact.*field; });
+      [field](double total, const contact::Contact& contact) { return total + contact.*field; });
 }
 
 /// Over the targets; none without targets, and where one has no contact.
@@ -55,11 +55,12 @@ std::vector<GraspMetric> contact_metrics() {
   std::vector<GraspMetric> metrics = {
       of_contacts("contact_area", "m2", "object surface inside the clip volumes, all contacts",
                   BetterValue::Larger,
-                  [](Contacts contacts) { return sum(contacts, &Contact::area); }),
+                  [](Contacts contacts) { return sum(contacts, &contact::Contact::area); }),
       of_contacts("contact_gap_mean", "m", "mean distance of the contacts' pads from the surface",
                   BetterValue::Smaller,
                   [](Contacts contacts) {
-                    return sum(contacts, &Contact::gap) / static_cast<double>(contacts.size());
+                    return sum(contacts, &contact::Contact::gap) /
+                           static_cast<double>(contacts.size());
                   }),
       of_contacts("contact_gap_spread", "m", "largest less smallest gap of the contacts",
                   BetterValue::Smaller,
@@ -76,7 +77,7 @@ std::vector<GraspMetric> contact_metrics() {
                      .better = BetterValue::Smaller,
                      .value = [](const GraspMetricInput& input) -> Value {
                        Value largest;
-                       for (const Contact& contact : input.contacts()) {
+                       for (const contact::Contact& contact : input.contacts()) {
                          if (contact.is_target)
                            largest = std::max(largest.value_or(0), contact.gap);
                        }

@@ -1,5 +1,5 @@
-#include "graspfit/grasp/epsilon_linf.hpp"
-#include "internal/metric_list.hpp"
+#include "graspfit/contact/epsilon_linf.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -11,11 +11,11 @@ std::vector<GraspMetric> epsilon_linf_metrics() {
            .better = BetterValue::Larger,
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
-             return epsilon_linf(input.touching(), *input.convention()).lower;
+             return contact::epsilon_linf(input.touching(), *input.convention()).lower;
            },
            .convention = [](const GraspMetricInput& input) -> std::string {
              if (!input.convention()) return {};
-             return describe_linf(*input.convention()) + ", certified lower bound";
+             return contact::describe_linf(*input.convention()) + ", certified lower bound";
            }}};
 }
 

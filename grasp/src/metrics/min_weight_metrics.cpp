@@ -1,5 +1,5 @@
-#include "graspfit/grasp/min_weight.hpp"
-#include "internal/metric_list.hpp"
+#include "graspfit/contact/min_weight.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -11,8 +11,8 @@ std::vector<GraspMetric> min_weight_metrics() {
            .better = BetterValue::Larger,
            .value = [](const GraspMetricInput& input) -> std::optional<double> {
              if (!input.convention()) return std::nullopt;
-             const MinWeight found =
-                 min_weight(contact_wrenches(input.touching(), *input.convention()));
+             const contact::MinWeight found = contact::min_weight(
+                 contact::contact_wrenches(input.touching(), *input.convention()));
              if (found.rank < 6 || !found.weight) return std::nullopt;
              return found.normalized;
            },

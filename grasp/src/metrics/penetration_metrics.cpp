@@ -1,4 +1,4 @@
-#include "internal/metric_list.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {

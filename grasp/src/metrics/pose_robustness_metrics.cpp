@@ -1,5 +1,5 @@
-#include "graspfit/geometry/atomic_file.hpp"
-#include "internal/metric_list.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -7,7 +7,7 @@ namespace {
 using Value = std::optional<double>;
 
 std::string noise_of(const GraspMetricInput& input) {
-  const auto number = [](double value) { return geometry::shortest_decimal(value); };
+  const auto number = [](double value) { return base::shortest_decimal(value); };
   const PoseRobustnessOptions options;
   return std::to_string(options.num_samples) + " poses, seed " + std::to_string(options.seed) +
          ", Gaussian: " + number(options.translation_deviation) + " m and " +

@@ -1,4 +1,4 @@
-#include "internal/metric_list.hpp"
+#include "metrics/metric_list.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -7,24 +7,24 @@ using Value = std::optional<double>;
 
 /// A metric of the hull of all cone edges' wrenches.
 GraspMetric of_space(std::string name, std::string meaning,
-                     double (*value)(const GraspWrenchSpace&)) {
+                     double (*value)(const contact::GraspWrenchSpace&)) {
   return {.name = std::move(name),
           .group = "wrench space",
           .unit = "1",
           .meaning = std::move(meaning),
           .better = BetterValue::Larger,
           .value = [value](const GraspMetricInput& input) -> Value {
-            const GraspWrenchSpace* space = input.wrench_space();
+            const contact::GraspWrenchSpace* space = input.wrench_space();
             if (space == nullptr) return std::nullopt;
             return value(*space);
           },
           .convention = describe_convention};
 }
 
-std::optional<WrenchConvention> graspit_convention(const GraspMetricInput& input) {
+std::optional<contact::WrenchConvention> graspit_convention(const GraspMetricInput& input) {
   if (input.touching().empty()) return std::nullopt;
-  return wrench_convention(WrenchTool::GraspIt, input.facts().object, input.touching(),
-                           input.facts().friction);
+  return contact::wrench_convention(contact::WrenchTool::GraspIt, input.facts().object,
+                                    input.touching(), input.facts().friction);
 }
 
 }  // namespace
@@ -32,29 +32,34 @@ std::optional<WrenchConvention> graspit_convention(const GraspMetricInput& input
 std::vector<GraspMetric> wrench_space_metrics() {
   std::vector<GraspMetric> metrics = {
       of_space("epsilon", "radius of the largest ball around 0 in the wrench space (L1)",
-               epsilon_quality),
+               contact::epsilon_quality),
       of_space("volume", "6-volume of the wrench space (L1)",
-               [](const GraspWrenchSpace& space) { return space.hull.volume(); }),
+               [](const contact::GraspWrenchSpace& space) { return space.hull.volume(); }),
       of_space("force_closure", "1: 0 is strictly within the wrench space, decided exactly; else 0",
-               [](const GraspWrenchSpace& space) { return is_force_closure(space) ? 1.0 : 0.0; }),
-      of_space(
-          "wrench_rank", "dimension of the wrench space, 6 for closure; exact",
-          [](const GraspWrenchSpace& space) { return static_cast<double>(space.hull.rank()); })};
+               [](const contact::GraspWrenchSpace& space) {
+                 return contact::is_force_closure(space) ? 1.0 : 0.0;
+               }),
+      of_space("wrench_rank", "dimension of the wrench space, 6 for closure; exact",
+               [](const contact::GraspWrenchSpace& space) {
+                 return static_cast<double>(space.hull.rank());
+               })};
   metrics.push_back({.name = "epsilon_graspit",
                      .group = "wrench space",
                      .unit = "1",
                      .meaning = "the same radius in GraspIt!'s convention; -1 without closure",
                      .better = BetterValue::Larger,
                      .value = [](const GraspMetricInput& input) -> Value {
-                       const std::optional<WrenchConvention> convention = graspit_convention(input);
+                       const std::optional<contact::WrenchConvention> convention =
+                           graspit_convention(input);
                        if (!convention) return std::nullopt;
-                       return epsilon_quality(grasp_wrench_space(input.touching(), *convention));
+                       return contact::epsilon_quality(
+                           contact::grasp_wrench_space(input.touching(), *convention));
                      },
                      .convention =
                          [](const GraspMetricInput& input) {
-                           const std::optional<WrenchConvention> convention =
+                           const std::optional<contact::WrenchConvention> convention =
                                graspit_convention(input);
-                           return convention ? describe(*convention) : std::string();
+                           return convention ? contact::describe(*convention) : std::string();
                          }});
   return metrics;
 }

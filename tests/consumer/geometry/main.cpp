@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -22,7 +22,7 @@ int main() {
 
   try {
     geometry::read_mesh("there is no such file.off");
-  } catch (const geometry::IoError&) {
+  } catch (const graspfit::base::IoError&) {
     return 0;
   }
   return 1;

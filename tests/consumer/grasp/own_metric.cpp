@@ -7,6 +7,7 @@
 
 #include "graspfit/grasp/grasp_metric.hpp"
 
+using namespace graspfit::contact;
 using namespace graspfit::grasp;
 
 // How far the wrench space reaches along the force e_z: the nearest facet's plane on the way.

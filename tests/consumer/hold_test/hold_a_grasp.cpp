@@ -2,7 +2,7 @@
 // jaws, with a grasp of one's own making.
 #include <cstdio>
 
-#include "graspfit/geometry/errors.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
@@ -17,7 +17,7 @@ int main() {
   if (!hold_test::is_available()) {
     try {
       hold_test::HoldTest(hand, object, protocol);
-    } catch (const geometry::InvalidInput& error) {
+    } catch (const base::InvalidInput& error) {
       std::printf("%s\n", error.what());
       return 0;
     }

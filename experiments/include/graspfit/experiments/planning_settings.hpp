@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/experiments/experiment.hpp"
-#include "graspfit/geometry/number_range.hpp"
-#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/base/number_range.hpp"
 #include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/sweep/experiment.hpp"
 
 namespace graspfit::experiments {
 
@@ -47,14 +47,14 @@ struct PlanningSettings {
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.
-const std::vector<Column>& planning_setting_names();
+const std::vector<sweep::Column>& planning_setting_names();
 
 /// What there is to know about a setting.
 struct SettingDescription {
-  Column name;
+  sweep::Column name;
   std::string allowed;   ///< For people: "a|b", "true|false", "in [4, 512]", "> 0", "text".
   std::string fallback;  ///< Its value where it is not given; empty: none.
-  std::optional<geometry::NumberRange> range;  ///< Of numbers, in `name.unit`.
+  std::optional<base::NumberRange> range;  ///< Of numbers, in `name.unit`.
 };
 
 /// All settings of `planning_setting_names`, in that order.
@@ -67,11 +67,12 @@ void require_compatible(const grasp::PlannerOptions& options);
 /// The settings of a cell; its seed becomes the planner's. `others` are names that belong to the
 /// experiment itself and are passed over. @throws SettingError for unknown names and values that
 /// are not allowed.
-PlanningSettings planning_settings(const Cell& cell, const std::vector<Column>& others = {});
+PlanningSettings planning_settings(const sweep::Cell& cell,
+                                   const std::vector<sweep::Column>& others = {});
 
 /// The same from any JSON object, for settings within settings.
 PlanningSettings planning_settings(const std::string& settings, std::uint64_t seed,
-                                   const std::vector<Column>& others = {});
+                                   const std::vector<sweep::Column>& others = {});
 
 /// The object of a cell, scaled and repaired. The last few are kept, for cells that share one.
 /// @throws MissingData if its file is not there; as `grasp::read_object_file`.
@@ -79,10 +80,6 @@ std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& setti
 
 /// The hand of a cell. @throws MissingData if its file is not there; as `hands::read_hand_model`.
 std::shared_ptr<const hands::HandModel> load_hand(const std::string& hand);
-
-/// Folder of meshes and hands that are not part of the repository: `$GRASPFIT_DATA`, or else
-/// `shared` beside the repository.
-std::filesystem::path data_folder();
 
 /// The files of object and hand, for manifests.
 std::vector<std::filesystem::path> planning_inputs(const PlanningSettings& settings);

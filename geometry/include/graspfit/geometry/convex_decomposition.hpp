@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/geometry/content_cache.hpp"
+#include "graspfit/base/content_cache.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 namespace graspfit::geometry {
@@ -70,6 +70,6 @@ std::string convex_decomposition_key(const TriangleMesh& mesh,
 /// there (see `ContentCache`).
 ConvexDecomposition cached_convex_decomposition(const TriangleMesh& mesh,
                                                 const ConvexDecompositionOptions& options = {},
-                                                const ContentCache& cache = {});
+                                                const base::ContentCache& cache = {});
 
 }  // namespace graspfit::geometry

@@ -32,25 +32,4 @@ struct SurfaceSamplingOptions {
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh,
                                           const SurfaceSamplingOptions& options = {});
 
-/// Points that keep a distance from each other.
-struct EvenSamplingOptions {
-  double min_distance = 0.0;      ///< Least straight distance of two points [m], > 0.
-  int num_trials_per_point = 30;  ///< Darts thrown for every point that would fit if points
-                                  ///< were packed as densely as disks can be; in [1, 10000].
-                                  ///< More leave smaller gaps.
-  std::uint64_t seed = 0;         ///< Equal seeds give equal points.
-  void validate() const;          ///< Throws InvalidInput naming the field and its value.
-};
-
-/// Evenly spread points (blue noise) by throwing darts: uniform points are taken one after the
-/// other, and one is kept if no kept one is nearer than `min_distance` [Cook 1986].
-///
-/// Distances are straight ones: thin walls are covered from one side or the other. That no two
-/// points are nearer is exact on the rounded points; that no gap is left is not promised.
-/// Cost: linear in faces and darts.
-/// @throws DegenerateGeometry if the mesh has no area.
-/// @throws InvalidInput if more than 100 million darts would be needed.
-std::vector<SurfaceSample> sample_surface_evenly(const TriangleMesh& mesh,
-                                                 const EvenSamplingOptions& options);
-
 }  // namespace graspfit::geometry

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/geometry/content_cache.hpp"
+#include "graspfit/base/content_cache.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/shape_diameter.hpp"
 
@@ -102,13 +102,6 @@ struct WeakRegions {
 /// meaningless, but there is one.
 WeakRegions find_weak_regions(const MeshQuery& object, const WeakRegionOptions& options = {});
 
-/// What a hand that knows better says of faces.
-enum class FacePaint { Weak, Sound };
-
-/// The same with `faces` marked by hand as weak or as sound; regions stay what they are.
-/// @throws InvalidInput for a face that does not exist.
-WeakRegions painted(WeakRegions regions, std::span<const std::int32_t> faces, FacePaint paint);
-
 /// The kind of entry that `cached_weak_regions` keeps.
 inline constexpr std::string_view kWeakRegionKind = "weak_regions";
 
@@ -120,6 +113,6 @@ std::string weak_region_key(const TriangleMesh& mesh, const WeakRegionOptions& o
 /// there. Entries that are damaged, or not ours, are as good as none and replaced. A folder that
 /// cannot be written to, or no home to put one in, is no error: nothing is kept.
 WeakRegions cached_weak_regions(const MeshQuery& object, const WeakRegionOptions& options = {},
-                                const ContentCache& cache = {});
+                                const base::ContentCache& cache = {});
 
 }  // namespace graspfit::geometry

@@ -2,11 +2,7 @@
 
 #include <vector>
 
-#include "graspfit/grasp/contact.hpp"
-#include "graspfit/grasp/contact_estimation.hpp"
-#include "graspfit/grasp/fitting_hand.hpp"
-#include "graspfit/grasp/object_model.hpp"
-#include "graspfit/grasp/surroundings.hpp"
+#include "graspfit/grasp/grasp_scene.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -50,9 +46,7 @@ struct RefinementResult {
   hands::HandConfiguration configuration;  ///< Clear of the object, the surroundings and itself,
                                            ///< decided exactly, unless `stop` is Intersecting
                                            ///< or SelfCollision.
-  std::vector<Contact> contacts;  ///< Of all pads, in pad order; is_target set for claimed ones.
-  double largest_gap = 0.0;       ///< Of the claimed pads [m]; twice `reach` means: or more.
-  int worst_pad = -1;             ///< The pad with that gap.
+  double largest_gap = 0.0;  ///< Of the claimed pads [m]; twice `reach` means: or more.
   int iterations = 0;
 };
 
@@ -74,12 +68,9 @@ struct RefinementResult {
 ///
 /// Gap: as `Contact::gap`, the distance between the pad's part of the link's mesh and the object.
 /// Deterministic.
-RefinementResult refine_contacts(const FittingHand& hand, const ObjectModel& object,
-                                 const SurroundingsCollision& surroundings,
-                                 const std::vector<int>& claimed_pads,
+RefinementResult refine_contacts(const GraspScene& scene, const std::vector<int>& claimed_pads,
                                  const TargetContacts* targets,
                                  const hands::HandConfiguration& start,
-                                 const ContactEstimationOptions& contact_options,
                                  const RefinementOptions& options);
 
 }  // namespace graspfit::grasp

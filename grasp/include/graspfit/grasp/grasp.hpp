@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/grasp/contact.hpp"
-#include "graspfit/grasp/contact_quality.hpp"
-#include "graspfit/grasp/grasp_wrench_space.hpp"
+#include "graspfit/contact/contact.hpp"
+#include "graspfit/contact/contact_quality.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/contact/squeeze.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
-#include "graspfit/grasp/squeeze.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -32,12 +32,12 @@ struct GraspPenetration {
 struct Grasp {
   hands::HandConfiguration configuration;
   std::optional<PreGrasp> pre_grasp;  ///< Open, clear of the object, with a free way to the grasp.
-  std::optional<Squeeze> squeeze;     ///< Commanded beyond the surface.
+  std::optional<contact::Squeeze> squeeze;  ///< Commanded beyond the surface.
   TargetContacts targets;
-  std::vector<Contact> contacts;
-  ContactQuality quality;
-  WrenchQuality wrench;  ///< In GraspIt!'s convention at the planner's friction.
-  double ideal_m = 0.0;  ///< M of the targets themselves (A36).
+  std::vector<contact::Contact> contacts;
+  contact::ContactQuality quality;
+  contact::WrenchQuality wrench;  ///< In GraspIt!'s convention at the planner's friction.
+  double ideal_m = 0.0;           ///< M of the targets themselves (A36).
   GraspPenetration penetration;
   bool has_all_contacts = false;  ///< Every requested finger/palm has a contact; of a refined grasp
                                   ///< one with a gap of at most RefinementOptions::largest_gap.

@@ -10,7 +10,8 @@ namespace graspfit::grasp {
 /// is. `object` is the record's own mesh. Both must outlive this.
 class GraspFileMetrics {
  public:
-  GraspFileMetrics(const GraspFile& file, const geometry::MeshQuery& object, WrenchTool tool);
+  GraspFileMetrics(const GraspFile& file, const geometry::MeshQuery& object,
+                   contact::WrenchTool tool);
 
   /// Of a grasp as measured (`RecordedScene::measure`); it must outlive the result.
   GraspMetricFacts facts(const Grasp& grasp) const;

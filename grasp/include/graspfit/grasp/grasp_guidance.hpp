@@ -10,26 +10,22 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/grasp/fitting_hand.hpp"
-#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/grasp_scene.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/planner_options.hpp"
 
 /// \file
 /// What one planning method does differently from another: where hands start and how they close.
 /// Hands, collision guard, refinement, contacts, measures, distinctness, budgets and threads are
-/// the planner's and the same for all. A method is one source file with a function that makes its
-/// `GraspGuidance`, and one line in grasp_guidance.cpp.
+/// the planner's and the same for all. A method is a function that makes its `GraspGuidance`, added
+/// to `PlanningMethods` by name: here in planning_methods, elsewhere to a copy of that.
 
 namespace graspfit::grasp {
 
 /// What every method is given. All of it outlives the guidance.
-struct GuidanceScene {
-  const ObjectModel& object;
-  const FittingHand& hand;
-  const SurroundingsCollision& surroundings;
+struct GuidanceScene : GraspScene {
   const RequestedParts& parts;
   const PlannerOptions& options;  ///< With what the planner's rules set where they leave it open.
-  const ContactEstimationOptions& contact_options;
 };
 
 /// One hand about to close on the object.
@@ -77,25 +73,37 @@ class GraspGuidance {
 
 /// A method that can be asked for by name.
 struct PlanningMethod {
-  std::string_view name;   ///< On the command line and in files: "fitting".
-  std::string_view title;  ///< In words.
-  std::unique_ptr<GraspGuidance> (*make)(const GuidanceScene&);
+  std::string name;   ///< On the command line and in files: "fitting".
+  std::string title;  ///< In words.
+  std::function<std::unique_ptr<GraspGuidance>(const GuidanceScene&)> make;
   bool has_targets = false;  ///< Its hands are fitted to target contacts.
   bool has_scores = false;   ///< It chooses these by the score map.
 };
 
-/// All methods. This is the registry: one line each in grasp_guidance.cpp.
-std::span<const PlanningMethod> planning_methods();
+/// Methods by name, in the order in which they were added.
+class PlanningMethods {
+ public:
+  /// @throws InvalidInput unless it has a new name, a title and `make`.
+  void add(PlanningMethod method);
 
-/// @throws InvalidInput that lists the methods, if there is none of that name.
-const PlanningMethod& find_planning_method(std::string_view name);
+  std::span<const PlanningMethod> all() const { return methods_; }
 
-/// Their names as "a|b|c".
-std::string planning_method_names();
+  /// @throws InvalidInput that lists the methods, if there is none of that name.
+  const PlanningMethod& at(std::string_view name) const;
 
-/// The intermediate model of the method that `options` name. @throws as `plan_grasps`.
-GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& hand,
-                             const PlannerOptions& options, const Surroundings& surroundings = {});
+  /// Null if there is none of that name.
+  const PlanningMethod* find(std::string_view name) const;
+
+  /// Their names as "a|b|c".
+  std::string names() const;
+
+ private:
+  std::vector<PlanningMethod> methods_;
+};
+
+/// The methods of this library. To plan by others too, copy it, `add` them, and hand the copy to
+/// `plan_grasps` (`PlanningRun::methods`).
+const PlanningMethods& planning_methods();
 
 /// A model as CSV with a header line, numbers in their shortest round-trip form.
 std::string to_csv(const GuidanceModel& model);

@@ -10,8 +10,9 @@
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/grasp.hpp"
-#include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_model.hpp"
@@ -55,7 +56,7 @@ struct ImportRecord {
 /// Its schema is grasp/grasps.schema.json.
 ///
 /// Paths in it are as they were given, those of shipped hands relative to the folder of shipped
-/// hands, and each is written as its `geometry::path_text`; hashes say whether what is found is it.
+/// hands, and each is written as its `base::path_text`; hashes say whether what is found is it.
 struct GraspFile {
   ObjectRecord object;
   SurroundingsRecord surroundings;

@@ -7,14 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "graspfit/contact/contact.hpp"
+#include "graspfit/contact/contact_quality.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
-#include "graspfit/grasp/contact.hpp"
-#include "graspfit/grasp/contact_quality.hpp"
 #include "graspfit/grasp/grasp.hpp"
-#include "graspfit/grasp/grasp_wrench_space.hpp"
 #include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/planner_options.hpp"
 #include "graspfit/grasp/pose_robustness.hpp"
-#include "graspfit/grasp/wrench_convention.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 /// \file
@@ -28,18 +29,18 @@ struct PlannerOptions;
 /// All that a metric may look at. Contacts and the object's scales are enough for most; what is not
 /// given makes the metrics that need it have no value. Everything pointed at must outlive this.
 struct GraspMetricFacts {
-  std::vector<Contact> contacts;
+  std::vector<contact::Contact> contacts;
   /// Contacts with a larger gap bear no force [m]: in M and in what is said of contacts they count,
   /// in wrench spaces and balances not. Empty: all bear forces.
   std::optional<double> bearing_gap = std::nullopt;
-  WrenchObject object;                  ///< Center of mass and scales.
-  double friction = 0.4;                ///< Coulomb's μ of all wrench metrics, ≥ 0.
-  WrenchTool tool = WrenchTool::House;  ///< Whose wrench convention.
+  contact::WrenchObject object;  ///< Center of mass and scales.
+  double friction = 0.4;         ///< Coulomb's μ of all wrench metrics, ≥ 0.
+  contact::WrenchTool tool = contact::WrenchTool::House;  ///< Whose wrench convention.
   const Grasp* grasp = nullptr;  ///< As measured, with these contacts: for penetration and M.
   const geometry::MeshQuery* surface = nullptr;  ///< Of the object: for pose robustness.
   /// For M where there is no `grasp`, and for pose robustness.
-  std::optional<QualityContext> quality_context = std::nullopt;
-  QualityOptions quality_options = {};
+  std::optional<contact::QualityContext> quality_context = std::nullopt;
+  contact::QualityOptions quality_options = {};
 };
 
 /// Facts and what several metrics compute from them, each once and when it is first asked for. For
@@ -49,32 +50,32 @@ class GraspMetricInput {
   explicit GraspMetricInput(GraspMetricFacts facts);
 
   const GraspMetricFacts& facts() const { return facts_; }
-  std::span<const Contact> contacts() const { return facts_.contacts; }
+  std::span<const contact::Contact> contacts() const { return facts_.contacts; }
   /// Those that bear forces.
-  std::span<const Contact> touching() const { return touching_; }
+  std::span<const contact::Contact> touching() const { return touching_; }
 
   /// The convention of `facts().tool`. Empty where no contact touches, and where it has no torque
   /// scale for them (DexGraspBench, all contacts in one point). @throws InvalidInput for bad facts:
   /// a friction below 0, an object without extent.
-  const std::optional<WrenchConvention>& convention() const;
+  const std::optional<contact::WrenchConvention>& convention() const;
 
   /// The wrench space in that convention; null where there is no convention.
   /// @throws InvalidInput as `grasp_wrench_space`.
-  const GraspWrenchSpace* wrench_space() const;
+  const contact::GraspWrenchSpace* wrench_space() const;
 
   /// M and its parts: of the grasp, or from contacts and `quality_context`; null without both.
-  const ContactQuality* quality() const;
+  const contact::ContactQuality* quality() const;
 
   /// At the default noise; null without contacts or `surface`.
   const PoseRobustness* robustness() const;
 
  private:
   GraspMetricFacts facts_;
-  std::vector<Contact> touching_;
+  std::vector<contact::Contact> touching_;
   mutable bool has_asked_for_convention_ = false;
-  mutable std::optional<WrenchConvention> convention_;
-  mutable std::optional<GraspWrenchSpace> wrench_space_;
-  mutable std::optional<ContactQuality> quality_;
+  mutable std::optional<contact::WrenchConvention> convention_;
+  mutable std::optional<contact::GraspWrenchSpace> wrench_space_;
+  mutable std::optional<contact::ContactQuality> quality_;
   mutable std::optional<PoseRobustness> robustness_;
 };
 

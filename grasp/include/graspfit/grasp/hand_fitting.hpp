@@ -7,11 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/grasp/contact.hpp"
-#include "graspfit/grasp/contact_estimation.hpp"
-#include "graspfit/grasp/fitting_hand.hpp"
-#include "graspfit/grasp/object_model.hpp"
-#include "graspfit/grasp/surroundings.hpp"
+#include "graspfit/grasp/grasp_scene.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
@@ -91,9 +87,7 @@ struct FittingResult {
   FittingStop stop = FittingStop::IterationLimit;
   hands::HandConfiguration initial;        ///< Where the loop started.
   hands::HandConfiguration configuration;  ///< Where it ended.
-  std::vector<Contact> contacts;           ///< Of all pads, at the end; is_target set.
   int iterations = 0;
-  std::int64_t distance_queries = 0;  ///< Lookups of one link in the distance map.
   /// Largest distance of a requested pad's contact point from the object's surface [m], zero for
   /// pads with contact: what refinement would have to close.
   double largest_gap = 0.0;
@@ -128,25 +122,6 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const RequestedParts& parts, const PalmPlacement& placement);
 
-/// How far the hand would be from reaching assigned targets, were there no object: in the posture
-/// nearest to them (least squares over the palm's place and turn and the fingers' joints), the
-/// largest angle between a fingertip pad's normal and its target's inward normal, plus the largest
-/// miss, 15 mm of it counting as one radian [rad]. The kinematic part of choosing targets that "the
-/// hand can plausibly reach" (paper section 1; no formula there) [R].
-double pad_tilt(const hands::HandModel& hand, const TargetContacts& targets,
-                const PalmPlacement& placement);
-
-/// By what the planner chooses among target sets, smaller is better: `pad_tilt` and, where the palm
-/// has no target (against which fingers press), half the
-/// mean angle by which pairs of fingertips miss looking at each other in that posture [rad]. The
-/// pairs are those of the seed's finger with every other one, as in selection (A17); a pair's angle
-/// is the larger one between a pad's normal and the line to the other pad's contact point. Where
-/// pads lie flat their normals are those of the contacts, so that a set with small angles leaves
-/// stable pairs even if the fingertips land beside their targets: "the ideal grasp scores high on
-/// M" (paper section 1) read through the hand's kinematics [R].
-double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
-                    const PalmPlacement& placement);
-
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
 /// of five steps (section 8) under the penetration guard (section 9).
 ///
@@ -163,11 +138,11 @@ double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
 /// intersect. No configuration on the way touches the surroundings. Links of the hand may intersect
 /// each other in either case.
 /// @throws InvalidInput for options out of range, fewer than two targets or unassigned ones.
-FittingResult fit_hand(const FittingHand& hand, const ObjectModel& object,
-                       const SurroundingsCollision& surroundings, GraspStyle style,
-                       const TargetContacts& targets, const PalmPlacement& placement,
-                       const ContactEstimationOptions& contact_options,
-                       const FittingOptions& options);
+///
+/// @param goal `fitting_goal`, where it is known already.
+FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetContacts& targets,
+                       const PalmPlacement& placement, const FittingOptions& options,
+                       const std::optional<hands::HandConfiguration>& goal = {});
 
 /// How a hand that starts in collision backs off, against its palm direction.
 struct RetreatRule {
@@ -189,11 +164,8 @@ struct RetreatRule {
 /// touches, is stopped or is at its limits.
 ///
 /// @throws InvalidInput for options out of range, no finger, or one without a fingertip pad.
-FittingResult close_hand(const FittingHand& hand, const ObjectModel& object,
-                         const SurroundingsCollision& surroundings, GraspStyle style,
-                         const RequestedParts& requested, const hands::HandConfiguration& start,
-                         const RetreatRule& retreat,
-                         const ContactEstimationOptions& contact_options,
+FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
+                         const hands::HandConfiguration& start, const RetreatRule& retreat,
                          const FittingOptions& options);
 
 }  // namespace graspfit::grasp

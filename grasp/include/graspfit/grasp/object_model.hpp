@@ -29,8 +29,8 @@ struct ObjectModelOptions {
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
   ScoreOptions score = {};
   std::optional<geometry::WeakRegionOptions> weak = {};  ///< Looked for where given (A37).
-  geometry::ContentCache weak_cache = {};  ///< Where weak regions of earlier runs are kept.
-  void validate() const;                   ///< Throws InvalidInput naming the field and its value.
+  base::ContentCache weak_cache = {};  ///< Where weak regions of earlier runs are kept.
+  void validate() const;               ///< Throws InvalidInput naming the field and its value.
 };
 
 /// All that is computed once per object, in the object frame O (the mesh's own frame, in meters);
@@ -82,7 +82,7 @@ inline constexpr std::string_view kObjectModelKind = "object_model";
 /// damaged are as good as none and replaced. What is read counts in none of the timings.
 ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                                 const ObjectModelOptions& options,
-                                const geometry::ContentCache& cache = {},
+                                const base::ContentCache& cache = {},
                                 ObjectModelTimings* timings = nullptr);
 
 }  // namespace graspfit::grasp

@@ -5,13 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "graspfit/contact/contact_quality.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
-#include "graspfit/grasp/contact_quality.hpp"
 #include "graspfit/grasp/contact_score_map.hpp"
-#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
-#include "graspfit/grasp/wrench_convention.hpp"
 
 /// \file
 /// What the choices of the planner and of its measures are called in grasp files and on the command
@@ -52,9 +53,9 @@ std::span<const NamedValue<ContactState>> named_values<ContactState>();
 template <>
 std::span<const NamedValue<PalmAfterContact>> named_values<PalmAfterContact>();
 template <>
-std::span<const NamedValue<CountedPads>> named_values<CountedPads>();
+std::span<const NamedValue<contact::CountedPads>> named_values<contact::CountedPads>();
 template <>
-std::span<const NamedValue<ContactPieces>> named_values<ContactPieces>();
+std::span<const NamedValue<contact::ContactPieces>> named_values<contact::ContactPieces>();
 template <>
 std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
 template <>
@@ -64,23 +65,23 @@ std::span<const NamedValue<PlaneDistance>> named_values<PlaneDistance>();
 template <>
 std::span<const NamedValue<PairRule>> named_values<PairRule>();
 template <>
-std::span<const NamedValue<MeasureUnits>> named_values<MeasureUnits>();
+std::span<const NamedValue<contact::MeasureUnits>> named_values<contact::MeasureUnits>();
 template <>
-std::span<const NamedValue<Regularity>> named_values<Regularity>();
+std::span<const NamedValue<contact::Regularity>> named_values<contact::Regularity>();
 template <>
-std::span<const NamedValue<HullCentroid>> named_values<HullCentroid>();
+std::span<const NamedValue<contact::HullCentroid>> named_values<contact::HullCentroid>();
 template <>
 std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>();
 template <>
 std::span<const NamedValue<TargetSearch>> named_values<TargetSearch>();
 template <>
-std::span<const NamedValue<WrenchTool>> named_values<WrenchTool>();
+std::span<const NamedValue<contact::WrenchTool>> named_values<contact::WrenchTool>();
 template <>
-std::span<const NamedValue<ForceNorm>> named_values<ForceNorm>();
+std::span<const NamedValue<contact::ForceNorm>> named_values<contact::ForceNorm>();
 template <>
-std::span<const NamedValue<ForceScaling>> named_values<ForceScaling>();
+std::span<const NamedValue<contact::ForceScaling>> named_values<contact::ForceScaling>();
 template <>
-std::span<const NamedValue<OutsideValue>> named_values<OutsideValue>();
+std::span<const NamedValue<contact::OutsideValue>> named_values<contact::OutsideValue>();
 template <>
 std::span<const NamedValue<geometry::RepairMode>> named_values<geometry::RepairMode>();
 template <>

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "graspfit/geometry/random.hpp"
-#include "graspfit/grasp/contact.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/contact/contact.hpp"
+#include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/grasp/object_model.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
 #include "graspfit/hands/tip_reach.hpp"
@@ -108,6 +109,12 @@ struct TargetContacts {
   Eigen::Vector3d centroid() const;
 };
 
+/// By what the ideal M of targets is measured: as M of the grasps.
+struct IdealMeasure {
+  const hands::HandModel* hand = nullptr;  ///< Null: in normalized units only.
+  contact::QualityOptions options = {};
+};
+
 /// Why no set was found: the furthest stage that was reached.
 enum class TargetFailure {
   NoSeed,     ///< The pool is empty: no voxel exceeds the score threshold.
@@ -169,23 +176,19 @@ PartDistances part_distances(const hands::HandModel& hand, const RequestedParts&
 /// @throws InvalidInput for fewer than two fingers, more than six parts, a finger that the hand
 /// does not have, without a tip pad or named twice; for the palm of a hand without a palm pad; and
 /// for five or more fingers with `PairRule::AllPairs` and theta_max ≤ 45°, which no object has.
-TargetSelection select_target_contacts(const ObjectModel& object, const PartDistances& distances,
-                                       const RequestedParts& parts, const TargetOptions& options,
-                                       geometry::Random& random);
-
-/// `select_target_contacts` for many sets: what does not depend on the random numbers is computed
-/// once. The same random numbers give the same set.
 class TargetSelector {
  public:
-  /// Object and distances are referred to, not copied: they have to outlive the selector.
-  /// @throws InvalidInput as `select_target_contacts`.
+  /// Object, distances and the measure's hand are referred to, not copied: they have to outlive the
+  /// selector. `ideal` is what `ideal_m_bias` prefers sets by.
   TargetSelector(const ObjectModel& object, const PartDistances& distances,
-                 const RequestedParts& parts, const TargetOptions& options);
+                 const RequestedParts& parts, const TargetOptions& options,
+                 const IdealMeasure& ideal = {});
   ~TargetSelector();
   TargetSelector(TargetSelector&&) noexcept;
 
-  /// One set. Several threads may ask at once, each with its own random numbers.
-  TargetSelection select(geometry::Random& random) const;
+  /// One set; the same random numbers give the same one. Several threads may ask at once, each with
+  /// its own random numbers.
+  TargetSelection select(base::Random& random) const;
 
  private:
   struct Impl;
@@ -215,7 +218,7 @@ class TargetSelector {
 class RankedTargets {
  public:
   /// Object and distances are referred to, not copied: they have to outlive the search.
-  /// @throws InvalidInput as `select_target_contacts`, and for a pool of more than 16384 places.
+  /// @throws InvalidInput as `TargetSelector`, and for a pool of more than 16384 places.
   RankedTargets(const ObjectModel& object, const PartDistances& distances,
                 const RequestedParts& parts, const TargetOptions& options);
   ~RankedTargets();
@@ -231,5 +234,18 @@ class RankedTargets {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The contacts that targets stand for: at their points, of their fingers. Targets that are not
+/// assigned are those of `fingers` in order.
+std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
+                                          const std::vector<int>& fingers = {});
+
+/// M of the targets themselves: every contact in the middle of its pad (A36, A48). `fingers` as of
+/// `contacts_at`. @throws InvalidInput as `contact::ideal_quality`.
+double ideal_m(const ObjectModel& object, const TargetContacts& targets,
+               const IdealMeasure& measure, const std::vector<int>& fingers = {});
+
+/// The pads that must touch: the fingers' tip pads, then the palm's.
+std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested);
 
 }  // namespace graspfit::grasp

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "graspfit/geometry/content_cache.hpp"
+#include "graspfit/base/content_cache.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::hands {
@@ -93,6 +93,6 @@ HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& opt
 /// The same, kept in the user's cache by all of the model that it depends on (not its name or
 /// files) and the options.
 HandWorkspace cached_hand_workspace(const HandModel& model, const WorkspaceOptions& options = {},
-                                    const geometry::ContentCache& cache = {});
+                                    const base::ContentCache& cache = {});
 
 }  // namespace graspfit::hands

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "graspfit/grasp/motion_io.hpp"
-#include "graspfit/grasp/table_motion.hpp"
+#include "graspfit/motion/motion_io.hpp"
+#include "graspfit/motion/table_motion.hpp"
 
 namespace graspfit::viewer {
 
@@ -17,8 +17,8 @@ enum class MotionCheck {
 
 /// A hand that moves objects about on a table, to be looked at. In the world W, in meters.
 struct MotionInput {
-  grasp::TableScene scene;      ///< Of the file: hand and objects as it names them.
-  grasp::MotionFile file;       ///< With at least one move.
+  motion::TableScene scene;     ///< Of the file: hand and objects as it names them.
+  motion::MotionFile file;      ///< With at least one move.
   double frame_step = 0.01;     ///< No point moves farther between two frames [m], > 0.
   double largest_speed = 0.25;  ///< Of the fastest point, as it is shown [m/s], > 0: motions have
                                 ///< no times of their own.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "graspfit/grasp/grasp_io.hpp"
-#include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/planner_options.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
 namespace graspfit::exchange {

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_codes.hpp"
+#include "graspfit/base/number_range.hpp"
+#include "graspfit/grasp/option_names.hpp"
+
+namespace graspfit::app {
+
+/// A command of the program: what it is called with and what its help says.
+struct Command {
+  std::string name;        ///< "plan"
+  std::string positional;  ///< What the one argument without a flag is, "OBJECT"; empty: none.
+  std::string summary;     ///< One or more sentences for --help.
+  boost::program_options::options_description options;
+  std::string epilog;                  ///< Printed after the options.
+  std::string second_positional = "";  ///< A second argument without a flag, "OUT"; empty: none.
+};
+
+/// A group of options under a caption, laid out for --help.
+boost::program_options::options_description option_group(const std::string& caption = "");
+
+/// An option with a text as its value; `fallback` is its default, shown by --help.
+void add_option(boost::program_options::options_description& options, const std::string& name,
+                const std::string& value_name, const std::optional<std::string>& fallback,
+                const std::string& description);
+
+/// An option that may be given any number of times.
+void add_repeatable_option(boost::program_options::options_description& options,
+                           const std::string& name, const std::string& value_name,
+                           const std::string& description);
+
+/// An option that is there or not.
+void add_switch(boost::program_options::options_description& options, const std::string& name,
+                const std::string& description);
+
+/// @throws UsageError `--FLAG "TEXT" is not one of CHOICES`, with the nearest of them; the choices
+/// are separated by |.
+[[noreturn]] void fail_choice(const std::string& flag, const std::string& text,
+                              const std::string& choices);
+
+/// The values of a command's options as texts, converted when asked for.
+///
+/// Numbers are read in the C locale to their last character: "abc", "1.5x" and "1,5" are errors,
+/// and so are infinities and NaN. All members throw UsageError.
+class Flags {
+ public:
+  /// @throws UsageError for unknown options, missing values, repeated options, too many arguments.
+  Flags(const Command& command, const std::vector<std::string>& arguments);
+
+  bool wants_help() const { return has("help"); }
+  /// The argument without a flag; it must be there.
+  const std::string& positional() const;
+  /// The second one; it must be there.
+  const std::string& second_positional() const;
+
+  bool has(const std::string& name) const { return values_.count(name) > 0; }
+  bool is_default(const std::string& name) const { return values_[name].defaulted(); }
+  const std::string& text(const std::string& name) const;
+  double number(const std::string& name) const;
+  std::optional<double> optional_number(const std::string& name) const;
+  int integer(const std::string& name) const;
+  double number(const std::string& name, const base::NumberRange& range) const;
+  int integer(const std::string& name, const base::NumberRange& range) const;
+  /// Whether the text is `yes`, not `no`.
+  bool either(const std::string& name, const char* yes, const char* no) const;
+  bool yes_or_no(const std::string& name) const { return either(name, "yes", "no"); }
+  std::vector<std::string> texts(const std::string& name) const;  ///< Of a repeatable option.
+  std::uint64_t unsigned_integer(const std::string& name) const;
+  std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
+  std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.
+
+  /// From ranks separated by commas, which count from 1: indices, which count from 0, ascending,
+  /// each once; none where the option is not given.
+  std::vector<std::size_t> indices(const std::string& name) const;
+
+  /// The value of an enumeration by its name.
+  template <class Enum>
+  Enum choice(const std::string& name) const {
+    const auto value = grasp::value_named<Enum>(text(name));
+    if (!value) {
+      fail_choice(name, text(name), grasp::names_of<Enum>());
+    }
+    return *value;
+  }
+  /// NAME=VALUE,... with numbers as values.
+  std::vector<std::pair<std::string, double>> settings(const std::string& name) const;
+
+ private:
+  std::string positional_name_;
+  std::string second_positional_name_;
+  boost::program_options::variables_map values_;
+};
+
+/// Usage, options with their defaults, exit codes.
+std::string help_text(const Command& command);
+
+}  // namespace graspfit::app

@@ -1,0 +1,130 @@
+#include "input/hold_flags.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/nearest_name.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_test.hpp"
+
+namespace graspfit::app {
+namespace {
+
+namespace po = boost::program_options;
+using base::shortest_decimal;
+
+std::string joined(const std::vector<std::string>& words, const std::string& separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+  return text;
+}
+
+/// A flag that changes a knob.
+struct KnobChange {
+  std::string flag;  ///< As it was given: "--set step_s=0.001".
+  std::string knob;
+  std::string value;
+};
+
+void apply(const KnobChange& change, hold_test::HoldProtocol& protocol) {
+  const std::vector<std::string> names = hold_test::knob_names();
+  try {
+    hold_test::set_knob(protocol, change.knob, change.value);
+  } catch (const base::InvalidInput& error) {
+    const bool is_known = std::find(names.begin(), names.end(), change.knob) != names.end();
+    throw UsageError(change.flag + ": " + error.what() +
+                     (is_known ? "" : base::did_you_mean(change.knob, names)));
+  }
+}
+
+/// What is wrong with a protocol, without the type that its check names; empty: nothing.
+std::string fault_of(const hold_test::HoldProtocol& protocol) {
+  try {
+    protocol.validate();
+    return "";
+  } catch (const base::InvalidInput& error) {
+    constexpr std::string_view kType = "HoldProtocol: ";
+    const std::string what = error.what();
+    return what.starts_with(kType) ? what.substr(kType.size()) : what;
+  }
+}
+
+/// Blames the first change that alone makes the protocol unusable, else all of them.
+void require_usable(const hold_test::HoldProtocol& named, const std::vector<KnobChange>& changes,
+                    const hold_test::HoldProtocol& protocol) {
+  const std::string fault = fault_of(protocol);
+  if (fault.empty()) return;
+  std::string all;
+  for (const KnobChange& change : changes) {
+    hold_test::HoldProtocol alone = named;
+    apply(change, alone);
+    if (const std::string own = fault_of(alone); !own.empty()) {
+      throw UsageError(change.flag + ": " + own);
+    }
+    all += (all.empty() ? "" : " ") + change.flag;
+  }
+  throw UsageError(all + ": " + fault);
+}
+
+}  // namespace
+
+po::options_description hold_protocol_options() {
+  po::options_description options = option_group("Protocol");
+  add_option(options, "protocol", "NAME", hold_test::hold_protocol_names().front(),
+             joined(hold_test::hold_protocol_names(), "|"));
+  add_option(
+      options, "squeeze", "forces|extrapolation|none", std::nullopt,
+      "where the squeeze comes from: the grasp file (forces that balance), as far beyond the "
+      "grasp as the pre-grasp is before it, or none; without it the protocol's");
+  add_option(options, "step", "SECONDS", std::nullopt,
+             "of the simulation, from 0.00001; without it the protocol's");
+  add_repeatable_option(options, "set", "KNOB=VALUE",
+                        "another value for a knob of the protocol, several numbers separated by "
+                        "commas; may be given several times. Knobs: " +
+                            joined(hold_test::knob_names(), ", "));
+  return options;
+}
+
+hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::string& name) {
+  const std::vector<std::string> names = hold_test::hold_protocol_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    fail_choice(flag, name, joined(names, "|"));
+  }
+  return hold_test::hold_protocol(name);
+}
+
+hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
+  const hold_test::HoldProtocol named = hold_protocol_named("protocol", flags.text("protocol"));
+  hold_test::HoldProtocol protocol = named;
+  std::vector<KnobChange> changes;
+  if (flags.has("squeeze")) {
+    const std::string& rule = flags.text("squeeze");
+    changes.push_back({"--squeeze " + rule, "squeeze", rule});
+  }
+  if (flags.has("step")) {
+    const base::NumberRange steps = base::at_least(hold_test::HoldProtocol::kShortestStep);
+    const std::string seconds = shortest_decimal(flags.number("step", steps));
+    changes.push_back({"--step " + seconds, "step_s", seconds});
+  }
+  for (const std::string& setting : flags.texts("set")) {
+    const std::size_t sign = setting.find('=');
+    if (sign == std::string::npos || sign == 0) {
+      throw UsageError("--set \"" + setting + "\" is not KNOB=VALUE");
+    }
+    changes.push_back({"--set " + setting, setting.substr(0, sign), setting.substr(sign + 1)});
+  }
+  for (const KnobChange& change : changes) apply(change, protocol);
+  require_usable(named, changes, protocol);
+  return protocol;
+}
+
+void require_physics(const std::string& flag) {
+  if (hold_test::is_available()) return;
+  throw base::InvalidInput((flag.empty() ? "" : flag + ": ") +
+                           "this build has no physics engine; configure with MuJoCo 2.2 "
+                           "(Debian: libmujoco-dev and libgl-dev)");
+}
+
+}  // namespace graspfit::app

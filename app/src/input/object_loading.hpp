@@ -1,0 +1,48 @@
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/object_file.hpp"
+#include "graspfit/grasp/surroundings.hpp"
+
+namespace graspfit::app {
+
+/// The flags that say how an object's file becomes a solid in meters.
+boost::program_options::options_description object_options();
+
+/// What those flags say. @throws UsageError, InvalidInput.
+grasp::ObjectReadOptions object_read_options(const Flags& flags);
+
+/// The flags of what stands around the object.
+boost::program_options::options_description surroundings_options();
+
+/// What stands around the object: as read, and as recorded.
+struct LoadedSurroundings {
+  grasp::Surroundings surroundings;
+  grasp::SurroundingsRecord record;
+};
+
+/// Reads what those flags name. `object_O` is what is to be grasped: one that lies wholly under the
+/// table is refused. @throws UsageError, InvalidInput, IoError, DegenerateGeometry.
+LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O);
+
+/// Reads the object that the command names.
+grasp::ObjectFile load_object(const Flags& flags);
+
+/// Throws InvalidInput unless the object's surface is closed and faces outward (a mesh that was
+/// left as it is may not).
+void require_solid(const grasp::ObjectFile& object);
+
+/// Says on the error output, in a line each, where the solids of these records differ from their
+/// files, and why a wrap that was asked for was not made.
+void warn_of_differences(const std::string& command, const grasp::ObjectRecord& object,
+                         const std::vector<grasp::ObjectRecord>& obstacles = {});
+
+/// "0.15 x 0.148 x 0.116 m", rounded to a micrometer; four digits each below a millimeter.
+std::string extents_text(const geometry::TriangleMesh& mesh);
+
+}  // namespace graspfit::app

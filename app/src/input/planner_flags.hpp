@@ -1,0 +1,26 @@
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+
+#include "cli/command_line.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+
+namespace graspfit::app {
+
+/// Flags of the object's voxels and score map: part of the planner's, and all that inspect needs.
+boost::program_options::options_description score_map_options();
+
+/// Flags of everything else that decides what the planner does.
+boost::program_options::options_description planner_options();
+
+/// Checks the ranges of all flags that are settings of the planner, by those settings.
+/// @throws UsageError, InvalidInput: flag, value and range.
+void require_ranges(const Flags& flags);
+
+/// Sets what the flags of `score_map_options` say.
+void read_score_map_flags(const Flags& flags, grasp::PlannerOptions& options);
+
+/// What all planner flags say, validated. @throws UsageError, InvalidInput.
+grasp::PlannerOptions read_planner_flags(const Flags& flags);
+
+}  // namespace graspfit::app

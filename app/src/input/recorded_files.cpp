@@ -1,0 +1,49 @@
+#include "input/recorded_files.hpp"
+
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "graspfit/base/errors.hpp"
+
+namespace graspfit::app {
+namespace {
+
+constexpr const char* kObjectFile = "the object's file";
+
+/// A recorded mesh file: where the record says, or beside the grasp file.
+std::filesystem::path find_mesh(const Flags& flags, const grasp::ObjectRecord& record,
+                                const std::string& what) {
+  const std::filesystem::path file = record.file;
+  const std::filesystem::path beside =
+      std::filesystem::path(flags.positional()).parent_path() / file.filename();
+  std::error_code error;
+  for (const std::filesystem::path& candidate : {file, beside}) {
+    if (std::filesystem::exists(candidate, error)) return candidate;
+  }
+  throw base::IoError(what + " " + record.file + " is not there, nor beside the grasp file" +
+                      (what == kObjectFile ? "; --object FILE says where it is" : ""));
+}
+
+}  // namespace
+
+void add_object_flag(boost::program_options::options_description& options) {
+  add_option(options, "object", "FILE", std::nullopt,
+             "the object's file, if it is no longer where the grasp file says");
+}
+
+geometry::TriangleMesh load_recorded_object(const Flags& flags, const grasp::GraspFile& file) {
+  return grasp::read_object(file.object, flags.has("object")
+                                             ? std::filesystem::path(flags.text("object"))
+                                             : find_mesh(flags, file.object, kObjectFile));
+}
+
+grasp::Surroundings load_recorded_surroundings(const Flags& flags, const grasp::GraspFile& file) {
+  std::vector<std::filesystem::path> files;
+  for (const grasp::ObjectRecord& obstacle : file.surroundings.obstacles) {
+    files.push_back(find_mesh(flags, obstacle, "the obstacle"));
+  }
+  return grasp::read_surroundings(file.surroundings, files);
+}
+
+}  // namespace graspfit::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace graspfit::base {
+
+/// How deep arrays and objects of a JSON file may nest. What this project writes nests a dozen
+/// deep; trees of a hundred thousand levels exhaust the stack of whoever copies them.
+constexpr int kDeepestJson = 64;
+
+/// How large a JSON file may be [bytes]: 256 MiB, tens of thousands of grasps. Its tree in memory
+/// takes up to some twenty times as much.
+constexpr std::size_t kLargestJson = std::size_t{256} << 20;
+
+/// Refuses a text that no parser of JSON should build a tree from: longer than `kLargestJson` or
+/// nested deeper than `kDeepestJson`. Brackets inside of strings do not count. What is no JSON is
+/// left for the parser to find: up to its first error, this counts as a parser nests.
+/// @throws IoError "<name>: line 3, column 70: nests deeper than 64 levels, ...".
+void require_bounded_json(std::string_view text, const std::string& name);
+
+/// The text of a JSON file that anybody may have written: every such file is read by this.
+/// @throws IoError if it cannot be read, or is refused by `require_bounded_json`; one that is too
+/// large is not read first.
+std::string read_json_file(const std::filesystem::path& file);
+
+}  // namespace graspfit::base

@@ -1,0 +1,66 @@
+#include "graspfit/base/json_bounds.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <system_error>
+
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+
+namespace graspfit::base {
+
+namespace {
+
+void require_bounded_size(std::uintmax_t size, const std::string& name) {
+  if (size <= kLargestJson) return;
+  throw IoError(name + ": has " + std::to_string(size) + " bytes; JSON is read up to " +
+                std::to_string(kLargestJson) + " bytes");
+}
+
+/// "line 3, column 70", both from 1.
+std::string place_text(std::string_view text, std::size_t at) {
+  const std::string_view before = text.substr(0, at);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t line_break = before.rfind('\n');
+  const std::size_t column = line_break == std::string_view::npos ? at + 1 : at - line_break;
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// Where a string that begins at `at` ends: its closing quote, or the end of the text.
+std::size_t end_of_string(std::string_view text, std::size_t at) {
+  for (++at; at < text.size() && text[at] != '"'; ++at) {
+    if (text[at] == '\\') ++at;  // whatever is escaped, a quote too
+  }
+  return at;
+}
+
+}  // namespace
+
+void require_bounded_json(std::string_view text, const std::string& name) {
+  require_bounded_size(text.size(), name);
+  int depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      at = end_of_string(text, at);
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepestJson) {
+        throw IoError(name + ": " + place_text(text, at) + ": nests deeper than " +
+                      std::to_string(kDeepestJson) + " levels, which is as deep as JSON is read");
+      }
+    } else if (c == ']' || c == '}') {
+      --depth;  // below zero it is no JSON, and the parser stops there
+    }
+  }
+}
+
+std::string read_json_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error) require_bounded_size(size, file.string());
+  std::string text = read_file(file);
+  require_bounded_json(text, file.string());
+  return text;
+}
+
+}  // namespace graspfit::base

@@ -1,0 +1,36 @@
+#include "cells/planner_table_experiment.hpp"
+
+#include "cells/planning_table.hpp"
+#include "graspfit/experiments/planning_settings.hpp"
+
+namespace graspfit::experiments::internal {
+namespace {
+
+constexpr std::size_t kGraspsKept = 10;  // Per cell: what the goals of these tables speak of.
+
+sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& folder) {
+  const Planned planned = plan(planning_settings(cell));
+  sweep::CellResult result{sweep::ResultRow(planning_columns()),
+                           sweep::ResultRow(planning_timings())};
+  fill_planning_columns(planned, result.row);
+  fill_planning_timings(planned, result.timings);
+  write_best_grasps(folder, planned, kGraspsKept);
+  return result;
+}
+
+}  // namespace
+
+sweep::Experiment planner_table_experiment(const std::string& slug) {
+  sweep::Experiment experiment;
+  experiment.slug = slug;
+  experiment.columns = planning_columns();
+  experiment.timings = planning_timings();
+  experiment.check = [](const sweep::Cell& cell) { planning_settings(cell); };
+  experiment.run = run;
+  experiment.inputs = [](const sweep::Cell& cell) {
+    return planning_inputs(planning_settings(cell));
+  };
+  return experiment;
+}
+
+}  // namespace graspfit::experiments::internal

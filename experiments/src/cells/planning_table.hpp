@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+
+namespace graspfit::experiments::internal {
+
+/// A planner's run on a cell's object and hand, on one thread.
+struct Planned {
+  PlanningSettings settings;
+  std::shared_ptr<const grasp::ObjectFile> object_file;
+  std::shared_ptr<const hands::HandModel> hand;
+  grasp::ObjectModel object;
+  grasp::PlannerResult result;
+  double load_s = 0.0;     ///< Reading object and hand.
+  double prepare_s = 0.0;  ///< Building the object's model.
+  double plan_s = 0.0;
+  std::vector<double> attempt_cpu_s;  ///< Processor time from the planner's start to the end of
+                                      ///< each attempt.
+  std::optional<double> first_s;      ///< From the planner's start to its first accepted grasp.
+};
+
+/// @throws MissingData; as `grasp::prepare_object` and `grasp::plan_grasps`.
+Planned plan(const PlanningSettings& settings);
+
+/// Columns about all that a planner's run found, and their values.
+std::vector<sweep::Column> planning_columns();
+void fill_planning_columns(const Planned& planned, sweep::ResultRow& row);
+
+/// Where its time went.
+std::vector<sweep::Column> planning_timings();
+void fill_planning_timings(const Planned& planned, sweep::ResultRow& row);
+
+/// Whether a grasp has force closure with an epsilon above 1e-9. Two contacts opposite each other
+/// have it, too, as their wrenches are rounded, with an epsilon of 1e-17: they count as open.
+bool is_closed(const grasp::Grasp& grasp);
+
+/// Empty without any.
+std::optional<double> largest(const std::vector<double>& values);
+/// The middle of some numbers, mean of the middle two; empty without any.
+std::optional<double> median(std::vector<double> values);
+/// The arithmetic mean; empty without any.
+std::optional<double> mean(const std::vector<double>& values);
+/// The root of the mean squared distance from the mean, with n − 1; empty for fewer than two.
+std::optional<double> standard_deviation(const std::vector<double>& values);
+
+/// A field that may be empty.
+sweep::Value field(const std::optional<double>& value);
+sweep::Value field(std::size_t count);
+
+/// Writes `<folder>/grasps.json` with the best `count` grasps, if there are any. A shape that comes
+/// from no file has none: its grasps could not be read back.
+void write_best_grasps(const std::filesystem::path& folder, const Planned& planned,
+                       std::size_t count);
+
+}  // namespace graspfit::experiments::internal

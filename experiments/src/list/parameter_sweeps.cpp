@@ -1,0 +1,72 @@
+// Question: how do quality, usable rate and time depend on the planner's parameters, one at a time
+// around their defaults: the resolution of the voxels, alpha and beta of the measure, the score
+// that targets must exceed, and the half-angle of the friction cones?
+//
+// Answered by one row per object and value of a parameter: the columns of the planner's tables
+// beside `parameter` and `value`, so that a plot of any column over the value is a filter and a
+// sort. A parameter that matters moves usable_rate or mean_m by more than its neighbors' scatter,
+// which the repeated defaults (each parameter has its own) show.
+#include <nlohmann/json.hpp>
+
+#include "cells/planning_table.hpp"
+#include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/sweep/setting_value.hpp"
+#include "list/experiment_list.hpp"
+
+namespace graspfit::experiments::internal {
+namespace {
+
+std::vector<sweep::Column> own_settings() {
+  return {{"parameter", "", "name of the setting that is varied; a number"}};
+}
+
+/// The parameter of a cell and its value.
+struct Varied {
+  std::string parameter;
+  double value = 0.0;
+};
+
+Varied varied_of(const sweep::Cell& cell) {
+  const nlohmann::json json = nlohmann::json::parse(cell.settings);
+  if (!json.contains("parameter")) throw sweep::SettingError("", "there is no setting parameter");
+  const sweep::SettingValue parameter("parameter", json.at("parameter"));
+  const std::string name = parameter.text();
+  if (!json.contains(name)) parameter.fail("must be the name of a setting that is given");
+  return {name, sweep::SettingValue(name, json.at(name)).number()};
+}
+
+sweep::CellResult run(const sweep::Cell& cell) {
+  const Varied varied = varied_of(cell);
+  const Planned planned = plan(planning_settings(cell, own_settings()));
+  sweep::Experiment experiment = parameter_sweeps();
+  sweep::CellResult result{sweep::ResultRow(experiment.columns),
+                           sweep::ResultRow(experiment.timings)};
+  result.row.set("parameter", varied.parameter);
+  result.row.set("value", varied.value);
+  fill_planning_columns(planned, result.row);
+  fill_planning_timings(planned, result.timings);
+  return result;
+}
+
+}  // namespace
+
+sweep::Experiment parameter_sweeps() {
+  sweep::Experiment experiment;
+  experiment.slug = "parameter_sweeps";
+  experiment.columns = {{"parameter", "", "the setting that is varied; all others have defaults"},
+                        {"value", "", "its value, in the unit that describe states"}};
+  for (const sweep::Column& column : planning_columns()) experiment.columns.push_back(column);
+  experiment.timings = planning_timings();
+  experiment.settings = own_settings();
+  experiment.check = [](const sweep::Cell& cell) {
+    varied_of(cell);
+    planning_settings(cell, own_settings());
+  };
+  experiment.run = [](const sweep::Cell& cell, const std::filesystem::path&) { return run(cell); };
+  experiment.inputs = [](const sweep::Cell& cell) {
+    return planning_inputs(planning_settings(cell, own_settings()));
+  };
+  return experiment;
+}
+
+}  // namespace graspfit::experiments::internal

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/sweep/parameter_sweep.hpp"
+#include "graspfit/sweep/result_table.hpp"
+
+namespace graspfit::sweep {
+
+/// A setting of a cell that cannot be used; who reads the configuration knows where it stands.
+class SettingError : public base::InvalidInput {
+ public:
+  /// `key` is the setting's name, or empty where none is to blame; `what` says value and what is
+  /// allowed.
+  SettingError(std::string key, const std::string& what)
+      : base::InvalidInput(what), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+/// A file that is not part of the repository is not on this machine: the cell is skipped, not
+/// failed, and tried again by the next run.
+class MissingData : public base::IoError {
+ public:
+  using base::IoError::IoError;
+};
+
+/// What a cell came to.
+struct CellResult {
+  ResultRow row;                        ///< Of `Experiment::columns`.
+  ResultRow timings;                    ///< Of `Experiment::timings`.
+  std::vector<ResultRow> details = {};  ///< Of `Experiment::details`.
+};
+
+/// What a table over all cells is made of: a finished cell's labels, details and row as CSV fields.
+struct FinishedCell {
+  std::vector<std::string> labels;  ///< One per axis.
+  std::vector<std::vector<std::string>> details;
+  std::vector<std::string> row = {};  ///< One field per column of the experiment.
+};
+
+/// A table over all cells.
+struct SummaryTable {
+  std::string name;  ///< Of its file, `<slug>.<name>.csv`.
+  std::vector<Column> columns;
+  /// Its rows from the cells that are ok, in sweep order. They depend on nothing else.
+  std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
+      rows;
+};
+
+/// An experiment: a question, the unit of work that answers a part of it, and the columns in which
+/// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
+struct Experiment {
+  std::string slug;              ///< Letters, digits and _; the same in every file name.
+  std::vector<Column> columns;   ///< Results: the same bytes for every run.
+  std::vector<Column> timings;   ///< What may differ from run to run.
+  std::vector<Column> settings;  ///< Settings of its own.
+  std::vector<Column> shared_settings = {};  ///< Settings that it reads by a library of them.
+  std::vector<Column> details;  ///< What a cell's row sums up, with any number of rows per cell
+                                ///< (one per grasp); none: no such table.
+
+  /// Checks a cell's settings without doing its work. @throws SettingError.
+  std::function<void(const Cell&)> check;
+
+  /// Does a cell's work, on one thread; several may run at once. It may write files beside its row
+  /// into `folder`, which exists only from its first file on (`cell_folder`).
+  /// @throws MissingData, or anything else: a row with that reason.
+  std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
+
+  std::vector<SummaryTable> summaries;  ///< Tables over all cells, made of their details.
+
+  /// The files that a cell reads, for the manifest; those that are not there are left out.
+  std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;
+};
+
+}  // namespace graspfit::sweep

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace graspfit::geometry {
+
+/// A minimizer x ≥ 0 of ‖A x − b‖ by active sets [Lawson & Hanson 1974, chapter 23]: its positive
+/// entries belong to independent columns. Approximate to rounding.
+Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+}  // namespace graspfit::geometry

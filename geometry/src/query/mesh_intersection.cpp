@@ -1,0 +1,435 @@
+#include "graspfit/geometry/mesh_intersection.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
+#include "query/box_tree.hpp"
+#include "query/mesh_query_impl.hpp"
+#include "query/winding.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using internal::BoxTree;
+using Corners = std::array<Vector3d, 3>;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// A node of B's tree seen from frame A: a box that holds it, rounding included.
+struct SeenBox {
+  Vector3d lower;
+  Vector3d upper;
+};
+
+SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
+  const Vector3d center = X_AB * Vector3d(0.5 * (node.lower + node.upper));
+  const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (node.upper - node.lower));
+  // Generous against the few ulps that the two products and the mapped vertices are off.
+  const double slack =
+      1e-14 * (center.cwiseAbs().sum() + half.sum() + X_AB.translation().cwiseAbs().sum() +
+               node.lower.cwiseAbs().sum() + node.upper.cwiseAbs().sum());
+  const Vector3d reach = half.array() + slack;
+  return {center - reach, center + reach};
+}
+
+bool overlap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
+  return (lower_a.array() <= b.upper.array()).all() && (b.lower.array() <= upper_a.array()).all();
+}
+
+Corners mapped(const Corners& corners, const RigidTransform& X_AB) {
+  return {X_AB * corners[0], X_AB * corners[1], X_AB * corners[2]};
+}
+
+Kernel::Triangle_3 to_cgal(const Corners& c) {
+  const auto point = [](const Vector3d& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
+  return {point(c[0]), point(c[1]), point(c[2])};
+}
+
+bool boxes_overlap(const Corners& a, const Corners& b) {
+  const auto lower = [](const Corners& c) { return c[0].cwiseMin(c[1]).cwiseMin(c[2]); };
+  const auto upper = [](const Corners& c) { return c[0].cwiseMax(c[1]).cwiseMax(c[2]); };
+  return (lower(a).array() <= upper(b).array()).all() &&
+         (lower(b).array() <= upper(a).array()).all();
+}
+
+/// Whether all corners of `b` are strictly on one side of the plane of `a`, certain in doubles: a
+/// quick no for most pairs near a touch. The bound covers the rounding of every difference and
+/// product below.
+bool is_clearly_beside(const Corners& a, const Corners& b) {
+  const Vector3d ab = a[1] - a[0];
+  const Vector3d ac = a[2] - a[0];
+  const Vector3d normal = ab.cross(ac);
+  const double lengths = ab.cwiseAbs().sum() * ac.cwiseAbs().sum();
+  int above = 0;
+  int below = 0;
+  for (const Vector3d& corner : b) {
+    const Vector3d offset = corner - a[0];
+    const double side = normal.dot(offset);
+    const double error = 1e-14 * lengths * offset.cwiseAbs().sum();
+    above += side > error ? 1 : 0;
+    below += side < -error ? 1 : 0;
+  }
+  return above == 3 || below == 3;
+}
+
+/// Exact. Degenerate faces bound nothing that their neighbors do not, and CGAL's test needs proper
+/// triangles: they are left out.
+bool triangles_intersect(const Corners& a, const Corners& b) {
+  if (!boxes_overlap(a, b) || is_clearly_beside(a, b) || is_clearly_beside(b, a)) return false;
+  const Kernel::Triangle_3 first = to_cgal(a);
+  const Kernel::Triangle_3 second = to_cgal(b);
+  return !first.is_degenerate() && !second.is_degenerate() && CGAL::do_intersect(first, second);
+}
+
+/// The inverse of a pose whose rotation may be one up to the digits of a file only: not transposed.
+RigidTransform inverse_of(const RigidTransform& X_AB) {
+  RigidTransform X_BA = RigidTransform::Identity();
+  X_BA.linear() = X_AB.linear().inverse();
+  X_BA.translation() = -(X_BA.linear() * X_AB.translation());
+  return X_BA;
+}
+
+/// Whether the surfaces share a point.
+///
+/// Two boxes are passed over if they are apart along the axes of either frame: seen from one frame
+/// alone, turned boxes are so much larger that ten times as many pairs are looked at near a touch.
+/// What is seen from B is off by the rounding of the inverse and of the mapped vertices, at most 30
+/// ulps (3e-15) of all coordinates involved, which the slack of `seen_from` covers as well.
+bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform& X_AB) {
+  const RigidTransform X_BA = inverse_of(X_AB);
+  std::vector<std::pair<std::int32_t, std::int32_t>> open = {{0, 0}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    const BoxTree::Node& node_a = a.nodes[i];
+    const BoxTree::Node& node_b = b.nodes[j];
+    if (!overlap(node_a.lower, node_a.upper, seen_from(node_b, X_AB))) continue;
+    if (!overlap(node_b.lower, node_b.upper, seen_from(node_a, X_BA))) continue;
+    const bool is_leaf_a = node_a.count > 0;
+    const bool is_leaf_b = node_b.count > 0;
+    if (is_leaf_a && is_leaf_b) {
+      for (std::int32_t t = 0; t < node_b.count; ++t) {
+        const Corners triangle_b = mapped(b.triangles[node_b.first + t].corners, X_AB);
+        for (std::int32_t s = 0; s < node_a.count; ++s) {
+          if (triangles_intersect(a.triangles[node_a.first + s].corners, triangle_b)) return true;
+        }
+      }
+      continue;
+    }
+    const bool split_a =
+        !is_leaf_a && (is_leaf_b || (node_a.upper - node_a.lower).squaredNorm() >=
+                                        (node_b.upper - node_b.lower).squaredNorm());
+    if (split_a) {
+      open.emplace_back(i + 1, j);
+      open.emplace_back(node_a.first, j);
+    } else {
+      open.emplace_back(i, j + 1);
+      open.emplace_back(i, node_b.first);
+    }
+  }
+  return false;
+}
+
+/// Containment in a mesh whose vertices are mapped by X_AB and rounded. Exact.
+Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
+                               const Vector3d& point_A) {
+  internal::Winding winding(point_A);
+  const BoxTree& tree = b.impl().tree;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    const SeenBox box = seen_from(node, X_AB);
+    if (!winding.may_meet(box.lower, box.upper)) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = 0; i < node.count; ++i) {
+      winding.add(mapped(tree.triangles[node.first + i].corners, X_AB));
+    }
+  }
+  return winding.result();
+}
+
+/// Whether some part of `inner` (surfaces do not cross) lies inside `outer`, both in one frame.
+bool holds_a_part(const MeshQuery& outer, const std::vector<Vector3d>& part_points) {
+  return std::any_of(part_points.begin(), part_points.end(), [&](const Vector3d& point) {
+    return outer.impl().box.contains(point) && outer.containment(point) != Containment::Outside;
+  });
+}
+
+std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& X) {
+  std::vector<Vector3d> points;
+  for (const std::int32_t vertex : query.impl().part_vertices) {
+    points.push_back(X * query.mesh().vertices[vertex]);
+  }
+  return points;
+}
+
+/// Best-first search for the point of one surface that is deepest inside another solid.
+class DeepestPoint {
+ public:
+  /// What is not deeper than `depth_known` is not looked for.
+  DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface,
+               const PenetrationOptions& options, double depth_known = 0.0)
+      : depth(depth_known),
+        solid_(solid),
+        X_(X_solid_surface),
+        tolerance_(options.tolerance),
+        enough_(options.enough) {}
+
+  double depth;                       ///< Deepest point found.
+  double bound = 0.0;                 ///< No point is deeper.
+  Vector3d point = Vector3d::Zero();  ///< In the solid's frame.
+
+  void search(const BoxTree& surface) {
+    push_node(surface, 0);
+    // Ties over a wide flat overlap would be cut forever; the bound says honestly how far this got.
+    constexpr int kLargestWork = 50000;
+    for (int work = 0; work < kLargestWork && !open_.empty(); ++work) {
+      if (open_.top().bound <= depth + tolerance_ || depth > enough_) break;
+      const Item item = open_.top();
+      open_.pop();
+      if (item.node >= 0) {
+        const BoxTree::Node& node = surface.nodes[item.node];
+        if (node.count == 0) {
+          push_node(surface, item.node + 1);
+          push_node(surface, node.first);
+        } else {
+          for (std::int32_t t = 0; t < node.count; ++t) {
+            push_triangle(mapped(surface.triangles[node.first + t].corners, X_));
+          }
+        }
+      } else {
+        if (split_along_face(item)) continue;
+        const auto& [a, b, c] = item.corners;
+        const Vector3d ab = 0.5 * (a + b);
+        const Vector3d bc = 0.5 * (b + c);
+        const Vector3d ca = 0.5 * (c + a);
+        push_triangle({a, ab, ca});
+        push_triangle({ab, b, bc});
+        push_triangle({ca, bc, c});
+        push_triangle({ab, bc, ca});
+      }
+    }
+    bound = std::max(depth, open_.empty() ? 0.0 : open_.top().bound);
+  }
+
+ private:
+  struct Item {
+    double bound;
+    std::int32_t node;  ///< −1 for a triangle.
+    Corners corners;    ///< In the solid's frame.
+    std::int32_t face;  ///< Of the solid, nearest to the middle of the triangle.
+    bool operator<(const Item& other) const { return bound < other.bound; }
+  };
+
+  inline static const Corners kNoCorners = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+
+  void push(double item_bound, std::int32_t node, const Corners& corners, std::int32_t face) {
+    if (item_bound > depth) open_.push({item_bound, node, corners, face});
+  }
+
+  void push_node(const BoxTree& surface, std::int32_t index) {
+    const BoxTree::Node& node = surface.nodes[index];
+    const SeenBox box = seen_from(node, X_);
+    const Eigen::AlignedBox3d& solid_box = solid_.impl().box;
+    // What is deeper lies as far inside the solid's box.
+    const Vector3d inset = Vector3d::Constant(depth);
+    if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
+    const Vector3d center = 0.5 * (box.lower + box.upper);
+    const double radius = 0.5 * (node.upper - node.lower).norm();
+    // The distance to a surface changes by at most the distance gone.
+    push(radius - solid_.signed_distance(center), index, kNoCorners, -1);
+  }
+
+  void push_triangle(const Corners& corners) {
+    const Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
+    double radius = 0.0;
+    for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
+    const ClosestPoint closest = solid_.closest_point(center);
+    const double distance = std::sqrt(closest.squared_distance);
+    // A point outside is at most `radius` − distance deep anywhere on the triangle.
+    if (radius + distance <= depth) return;
+    const bool is_inside = solid_.containment(center) == Containment::Inside;
+    if (is_inside && distance > depth) {
+      depth = distance;
+      point = center;
+    }
+    // Nor can any point be farther from the surface than from the one face nearest to the center,
+    // and that distance, convex, is largest at a corner.
+    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(closest.face));
+    double to_face = 0.0;
+    for (const Vector3d& corner : corners) {
+      to_face = std::max(to_face, (corner - internal::closest_on_triangle(corner, face)).norm());
+    }
+    const double most = std::min(to_face, is_inside ? radius + distance : radius - distance);
+    if (most > depth + tolerance_ && !is_inside && stays_outside(corners)) return;
+    push(most, -1, corners, closest.face);
+  }
+
+  /// Whether a triangle whose middle is outside the solid cannot enter it: it would have to pass
+  /// through the plane of a face near it, but lies on one side of each. Sees at once what touches
+  /// the solid from outside along an edge or a face. False means nothing.
+  bool stays_outside(const Corners& corners) const {
+    // Rounding of the corners, which is that of the largest coordinate far from the origin.
+    const Eigen::AlignedBox3d& whole = solid_.impl().box;
+    const double slack = 1e-12 * whole.diagonal().norm() +
+                         1e-15 * whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
+    Eigen::AlignedBox3d box(corners[0]);
+    box.extend(corners[1]).extend(corners[2]);
+    box.min().array() -= slack;
+    box.max().array() += slack;
+    const BoxTree& tree = solid_.impl().tree;
+    std::vector<std::int32_t> open = {0};
+    while (!open.empty()) {
+      const std::int32_t index = open.back();
+      const BoxTree::Node& node = tree.nodes[index];
+      open.pop_back();
+      if (!overlap(node.lower, node.upper, {box.min(), box.max()})) continue;
+      if (node.count == 0) {
+        open.push_back(node.first);
+        open.push_back(index + 1);
+      }
+      for (std::int32_t t = 0; t < node.count; ++t) {
+        const Corners& face = tree.triangles[node.first + t].corners;
+        const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+        bool is_above = false;
+        bool is_below = false;
+        for (const Vector3d& corner : corners) {
+          const double height = normal.dot(corner - face[0]);
+          is_above = is_above || height > slack;
+          is_below = is_below || height < -slack;
+        }
+        if (is_above && is_below) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Cuts a triangle where it leaves the prism over a face of the solid on which it nearly lies:
+  /// the part over the face is then no deeper than its height, at once, where halves would have to
+  /// become as small as the tolerance all along the edge. False if that does not apply.
+  bool split_along_face(const Item& item) {
+    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(item.face));
+    const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+    for (const Vector3d& corner : item.corners) {
+      // Also refuses faces without a normal.
+      if (!(std::abs(normal.dot(corner - face[0])) <= depth + tolerance_)) return false;
+    }
+    double farthest = 0.0;
+    std::array<double, 3> beyond{};
+    for (int edge = 0; edge < 3; ++edge) {
+      const Vector3d along = face[(edge + 1) % 3] - face[edge];
+      const Vector3d outward = along.cross(normal).normalized();
+      std::array<double, 3> side;
+      for (int i = 0; i < 3; ++i) side[i] = outward.dot(item.corners[i] - face[edge]);
+      const auto [least, most] = std::minmax_element(side.begin(), side.end());
+      // Slivers that a cut would leave are not worth one.
+      if (-*least <= 1e-3 * *most || *most <= 1e-3 * -*least || *most <= farthest) continue;
+      farthest = *most;
+      beyond = side;
+    }
+    if (farthest == 0.0) return false;
+    for (const double sign : {1.0, -1.0}) {
+      std::array<Vector3d, 4> part;
+      int size = 0;
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        if (sign * beyond[i] >= 0.0) part[size++] = item.corners[i];
+        if (beyond[i] * beyond[j] < 0.0) {
+          part[size++] = item.corners[i] +
+                         beyond[i] / (beyond[i] - beyond[j]) * (item.corners[j] - item.corners[i]);
+        }
+      }
+      for (int i = 2; i < size; ++i) push_triangle({part[0], part[i - 1], part[i]});
+    }
+    return true;
+  }
+
+  const MeshQuery& solid_;
+  const RigidTransform X_;
+  const double tolerance_;
+  const double enough_;
+  std::priority_queue<Item> open_;
+};
+
+}  // namespace
+
+void PenetrationOptions::validate() const {
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) {
+    throw base::InvalidInput("PenetrationOptions: tolerance = " +
+                             base::shortest_decimal(tolerance) + ", must be finite and > 0 m");
+  }
+  if (!(enough >= 0.0)) {
+    throw base::InvalidInput("PenetrationOptions: enough = " + base::shortest_decimal(enough) +
+                             ", must be >= 0 m");
+  }
+}
+
+bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
+  if (surfaces_intersect(a.impl().tree, b.impl().tree, X_AB)) return true;
+  const SeenBox box_b = seen_from(b.impl().tree.nodes.front(), X_AB);
+  const Eigen::AlignedBox3d& box_a = a.impl().box;
+  if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
+  if (holds_a_part(a, part_points(b, X_AB))) return true;
+  const std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
+  return std::any_of(points_a.begin(), points_a.end(), [&](const Vector3d& point_A) {
+    return overlap(point_A, point_A, box_b) &&
+           placed_containment(b, X_AB, point_A) != Containment::Outside;
+  });
+}
+
+Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
+                        const PenetrationOptions& options) {
+  options.validate();
+  Penetration result;
+  result.intersects = do_intersect(a, b, X_AB);
+  if (!result.intersects) return result;
+  DeepestPoint in_a(a, X_AB, options);
+  in_a.search(b.impl().tree);
+  DeepestPoint in_b(b, X_AB.inverse(), options);
+  in_b.search(a.impl().tree);
+  const bool is_in_a = in_a.depth >= in_b.depth;
+  result.depth = std::max(in_a.depth, in_b.depth);
+  result.depth_bound = std::max(in_a.bound, in_b.bound);
+  result.deepest_point_A = is_in_a ? in_a.point : Vector3d(X_AB * in_b.point);
+  return result;
+}
+
+DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
+                        double floor, const PenetrationOptions& options) {
+  options.validate();
+  if (!(floor >= 0.0) || !std::isfinite(floor)) {
+    throw base::InvalidInput("depth_above: floor = " + base::shortest_decimal(floor) +
+                             ", must be finite and >= 0 m");
+  }
+  DeepestPoint in_a(a, X_AB, options, floor);
+  in_a.search(b.impl().tree);
+  DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);
+  in_b.search(a.impl().tree);
+  return {in_b.depth > floor ? in_b.depth : 0.0, std::max(in_a.bound, in_b.bound)};
+}
+
+MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
+  const MeshDistance none{0.0, Vector3d::Zero(), Vector3d::Zero()};
+  if (do_intersect(a, b, X_AB)) return none;
+  const std::optional<SurfaceProximity> nearest =
+      nearest_points(a, b, X_AB, std::numeric_limits<double>::infinity());
+  return nearest ? MeshDistance{nearest->distance, nearest->point_on_a_A, nearest->point_on_b_A}
+                 : none;
+}
+
+}  // namespace graspfit::geometry

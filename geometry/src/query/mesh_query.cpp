@@ -1,0 +1,314 @@
+#include "graspfit/geometry/mesh_query.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "exact/predicates.hpp"
+#include "graspfit/base/errors.hpp"
+#include "mesh/disjoint_sets.hpp"
+#include "query/mesh_query_impl.hpp"
+#include "query/winding.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+using internal::BoxTree;
+
+// More than any tree is deep: the builder halves below level 48.
+constexpr int kStackSize = 128;
+
+// Calls visit(triangle) for all triangles in leaves that enter(node) admits.
+template <typename Enter, typename Visit>
+void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
+  std::array<std::int32_t, kStackSize> stack;
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const std::int32_t index = stack[--size];
+    const BoxTree::Node& node = tree.nodes[index];
+    if (!enter(node)) continue;
+    if (node.count > 0) {
+      for (std::int32_t i = 0; i < node.count; ++i) visit(tree.triangles[node.first + i]);
+    } else {
+      stack[size++] = node.first;
+      stack[size++] = index + 1;
+    }
+  }
+}
+
+std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
+  internal::DisjointSets sets(mesh.vertices.size());
+  std::vector<char> is_used(mesh.vertices.size(), 0);
+  for (const Face& f : mesh.faces) {
+    for (int i = 0; i < 3; ++i) {
+      is_used[f[i]] = 1;
+      sets.unite(f[i], f[(i + 1) % 3]);
+    }
+  }
+  std::vector<std::int32_t> result;
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(is_used.size()); ++v) {
+    if (is_used[v] && sets.root(v) == v) result.push_back(v);
+  }
+  return result;
+}
+
+// The line through an origin and a point `ahead`, both doubles. `ahead` is so far that rounding it
+// turns the line by rounding error only; after that all signs are exact on this very line, and
+// faces on both sides of an edge ask for the same one, so that no line slips through a closed
+// surface.
+class Line {
+ public:
+  struct Meeting {
+    double t;  // In units of ahead − origin.
+    std::array<int, 3> sides;
+    int crossing;
+  };
+
+  Line(const char* who, const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin,
+       const Eigen::Vector3d& direction)
+      : origin_(origin) {
+    const Eigen::Vector3d unit = direction.stableNormalized();
+    if (!direction.allFinite() || unit.squaredNorm() == 0.0) {
+      throw base::InvalidInput(std::string(who) + ": the direction has no length");
+    }
+    if (!origin.allFinite())
+      throw base::InvalidInput(std::string(who) + ": the origin is not finite");
+    length_ = 2.0 * (box.exteriorDistance(origin) + box.diagonal().norm() + 1e-300);
+    ahead_ = origin + length_ * unit;
+    inverse_ = (ahead_ - origin).cwiseInverse();
+  }
+
+  // Whether the part from..to of the line may meet the box; the answer "no" is certain.
+  bool may_meet(const BoxTree::Node& node, double from, double to) const {
+    constexpr double kSlack = 1e-12;  // Of the line's length; boxes only have to be too large.
+    double t_in = from;
+    double t_out = to;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ahead_[axis] == origin_[axis]) {
+        if (origin_[axis] < node.lower[axis] || origin_[axis] > node.upper[axis]) return false;
+        continue;
+      }
+      double t0 = (node.lower[axis] - origin_[axis]) * inverse_[axis];
+      double t1 = (node.upper[axis] - origin_[axis]) * inverse_[axis];
+      if (t0 > t1) std::swap(t0, t1);
+      t_in = std::max(t_in, t0 - kSlack);
+      t_out = std::min(t_out, t1 + kSlack);
+    }
+    return t_in <= t_out;
+  }
+
+  // Whether the line meets the closed triangle, from the origin on or anywhere; exact.
+  std::optional<Meeting> meet(const std::array<Eigen::Vector3d, 3>& corners, double from) const {
+    const auto& [a, b, c] = corners;
+    Meeting meeting;
+    meeting.sides = {internal::orientation(origin_, ahead_, a, b),
+                     internal::orientation(origin_, ahead_, b, c),
+                     internal::orientation(origin_, ahead_, c, a)};
+    const auto [least, most] = std::minmax_element(meeting.sides.begin(), meeting.sides.end());
+    if (*least < 0 && *most > 0) return std::nullopt;
+    if (*least == 0 && *most == 0) return std::nullopt;  // In its plane: its neighbors count.
+    const int side = internal::orientation(a, b, c, origin_);
+    meeting.t = 0.0;
+    if (side != 0) {
+      const bool is_ahead = side * internal::orientation(a, b, c, ahead_) <= 0;
+      if (!is_ahead && from == 0.0) return std::nullopt;
+      const Eigen::Vector3d normal = (b - a).cross(c - a);
+      const double height = normal.dot(origin_ - a);
+      const double fall = normal.dot(ahead_ - origin_);
+      meeting.t = fall != 0.0 ? -height / fall : 0.0;
+      // Exact signs have the last word over a rounded quotient.
+      meeting.t = is_ahead ? std::clamp(meeting.t, 0.0, 1.0) : std::clamp(meeting.t, -1.0, 0.0);
+    }
+    const int around = moved_side(meeting.sides[0], a, b);
+    const bool crosses = around != 0 && moved_side(meeting.sides[1], b, c) == around &&
+                         moved_side(meeting.sides[2], c, a) == around;
+    meeting.crossing = crosses ? around : 0;
+    return meeting;
+  }
+
+  double distance(const Meeting& meeting) const { return length_ * meeting.t; }
+
+  RayHit hit(const Meeting& meeting, const BoxTree::Triangle& triangle) const {
+    RayHit hit;
+    hit.point = origin_ + meeting.t * (ahead_ - origin_);
+    hit.distance = distance(meeting);
+    hit.face = triangle.face;
+    hit.crossing = meeting.crossing;
+    // A corner's weight is the volume that the line spans with the edge opposite it.
+    const int around = *std::max_element(meeting.sides.begin(), meeting.sides.end()) > 0 ? 1 : -1;
+    const Eigen::Vector3d along = ahead_ - origin_;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const double volume =
+          along.dot((triangle.corners[i] - origin_).cross(triangle.corners[j] - origin_));
+      hit.barycentric[(i + 2) % 3] = meeting.sides[i] == 0 ? 0.0 : std::max(0.0, around * volume);
+    }
+    const double sum = hit.barycentric.sum();
+    if (sum > 0.0 && std::isfinite(1.0 / sum)) {
+      hit.barycentric /= sum;
+    } else {
+      hit.barycentric = internal::nearest_on_triangle(hit.point, triangle.corners).barycentric;
+    }
+    return hit;
+  }
+
+ private:
+  // `side` of the line moved by (ε, ε², ε³) for an infinitely small ε against the line from u to v:
+  // where it is zero, the first of its derivatives (u − v) × (ahead − origin) that is not.
+  int moved_side(int side, const Eigen::Vector3d& u, const Eigen::Vector3d& v) const {
+    for (int axis = 0; axis < 3 && side == 0; ++axis) {
+      side = internal::cross_2d(v, u, origin_, ahead_, (axis + 1) % 3, (axis + 2) % 3);
+    }
+    return side;
+  }
+
+  Eigen::Vector3d origin_;
+  Eigen::Vector3d ahead_;
+  Eigen::Vector3d inverse_;
+  double length_ = 0.0;
+};
+
+const TriangleMesh& checked(const TriangleMesh& mesh) {
+  if (mesh.faces.empty()) throw base::InvalidInput("MeshQuery: the mesh has no faces");
+  return mesh;
+}
+
+}  // namespace
+
+MeshQuery::Impl::Impl(TriangleMesh the_mesh)
+    : mesh(std::move(the_mesh)),
+      tree(checked(mesh)),
+      box(tree.nodes[0].lower, tree.nodes[0].upper),
+      part_vertices(one_vertex_per_part(mesh)) {}
+
+MeshQuery::MeshQuery(TriangleMesh mesh) : impl_(std::make_shared<const Impl>(std::move(mesh))) {}
+
+const TriangleMesh& MeshQuery::mesh() const { return impl_->mesh; }
+
+const Eigen::AlignedBox3d& MeshQuery::box() const { return impl_->box; }
+
+ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
+  struct Entry {
+    std::int32_t node;
+    double squared_distance;
+  };
+  const BoxTree& tree = impl_->tree;
+  ClosestPoint best;
+  best.squared_distance = std::numeric_limits<double>::infinity();
+  std::array<Entry, kStackSize> stack;
+  int size = 0;
+  stack[size++] = {0, 0.0};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.squared_distance > best.squared_distance) continue;
+    const BoxTree::Node& node = tree.nodes[entry.node];
+    if (node.count > 0) {
+      for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+        const BoxTree::Triangle& triangle = tree.triangles[i];
+        const internal::TrianglePoint candidate =
+            internal::nearest_on_triangle(point, triangle.corners);
+        const double squared = (candidate.point - point).squaredNorm();
+        // Equally near faces: the least index, whatever the shape of the tree.
+        if (squared < best.squared_distance ||
+            (squared == best.squared_distance && triangle.face < best.face)) {
+          best = {candidate.point, squared, triangle.face, candidate.barycentric};
+        }
+      }
+      continue;
+    }
+    Entry near{entry.node + 1, internal::squared_distance(point, tree.nodes[entry.node + 1])};
+    Entry far{node.first, internal::squared_distance(point, tree.nodes[node.first])};
+    if (far.squared_distance < near.squared_distance) std::swap(near, far);
+    if (far.squared_distance <= best.squared_distance) stack[size++] = far;
+    if (near.squared_distance <= best.squared_distance) stack[size++] = near;
+  }
+  return best;
+}
+
+internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
+  Winding winding(point);
+  traverse(
+      query.impl().tree,
+      [&](const BoxTree::Node& node) { return winding.may_meet(node.lower, node.upper); },
+      [&](const BoxTree::Triangle& triangle) { winding.add(triangle.corners); });
+  return winding;
+}
+
+Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
+  return internal::winding_around(*this, point).result();
+}
+
+double MeshQuery::signed_distance(const Eigen::Vector3d& point) const {
+  const double distance = std::sqrt(closest_point(point).squared_distance);
+  switch (containment(point)) {
+    case Containment::Inside:
+      return -distance;
+    case Containment::OnSurface:
+      return 0.0;
+    case Containment::Outside:
+      break;
+  }
+  return distance;
+}
+
+std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
+                                           const Eigen::Vector3d& direction) const {
+  const Line line("MeshQuery::first_hit", impl_->box, origin, direction);
+  std::optional<RayHit> best;
+  double best_t = 1.0;
+  traverse(
+      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
+      [&](const BoxTree::Triangle& triangle) {
+        const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
+        if (!meeting) return;
+        // As `all_hits` orders them: by the rounded distance, then by face.
+        const double distance = line.distance(*meeting);
+        if (!best || distance < best->distance ||
+            (distance == best->distance && triangle.face < best->face)) {
+          best_t = meeting->t;
+          best = line.hit(*meeting, triangle);
+        }
+      });
+  return best;
+}
+
+std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
+                                        const Eigen::Vector3d& direction, LineKind kind) const {
+  const Line line("MeshQuery::all_hits", impl_->box, origin, direction);
+  const double from = kind == LineKind::Ray ? 0.0 : -1.0;
+  std::vector<RayHit> hits;
+  traverse(
+      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
+      [&](const BoxTree::Triangle& triangle) {
+        if (const auto meeting = line.meet(triangle.corners, from)) {
+          hits.push_back(line.hit(*meeting, triangle));
+        }
+      });
+  std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.face < b.face;
+  });
+  return hits;
+}
+
+std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) const {
+  std::vector<std::int32_t> faces;
+  const auto meets = [&](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
+    return (lower.array() <= box.max().array()).all() && (upper.array() >= box.min().array()).all();
+  };
+  traverse(
+      impl_->tree, [&](const BoxTree::Node& node) { return meets(node.lower, node.upper); },
+      [&](const BoxTree::Triangle& triangle) {
+        const auto& [a, b, c] = triangle.corners;
+        if (meets(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) {
+          faces.push_back(triangle.face);
+        }
+      });
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+}  // namespace graspfit::geometry

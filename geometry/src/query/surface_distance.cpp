@@ -1,0 +1,149 @@
+#include "graspfit/geometry/surface_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <string>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "query/box_tree.hpp"
+#include "query/one_sided_distance.hpp"
+
+namespace graspfit::geometry {
+namespace internal {
+namespace {
+
+using Eigen::Vector3d;
+using Corners = std::array<Vector3d, 3>;
+
+class Search {
+ public:
+  Search(const MeshQuery& surface, double tolerance) : surface_(surface), tolerance_(tolerance) {}
+
+  OneSidedDistance run(const std::vector<Corners>& triangles, int max_steps) {
+    for (const Corners& triangle : triangles) push(triangle);
+    for (int step = 0; step < max_steps && !open_.empty(); ++step) {
+      if (open_.top().bound <= found_.lower + tolerance_) break;
+      const auto [a, b, c] = open_.top().corners;
+      open_.pop();
+      const Vector3d ab = 0.5 * (a + b);
+      const Vector3d bc = 0.5 * (b + c);
+      const Vector3d ca = 0.5 * (c + a);
+      push({a, ab, ca});
+      push({ab, b, bc});
+      push({ca, bc, c});
+      push({ab, bc, ca});
+    }
+    found_.upper = found_.lower;
+    if (!open_.empty()) found_.upper = std::max(found_.upper, open_.top().bound);
+    return found_;
+  }
+
+ private:
+  struct Item {
+    double bound;
+    Corners corners;
+    bool operator<(const Item& other) const { return bound < other.bound; }
+  };
+
+  void push(const Corners& corners) {
+    const Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
+    const ClosestPoint closest = surface_.closest_point(center);
+    const double distance = std::sqrt(closest.squared_distance);
+    if (distance > found_.lower) {
+      found_.lower = distance;
+      found_.point = center;
+      found_.nearest = closest.point;
+    }
+    // No point is farther from the surface than the center is, plus the way to it; nor farther than
+    // from the one face nearest to the center, and that distance, convex, is largest at a corner.
+    double radius = 0.0;
+    for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
+    double bound = distance + radius;
+    if (bound <= found_.lower) return;
+    const Corners face = geometry::corners(surface_.mesh(), static_cast<std::size_t>(closest.face));
+    double to_face = 0.0;
+    for (const Vector3d& corner : corners) {
+      to_face = std::max(to_face, (corner - closest_on_triangle(corner, face)).norm());
+    }
+    bound = std::min(bound, to_face);
+    if (bound <= found_.lower) return;
+    // A corner that is itself as far as the bound ends the search there.
+    for (const Vector3d& corner : corners) {
+      if ((corner - closest_on_triangle(corner, face)).norm() <= found_.lower) continue;
+      const ClosestPoint of_corner = surface_.closest_point(corner);
+      const double far = std::sqrt(of_corner.squared_distance);
+      if (far <= found_.lower) continue;
+      found_.lower = far;
+      found_.point = corner;
+      found_.nearest = of_corner.point;
+    }
+    if (bound > found_.lower) open_.push({bound, corners});
+  }
+
+  const MeshQuery& surface_;
+  const double tolerance_;
+  OneSidedDistance found_;
+  std::priority_queue<Item> open_;
+};
+
+}  // namespace
+
+std::vector<Corners> triangles_of(const std::vector<Vector3d>& vertices,
+                                  const std::vector<Face>& faces) {
+  std::vector<Corners> triangles;
+  triangles.reserve(faces.size());
+  for (const Face& f : faces) triangles.push_back({vertices[f[0]], vertices[f[1]], vertices[f[2]]});
+  return triangles;
+}
+
+OneSidedDistance one_sided_distance(const std::vector<Corners>& triangles, const MeshQuery& surface,
+                                    const HausdorffOptions& options) {
+  OneSidedDistance found = Search(surface, options.tolerance).run(triangles, options.max_steps);
+  double size = surface.box().min().cwiseAbs().cwiseMax(surface.box().max().cwiseAbs()).maxCoeff();
+  for (const Corners& triangle : triangles) {
+    for (const Vector3d& corner : triangle) size = std::max(size, corner.cwiseAbs().maxCoeff());
+  }
+  if (!triangles.empty()) found.upper += 1e-14 * size;
+  return found;
+}
+
+}  // namespace internal
+
+void HausdorffOptions::validate() const {
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) {
+    throw base::InvalidInput("HausdorffOptions: tolerance = " + base::shortest_decimal(tolerance) +
+                             ", must be finite and > 0 m");
+  }
+  if (max_steps < 0) {
+    throw base::InvalidInput("HausdorffOptions: max_steps = " + std::to_string(max_steps) +
+                             ", must be at least 0");
+  }
+}
+
+HausdorffDistance hausdorff_distance(const MeshQuery& a, const MeshQuery& b,
+                                     const HausdorffOptions& options) {
+  options.validate();
+  using internal::OneSidedDistance;
+  const auto from_to = [&options](const MeshQuery& from, const MeshQuery& to) {
+    return internal::one_sided_distance(
+        internal::triangles_of(from.mesh().vertices, from.mesh().faces), to, options);
+  };
+  const OneSidedDistance a_to_b = from_to(a, b);
+  const OneSidedDistance b_to_a = from_to(b, a);
+  HausdorffDistance result;
+  result.upper = std::max(a_to_b.upper, b_to_a.upper);
+  if (a_to_b.lower >= b_to_a.lower) {
+    result.lower = a_to_b.lower;
+    result.point_on_a = a_to_b.point;
+    result.point_on_b = a_to_b.nearest;
+  } else {
+    result.lower = b_to_a.lower;
+    result.point_on_a = b_to_a.nearest;
+    result.point_on_b = b_to_a.point;
+  }
+  return result;
+}
+
+}  // namespace graspfit::geometry

@@ -1,0 +1,297 @@
+#include "graspfit/geometry/surface_proximity.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "query/box_tree.hpp"
+#include "query/mesh_query_impl.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using internal::BoxTree;
+using Corners = std::array<Vector3d, 3>;
+
+/// Nearest points of two segments [Ericson 2005, 5.1.9].
+std::pair<Vector3d, Vector3d> closest_on_segments(const Vector3d& p0, const Vector3d& p1,
+                                                  const Vector3d& q0, const Vector3d& q1) {
+  const Vector3d u = p1 - p0;
+  const Vector3d v = q1 - q0;
+  const Vector3d w = p0 - q0;
+  const double a = u.squaredNorm();
+  const double b = u.dot(v);
+  const double c = v.squaredNorm();
+  const double d = u.dot(w);
+  const double e = v.dot(w);
+  const double denominator = a * c - b * b;
+  double s = denominator > 0.0 ? std::clamp((b * e - c * d) / denominator, 0.0, 1.0) : 0.0;
+  double t = c > 0.0 ? (b * s + e) / c : 0.0;
+  if (t < 0.0 || t > 1.0) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = a > 0.0 ? std::clamp((b * t - d) / a, 0.0, 1.0) : 0.0;
+  }
+  return {p0 + s * u, q0 + t * v};
+}
+
+/// Where an edge of `a` passes through `b`, in rounded numbers.
+std::optional<Vector3d> piercing(const Corners& a, const Corners& b) {
+  const Vector3d normal = (b[1] - b[0]).cross(b[2] - b[0]);
+  const std::array<double, 3> side = {normal.dot(a[0] - b[0]), normal.dot(a[1] - b[0]),
+                                      normal.dot(a[2] - b[0])};
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    if (!(side[i] * side[j] < 0.0)) continue;
+    const Vector3d point = a[i] + side[i] / (side[i] - side[j]) * (a[j] - a[i]);
+    bool is_inside = true;
+    for (int k = 0; k < 3 && is_inside; ++k) {
+      const Vector3d& from = b[k];
+      is_inside = (b[(k + 1) % 3] - from).cross(point - from).dot(normal) >= 0.0;
+    }
+    if (is_inside) return point;
+  }
+  return std::nullopt;
+}
+
+/// Two triangles, what their planes say of each other.
+struct Heights {
+  Heights(const Corners& plane, const Corners& points) {
+    const Vector3d normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
+    squared_normal = normal.squaredNorm();
+    for (std::size_t i = 0; i < 3; ++i) of[i] = normal.dot(points[i] - plane[0]);
+    const double lowest = std::min({of[0], of[1], of[2]});
+    const double highest = std::max({of[0], of[1], of[2]});
+    beyond = std::max({lowest, -highest, 0.0});
+  }
+  // Asked so that a triangle without area, whose plane tells nothing, answers "near" even where
+  // there is no bound yet and 0 times infinity is not a number.
+  /// Whether all of the points' triangle is as far from the plane as that.
+  bool are_beyond(double squared_bound) const {
+    return beyond * beyond > squared_bound * squared_normal;
+  }
+  bool is_corner_near(std::size_t i, double squared_bound) const {
+    return !(of[i] * of[i] > squared_bound * squared_normal);
+  }
+  bool is_edge_near(std::size_t i, double squared_bound) const {
+    const double from = of[i];
+    const double to = of[(i + 1) % 3];
+    if ((from < 0.0) != (to < 0.0)) return true;
+    const double least = std::min(std::abs(from), std::abs(to));
+    return !(least * least > squared_bound * squared_normal);
+  }
+
+  double squared_normal = 0.0;
+  std::array<double, 3> of{};  ///< Times the normal's length.
+  double beyond = 0.0;         ///< Of the nearest point of the triangle, likewise; 0: it crosses.
+};
+
+/// One search for nearest points, depth first, the nearer children first. What surely is no nearer
+/// than `share` of the best is left out.
+class Search {
+ public:
+  Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
+         double share, double near_enough)
+      : a_(a.impl()),
+        b_(b.impl()),
+        X_AB_(X_AB),
+        turn_(X_AB.linear().cwiseAbs()),
+        squared_enough_(enough * enough),
+        squared_share_(share * share),
+        squared_near_enough_(near_enough < 0.0 ? -1.0 : near_enough * near_enough),
+        squared_best_(squared_enough_),
+        squared_limit_(squared_enough_) {}
+
+  void run(const ProximitySeed& seed) {
+    if (seed.face_a >= 0 && seed.face_b >= 0) {
+      const auto face_a = static_cast<std::size_t>(seed.face_a);
+      const auto face_b = static_cast<std::size_t>(seed.face_b);
+      improve(corners(a_.mesh, face_a), seed.face_a, mapped(corners(b_.mesh, face_b)), seed.face_b);
+    }
+    std::vector<Pair> open;
+    open.reserve(64);
+    push(open, 0, 0);
+    while (!open.empty() && !is_done()) {
+      const Pair pair = open.back();
+      open.pop_back();
+      if (pair.squared_gap >= squared_limit_) {
+        squared_left_out_ = std::min(squared_left_out_, pair.squared_gap);
+        continue;
+      }
+      visit(pair, open);
+    }
+  }
+
+  const std::optional<SurfaceProximity>& best() const { return best_; }
+  /// Of a search to its end: no pair of points is nearer than this.
+  double at_least() const {
+    return std::sqrt(std::min({squared_best_, squared_left_out_, squared_enough_}));
+  }
+
+ private:
+  struct Pair {
+    double squared_gap;
+    std::int32_t node_a;
+    std::int32_t node_b;
+  };
+
+  bool is_done() const {
+    return squared_best_ == 0.0 || (best_ && squared_best_ <= squared_near_enough_);
+  }
+
+  Corners mapped(const Corners& c) const { return {X_AB_ * c[0], X_AB_ * c[1], X_AB_ * c[2]}; }
+
+  /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B:
+  /// seen from one frame alone turned boxes grow, and with them the number of pairs looked at.
+  double squared_gap(std::int32_t i, std::int32_t j) const {
+    const BoxTree::Node& node_a = a_.tree.nodes[static_cast<std::size_t>(i)];
+    const BoxTree::Node& node_b = b_.tree.nodes[static_cast<std::size_t>(j)];
+    const Vector3d center_b = 0.5 * (node_b.lower + node_b.upper);
+    const Vector3d half_b = 0.5 * (node_b.upper - node_b.lower);
+    const Vector3d center_a = 0.5 * (node_a.lower + node_a.upper);
+    const Vector3d half_a = 0.5 * (node_a.upper - node_a.lower);
+    const Vector3d between_A = X_AB_ * center_b - center_a;
+    const double in_a =
+        (between_A.cwiseAbs() - half_a - turn_ * half_b).cwiseMax(0.0).squaredNorm();
+    if (in_a >= squared_limit_) return in_a;
+    const Vector3d between_B = X_AB_.linear().transpose() * between_A;
+    return std::max(
+        in_a,
+        (between_B.cwiseAbs() - half_b - turn_.transpose() * half_a).cwiseMax(0.0).squaredNorm());
+  }
+
+  void push(std::vector<Pair>& open, std::int32_t i, std::int32_t j) {
+    const double gap = squared_gap(i, j);
+    if (gap < squared_limit_) {
+      open.push_back({gap, i, j});
+    } else {
+      squared_left_out_ = std::min(squared_left_out_, gap);
+    }
+  }
+
+  void visit(const Pair& pair, std::vector<Pair>& open) {
+    const BoxTree::Node& node_a = a_.tree.nodes[static_cast<std::size_t>(pair.node_a)];
+    const BoxTree::Node& node_b = b_.tree.nodes[static_cast<std::size_t>(pair.node_b)];
+    if (node_a.count > 0 && node_b.count > 0) {
+      compare(node_a, node_b);
+      return;
+    }
+    const bool splits_a =
+        node_a.count == 0 && (node_b.count > 0 || (node_a.upper - node_a.lower).squaredNorm() >=
+                                                      (node_b.upper - node_b.lower).squaredNorm());
+    const std::size_t size = open.size();
+    if (splits_a) {
+      push(open, pair.node_a + 1, pair.node_b);
+      push(open, node_a.first, pair.node_b);
+    } else {
+      push(open, pair.node_a, pair.node_b + 1);
+      push(open, pair.node_a, node_b.first);
+    }
+    // The last one is looked at first.
+    if (open.size() == size + 2 && open[size].squared_gap < open[size + 1].squared_gap) {
+      std::swap(open[size], open[size + 1]);
+    }
+  }
+
+  void compare(const BoxTree::Node& node_a, const BoxTree::Node& node_b) {
+    const auto squared_apart = [](const Vector3d& lower_a, const Vector3d& upper_a,
+                                  const Vector3d& lower_b, const Vector3d& upper_b) {
+      return (lower_a - upper_b).cwiseMax(lower_b - upper_a).cwiseMax(0.0).squaredNorm();
+    };
+    for (std::int32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
+      const BoxTree::Triangle& of_b = b_.tree.triangles[static_cast<std::size_t>(t)];
+      const Corners corners_b = mapped(of_b.corners);
+      const Vector3d lower = corners_b[0].cwiseMin(corners_b[1]).cwiseMin(corners_b[2]);
+      const Vector3d upper = corners_b[0].cwiseMax(corners_b[1]).cwiseMax(corners_b[2]);
+      if (squared_apart(node_a.lower, node_a.upper, lower, upper) >= squared_best_) continue;
+      for (std::int32_t s = node_a.first; s < node_a.first + node_a.count; ++s) {
+        const BoxTree::Triangle& of_a = a_.tree.triangles[static_cast<std::size_t>(s)];
+        const Corners& c = of_a.corners;
+        const Vector3d lower_a = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+        const Vector3d upper_a = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+        if (squared_apart(lower_a, upper_a, lower, upper) < squared_best_) {
+          improve(c, of_a.face, corners_b, of_b.face);
+        }
+      }
+    }
+  }
+
+  void offer(const Vector3d& on_a, const Vector3d& on_b, std::int32_t face_a, std::int32_t face_b) {
+    const double squared = (on_a - on_b).squaredNorm();
+    if (!(squared < squared_best_)) return;
+    squared_best_ = squared;
+    squared_limit_ = std::min(squared_enough_, squared_share_ * squared);
+    best_ = {std::sqrt(squared), on_a, on_b, face_a, face_b};
+  }
+
+  /// Of two triangles that do not cross: a corner and a triangle, or two edges, are nearest. What
+  /// the other's plane tells to be farther than the best is not looked at.
+  void improve(const Corners& a, std::int32_t face_a, const Corners& b, std::int32_t face_b) {
+    const Heights of_b(a, b);
+    if (of_b.are_beyond(squared_best_)) return;
+    const Heights of_a(b, a);
+    if (of_a.are_beyond(squared_best_)) return;
+    if (of_a.beyond == 0.0 && of_b.beyond == 0.0) {
+      for (const auto& [first, second] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+        if (const std::optional<Vector3d> point = piercing(*first, *second)) {
+          offer(*point, *point, face_a, face_b);
+          return;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (of_a.is_corner_near(i, squared_best_)) {
+        offer(a[i], internal::closest_on_triangle(a[i], b), face_a, face_b);
+      }
+      if (of_b.is_corner_near(i, squared_best_)) {
+        offer(internal::closest_on_triangle(b[i], a), b[i], face_a, face_b);
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!of_a.is_edge_near(i, squared_best_)) continue;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (!of_b.is_edge_near(j, squared_best_)) continue;
+        const auto [on_a, on_b] = closest_on_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
+        offer(on_a, on_b, face_a, face_b);
+      }
+    }
+  }
+
+  const MeshQuery::Impl& a_;
+  const MeshQuery::Impl& b_;
+  const RigidTransform& X_AB_;
+  const Eigen::Matrix3d turn_;
+  const double squared_enough_;
+  const double squared_share_;
+  const double squared_near_enough_;
+  double squared_best_;
+  double squared_limit_;  ///< Pairs of nodes as far apart as this are left out.
+  double squared_left_out_ = std::numeric_limits<double>::infinity();
+  std::optional<SurfaceProximity> best_;
+};
+
+}  // namespace
+
+std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
+                                               const RigidTransform& X_AB, double enough,
+                                               const ProximitySeed& seed, double near_enough) {
+  Search search(a, b, X_AB, enough, 1.0, near_enough);
+  search.run(seed);
+  return search.best();
+}
+
+SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
+                                   const RigidTransform& X_AB, double enough, double share,
+                                   const ProximitySeed& seed) {
+  Search search(a, b, X_AB, enough, share, 0.0);
+  search.run(seed);
+  SurfaceClearance result{search.at_least(), seed};
+  if (search.best()) result.nearest = {search.best()->face_a, search.best()->face_b};
+  return result;
+}
+
+}  // namespace graspfit::geometry

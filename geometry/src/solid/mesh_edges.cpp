@@ -1,0 +1,202 @@
+#include "solid/mesh_edges.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "mesh/disjoint_sets.hpp"
+#include "query/box_tree.hpp"
+#include "query/overlapping_boxes.hpp"
+#include "query/winding.hpp"
+
+namespace graspfit::geometry::internal {
+namespace {
+
+/// Sorts the sides of one lower vertex by the higher one; they are in face order and stay so.
+void sort_bucket(std::vector<FaceSide>::iterator first, std::vector<FaceSide>::iterator last) {
+  const auto by_high = [](const FaceSide& a, const FaceSide& b) { return a.high() < b.high(); };
+  constexpr std::ptrdiff_t kFew = 32;  // A stable sort of more allocates and is worth it.
+  if (last - first > kFew) {
+    std::stable_sort(first, last, by_high);
+    return;
+  }
+  for (auto next = first; next != last; ++next) {
+    const FaceSide side = *next;
+    auto hole = next;
+    for (; hole != first && by_high(side, *(hole - 1)); --hole) *hole = *(hole - 1);
+    *hole = side;
+  }
+}
+
+/// Parts with a face whose box meets `box`, ascending.
+std::vector<std::int32_t> parts_near(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+                                     const Eigen::AlignedBox3d& box) {
+  std::vector<std::int32_t> near;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    if (!box.intersects(Eigen::AlignedBox3d(node.lower, node.upper))) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [a, b, c] = tree.triangles[i].corners;
+      const Eigen::AlignedBox3d face(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
+      if (box.intersects(face)) near.push_back(parts[tree.triangles[i].face]);
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+/// Signed volume of every part, from a vertex of its own.
+std::vector<double> volumes_of_parts(const TriangleMesh& mesh,
+                                     const std::vector<std::int32_t>& parts,
+                                     std::size_t num_parts) {
+  std::vector<double> volumes(num_parts, 0.0);
+  std::vector<std::int32_t> apex(num_parts, -1);
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    const Face& f = mesh.faces[face];
+    std::int32_t& at = apex[parts[face]];
+    if (at < 0) at = f[0];
+    const Eigen::Vector3d& origin = mesh.vertices[at];
+    volumes[parts[face]] += (mesh.vertices[f[0]] - origin)
+                                .cross(mesh.vertices[f[1]] - origin)
+                                .dot(mesh.vertices[f[2]] - origin) /
+                            6.0;
+  }
+  return volumes;
+}
+
+}  // namespace
+
+std::vector<FaceSide> sorted_sides(const TriangleMesh& mesh) {
+  std::vector<std::int32_t> begin(mesh.vertices.size() + 1, 0);
+  const auto for_each_side = [&mesh](auto visit) {
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const Face& face = mesh.faces[f];
+      if (has_repeated_vertex(face)) continue;
+      for (std::int32_t k = 0; k < 3; ++k) {
+        visit(FaceSide{face[k], face[k == 2 ? 0 : k + 1], static_cast<std::int32_t>(f), k});
+      }
+    }
+  };
+  for_each_side([&begin](const FaceSide& side) { ++begin[side.low() + 1]; });
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) begin[v + 1] += begin[v];
+  std::vector<FaceSide> sides(static_cast<std::size_t>(begin.back()));
+  std::vector<std::int32_t> next(begin.begin(), begin.end() - 1);
+  for_each_side([&](const FaceSide& side) { sides[next[side.low()]++] = side; });
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    sort_bucket(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
+  }
+  return sides;
+}
+
+std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
+                                         const std::vector<FaceSide>& sides) {
+  DisjointSets sets(mesh.faces.size());
+  for_each_edge(sides, [&](auto first, auto last) {
+    for (auto other = first + 1; other < last; ++other) sets.unite(first->face, other->face);
+  });
+  return sets.numbered();
+}
+
+bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
+  const auto [a, b, c] = corners(mesh, face);
+  // A component of the cross product is off by at most 8 half ulps of the product of the longest
+  // coordinates. Below 1e-290 bits may have been lost to underflow.
+  const Eigen::Vector3d ab = b - a;
+  const Eigen::Vector3d ac = c - a;
+  const double product = ab.lpNorm<Eigen::Infinity>() * ac.lpNorm<Eigen::Infinity>();
+  const double largest = ab.cross(ac).lpNorm<Eigen::Infinity>();
+  if (largest > 0x1p-50 * product && product > 1e-290) return false;
+  return are_collinear(a, b, c);
+}
+
+std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
+                                           const std::vector<std::int32_t>& parts,
+                                           const std::vector<bool>& is_part_closed) {
+  const std::vector<double> volumes = volumes_of_parts(mesh, parts, is_part_closed.size());
+  const auto is_candidate = [&](std::int32_t part) {
+    return is_part_closed[part] && volumes[part] < 0.0;
+  };
+  std::vector<std::int32_t> result;
+  for (std::size_t part = 0; part < is_part_closed.size(); ++part) {
+    const auto number = static_cast<std::int32_t>(part);
+    if (is_candidate(number)) result.push_back(number);
+  }
+  if (result.empty() || is_part_closed.size() == 1) return result;
+
+  const BoxTree tree(mesh);
+  const std::vector<Eigen::AlignedBox3d> boxes = boxes_of_parts(mesh, parts, is_part_closed.size());
+  std::map<std::int32_t, std::vector<std::int32_t>> vertices;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    if (!is_candidate(parts[face])) continue;
+    std::vector<std::int32_t>& own = vertices[parts[face]];
+    own.insert(own.end(), mesh.faces[face].begin(), mesh.faces[face].end());
+  }
+  const auto is_enclosed = [&](std::int32_t part) {
+    // Parts that keep clear of this one's box hold all of it or nothing: one point tells, and one
+    // off the lines through vertices that boxes are made of needs no rational numbers. Parts that
+    // come near are asked for every vertex.
+    const Eigen::AlignedBox3d& box = boxes[part];
+    const std::vector<std::int32_t> near = parts_near(tree, parts, box);
+    const auto is_near = [&near](std::int32_t other) {
+      return std::binary_search(near.begin(), near.end(), other);
+    };
+    const Eigen::Vector3d within(0.3701, 0.4307, 0.5903);
+    const std::vector<std::int32_t> around =
+        parts_around(tree, parts, box.min() + within.cwiseProduct(box.sizes()));
+    if (std::any_of(around.begin(), around.end(),
+                    [&](std::int32_t other) { return is_part_closed[other] && !is_near(other); })) {
+      return true;
+    }
+    std::vector<std::int32_t> holders = near;
+    std::erase_if(holders, [&](std::int32_t other) {
+      return other == part || !is_part_closed[other] || !boxes[other].contains(box);
+    });
+    std::vector<std::int32_t>& own = vertices[part];
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    for (std::size_t i = 0; i < own.size() && !holders.empty(); ++i) {
+      const std::vector<std::int32_t> here = parts_around(tree, parts, mesh.vertices[own[i]]);
+      std::erase_if(holders, [&](std::int32_t other) {
+        return !std::binary_search(here.begin(), here.end(), other);
+      });
+    }
+    return !holders.empty();
+  };
+  std::erase_if(result, is_enclosed);
+  return result;
+}
+
+std::vector<std::int32_t> parts_around(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+                                       const Eigen::Vector3d& point) {
+  const Winding none(point);
+  std::map<std::int32_t, Winding> winding_of_part;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    if (!none.may_meet(node.lower, node.upper)) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+      const BoxTree::Triangle& triangle = tree.triangles[i];
+      winding_of_part.try_emplace(parts[triangle.face], point).first->second.add(triangle.corners);
+    }
+  }
+  std::vector<std::int32_t> inside;
+  for (const auto& [part, winding] : winding_of_part) {
+    if (winding.result() == Containment::Inside) inside.push_back(part);
+  }
+  return inside;
+}
+
+}  // namespace graspfit::geometry::internal

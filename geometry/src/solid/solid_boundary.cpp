@@ -1,0 +1,387 @@
+#include "graspfit/geometry/solid_boundary.hpp"
+
+// CGAL would print a recommendation of another class wherever two cuts meet in a face.
+#define CGAL_NO_CDT_2_WARNING
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "exact/predicates.hpp"
+#include "graspfit/base/errors.hpp"
+#include "mesh/disjoint_sets.hpp"
+#include "mesh/vertex_welding.hpp"
+#include "query/box_tree.hpp"
+#include "solid/crossing_faces.hpp"
+#include "solid/intersection_part.hpp"
+#include "solid/mesh_edges.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using internal::BoxTree;
+using Corners = std::array<Vector3d, 3>;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using Rational = std::decay_t<decltype(CGAL::exact(Exact::FT()))>;
+using Cut =
+    CGAL::Constrained_Delaunay_triangulation_2<Exact, CGAL::Default, CGAL::Exact_intersections_tag>;
+/// What two triangles have in common, exactly.
+using Common = decltype(CGAL::intersection(Exact::Triangle_3(), Exact::Triangle_3()));
+
+Exact::Point_3 to_exact(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+int sign_of(const Rational& value) { return static_cast<int>(CGAL::sign(value)); }
+
+/// A point with exact coordinates, which are computed when a sign is in doubt, and doubles near
+/// them: each within `error`.
+struct ExactPoint {
+  std::array<Exact::FT, 3> exact;
+  Vector3d near;
+  double error = 0.0;
+
+  explicit ExactPoint(std::array<Exact::FT, 3> coordinates) : exact(std::move(coordinates)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = CGAL::to_interval(exact[axis]);
+      near[axis] = 0.5 * (low + high);
+      error = std::max(error, high - low);
+    }
+    error += 0x1p-51 * near.cwiseAbs().maxCoeff() + 0x1p-1000;
+  }
+
+  Rational operator[](int axis) const { return CGAL::exact(exact[axis]); }
+
+  /// Rounded from the exact coordinates, so that equal points of different faces stay equal.
+  Vector3d rounded() const {
+    return {CGAL::to_double((*this)[0]), CGAL::to_double((*this)[1]), CGAL::to_double((*this)[2])};
+  }
+};
+
+/// Sign of the area of (u, v, point) in the plane of coordinates a and b. Exact.
+int turn_about(const Vector3d& u, const Vector3d& v, const ExactPoint& point, int a, int b) {
+  const double ua = u[a] - point.near[a], ub = u[b] - point.near[b];
+  const double va = v[a] - point.near[a], vb = v[b] - point.near[b];
+  const double value = ua * vb - ub * va;
+  const double size = std::abs(ua) + std::abs(ub) + std::abs(va) + std::abs(vb);
+  // Each product is off by the error of the point times `size`, and by three roundings.
+  if (std::abs(value) > 4.0 * point.error * (size + point.error) + 0x1p-50 * size * size) {
+    return value > 0.0 ? 1 : -1;
+  }
+  const Rational pa = point[a];
+  const Rational pb = point[b];
+  return sign_of((Rational(u[a]) - pa) * (Rational(v[b]) - pb) -
+                 (Rational(u[b]) - pb) * (Rational(v[a]) - pa));
+}
+
+/// On which side of the plane of the triangle the point is, as `internal::orientation`. Exact.
+int side_of_plane(const Corners& corners, const ExactPoint& point) {
+  const Vector3d ab = corners[1] - corners[0];
+  const Vector3d ac = corners[2] - corners[0];
+  const Vector3d ap = point.near - corners[0];
+  const double value = ab.cross(ac).dot(ap);
+  const double product = ab.cwiseAbs().sum() * ac.cwiseAbs().sum();
+  if (std::abs(value) >
+      4.0 * product * point.error + 0x1p-49 * product * ap.cwiseAbs().sum() + 0x1p-1000) {
+    return value > 0.0 ? 1 : -1;
+  }
+  std::array<std::array<Rational, 3>, 3> m;
+  for (int axis = 0; axis < 3; ++axis) {
+    m[0][axis] = Rational(corners[1][axis]) - Rational(corners[0][axis]);
+    m[1][axis] = Rational(corners[2][axis]) - Rational(corners[0][axis]);
+    m[2][axis] = point[axis] - Rational(corners[0][axis]);
+  }
+  return sign_of(m[2][0] * (m[0][1] * m[1][2] - m[0][2] * m[1][1]) +
+                 m[2][1] * (m[0][2] * m[1][0] - m[0][0] * m[1][2]) +
+                 m[2][2] * (m[0][0] * m[1][1] - m[0][1] * m[1][0]));
+}
+
+/// What lies on the two sides of a piece of surface, seen along a coordinate axis.
+struct Sides {
+  bool is_solid_above = false;
+  bool is_solid_below = false;
+  std::int32_t first_face = -1;  ///< The first of the faces that cover the piece.
+};
+
+/// Winding numbers on both sides of a point within a piece, by the crossings of the ray from it
+/// along `axis`. As in `internal::Winding` the ray is thought moved by (ε, ε²), so that it meets
+/// the inside of triangles only. Faces that hold the point lie in the piece's plane, or they would
+/// have cut it there.
+Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, int axis) {
+  const int a = (axis + 1) % 3;
+  const int b = (axis + 2) % 3;
+  const auto turn = [&](const Vector3d& u, const Vector3d& v) {
+    const int side = turn_about(u, v, point, a, b);
+    if (side != 0) return side;
+    if (u[b] != v[b]) return u[b] > v[b] ? 1 : -1;
+    return u[a] != v[a] ? (v[a] > u[a] ? 1 : -1) : 0;
+  };
+  int above = 0;
+  int at = 0;
+  Sides sides;
+  std::vector<std::int32_t> open = {0};
+  while (!open.empty()) {
+    const std::int32_t index = open.back();
+    open.pop_back();
+    const BoxTree::Node& node = tree.nodes[index];
+    const Vector3d low = node.lower.array() - point.error;
+    const Vector3d high = node.upper.array() + point.error;
+    const Vector3d& p = point.near;
+    if (high[axis] < p[axis] || low[a] > p[a] || high[a] < p[a] || low[b] > p[b] ||
+        high[b] < p[b]) {
+      continue;
+    }
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(index + 1);
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [corners, face] = tree.triangles[i];
+      const int around = turn(corners[0], corners[1]);
+      if (around == 0 || turn(corners[1], corners[2]) != around ||
+          turn(corners[2], corners[0]) != around) {
+        continue;
+      }
+      const int side = face == own ? 0 : around * side_of_plane(corners, point);
+      if (side < 0) above += around;
+      if (side != 0) continue;
+      at += around;
+      if (sides.first_face < 0 || face < sides.first_face) sides.first_face = face;
+    }
+  }
+  sides.is_solid_above = above != 0;
+  sides.is_solid_below = above + at != 0;
+  return sides;
+}
+
+/// The axis along which a face is seen largest.
+int main_axis(const Corners& corners) {
+  int axis = 0;
+  internal::accurate_vector_area(corners[0], corners[1], corners[2]).cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+/// Faces with area on vertices with different places, and whether they bound a solid.
+TriangleMesh welded(const TriangleMesh& mesh) {
+  TriangleMesh result = mesh;
+  const std::vector<std::int32_t> target = internal::weld_equal(result.vertices);
+  for (Face& face : result.faces) {
+    for (std::int32_t& vertex : face) vertex = target[vertex];
+  }
+  internal::for_each_edge(internal::sorted_sides(result), [](auto first, auto last) {
+    std::ptrdiff_t up = 0;
+    for (auto side = first; side != last; ++side) up += side->runs_up() ? 1 : -1;
+    if (up != 0) {
+      throw base::InvalidInput(
+          "the mesh bounds no solid: an edge is not run through equally often in "
+          "both directions");
+    }
+  });
+  std::size_t kept = 0;
+  for (std::size_t face = 0; face < result.faces.size(); ++face) {
+    if (!internal::is_degenerate(result, face)) result.faces[kept++] = result.faces[face];
+  }
+  result.faces.resize(kept);
+  return result;
+}
+
+class Builder {
+ public:
+  explicit Builder(const TriangleMesh& mesh) : mesh_(welded(mesh)) {
+    result_ = {mesh_.vertices, {}};
+  }
+
+  TriangleMesh build() {
+    if (mesh_.faces.empty()) return result_;
+    tree_.emplace(mesh_);
+    std::vector<std::vector<Common>> met(mesh_.faces.size());
+    for (const auto& [first, second] : internal::crossing_faces(mesh_)) {
+      // Both faces share the exact points, which are evaluated once.
+      const Common common = CGAL::intersection(triangle(first), triangle(second));
+      met[first].push_back(common);
+      met[second].push_back(common);
+    }
+    add_whole_faces(met);
+    for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
+      if (!met[face].empty()) add_pieces(static_cast<std::int32_t>(face), met[face]);
+    }
+    return cleaned();
+  }
+
+ private:
+  Exact::Triangle_3 triangle(std::int32_t face) const {
+    const auto [a, b, c] = geometry::corners(mesh_, static_cast<std::size_t>(face));
+    return {to_exact(a), to_exact(b), to_exact(c)};
+  }
+
+  /// Faces that cross nothing: what is on their sides is the same all over those that hang together
+  /// by edges with no third face.
+  void add_whole_faces(const std::vector<std::vector<Common>>& met) {
+    internal::DisjointSets regions(mesh_.faces.size());
+    internal::for_each_edge(internal::sorted_sides(mesh_), [&](auto first, auto last) {
+      if (last - first == 2 && met[first->face].empty() && met[(first + 1)->face].empty()) {
+        regions.unite(first->face, (first + 1)->face);
+      }
+    });
+    // Whether faces stay as they are (1), turned (−1) or not at all, by the region's first face.
+    std::vector<int> fate(mesh_.faces.size(), 0);
+    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+      if (!met[f].empty()) continue;
+      const auto face = static_cast<std::int32_t>(f);
+      const std::int32_t first = regions.root(face);
+      if (first == face) {
+        const Corners corners = geometry::corners(mesh_, f);
+        const int axis = main_axis(corners);
+        std::array<Exact::FT, 3> center;
+        for (int i = 0; i < 3; ++i) {
+          center[i] =
+              (Exact::FT(corners[0][i]) + Exact::FT(corners[1][i]) + Exact::FT(corners[2][i])) /
+              Exact::FT(3);
+        }
+        const Sides sides = sides_at(*tree_, ExactPoint(center), face, axis);
+        if (sides.is_solid_above != sides.is_solid_below) {
+          const int up = internal::orientation_2d(corners[0], corners[1], corners[2],
+                                                  (axis + 1) % 3, (axis + 2) % 3);
+          fate[f] = sides.is_solid_below ? up : -up;
+        }
+      }
+      const auto& [a, b, c] = mesh_.faces[f];
+      if (fate[first] > 0) result_.faces.push_back({a, b, c});
+      if (fate[first] < 0) result_.faces.push_back({a, c, b});
+    }
+  }
+
+  /// Cuts a face by all that it meets and adds the pieces that bound the solid.
+  void add_pieces(std::int32_t face, const std::vector<Common>& crossings) {
+    const Corners corners = geometry::corners(mesh_, static_cast<std::size_t>(face));
+    const int axis = main_axis(corners);
+    const int a = (axis + 1) % 3;
+    const int b = (axis + 2) % 3;
+    Cut cut;
+    std::map<Cut::Vertex_handle, std::int32_t> vertex_of;
+    std::array<Cut::Vertex_handle, 3> own;
+    for (int i = 0; i < 3; ++i) {
+      own[i] = cut.insert(Exact::Point_2(corners[i][a], corners[i][b]));
+      vertex_of[own[i]] = mesh_.faces[face][i];
+    }
+    for (int i = 0; i < 3; ++i) cut.insert_constraint(own[i], own[(i + 1) % 3]);
+    insert_crossings(crossings, a, b, cut);
+
+    // Lifts a point of the projection back to the plane of the face.
+    const Exact::Triangle_3 triangle = this->triangle(face);
+    const Exact::Vector_3 normal =
+        CGAL::cross_product(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+    const auto lifted = [&](const Exact::Point_2& p) {
+      std::array<Exact::FT, 3> place;
+      const Exact::FT height = triangle[0][axis] - (normal[a] * (p.x() - triangle[0][a]) +
+                                                    normal[b] * (p.y() - triangle[0][b])) /
+                                                       normal[axis];
+      place[a] = p.x();
+      place[b] = p.y();
+      place[axis] = height;
+      return ExactPoint(place);
+    };
+
+    std::map<Cut::Face_handle, bool> is_done;
+    for (const Cut::Face_handle start : cut.finite_face_handles()) {
+      if (is_done[start]) continue;
+      // The piece: all triangles up to the next cuts. Its largest one is asked for the sides.
+      std::vector<Cut::Face_handle> piece = {start};
+      is_done[start] = true;
+      Cut::Face_handle largest = start;
+      for (std::size_t next = 0; next < piece.size(); ++next) {
+        if (area(cut, piece[next]) > area(cut, largest)) largest = piece[next];
+        for (int i = 0; i < 3; ++i) {
+          const Cut::Face_handle neighbor = piece[next]->neighbor(i);
+          if (piece[next]->is_constrained(i) || cut.is_infinite(neighbor) || is_done[neighbor]) {
+            continue;
+          }
+          is_done[neighbor] = true;
+          piece.push_back(neighbor);
+        }
+      }
+      const Cut::Triangle t = cut.triangle(largest);
+      const Sides sides = sides_at(*tree_, lifted(CGAL::centroid(t[0], t[1], t[2])), face, axis);
+      // Where faces cover each other the first one speaks for all.
+      if (sides.first_face != face || sides.is_solid_above == sides.is_solid_below) continue;
+      for (const Cut::Face_handle part : piece) {
+        Face added;
+        for (int i = 0; i < 3; ++i) {
+          const Cut::Vertex_handle vertex = part->vertex(i);
+          const auto [known, is_new] =
+              vertex_of.try_emplace(vertex, static_cast<std::int32_t>(result_.vertices.size()));
+          if (is_new) result_.vertices.push_back(lifted(vertex->point()).rounded());
+          added[i] = known->second;
+        }
+        // Triangles of the cut run counter-clockwise seen from the end of the axis.
+        if (!sides.is_solid_below) std::swap(added[1], added[2]);
+        result_.faces.push_back(added);
+      }
+    }
+  }
+
+  static void insert_crossings(const std::vector<Common>& crossings, int a, int b, Cut& cut) {
+    const auto flat = [&](const Exact::Point_3& p) { return Exact::Point_2(p[a], p[b]); };
+    for (const Common& common : crossings) {
+      using internal::intersection_part;
+      std::vector<Exact::Point_2> outline;
+      if (const auto* point = intersection_part<Exact::Point_3>(common)) {
+        cut.insert(flat(*point));
+      } else if (const auto* segment = intersection_part<Exact::Segment_3>(common)) {
+        cut.insert_constraint(flat(segment->source()), flat(segment->target()));
+      } else if (const auto* shared = intersection_part<Exact::Triangle_3>(common)) {
+        for (int i = 0; i < 3; ++i) outline.push_back(flat((*shared)[i]));
+      } else if (const auto* polygon = intersection_part<std::vector<Exact::Point_3>>(common)) {
+        for (const Exact::Point_3& p : *polygon) outline.push_back(flat(p));
+      }
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        cut.insert_constraint(outline[i], outline[(i + 1) % outline.size()]);
+      }
+    }
+  }
+
+  static double area(const Cut& cut, Cut::Face_handle face) {
+    return CGAL::to_double(cut.triangle(face).area());
+  }
+
+  /// Equal places one vertex, nothing collapsed, no vertex without a face.
+  TriangleMesh cleaned() {
+    const std::vector<std::int32_t> target = internal::weld_equal(result_.vertices);
+    std::vector<std::int32_t> number(result_.vertices.size(), -1);
+    for (Face& face : result_.faces) {
+      for (std::int32_t& vertex : face) vertex = target[vertex];
+    }
+    std::erase_if(result_.faces, internal::has_repeated_vertex);
+    for (const Face& face : result_.faces) {
+      for (const std::int32_t vertex : face) number[vertex] = 0;
+    }
+    TriangleMesh mesh;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] < 0) continue;
+      number[v] = static_cast<std::int32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(result_.vertices[v]);
+    }
+    mesh.faces = std::move(result_.faces);
+    for (Face& face : mesh.faces) {
+      for (std::int32_t& vertex : face) vertex = number[vertex];
+    }
+    return mesh;
+  }
+
+  const TriangleMesh mesh_;
+  TriangleMesh result_;
+  std::optional<BoxTree> tree_;
+};
+
+}  // namespace
+
+TriangleMesh solid_boundary(const TriangleMesh& mesh) { return Builder(mesh).build(); }
+
+}  // namespace graspfit::geometry

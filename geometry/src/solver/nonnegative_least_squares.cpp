@@ -1,0 +1,90 @@
+#include "graspfit/geometry/nonnegative_least_squares.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <vector>
+
+namespace graspfit::geometry {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A column that would lower ‖A x − b‖ at less than this rate, relative to its length and to that
+/// of b, does so by rounding only.
+constexpr double kGradientRel = 1e-13;
+
+}  // namespace
+
+VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
+  VectorXd x = VectorXd::Zero(a.cols());
+  std::vector<Index> passive;  // columns that may be positive, ascending
+  const VectorXd lengths = a.colwise().norm();
+  const double target_length = b.norm();
+  // Each round lowers the residual, so that no set of columns comes twice; rounding could make it
+  // turn in circles all the same.
+  const Index most_rounds = 10 * (a.rows() + a.cols());
+  std::vector<bool> is_refused(static_cast<std::size_t>(a.cols()), false);
+  for (Index round = 0; round < most_rounds; ++round) {
+    const VectorXd gradient = a.transpose() * (b - a * x);
+    Index entering = -1;
+    double steepest = 0.0;
+    for (Index j = 0; j < a.cols(); ++j) {
+      if (is_refused[static_cast<std::size_t>(j)] || !(lengths[j] > 0.0) ||
+          std::binary_search(passive.begin(), passive.end(), j)) {
+        continue;
+      }
+      const double rate = gradient[j] / lengths[j];
+      if (rate > kGradientRel * target_length && rate > steepest) {
+        steepest = rate;
+        entering = j;
+      }
+    }
+    if (entering < 0) break;
+    passive.insert(std::lower_bound(passive.begin(), passive.end(), entering), entering);
+    bool is_new = true;
+    while (!passive.empty()) {
+      MatrixXd columns(a.rows(), passive.size());
+      for (std::size_t k = 0; k < passive.size(); ++k) {
+        columns.col(static_cast<Index>(k)) = a.col(passive[k]);
+      }
+      const VectorXd best = columns.colPivHouseholderQr().solve(b);
+      double share = 1.0;
+      for (std::size_t k = 0; k < passive.size(); ++k) {
+        const double old_value = x[passive[k]];
+        const double new_value = best[static_cast<Index>(k)];
+        if (new_value <= 0.0) share = std::min(share, old_value / (old_value - new_value));
+      }
+      const auto place = std::lower_bound(passive.begin(), passive.end(), entering);
+      if (is_new && best[place - passive.begin()] <= 0.0) {
+        // Steep by rounding alone: nearly in the span of the others.
+        is_refused[static_cast<std::size_t>(entering)] = true;
+        passive.erase(place);
+        break;
+      }
+      is_new = false;
+      std::vector<Index> kept;
+      for (std::size_t k = 0; k < passive.size(); ++k) {
+        double& value = x[passive[k]];
+        const double new_value = best[static_cast<Index>(k)];
+        const bool is_blocking = new_value <= 0.0 && value / (value - new_value) <= share;
+        value = is_blocking ? 0.0 : value + share * (new_value - value);
+        if (value > 0.0) {
+          kept.push_back(passive[k]);
+        } else {
+          value = 0.0;
+        }
+      }
+      const bool is_done = kept.size() == passive.size();
+      passive = std::move(kept);
+      if (is_done) {
+        std::fill(is_refused.begin(), is_refused.end(), false);
+        break;
+      }
+    }
+  }
+  return x;
+}
+
+}  // namespace graspfit::geometry

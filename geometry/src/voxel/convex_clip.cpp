@@ -1,0 +1,105 @@
+#include "graspfit/geometry/convex_clip.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "exact/predicates.hpp"
+#include "graspfit/base/errors.hpp"
+#include "query/box_tree.hpp"
+#include "voxel/triangle_clip.hpp"
+
+namespace graspfit::geometry {
+namespace {
+
+class Clipper {
+ public:
+  explicit Clipper(const ConvexVolume& volume) : volume_(volume) {
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+      if (!volume[i].normal.allFinite() || !std::isfinite(volume[i].offset)) {
+        throw base::InvalidInput("clip: half-space " + std::to_string(i) + " is not finite");
+      }
+    }
+  }
+
+  std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle) {
+    const auto& [a, b, c] = triangle;
+    polygon_.clear();
+    const Eigen::Vector3d vector_area = internal::accurate_vector_area(a, b, c);
+    if (vector_area.isZero(0.0)) return std::nullopt;  // The corners are collinear.
+    cutter_.reset(triangle);
+    cutter_.whole(polygon_);
+    for (std::size_t i = 0; i < volume_.size(); ++i) {
+      const std::uint32_t line =
+          cutter_.add_plane(volume_[i].normal, volume_[i].offset, static_cast<int>(i));
+      cutter_.split(polygon_, line, internal::TriangleCutter::InPlane::Inside, rest_, nullptr);
+      std::swap(polygon_, rest_);
+      if (polygon_.empty()) return std::nullopt;
+    }
+    const internal::CutMeasure measure = cutter_.measure(polygon_);
+    ClippedPiece piece;
+    piece.area = measure.fraction * vector_area.stableNorm();
+    piece.centroid = measure.centroid;
+    piece.polygon.reserve(polygon_.size());
+    for (const internal::CutEdge& of : polygon_) piece.polygon.push_back(cutter_.corner(of).point);
+    return piece;
+  }
+
+  /// Of the piece last clipped.
+  std::vector<CornerOrigin> origins() const {
+    std::vector<CornerOrigin> result;
+    for (const internal::CutEdge& of : polygon_) result.push_back(cutter_.origin(of));
+    return result;
+  }
+
+  const ClipStatistics& statistics() const { return cutter_.statistics(); }
+
+ private:
+  const ConvexVolume& volume_;
+  internal::TriangleCutter cutter_;
+  internal::CutPolygon polygon_;
+  internal::CutPolygon rest_;
+};
+
+}  // namespace
+
+std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
+                                 const ConvexVolume& volume) {
+  return Clipper(volume).clip(triangle);
+}
+
+std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
+                               const ConvexVolume& volume) {
+  Clipper clipper(volume);
+  std::vector<ClippedPiece> pieces;
+  for (const std::int32_t face : faces) {
+    if (auto piece = clipper.clip(corners(mesh, static_cast<std::size_t>(face)))) {
+      piece->face = face;
+      pieces.push_back(std::move(*piece));
+    }
+  }
+  return pieces;
+}
+
+Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& point) {
+  const std::vector<Eigen::Vector3d>& corners = piece.polygon;
+  Eigen::Vector3d closest = corners.front();
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Eigen::Vector3d candidate =
+        internal::closest_on_triangle(point, {corners[0], corners[i], corners[i + 1]});
+    if ((candidate - point).squaredNorm() < (closest - point).squaredNorm()) closest = candidate;
+  }
+  return closest;
+}
+
+ClippedWithOrigins clip_with_origins(const std::array<Eigen::Vector3d, 3>& triangle,
+                                     const ConvexVolume& volume) {
+  Clipper clipper(volume);
+  ClippedWithOrigins result;
+  result.piece = clipper.clip(triangle);
+  if (result.piece) result.origins = clipper.origins();
+  result.statistics = clipper.statistics();
+  return result;
+}
+
+}  // namespace graspfit::geometry

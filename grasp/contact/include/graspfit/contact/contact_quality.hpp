@@ -1,0 +1,154 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "graspfit/contact/contact.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::contact {
+
+/// Units of d and A in M1 and of D in M3 (notes A9–A11).
+enum class MeasureUnits {
+  Normalized,  ///< d over the pad's largest d and A over its area, both cut at 1 (rough surface can
+               ///< have more area than the pad); D over the normalizing radius.
+  Centimeters,  ///< d, D in cm, A in cm².
+};
+
+/// Definition of the regularity R (notes 18.3–18.4).
+enum class Regularity {
+  Combined,   ///< Square root of angle and edge regularity.
+  AngleOnly,  ///< 1 − Q, the shape index [Park & Starr 1992; Roa & Suárez 2015].
+  EdgeOnly,   ///< Shortest over longest edge.
+};
+
+/// Which centroid D is measured from (notes A15).
+enum class HullCentroid {
+  Measure,   ///< Of the hull's area or volume.
+  Vertices,  ///< Mean of the hull's vertices.
+};
+
+/// Parameters of the paper's measure M (section 4). Defaults are the paper's values [P] and the
+/// notes' readings [R].
+struct QualityOptions {
+  double alpha = 2.0;  ///< Weight of contact area against boundary distance, ≥ 0 [P].
+  double beta = 0.3;   ///< Weight of the centroid distance, ≥ 0 [P].
+  double w1 = 1.0;     ///< Exponent of M1, ≥ 0 [P].
+  double w2 = 1.0;     ///< Exponent of M2, ≥ 0 [P].
+  double w3 = 0.5;     ///< Exponent of M3, ≥ 0 [P].
+  double theta_max =
+      0.78539816339744831;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
+  MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
+  Regularity regularity = Regularity::Combined;   ///< [R] A13.
+  HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
+  /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; the
+  /// planner sets 0.1 voxel (notes 18.4).
+  double merge_distance = 0.0;
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+};
+
+/// What of the object and the hand M depends on.
+struct QualityContext {
+  Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
+  double normalizing_radius =
+      0.0;  ///< Half the diagonal of the object's bounding box [m] (A11), > 0.
+  const hands::HandModel* hand = nullptr;  ///< For pad areas and largest d; not null.
+};
+
+/// A pair of contacts of different fingers whose line lies in both friction cones.
+struct StablePair {
+  int first = -1;  ///< Indices of contacts, first < second.
+  int second = -1;
+  double angle = 0.0;  ///< Mean of the two line-to-normal angles [rad] (paper: theta_l).
+};
+
+/// The terms of M1 of one contact, as they enter the sum.
+struct SustainabilityTerm {
+  double boundary_distance = 0.0;  ///< d in the units chosen.
+  double area = 0.0;               ///< A in the units chosen.
+  double strength = 1.0;           ///< S: 0 on a weak feature, else 1.
+};
+
+/// The paper's measure with every term it came from.
+struct ContactQuality {
+  double m1 = 0.0;
+  double m2 = 0.0;
+  double m3 = 0.0;                        ///< May be negative; M is then 0 (A12).
+  double m = 0.0;                         ///< 0: unusable.
+  double regularity = 0.0;                ///< R in (0, 1]; 0 if there are fewer than two contacts.
+  double centroid_distance = 0.0;         ///< D [m].
+  double scaled_centroid_distance = 0.0;  ///< D in the units chosen.
+  std::vector<SustainabilityTerm> terms;  ///< One per contact.
+  std::vector<StablePair> stable_pairs;
+
+  bool is_usable() const { return m > 0.0; }
+};
+
+/// M1, M2, M3 and M of a set of contacts (paper section 4). Pairs are formed between contacts of
+/// different fingers only; the palm is a finger of its own (A16).
+///
+/// m = 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0,
+/// whatever the exponents. Independent of the order of contacts and of rigid motions up to
+/// rounding; in normalized units also of scaling hand and object together. Rounded.
+/// @throws InvalidInput for bad options, a null hand, a pad that the hand does not have, a normal
+/// that is not unit within 1e-6, and numbers that are not finite.
+ContactQuality contact_quality(std::span<const Contact> contacts, const QualityContext& context,
+                               const QualityOptions& options = {});
+
+/// The same from target contacts alone (no pads): d and A taken as given terms for every contact,
+/// in [0, 1], as shares of the pad's largest d and of its area. Used for the ideal M of a target
+/// set (A36, A48).
+///
+/// The hand may be null in normalized units; in centimeters the shares are of the contact's pad, or
+/// else of its finger's tip pad. @throws InvalidInput as `contact_quality`, and if two contacts
+/// have the same finger.
+ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityContext& context,
+                             double boundary_distance_rel, double area_rel,
+                             const QualityOptions& options = {});
+
+/// The line between two contacts against both cones (paper section 4.2; notes 20): the mean angle
+/// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9
+/// m.
+///
+/// The lengths of the normals do not matter. The comparison is of rounded angles (a few 1e-16): a
+/// pair at `theta_max` itself may fall to either side, and adds next to nothing to M2 if both of
+/// its angles are there.
+std::optional<double> stable_pair_angle(const Eigen::Vector3d& point_a,
+                                        const Eigen::Vector3d& inward_normal_a,
+                                        const Eigen::Vector3d& point_b,
+                                        const Eigen::Vector3d& inward_normal_b, double theta_max);
+
+/// Whether pairs are stable, for who asks of many: the same answer as whether `stable_pair_angle`
+/// has one, decided by cosines where they leave no doubt.
+class StablePairTest {
+ public:
+  /// @param theta_max half-angle of the friction cones [rad], in (0, π/2).
+  explicit StablePairTest(double theta_max);
+  /// Normals must be unit.
+  bool operator()(const Eigen::Vector3d& point_a, const Eigen::Vector3d& inward_normal_a,
+                  const Eigen::Vector3d& point_b, const Eigen::Vector3d& inward_normal_b) const;
+
+ private:
+  double theta_max_;
+  double cos_theta_max_;
+};
+
+/// R of the hull of `points` by notes 18.4, in [1e-3, 1]: 1 for regular polygons and polyhedra.
+///
+///     N < 2                                       0 (undefined)
+///     N = 2                                       1
+///     collinear: 2nd/1st singular value < 1e-3    1e-3, also if merging leaves fewer than three
+///     planar: thickness/extent < 0.1              polygon in its best-fit plane
+///     otherwise                                   polyhedron; triangles within 5° are one face
+///
+/// Combined is sqrt(angles · edges), where angles is 1 − Q of the polygon, or its mean over the
+/// faces, and edges is the shortest over the longest edge. Points inside the hull do not matter. R
+/// jumps where a case changes, most between planar and solid. Points linked by distances below
+/// `merge_distance` are one, their mean. @throws InvalidInput for a negative `merge_distance` or
+/// points that are not finite.
+double regularity(std::span<const Eigen::Vector3d> points, Regularity definition,
+                  double merge_distance = 0.0);
+
+}  // namespace graspfit::contact

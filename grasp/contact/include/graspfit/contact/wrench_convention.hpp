@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "graspfit/contact/contact.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+namespace graspfit::contact {
+
+/// What bounds the contact forces together.
+enum class ForceNorm {
+  L1,  ///< The sum of all forces is at most one: the wrench space is one convex hull.
+};
+
+/// What is one about a unit force.
+enum class ForceScaling {
+  UnitNormal,  ///< Its normal part: cone edges are √(1 + μ²) long.
+  UnitEdge,    ///< Its length along a cone edge.
+};
+
+/// What ε is while the origin lies outside the wrench space.
+enum class OutsideValue {
+  Zero,
+  MinusOne,
+  Signed,  ///< Minus the largest distance to a facet's plane that cuts the origin off.
+};
+
+/// Linearization and scaling of the grasp wrench space.
+struct WrenchSpaceOptions {
+  int num_cone_edges = 8;  ///< Edges per friction cone, ≥ 3. Eight lose at most 7.6 % of μ in some
+                           ///< direction; four up to 29 %.
+  double friction = 1.0;  ///< Coulomb's μ of all contacts, ≥ 0. The paper's cone of 45°.
+  double torque_scale =
+      std::numeric_limits<double>::quiet_NaN();  ///< Length that divides torques [m], > 0.
+                                                 ///< Required: ε depends on it.
+  ForceNorm norm = ForceNorm::L1;
+  ForceScaling force_scaling = ForceScaling::UnitNormal;
+  double force_limit = 1.0;  ///< Factor on all forces, > 0.
+  OutsideValue outside = OutsideValue::Zero;
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+};
+
+/// Tools whose wrench conventions are known: what torques are divided by and taken about, what of a
+/// force is one, and what ε is outside. All but DexGraspBench take them about the center of mass.
+enum class WrenchTool {
+  House,          ///< Largest radius of the surface; unit normal; 0.
+  GraspIt,        ///< Largest radius, here from the center of mass; unit normal; −1.
+  Simox,          ///< Half the longest extent; unit edge; reports none, 0 stands for it.
+  DexNet,         ///< Median extent; unit normal; 0.
+  Frogger,        ///< 1 m; unit edge of four; signed.
+  DexGraspBench,  ///< Mean distance of the contacts from their centroid, about that centroid; unit
+                  ///< normal; reports the residual of a balance instead, 0 stands for it.
+};
+
+/// Everything that ε and the volume depend on besides the contacts. It goes where the numbers go:
+/// two values are comparable only if these agree.
+///
+/// Not selectable: edges are those of `cone_edges`, an inscribed pyramid from normal × e_x on.
+struct WrenchConvention {
+  Eigen::Vector3d reference_point_O = Eigen::Vector3d::Zero();  ///< Origin of torques [m].
+  WrenchSpaceOptions options;
+  std::optional<WrenchTool> tool = std::nullopt;  ///< Whose it is; empty for one of the user's own.
+};
+
+/// In one line: "house: torques about (0, 0, 0.1) m over 0.075 m, friction 0.5, 8 inscribed edges
+/// from normal x e_x, L1, unit normal force, outside 0".
+std::string describe(const WrenchConvention& convention);
+
+/// What of an object conventions scale by.
+struct WrenchObject {
+  Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
+  double largest_radius = 0.0;                                 ///< Of the surface from there [m].
+  Eigen::Vector3d extents_O = Eigen::Vector3d::Zero();         ///< Of the bounding box [m].
+};
+
+/// Measures a mesh; its center of mass is given because density need not be uniform.
+WrenchObject wrench_object(const geometry::TriangleMesh& mesh_O,
+                           const Eigen::Vector3d& center_of_mass_O);
+
+/// The convention of a tool at the given friction, as `WrenchTool` says it. Eight edges; Frogger
+/// four. Azimuths of edges are ours: with few edges ε is the tool's up to the turn of its pyramids.
+/// Friction limits and contact models that go beyond that (soft fingers) are not covered.
+/// @throws InvalidInput if the torque scale comes out not positive, as for no contacts or all
+/// contacts in one point with DexGraspBench.
+WrenchConvention wrench_convention(WrenchTool tool, const WrenchObject& object,
+                                   std::span<const Contact> contacts, double friction);
+
+}  // namespace graspfit::contact

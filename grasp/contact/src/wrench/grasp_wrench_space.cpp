@@ -1,0 +1,109 @@
+#include "graspfit/contact/grasp_wrench_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/contact_check.hpp"
+#include "graspfit/geometry/dyadic_grid.hpp"
+
+namespace graspfit::contact {
+namespace {
+
+using geometry::Containment;
+using geometry::ConvexPolytope;
+
+constexpr int kSearchSteps = 64;
+
+/// Rounding error of a product of two vectors of six, relative to the product of their lengths.
+constexpr double kProductError = 8.0 * 0x1p-53;
+
+bool has_origin_inside(const ConvexPolytope& hull) {
+  return hull.containment(Wrench::Zero()) == Containment::Inside;
+}
+
+}  // namespace
+
+Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvention& convention) {
+  const WrenchSpaceOptions& options = convention.options;
+  options.validate();
+  internal::require_finite("contact_wrenches", contacts, convention.reference_point_O);
+  const double normal_force = options.force_scaling == ForceScaling::UnitNormal
+                                  ? options.force_limit
+                                  : options.force_limit / std::hypot(1.0, options.friction);
+  Wrenches wrenches(6, contacts.size() * static_cast<std::size_t>(options.num_cone_edges));
+  Eigen::Index column = 0;
+  for (const Contact& contact : contacts) {
+    const FrictionCone cone = friction_cone(contact.inward_normal_O, options.friction);
+    const Eigen::Matrix3Xd edges = cone_edges(cone, options.num_cone_edges);
+    for (const auto& edge : edges.colwise()) {
+      wrenches.col(column++) = wrench(normal_force * edge, contact.point_O,
+                                      convention.reference_point_O, options.torque_scale);
+    }
+  }
+  if (wrenches.cols() == 0) return wrenches;
+  // To multiples of the last bit of the largest entry.
+  const double largest = wrenches.cwiseAbs().maxCoeff();
+  return geometry::rounded_to_grid(wrenches, geometry::power_above(largest) - 52);
+}
+
+GraspWrenchSpace grasp_wrench_space(std::span<const Contact> contacts,
+                                    const WrenchConvention& convention) {
+  Wrenches wrenches = contact_wrenches(contacts, convention);
+  ConvexPolytope hull(wrenches);
+  return {convention, std::move(wrenches), std::move(hull)};
+}
+
+GraspWrenchSpace grasp_wrench_space(std::span<const Contact> contacts,
+                                    const Eigen::Vector3d& reference_point_O,
+                                    const WrenchSpaceOptions& options) {
+  return grasp_wrench_space(contacts, {reference_point_O, options, std::nullopt});
+}
+
+WrenchQuality wrench_quality(const GraspWrenchSpace& space) {
+  return {.epsilon = epsilon_quality(space),
+          .volume = space.hull.volume(),
+          .is_force_closure = is_force_closure(space),
+          .rank = space.hull.rank(),
+          .convention = space.convention};
+}
+
+double epsilon_quality(const GraspWrenchSpace& space) {
+  const double inradius = space.hull.inradius(Wrench::Zero());
+  if (inradius >= 0.0) return inradius;
+  switch (space.convention.options.outside) {
+    case OutsideValue::MinusOne:
+      return -1.0;
+    case OutsideValue::Signed:
+      return inradius;
+    case OutsideValue::Zero:
+      break;
+  }
+  return 0.0;
+}
+
+bool is_force_closure(const GraspWrenchSpace& space) { return has_origin_inside(space.hull); }
+
+bool is_force_closure(const Wrenches& wrenches) {
+  return wrenches.cols() > 6 && !is_surely_no_force_closure(wrenches) &&
+         has_origin_inside(ConvexPolytope(wrenches));
+}
+
+bool is_surely_no_force_closure(const Wrenches& wrenches) {
+  if (wrenches.cols() == 0) return true;
+  const double longest = wrenches.colwise().norm().maxCoeff();
+  Wrench nearest = wrenches.rowwise().mean();
+  for (int step = 0; step < kSearchSteps; ++step) {
+    Eigen::Index against = 0;
+    const double least = (nearest.transpose() * wrenches).minCoeff(&against);
+    if (least > kProductError * nearest.norm() * longest) return true;
+    // To the point nearest to the origin on the way to the wrench that is most against it.
+    const Wrench way = wrenches.col(against) - nearest;
+    const double squared_length = way.squaredNorm();
+    const double share = -nearest.dot(way) / squared_length;
+    if (!(share > 0.0)) return false;
+    nearest += std::min(share, 1.0) * way;
+  }
+  return false;
+}
+
+}  // namespace graspfit::contact

@@ -1,0 +1,145 @@
+#include "graspfit/contact/squeeze.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "graspfit/base/option_check.hpp"
+#include "graspfit/contact/contact_estimation.hpp"
+#include "graspfit/contact/grasp_balance.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/jacobian.hpp"
+
+namespace graspfit::contact {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of the squeeze's forces: small enough to leave the residual to the balance, large enough to
+/// decide among balanced forces well above rounding (its square, 1e-6, does).
+constexpr double kEvenness = 1e-3;
+
+/// A follower this near to where its leader puts it follows it [rad or m]: rounding of positions
+/// that were written as text, as in `hands::validate`.
+constexpr double kFollowingSlack = 1e-9;
+
+double led_position(const hands::Coupling& coupling, const VectorXd& q) {
+  return coupling.ratio * q[coupling.leader] + coupling.offset;
+}
+
+/// Per joint: a coupled one that stands where its leader puts it.
+std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
+  std::vector<bool> follows(hand.joints.size(), false);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    const auto& coupling = hand.joints[j].coupling;
+    follows[j] = coupling &&
+                 std::abs(q[static_cast<Index>(j)] - led_position(*coupling, q)) <= kFollowingSlack;
+  }
+  return follows;
+}
+
+/// Generalized forces Σ Jᵀ f on the independent joints, in their order [N m or N].
+VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
+                      std::span<const Contact> contacts, const Eigen::Matrix3Xd& forces_O,
+                      const std::vector<bool>& follows) {
+  const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
+  MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const hands::RigidTransform& X = X_OL[static_cast<std::size_t>(contacts[i].link)];
+    const MatrixXd jacobian =
+        hands::point_jacobian(hand, grasp, contacts[i].link, X.inverse() * contacts[i].point_O);
+    per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
+  }
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    if (hand.joints[j].coupling && !follows[j]) per_joint(0, static_cast<Index>(j)) = 0.0;
+  }
+  return hands::folded(hand, per_joint).transpose();
+}
+
+/// Moves the independent joints by `displacement`, clamped to the limits, and their followers with
+/// them. Whether a limit kept any joint back.
+bool command(const hands::HandModel& hand, const VectorXd& displacement,
+             const std::vector<bool>& follows, VectorXd& q) {
+  bool is_clamped = false;
+  const std::vector<int> independent = hands::independent_joints(hand);
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    const double change = displacement[static_cast<Index>(k)];
+    if (change == 0.0) continue;
+    const hands::Joint& joint = hand.joints[static_cast<std::size_t>(independent[k])];
+    const double wanted = q[independent[k]] + change;
+    q[independent[k]] = std::clamp(wanted, joint.lower, joint.upper);
+    is_clamped = is_clamped || q[independent[k]] != wanted;
+  }
+  // Put where they belong first: couplings leave a breakaway joint behind that its leader opens.
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    if (follows[j]) q[static_cast<Index>(j)] = led_position(*hand.joints[j].coupling, q);
+  }
+  hands::apply_couplings(hand, q);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    if (!follows[j]) continue;
+    const double behind = q[static_cast<Index>(j)] - led_position(*hand.joints[j].coupling, q);
+    is_clamped = is_clamped || std::abs(behind) > kFollowingSlack;
+  }
+  return is_clamped;
+}
+
+}  // namespace
+
+void SqueezeOptions::validate() const {
+  const auto require = [](double value, std::string_view field, std::string_view rule,
+                          bool is_met) {
+    base::require(is_met && std::isfinite(value), "SqueezeOptions", field, value, rule);
+  };
+  require(normal_sum, "normal_sum", "finite and > 0 N", normal_sum > 0.0);
+  require(stiffness, "stiffness", "finite and > 0 N m/rad", stiffness > 0.0);
+  require(slide_stiffness, "slide_stiffness", "finite and > 0 N/m", slide_stiffness > 0.0);
+  require(largest_residual, "largest_residual", "finite and >= 0", largest_residual >= 0.0);
+}
+
+Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
+                              std::span<const Contact> contacts,
+                              const Eigen::Vector3d& center_of_mass_O, double torque_scale,
+                              double friction, const SqueezeOptions& options,
+                              const std::optional<double>& bearing_gap) {
+  options.validate();
+  hands::validate(hand, grasp);
+  const std::vector<Contact> touching = touching_contacts(contacts, bearing_gap);
+  base::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
+                touching.size(), "at least 1");
+  const int num_links = static_cast<int>(hand.links.size());
+  for (const Contact& contact : contacts) {
+    base::require(contact.link >= 0 && contact.link < num_links, "squeeze_configuration",
+                  "link of a contact", contact.link,
+                  "one of the " + std::to_string(num_links) + " of hand " + hand.name);
+  }
+  const BalanceForces balance = balance_forces(touching, center_of_mass_O, Wrench::Zero(),
+                                               {.friction = friction,
+                                                .least_normal_sum = options.normal_sum,
+                                                .torque_scale = torque_scale,
+                                                .evenness = kEvenness});
+  Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
+                 balance.residual_norm / options.normal_sum, false, false};
+  Index next = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const bool bears = !bearing_gap || contacts[i].gap <= *bearing_gap;
+    if (bears) result.forces_O.col(static_cast<Index>(i)) = balance.forces_O.col(next++);
+  }
+  result.is_balanced = result.residual <= options.largest_residual;
+
+  const std::vector<bool> follows = following_joints(hand, grasp.q);
+  VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O, follows);
+  const std::vector<int> independent = hands::independent_joints(hand);
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    const bool is_slide =
+        hand.joints[static_cast<std::size_t>(independent[k])].type == hands::JointType::Prismatic;
+    displacement[static_cast<Index>(k)] /= is_slide ? options.slide_stiffness : options.stiffness;
+  }
+  result.is_clamped = command(hand, displacement, follows, result.configuration.q);
+  return result;
+}
+
+}  // namespace graspfit::contact

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "graspfit/hold_test/hold_test.hpp"
+#include "physics.hpp"
+
+namespace graspfit::hold_test::internal {
+
+/// One grasp's way through a protocol: on to the squeeze once, then any number of loads from there.
+class HoldRun {
+ public:
+  using Watch = std::function<void()>;  ///< Called after every step.
+
+  HoldRun(Physics& physics, const HoldHand& hand, const HoldObject& object,
+          const HoldProtocol& protocol)
+      : physics_(physics), hand_(hand.model), object_(object), protocol_(protocol) {}
+
+  /// Pre-grasp, grasp and squeeze. Fills stage (Rejected, Approach, or Held so far), reason, what
+  /// the approach moved and the squeeze's force.
+  void approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch = {});
+
+  /// From the squeezed state, as often as wanted.
+  DirectionVerdict load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
+                        const Eigen::Vector3d& torque_O, const Watch& watch = {});
+
+  /// Why the last call's simulation went wrong; empty else.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  struct Motion {
+    double shift = 0.0;  ///< Of the center of mass [m].
+    double turn = 0.0;   ///< [rad]
+  };
+
+  std::string rejection(const grasp::Grasp& grasp);
+  hands::HandConfiguration squeezed(const grasp::Grasp& grasp) const;
+  /// Straight from one command to another; checks on the way. False: lost.
+  bool move(const hands::HandConfiguration& from, const hands::HandConfiguration& to,
+            double duration, HoldVerdict& verdict, const Watch& watch);
+  bool step(const Watch& watch);  ///< False: the simulation went wrong.
+  Motion motion(const geometry::RigidTransform& X_HB_before,
+                const geometry::RigidTransform& X_HB_now) const;
+  geometry::RigidTransform X_HB() const;
+  bool is_lost(const Motion& motion) const;
+  int num_steps(double duration) const;
+
+  Physics& physics_;
+  const hands::HandModel& hand_;
+  const HoldObject& object_;
+  const HoldProtocol& protocol_;
+  Physics::State squeezed_state_;
+  geometry::RigidTransform X_HB_squeezed_;
+  std::string failure_;
+};
+
+}  // namespace graspfit::hold_test::internal

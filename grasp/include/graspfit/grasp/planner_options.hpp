@@ -1,0 +1,164 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/contact/contact_estimation.hpp"
+#include "graspfit/contact/contact_quality.hpp"
+#include "graspfit/contact/squeeze.hpp"
+#include "graspfit/grasp/approach_sampling.hpp"
+#include "graspfit/grasp/contact_refinement.hpp"
+#include "graspfit/grasp/distinct_grasps.hpp"
+#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/medial_symmetry.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+
+namespace graspfit::grasp {
+
+/// Which grasps the planner collects.
+enum class Acceptance {
+  Valid,   ///< Usable, free of penetration on the true meshes, every requested contact there.
+  Usable,  ///< M > 0: the paper's meaning.
+};
+
+/// Which usable grasps are rejected, so that the next attempt draws new targets: the validation of
+/// the paper's section 6.5, which leaves open how much is too much (notes A36).
+enum class Rejection {
+  None,
+  Deviation,  ///< A requested contact farther from its target as drawn than
+              ///< `PlannerOptions::largest_deviation`, or missing. Of methods without targets none.
+  Quality,    ///< M < min(0.5 · ideal M, 0.6): below "high quality"; of methods without targets
+              ///< M < 0.6. Selects by M itself.
+};
+
+/// When the planner stops looking (notes A36).
+enum class SearchRule {
+  Best,   ///< Use all attempts and return the best accepted grasps: the paper's generate, evaluate,
+          ///< select.
+  First,  ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
+          ///< grasps.
+};
+
+/// What becomes of a hand that has closed while a requested part does not touch (notes A31).
+enum class MissingContact {
+  Fails,     ///< The attempt has failed: a formed grasp needs them all [P: its stop condition].
+  Measured,  ///< The contacts that there are count; M > 0 makes it usable. Without refinement only:
+             ///< refined grasps have all their contacts. For tables over all attempts with M > 0.
+};
+
+/// Which of the starts that one attempt has is kept: each a side of a set of targets from which a
+/// hand is fitted [R]. The first two know one set per attempt.
+enum class AttemptChoice {
+  First,      ///< The first whose grasp is accepted. Sets on which the pads would lie flattest.
+  Balanced,   ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
+              ///< grasp of least residual. Of the sets drawn those go first whose targets balance
+              ///< one another (within the squeeze's largest residual) at `squeeze_friction`, then
+              ///< those that do at `friction`.
+  Strongest,  ///< All are tried; of the accepted grasps the strongest one with a balanced squeeze,
+              ///< else the strongest: largest ε, signed, within cones of `squeeze_friction`, of the
+              ///< contacts that touch (with refinement: within its largest gap), torques over the
+              ///< object's largest radius. The sides of all sets drawn are starts, in the order of
+              ///< `Balanced`; of a ranked search those of its next set.
+};
+
+/// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
+struct PlannerOptions {
+  /// The method that guides hands to the object, by its name in `planning_methods`; "fitting" is
+  /// the paper's own. All else is the same for every method.
+  std::string planner = "fitting";
+  GraspStyle style = GraspStyle::Precision;
+  std::vector<std::string>
+      fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
+  int num_contacts =
+      3;  ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+  /// Whether the palm must touch too, one target more; empty: as the style has it, power grasps yes
+  /// [P: "if the palm may touch"].
+  std::optional<bool> palm;
+  int count = 1;  ///< Grasps to collect (K), ≥ 1.
+  std::uint64_t seed = 1;
+  SearchRule search = SearchRule::Best;
+  int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
+  /// Steps of fitting and refinement of all attempts together, ≥ 1: the attempt with which their
+  /// sum, taken in the order of attempts, reaches it is the last; empty: no such budget (A36).
+  std::optional<std::int64_t> max_iterations;
+  Acceptance acceptance = Acceptance::Valid;
+  MissingContact missing_contact = MissingContact::Fails;
+  Rejection rejection = Rejection::None;      ///< [R]: which grasps are good the measures say.
+  std::optional<double> largest_deviation;    ///< Of a contact from its target [m], > 0; empty: the
+                                              ///< width of a fingertip pad (A36).
+  std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
+                                              ///< by targets' sides and by every grasp accepted.
+  double approach_angle =
+      1.57079632679489662;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
+  std::optional<double>
+      wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
+  int resolution = 30;     ///< Voxels along the object's longest extent [P].
+  std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm) (A33).
+  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
+  std::optional<contact::CountedPads> counted_pads;  ///< Empty: in power grasps all [P: proximal
+                                                     ///< links are encouraged to touch], else those
+                                                     ///< of fingertips and palm (A35) [R].
+  contact::ContactPieces contact_pieces = contact::ContactPieces::Joined;
+  ScoreOptions score;
+  /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
+  /// for and S = 1 everywhere (A37).
+  std::optional<geometry::WeakRegionOptions> weak = geometry::WeakRegionOptions{};
+  TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
+  /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
+  /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
+  /// kinematics [R]. 1: the paper's random set, the side with more room first.
+  int target_draws = 32;
+  AttemptChoice attempt_choice = AttemptChoice::First;
+  int max_placements = 4;  ///< Sides that are fitted, ≥ 1: of one target set, the flattest first
+                           ///< (A23) [R], of which three and more targets have two, two have
+                           ///< sixteen; of all sets drawn where the strongest grasp is kept.
+  FittingOptions fitting;
+  ApproachSamplingOptions sampling;       ///< Of the method gs.
+  MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.
+  /// Whether claimed contacts are made real by exact queries after fitting [R]; without: the
+  /// paper's voxel-level grasp.
+  bool refine = true;
+  RefinementOptions refinement;
+  double self_overlap =
+      0.001;  ///< Without refinement: overlap of links of different fingers that a formed grasp may
+              ///< have before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
+  /// Every contact's score must exceed it, in [0, 1), whether the pad had a target or not; empty:
+  /// only the scores of targets count, as the paper states it [R].
+  std::optional<double> contact_score_threshold;
+  bool pre_grasps = true;  ///< Whether a grasp needs a pre-grasp with a free way in [R].
+  PreGraspOptions pre_grasp;
+  contact::SqueezeOptions squeeze;
+  DistinctOptions distinct;
+  double friction = 0.4;          ///< Coulomb's μ of ε, ≥ 0 [R]; GraspIt!'s usual.
+  double squeeze_friction = 0.2;  ///< Of the squeeze: within so narrow cones its forces are sought,
+                                  ///< ≥ 0 [R]. What friction there is beyond carries loads.
+  contact::QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
+  void validate() const;            ///< Throws InvalidInput naming the field and its value.
+};
+
+/// The planner's rule for clip volumes (A33).
+double clip_thickness(const PlannerOptions& options, double voxel_size);
+
+/// The planner's rule for deviations from targets (A36) [m].
+double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand);
+
+/// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
+double merge_distance(const PlannerOptions& options, double voxel_size);
+
+/// Which contacts of `options` count, and how they are estimated. @param clip_thickness [m]
+contact::ContactEstimationOptions contact_estimation(const PlannerOptions& options,
+                                                     double clip_thickness);
+
+/// The gap up to which contacts of planned grasps bear forces (ε, closure, min-weight, squeeze)
+/// [m]: of refined grasps the largest that a claimed pad may have. Empty at the level of voxels:
+/// all contacts do.
+std::optional<double> bearing_gap(const PlannerOptions& options);
+
+/// What `options` ask of `hand`, the thumb first where it is among the fingers (A22).
+RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "graspfit/base/content_cache.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/motion/table_motion.hpp"
+
+namespace graspfit::motion {
+
+/// How an object is picked up and put down. The paper's table tidying (Fig. 20) plans each grasp
+/// for an approach direction and interpolates; that nothing is touched on the way is ours [R].
+struct PickAndPlaceOptions {
+  grasp::PlannerOptions
+      planner;  ///< `count` grasps are tried per approach, best M first; acceptance must
+                ///< be Valid with pre-grasps. `approach_O` is set here, and pre-grasps
+                ///< are fully open (`pre_grasp.opening_steps` 1).
+  hands::HandConfiguration home;  ///< Where every move begins and ends; `X_OH` is X_WH.
+  /// Wanted palm directions in W, tried in order until a grasp can be used; their lengths, > 0, do
+  /// not matter. Empty: from the palm center at home to the object's center of mass [P: "from the
+  /// hand's initial pose toward the object's initial pose"], where the two differ, then straight
+  /// down.
+  std::vector<Eigen::Vector3d> approaches_W;
+  double clearance = 0.003;  ///< Kept by hand and carried object from everything while they travel
+                             ///< [m], ≥ 0 and below `planner.pre_grasp.clearance`.
+  std::vector<double> lifts = {0.08, 0.16, 0.26};       ///< Heights to lift by, tried in order [m].
+  std::vector<double> withdrawals = {0.06, 0.12, 0.2};  ///< Of the palm, against its direction,
+                                                        ///< from the pre-grasp, tried in order [m].
+  base::ContentCache cache = {.is_on = false};          ///< Of objects prepared before.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
+};
+
+/// A move of one object that was found free, from home to home.
+struct PlannedMove {
+  int object = -1;
+  geometry::RigidTransform X_WO_from = geometry::RigidTransform::Identity();
+  geometry::RigidTransform X_WO_to = geometry::RigidTransform::Identity();
+  grasp::Grasp grasp;  ///< In the frame in which it was planned: W, with the object at X_WO_from.
+  Eigen::Vector3d approach_W = Eigen::Vector3d::Zero();  ///< Wanted palm direction, unit.
+  std::vector<MotionStretch> stretches;                  ///< Each begins where the last one ends.
+  std::int64_t planner_attempts = 0;                     ///< What it took, as in MoveAttempt.
+  int grasps_tried = 0;
+  int stretches_tried = 0;
+  std::string refusals;  ///< Why earlier grasps and ways were refused, in a line.
+};
+
+/// What became of the attempt to move an object.
+struct MoveAttempt {
+  std::optional<PlannedMove> move;  ///< Empty: impossible within the options' limits.
+  std::int64_t planner_attempts = 0;
+  int grasps_tried = 0;
+  int stretches_tried = 0;
+  /// Why grasps and ways were refused, with how often: "lift: bunny and mug", "no grasp: …".
+  std::map<std::string, int> failures;
+  /// The most frequent reasons in a line; of equally frequent ones the first by name.
+  std::string reason() const;
+};
+
+/// Plans to take an object from where it stands (`X_WO[object]`, the others around it) to
+/// `X_WO_goal`, every stretch proven free (`find_encounter`): reach, approach, lift, transport and
+/// turn, place, release, retreat.
+///
+/// Grasps are planned in W on the object as it stands, amid the table and the convex hulls of the
+/// other objects, and amid both as the object will see them at its goal, so that the hand has room
+/// at both ends; the motion is then proven on the true meshes; the
+/// best that can be carried on a tried way is taken. Ways: straight up by one of `lifts`, then
+/// straight, or turning first, or turning last, then straight down; the free hand comes and goes
+/// over points behind the pre-grasp (`withdrawals`) and above those. Deterministic in its input.
+///
+/// An object too large or too small for the hand, by the box around it in its own frame however it
+/// stands, has that as its reason. @throws InvalidInput for bad options and an object that is not
+/// there; else as `plan_grasps`.
+MoveAttempt plan_move(const TableScene& scene, std::span<const geometry::RigidTransform> X_WO,
+                      int object, const geometry::RigidTransform& X_WO_goal,
+                      const PickAndPlaceOptions& options);
+
+}  // namespace graspfit::motion

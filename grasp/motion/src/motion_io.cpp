@@ -1,0 +1,326 @@
+#include "graspfit/motion/motion_io.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
+#include "graspfit/base/path_text.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/named_shapes.hpp"
+#include "graspfit/grasp/object_file.hpp"
+#include "graspfit/hands/hand_io.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "io/json_node.hpp"
+#include "io/json_text.hpp"
+#include "io/record_json.hpp"
+
+namespace graspfit::motion {
+
+namespace fs = std::filesystem;
+using geometry::RigidTransform;
+using grasp::internal::Json;
+using grasp::internal::JsonNode;
+
+namespace {
+
+constexpr const char* kFormat = "graspfit_motion";
+constexpr std::int64_t kVersion = 1;
+constexpr std::string_view kShapePrefix = "shape ";
+
+Json joints_json(const Eigen::VectorXd& q) { return std::vector<double>(q.begin(), q.end()); }
+
+/// Where a stretch begins or ends.
+Json keyframe_json(const hands::HandConfiguration& hand, const RigidTransform& X_WO) {
+  return {{"X_WH", grasp::internal::to_json(hand.X_OH)},
+          {"q", joints_json(hand.q)},
+          {"X_WO", grasp::internal::to_json(X_WO)}};
+}
+
+Json move_json(const MotionFile& file, const RecordedMove& move) {
+  Json stretches = Json::array();
+  for (const MotionStretch& stretch : move.stretches) {
+    Json entry = {{"phase", phase_name(stretch.phase)}};
+    entry.update(keyframe_json(stretch.to, stretch.X_WO_to));
+    stretches.push_back(std::move(entry));
+  }
+  const MotionStretch& first = move.stretches.front();
+  return {{"object", file.objects.at(static_cast<std::size_t>(move.object)).name},
+          {"grasp_m", move.grasp_m},
+          {"num_contacts", move.num_contacts},
+          {"from", keyframe_json(first.from, first.X_WO_from)},
+          {"to", stretches}};
+}
+
+int object_index(const JsonNode& node, const std::vector<MotionObject>& objects) {
+  const std::string name = node.text();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].name == name) return static_cast<int>(i);
+  }
+  node.fail("is \"" + name + "\", which is none of the objects");
+}
+
+hands::HandConfiguration hand_at(const JsonNode& node, std::size_t num_joints) {
+  const std::vector<JsonNode> positions = node.at("q").items();
+  if (positions.size() != num_joints) {
+    node.at("q").fail("has " + std::to_string(positions.size()) + " positions for " +
+                      std::to_string(num_joints) + " joints");
+  }
+  hands::HandConfiguration hand{node.at("X_WH").pose(),
+                                Eigen::VectorXd(static_cast<Eigen::Index>(num_joints))};
+  for (std::size_t j = 0; j < num_joints; ++j) {
+    hand.q[static_cast<Eigen::Index>(j)] = positions[j].number();
+  }
+  return hand;
+}
+
+/// Poses and positions that differ by no more than this are the same but for rounding [m, rad].
+constexpr double kSame = 1e-9;
+
+bool are_same(const RigidTransform& a, const RigidTransform& b) {
+  return (a.matrix() - b.matrix()).norm() <= kSame;
+}
+
+bool are_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).norm() <= kSame;
+}
+
+/// What a stretch says of the object must be true of the phase that it calls itself.
+void require_possible(const JsonNode& end, const MotionStretch& stretch) {
+  const std::string phase = phase_name(stretch.phase);
+  if (!is_carrying(stretch.phase)) {
+    if (are_same(stretch.X_WO_from, stretch.X_WO_to)) return;
+    end.at("X_WO").fail("is not where the object stood, which no hand carries in phase " + phase);
+  }
+  if (!are_same(stretch.from.q, stretch.to.q)) {
+    end.at("q").fail("is not as before, and joints do not move in phase " + phase);
+  }
+  if (!are_same(stretch.X_WO_from.inverse() * stretch.from.X_OH,
+                stretch.X_WO_to.inverse() * stretch.to.X_OH)) {
+    end.at("X_WH").fail("is not the hand's place against the object, which it keeps in phase " +
+                        phase);
+  }
+}
+
+/// Where the moves before have left hand and objects.
+struct Whereabouts {
+  std::optional<hands::HandConfiguration> hand;
+  std::vector<RigidTransform> X_WO;
+};
+
+/// A move must begin where things are.
+void require_there(const JsonNode& from, const MotionStretch& first, const Whereabouts& now) {
+  if (!are_same(first.X_WO_from, now.X_WO[static_cast<std::size_t>(first.object)])) {
+    from.at("X_WO").fail("is not where the object stands then");
+  }
+  if (!now.hand) return;
+  if (!are_same(first.from.X_OH, now.hand->X_OH)) {
+    from.at("X_WH").fail("is not where the move before has left the hand");
+  }
+  if (!are_same(first.from.q, now.hand->q)) {
+    from.at("q").fail("is not as the move before has left the joints");
+  }
+}
+
+RecordedMove read_move(const JsonNode& node, const MotionFile& file, Whereabouts& now) {
+  RecordedMove move{object_index(node.at("object"), file.objects),
+                    node.at("grasp_m").number(),
+                    node.at("num_contacts").small_integer(),
+                    {}};
+  JsonNode before = node.at("from");
+  for (const JsonNode& after : node.at("to").items()) {
+    const JsonNode phase = after.at("phase");
+    const auto value = phase_named(phase.text());
+    if (!value) phase.fail("is \"" + phase.text() + "\", which is no phase of a motion");
+    move.stretches.push_back({*value, move.object, hand_at(before, file.joints.size()),
+                              hand_at(after, file.joints.size()), before.at("X_WO").pose(),
+                              after.at("X_WO").pose()});
+    if (move.stretches.size() == 1) require_there(before, move.stretches.front(), now);
+    require_possible(after, move.stretches.back());
+    before = after;
+  }
+  if (move.stretches.empty()) node.at("to").fail("is empty");
+  now.hand = move.stretches.back().to;
+  now.X_WO[static_cast<std::size_t>(move.object)] = move.stretches.back().X_WO_to;
+  return move;
+}
+
+void require_hash(const std::string& what, const std::string& found, const std::string& recorded) {
+  if (found == recorded) return;
+  throw base::IoError(what + " is not the one recorded: its SHA-256 is " + found + ", not " +
+                      recorded);
+}
+
+/// The joints must be the hand's, and where it can have them.
+void require_joints(const MotionFile& file, const hands::HandModel& hand) {
+  std::vector<std::string> names;
+  for (const hands::Joint& joint : hand.joints) names.push_back(joint.name);
+  const auto differs =
+      std::mismatch(names.begin(), names.end(), file.joints.begin(), file.joints.end());
+  if (differs.first != names.end() || differs.second != file.joints.end()) {
+    const auto name = [](const auto& at, const auto& end) { return at == end ? "none" : *at; };
+    throw base::IoError("/hand/joints/" + std::to_string(differs.first - names.begin()) + ": is " +
+                        name(differs.second, file.joints.end()) + ", of hand " + hand.name +
+                        " it is " + name(differs.first, names.end()));
+  }
+  for (std::size_t m = 0; m < file.moves.size(); ++m) {
+    const std::string move = "/moves/" + std::to_string(m);
+    const std::vector<MotionStretch>& stretches = file.moves[m].stretches;
+    const auto check = [&](const hands::HandConfiguration& configuration, const std::string& at) {
+      try {
+        hands::validate(hand, configuration);
+      } catch (const base::InvalidInput& error) {
+        throw base::IoError(move + at + "/q: " + error.what());
+      }
+    };
+    if (!stretches.empty()) check(stretches.front().from, "/from");
+    for (std::size_t s = 0; s < stretches.size(); ++s) {
+      check(stretches[s].to, "/to/" + std::to_string(s));
+    }
+  }
+}
+
+geometry::TriangleMesh mesh_of(const MotionObject& object, const fs::path& mesh_folder) {
+  if (object.file.starts_with(kShapePrefix)) {
+    const geometry::TriangleMesh mesh =
+        geometry::named_shape(object.file.substr(kShapePrefix.size()));
+    // As when it was made: a factor of one leaves the bits alone.
+    return object.meters_per_file_unit == 1.0 ? mesh
+                                              : geometry::scaled(mesh, object.meters_per_file_unit);
+  }
+  grasp::ObjectReadOptions options;
+  options.meters_per_file_unit = object.meters_per_file_unit;
+  const grasp::ObjectFile read = grasp::read_object_file(mesh_folder / object.file, options);
+  require_hash("object " + object.file, read.record.sha256, object.sha256);
+  return read.mesh;
+}
+
+}  // namespace
+
+MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> objects,
+                            const std::vector<RigidTransform>& X_WO_goal,
+                            const TidyingResult& result, const TidyingOptions& options) {
+  const std::size_t num_objects = scene.objects().size();
+  for (const std::size_t size : {objects.size(), X_WO_goal.size(), result.X_WO_start.size()}) {
+    base::require(size == num_objects, "make_motion_file", "number of objects", size,
+                  "that of the scene, " + std::to_string(num_objects));
+  }
+  MotionFile file;
+  file.hand = scene.hand().description_file;
+  file.description_sha256 = scene.hand().description_sha256;
+  for (const hands::Joint& joint : scene.hand().joints) file.joints.push_back(joint.name);
+  file.clearance = options.move.clearance;
+  file.objects = std::move(objects);
+  for (std::size_t i = 0; i < file.objects.size(); ++i) {
+    file.objects[i].X_WO_start = result.X_WO_start[i];
+    file.objects[i].X_WO_goal = X_WO_goal[i];
+  }
+  for (const PlannedMove& move : result.moves) {
+    file.moves.push_back({move.object, move.grasp.quality.m,
+                          static_cast<int>(move.grasp.contacts.size()), move.stretches});
+  }
+  file.unmoved = result.unmoved;
+  return file;
+}
+
+std::string to_json(const MotionFile& file) {
+  Json objects = Json::array();
+  for (const MotionObject& object : file.objects) {
+    objects.push_back({{"name", object.name},
+                       {"file", base::path_text(object.file)},
+                       {"sha256", object.sha256},
+                       {"meters_per_file_unit", object.meters_per_file_unit},
+                       {"X_WO_start", grasp::internal::to_json(object.X_WO_start)},
+                       {"X_WO_goal", grasp::internal::to_json(object.X_WO_goal)}});
+  }
+  Json moves = Json::array();
+  for (const RecordedMove& move : file.moves) moves.push_back(move_json(file, move));
+  Json unmoved = Json::array();
+  for (const UnmovedObject& object : file.unmoved) {
+    unmoved.push_back({{"object", file.objects.at(static_cast<std::size_t>(object.object)).name},
+                       {"reason", object.reason}});
+  }
+  const Json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"conventions",
+       {{"units", "meters and radians; quaternions are w, x, y, z"},
+        {"frames",
+         "W: world, the table is z = 0 and z is up; H: the hand's base; O: an object's mesh, "
+         "scaled; X_AB is the pose of frame B in frame A"},
+        {"between_keyframes",
+         "hand free: palm position and joints linear, palm rotation by the shortest arc; lift, "
+         "transport and place: the same of the object's pose, taken at its center of mass, and "
+         "the hand keeps its place against it"}}},
+      {"title", file.title},
+      {"hand",
+       {{"description", base::path_text(file.hand)},
+        {"description_sha256", file.description_sha256},
+        {"joints", file.joints}}},
+      {"proven_clearance_m", file.clearance},
+      {"objects", objects},
+      {"moves", moves},
+      {"unmoved", unmoved}};
+  return grasp::internal::json_text(json);
+}
+
+MotionFile read_motion(const fs::path& path) {
+  const JsonNode root = JsonNode::read(path);
+  if (root.at("format").text() != kFormat) {
+    root.at("format").fail(std::string("is not \"") + kFormat + '"');
+  }
+  if (root.at("version").integer() != kVersion) {
+    root.at("version").fail("is not " + std::to_string(kVersion));
+  }
+  MotionFile file;
+  file.title = root.at("title").text();
+  file.hand = root.at("hand").at("description").path();
+  file.description_sha256 = root.at("hand").at("description_sha256").text();
+  file.joints = root.at("hand").at("joints").texts();
+  file.clearance = root.at("proven_clearance_m").number();
+  for (const JsonNode& object : root.at("objects").items()) {
+    file.objects.push_back({object.at("name").text(), object.at("file").path(),
+                            object.at("sha256").text(),
+                            object.at("meters_per_file_unit").positive_number(),
+                            object.at("X_WO_start").pose(), object.at("X_WO_goal").pose()});
+  }
+  Whereabouts now;
+  for (const MotionObject& object : file.objects) now.X_WO.push_back(object.X_WO_start);
+  for (const JsonNode& move : root.at("moves").items()) {
+    file.moves.push_back(read_move(move, file, now));
+  }
+  for (const JsonNode& object : root.at("unmoved").items()) {
+    file.unmoved.push_back(
+        {object_index(object.at("object"), file.objects), object.at("reason").text()});
+  }
+  return file;
+}
+
+TableScene read_motion_scene(const MotionFile& file, const fs::path& mesh_folder) {
+  const bool is_in_folder = file.hand.find('/') != std::string::npos;
+  hands::HandModel hand = hands::read_hand_model(is_in_folder ? mesh_folder / file.hand
+                                                              : hands::find_hand_file(file.hand));
+  require_hash("hand " + file.hand, hand.description_sha256, file.description_sha256);
+  require_joints(file, hand);
+  std::vector<SceneObject> objects;
+  for (const MotionObject& object : file.objects) {
+    geometry::TriangleMesh mesh = mesh_of(object, mesh_folder);
+    const Eigen::Vector3d center = geometry::mass_properties(mesh).center_of_mass;
+    objects.push_back({object.name, geometry::MeshQuery(std::move(mesh)), center});
+  }
+  return TableScene(std::move(hand), std::move(objects));
+}
+
+std::vector<std::vector<RigidTransform>> object_poses(const MotionFile& file) {
+  std::vector<RigidTransform> X_WO;
+  for (const MotionObject& object : file.objects) X_WO.push_back(object.X_WO_start);
+  std::vector<std::vector<RigidTransform>> poses = {X_WO};
+  for (const RecordedMove& move : file.moves) {
+    X_WO.at(static_cast<std::size_t>(move.object)) = move.stretches.back().X_WO_to;
+    poses.push_back(X_WO);
+  }
+  return poses;
+}
+
+}  // namespace graspfit::motion

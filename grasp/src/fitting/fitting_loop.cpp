@@ -1,0 +1,505 @@
+#include "fitting/fitting_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fitting/finger_alignment.hpp"
+#include "fitting/finger_crossing.hpp"
+#include "graspfit/base/bounded_integer.hpp"
+#include "graspfit/base/stopwatch.hpp"
+#include "graspfit/contact/contact_estimation.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::grasp {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+namespace {
+
+/// A number of steps, but no more than an int holds, were they that short.
+int steps_of(double number) {
+  return base::bounded_integer(number, 0, std::numeric_limits<int>::max());
+}
+
+}  // namespace
+
+FittingLoop::FittingLoop(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
+                         const FittingOptions& options)
+    : hand_(scene.hand),
+      model_(scene.hand.model()),
+      object_(scene.object),
+      contact_options_(scene.contact_options),
+      options_(options),
+      voxel_size_(scene.object.grid.lattice.voxel_size),
+      state_(scene, options),
+      style_(style),
+      has_palm_target_(requested.palm),
+      stops_at_palm_(requested.palm) {
+  for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
+    moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
+  }
+  std::vector<bool> has_target(model_.fingers.size(), false);
+  for (const int finger : requested.fingers) {
+    has_target[finger] = true;
+    add_part(finger, true);
+  }
+  if (style == GraspStyle::Power) {
+    for (std::size_t finger = 0; finger < model_.fingers.size(); ++finger) {
+      if (!has_target[finger]) add_part(static_cast<int>(finger), false);
+    }
+  }
+  for (Part& part : parts_) {
+    part.is_shared =
+        !part.closing.empty() &&
+        std::count_if(parts_.begin(), parts_.end(), [&](const Part& other) {
+          return !other.closing.empty() && other.closing.front() == part.closing.front();
+        }) > 1;
+  }
+}
+
+FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacement& placement,
+                               const std::optional<hands::HandConfiguration>& goal) {
+  goal_ = goal ? *goal
+               : fitting_goal(hand_, targets, posture_for(model_, targets, placement), options_);
+  for (Part& part : parts_) {
+    const auto target =
+        std::find_if(targets.contacts.begin(), targets.contacts.end(),
+                     [&](const TargetContact& contact) { return contact.finger == part.finger; });
+    if (target != targets.contacts.end()) part.target_O = target->point_O;
+    part.is_toward_goal =
+        style_ == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
+  }
+  if (!place()) return failed_start();
+  approach();
+  const Vector3d palm = state_.configuration().X_OH * model_.palm.center_H;
+  const double way = (targets.contacts.back().point_O - palm).dot(palm_direction());
+  seat_palm(std::max(0.0, way));
+  return run();
+}
+
+FittingResult FittingLoop::close(const hands::HandConfiguration& start, const RetreatRule& rule) {
+  goal_ = start;
+  is_palm_done_ = true;
+  const double step = rule.step.value_or(voxel_size_);
+  // Past the object, whose normalizing radius is half its diagonal, and the hand's own length.
+  const double far = 2.0 * (object_.normalizing_radius + hands::largest_reach(model_));
+  const int steps_to_far = steps_of(std::ceil(far / step));
+  const int most_steps = rule.most_steps.value_or(steps_to_far);
+  if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
+  if (rule.palm_may_touch && model_.palm.pad >= 0) {
+    bring_palm((start.X_OH.translation() - initial_.X_OH.translation()).dot(palm_direction()));
+  }
+  seat_palm(0.0);
+  return run();
+}
+
+FittingResult FittingLoop::failed_start() const {
+  FittingResult result;
+  result.initial = result.configuration = initial_;
+  result.stop = FittingStop::InitialCollision;
+  result.smallest_distance = state_.smallest_distance();
+  return result;
+}
+
+FittingResult FittingLoop::run() {
+  if (close_free_parts() && options_.palm_after_contact == PalmAfterContact::Recentred) recenter();
+  FittingResult result;
+  finish(result);
+  return result;
+}
+
+/// Steps 1 and 2 until every finger has stopped or the iterations are used up. False as soon as
+/// the fit cannot come to anything.
+bool FittingLoop::close_free_parts() {
+  while (iterations_ < options_.max_iterations && num_free() > 0) {
+    ++iterations_;
+    for (Part& part : parts_) {
+      if (part.state == Part::State::Free) close_part(part);
+    }
+    move_palm_to_goal();
+    bool is_hopeless_now = false;
+    for (Part& part : parts_) {
+      if (part.state == Part::State::Free && touches(part)) part.state = Part::State::Touching;
+      is_hopeless_now = is_hopeless_now || is_hopeless(part);
+    }
+    if (is_hopeless_now) return false;
+  }
+  if (options_.contact_state == ContactState::Closed) {
+    for (Part& part : parts_) {
+      if (part.state == Part::State::Touching) close_on(part);
+    }
+  }
+  return true;
+}
+
+void FittingLoop::add_part(int finger, bool has_target) {
+  Part part;
+  part.finger = finger;
+  part.has_target = has_target;
+  const hands::Finger& description = model_.fingers[finger];
+  part.pad = description.tip_pad;
+  part.tip_link = part.pad >= 0 ? model_.pads[part.pad].link
+                                : (description.links.empty() ? -1 : description.links.back());
+  const int proximal = closing_joint(model_, description);
+  if (proximal >= 0) part.closing.push_back(proximal);
+  for (const int joint : distal_joints(model_, description)) part.closing.push_back(joint);
+  for (const int joint : description.joints) {
+    const hands::Joint& j = model_.joints[joint];
+    if (j.closing_sign != 0 && j.coupling && j.coupling->breakaway) part.closing.push_back(joint);
+  }
+  parts_.push_back(part);
+}
+
+int FittingLoop::num_free() const {
+  return static_cast<int>(std::count_if(parts_.begin(), parts_.end(), [](const Part& part) {
+    return part.state == Part::State::Free;
+  }));
+}
+
+bool FittingLoop::any_touching() const {
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [](const Part& part) { return part.state == Part::State::Touching; });
+}
+
+Vector3d FittingLoop::palm_direction() const {
+  return (goal_.X_OH.linear() * model_.palm.direction_H).normalized();
+}
+
+/// The paper's initial configuration (section 7) read from the goal: its palm withdrawn along
+/// n_palm until the object is before it (A24), fingers open, swinging joints as at the goal. False
+/// if no distance is clear.
+bool FittingLoop::place() {
+  const Vector3d direction = palm_direction();
+  const Vector3d palm = goal_.X_OH * model_.palm.center_H;
+  double extent = 0.0;
+  for (const geometry::SurfacePatch& patch : object_.patches) {
+    extent = std::max(extent, (palm - patch.centroid).dot(direction));
+  }
+  hands::HandConfiguration start = opened_from(model_, goal_);
+  start.X_OH.pretranslate(Vector3d(-(extent + options_.clearance) * direction));
+  return retreat(start, voxel_size_, steps_of(2.0 * hands::largest_reach(model_) / voxel_size_));
+}
+
+/// Puts the hand at the first clear place from `start` on against the palm direction. False if none
+/// is; the hand then stands at the last.
+bool FittingLoop::retreat(hands::HandConfiguration start, double step, int most_steps) {
+  const Vector3d back = -step * palm_direction();
+  for (int steps = 0;; ++steps) {
+    state_.put(start);
+    initial_ = start;
+    is_clear_at_start_ = state_.is_clear();
+    if (is_clear_at_start_) return true;
+    if (steps == most_steps) return false;
+    start.X_OH.pretranslate(back);
+  }
+}
+
+/// Moves the palm up to `distance` along n_palm in steps that the guard bounds; gives up where a
+/// step would be shorter than `tolerance`.
+void FittingLoop::advance(double distance, double tolerance) {
+  const Vector3d direction = palm_direction();
+  while (distance > tolerance) {
+    double step = std::min(distance, state_.allowed_motion(state_.all_links()));
+    bool is_done = false;
+    for (; step >= tolerance && !is_done; step /= 2) {
+      hands::HandConfiguration candidate = state_.configuration();
+      candidate.X_OH.pretranslate(Vector3d(step * direction));
+      is_done = try_move(candidate, state_.all_links(), step);
+      if (is_done) distance -= step;
+    }
+    if (!is_done || (stops_at_palm_ && palm_touches())) return;
+  }
+}
+
+/// Step 2 along n_palm, all the way with open fingers: to the goal or until something is near.
+void FittingLoop::approach() {
+  const double wanted =
+      (goal_.X_OH.translation() - state_.configuration().X_OH.translation()).dot(palm_direction());
+  advance(wanted, options_.small_step * voxel_size_);
+}
+
+/// The palm, if it is requested, onto the surface about `distance` before it (A39): on until its
+/// clip volume holds surface or the guard stops it, and then until it touches.
+void FittingLoop::seat_palm(double distance) {
+  if (!has_palm_target_) return;
+  is_palm_done_ = true;
+  // The goal weighs the palm's target against those of the fingers; and the surface at the target
+  // may lie deeper than its patch by some voxels.
+  constexpr double kSearch = 4.0;  // [voxels]
+  bring_palm(distance + kSearch * voxel_size_);
+}
+
+/// The palm onto the surface, if that is within `distance` along n_palm.
+void FittingLoop::bring_palm(double distance) {
+  stops_at_palm_ = true;
+  if (!palm_touches()) advance(distance, options_.small_step * voxel_size_ / 8.0);
+  if (options_.contact_state == ContactState::Closed && palm_touches()) press_palm();
+}
+
+/// On along n_palm until the guard stops even the smallest motion, or the palm would lose its
+/// contact.
+void FittingLoop::press_palm() {
+  is_palm_held_ = true;
+  const Vector3d direction = palm_direction();
+  double motion = options_.small_step * voxel_size_;
+  while (motion >= options_.closing_tolerance) {
+    hands::HandConfiguration candidate = state_.configuration();
+    candidate.X_OH.pretranslate(Vector3d(motion * direction));
+    if (!try_move(candidate, state_.all_links(), motion)) motion /= 2;
+  }
+  is_palm_held_ = has_palm_target_;
+}
+
+bool FittingLoop::palm_touches() {
+  return state_.distance(model_.pads[model_.palm.pad].link) <= options_.large_step_at &&
+         has_contact_at(model_.palm.pad, state_.X_OL());
+}
+
+/// Accepts `candidate` if the guard lets every moved link through and no touching part loses
+/// contact. The cheap tests come first.
+bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
+                           double length) {
+  if (!state_.passes_map(candidate, moved, length)) return false;
+  for (const Part& part : parts_) {
+    if (part.state != Part::State::Touching || part.pad < 0) continue;
+    if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
+    if (!has_contact_at(part.pad, state_.trial_X_OL())) return false;
+  }
+  if (is_palm_held_ && moved.size() == state_.all_links().size() &&
+      !has_contact_at(model_.palm.pad, state_.trial_X_OL())) {
+    return false;
+  }
+  if (!state_.passes_exact(moved)) return false;
+  state_.accept();
+  return true;
+}
+
+bool FittingLoop::has_contact_at(int pad, const std::vector<RigidTransform>& X_OL) {
+  const base::Stopwatch watch(contact_tests_s_);
+  return contact::has_contact(model_, pad, hands::pad_pose(model_, pad, X_OL), object_.query,
+                              contact_options_);
+}
+
+/// Section 10: the clip test is made once the tip link shares a voxel with the surface.
+bool FittingLoop::touches(const Part& part) {
+  return part.pad >= 0 && state_.distance(part.tip_link) == 0.0F &&
+         has_contact_at(part.pad, state_.X_OL());
+}
+
+/// Distance of the farthest point of `link` from the origin of `joint`, enlarged by what coupled
+/// joints add: bounds the motion per radian [m/rad].
+double FittingLoop::lever(int joint, int link) const {
+  if (model_.joints[joint].type == hands::JointType::Prismatic) return 1.0;
+  const std::vector<RigidTransform>& X_OL = state_.X_OL();
+  const Vector3d origin =
+      (X_OL[model_.joints[joint].parent_link] * model_.joints[joint].X_PJ).translation();
+  const double reach = (X_OL[link].translation() - origin).norm() + hand_.samples(link).reach;
+  double factor = 1.0;
+  for (const hands::Joint& other : model_.joints) {
+    if (other.coupling && other.coupling->leader == joint) {
+      factor += std::abs(other.coupling->ratio);
+    }
+  }
+  return std::max(reach * factor, 1e-6);
+}
+
+/// The largest lever of all links that `joint` moves.
+double FittingLoop::lever(int joint) const {
+  double largest = 1e-6;
+  for (const int link : moved_links_[joint]) largest = std::max(largest, lever(joint, link));
+  return largest;
+}
+
+/// How far `joint` may move now: every link no farther than its own distance allows.
+double FittingLoop::allowed_step(int joint) const {
+  double step = std::numeric_limits<double>::infinity();
+  for (const int link : moved_links_[joint]) {
+    step = std::min(step, state_.allowed_motion({link}) / lever(joint, link));
+  }
+  return step;
+}
+
+hands::HandConfiguration FittingLoop::with_joint(int joint, double position) const {
+  hands::HandConfiguration candidate = state_.configuration();
+  candidate.q[joint] = std::clamp(position, model_.joints[joint].lower, model_.joints[joint].upper);
+  hands::apply_couplings(model_, candidate.q);
+  return candidate;
+}
+
+bool FittingLoop::is_at_closing_limit(int joint) const {
+  const hands::Joint& description = model_.joints[joint];
+  const double limit = description.closing_sign > 0 ? description.upper : description.lower;
+  return state_.configuration().q[joint] == limit;
+}
+
+/// Step 1: closes one finger, as far as the guard allows.
+void FittingLoop::close_part(Part& part) {
+  if (part.is_toward_goal && close_toward_goal(part)) return;
+  while (part.stage < part.closing.size() && is_at_closing_limit(part.closing[part.stage])) {
+    ++part.stage;
+  }
+  if (part.stage >= part.closing.size()) {
+    part.state = Part::State::AtLimit;
+    return;
+  }
+  const int joint = part.closing[part.stage];
+  double step = allowed_step(joint) * model_.joints[joint].closing_sign;
+  for (int halving = 0; halving <= options_.max_halvings; ++halving, step /= 2) {
+    if (try_closing(part, step)) return;
+  }
+  // Blocked at the tip means done; blocked farther back lets the joints beyond go on (A27).
+  const bool is_tip = state_.blocking_link() == part.tip_link;
+  if (is_tip || !next_stage(part)) {
+    part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
+  }
+}
+
+/// All joints of the finger at once toward the goal: steps 1, 4 and 5 in one. False once it is
+/// there or stopped, from when on it closes joint by joint.
+bool FittingLoop::close_toward_goal(Part& part) {
+  const hands::HandConfiguration& now = state_.configuration();
+  const std::vector<int>& moved = moved_links_[part.closing.front()];
+  double length = 0.0;
+  for (const int joint : part.closing) {
+    if (!model_.joints[joint].coupling) {
+      length += std::abs(goal_.q[joint] - now.q[joint]) * lever(joint);
+    }
+  }
+  part.is_toward_goal = length > 1e-6;
+  if (!part.is_toward_goal) return false;
+  double share = std::min(1.0, state_.allowed_motion(moved) / length);
+  for (int halving = 0; halving <= options_.max_halvings; ++halving, share /= 2) {
+    hands::HandConfiguration candidate = now;
+    for (const int joint : part.closing) {
+      if (!model_.joints[joint].coupling) {
+        candidate.q[joint] += share * (goal_.q[joint] - now.q[joint]);
+      }
+    }
+    hands::apply_couplings(model_, candidate.q);
+    if (try_move(candidate, moved, share * length)) return true;
+  }
+  part.is_toward_goal = false;
+  if (state_.blocking_link() == part.tip_link) {
+    part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
+    return true;
+  }
+  return false;
+}
+
+/// Closes a joint by `step`. Where several fingers hang on it and one of them is stopped, the hand
+/// moves so that this one stays where it is and the others close, as far in all (A44).
+bool FittingLoop::try_closing(const Part& part, double step) {
+  const int joint = part.closing[part.stage];
+  const double length = std::abs(step) * lever(joint);
+  const double position = state_.configuration().q[joint];
+  if (try_move(with_joint(joint, position + step), moved_links_[joint], length)) return true;
+  const Part* const stopped = stopped_part_sharing(joint);
+  if (!stopped) return false;
+  hands::HandConfiguration candidate = with_joint(joint, position + step / 2);
+  const Vector3d moved_by =
+      hands::pad_contact_point(model_, stopped->pad, hands::forward_kinematics(model_, candidate)) -
+      hands::pad_contact_point(model_, stopped->pad, state_.X_OL());
+  candidate.X_OH.pretranslate(Vector3d(-moved_by));
+  return try_move(candidate, state_.all_links(), length / 2 + moved_by.norm());
+}
+
+/// The part on whose account the last motion was not possible, if its closing joint closes others
+/// too.
+const FittingLoop::Part* FittingLoop::stopped_part_sharing(int joint) const {
+  const Part* stopped = nullptr;
+  for (const Part& part : parts_) {
+    if (!part.is_shared || part.closing.front() != joint) continue;
+    const std::vector<int>& links = model_.fingers[part.finger].links;
+    const int blocking = state_.blocking_link();
+    const bool is_in_the_way = blocking < 0
+                                   ? part.state == Part::State::Touching
+                                   : std::find(links.begin(), links.end(), blocking) != links.end();
+    if (!stopped && is_in_the_way) stopped = &part;
+  }
+  return stopped;
+}
+
+/// Goes on to the next joint that moves less than the one that is stopped. False if there is none.
+bool FittingLoop::next_stage(Part& part) {
+  const int blocking = state_.blocking_link();
+  while (++part.stage < part.closing.size()) {
+    const std::vector<int>& moved = moved_links_[part.closing[part.stage]];
+    if (std::find(moved.begin(), moved.end(), blocking) == moved.end()) return true;
+  }
+  return false;
+}
+
+/// Steps 2 and 3: the palm toward where the fingertips will be at their targets. Once a finger
+/// touches, it stays (A29).
+void FittingLoop::move_palm_to_goal() {
+  if (is_palm_done_ || any_touching()) return;
+  const Vector3d wanted = goal_.X_OH.translation() - state_.configuration().X_OH.translation();
+  const double length = wanted.norm();
+  is_palm_done_ = length < options_.small_step * voxel_size_ / 4.0;
+  if (is_palm_done_) return;
+  const double share = std::min(1.0, state_.allowed_motion(state_.all_links()) / length);
+  hands::HandConfiguration candidate = state_.configuration();
+  candidate.X_OH.pretranslate(Vector3d(share * wanted));
+  try_move(candidate, state_.all_links(), share * length);
+}
+
+/// Whether a part with a target has stopped too far from the object for anything to mend it.
+bool FittingLoop::is_hopeless(const Part& part) const {
+  if (!part.has_target || part.state == Part::State::Free || part.state == Part::State::Touching) {
+    return false;
+  }
+  const Vector3d tip = hands::pad_contact_point(model_, part.pad, state_.X_OL());
+  // The map's value is that of voxel centers, each up to √3/2 from the points meant.
+  return (object_.distance.at(tip) - std::sqrt(3.0)) * voxel_size_ > options_.give_up_distance;
+}
+
+/// Closes a touching finger on until the guard stops even the smallest motion.
+void FittingLoop::close_on(Part& part) {
+  double motion = options_.small_step * voxel_size_;
+  while (motion >= options_.closing_tolerance && part.stage < part.closing.size()) {
+    const int joint = part.closing[part.stage];
+    const double step = motion / lever(joint) * model_.joints[joint].closing_sign;
+    const bool is_at_limit = is_at_closing_limit(joint);
+    if (is_at_limit) state_.forget_blocking();
+    if (!is_at_limit && try_closing(part, step)) continue;
+    motion /= 2;
+    // The tip may go on where only the link behind it is stopped.
+    const bool is_stopped_behind =
+        is_at_limit || (state_.blocking_link() >= 0 && state_.blocking_link() != part.tip_link);
+    if (motion < options_.closing_tolerance && is_stopped_behind && next_stage(part)) {
+      motion = options_.small_step * voxel_size_;
+    }
+  }
+}
+
+void FittingLoop::finish(FittingResult& result) {
+  state_.measure_all();
+  result.initial = initial_;
+  result.iterations = iterations_;
+  result.configuration = state_.configuration();
+  result.smallest_distance = state_.smallest_distance();
+  bool has_all = true;
+  bool is_blocked = false;
+  const auto look_at = [&](int pad, bool is_stopped) {
+    if (has_contact_at(pad, state_.X_OL())) return;
+    has_all = false;
+    is_blocked = is_blocked || is_stopped;
+    const Vector3d point = hands::pad_contact_point(model_, pad, state_.X_OL());
+    result.largest_gap = std::max(result.largest_gap,
+                                  std::sqrt(object_.query.closest_point(point).squared_distance));
+  };
+  for (const Part& part : parts_) {
+    if (part.has_target) look_at(part.pad, part.state == Part::State::Blocked);
+  }
+  if (has_palm_target_) look_at(model_.palm.pad, true);
+  result.contact_tests_s = contact_tests_s_;
+  const bool is_out_of_budget = iterations_ >= options_.max_iterations && num_free() > 0;
+  result.stop = is_out_of_budget ? FittingStop::IterationLimit
+                : has_all        ? FittingStop::Contact
+                : is_blocked     ? FittingStop::BlockedFinger
+                                 : FittingStop::MissedContact;
+}
+
+}  // namespace graspfit::grasp

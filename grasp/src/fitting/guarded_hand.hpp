@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "graspfit/grasp/hand_fitting.hpp"
+
+namespace graspfit::grasp {
+
+/// A hand in motion among an object and its surroundings: which motions the guard of section 9 lets
+/// through, and how long the next one may be.
+class GuardedHand {
+ public:
+  GuardedHand(const GraspScene& scene, const FittingOptions& options);
+
+  /// Puts the hand somewhere, unchecked.
+  void put(const hands::HandConfiguration& configuration);
+
+  /// Whether no link shares a voxel with the object's surface or inside, the true meshes are as the
+  /// guard wants them, and nothing touches the surroundings.
+  bool is_clear();
+
+  /// With the guard on voxels: from now on no motion brings this link deeper into the object than a
+  /// voxel's edge.
+  void guard_depth(int link) { guards_depth_[link] = true; }
+  /// Links not guarded so that may be deeper in the object than that.
+  std::vector<int> links_too_deep();
+
+  /// A motion under test.
+  bool passes_map(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
+                  double length);  ///< Poses the moved links; `length`: of the fastest point [m].
+  bool passes_exact(const std::vector<int>& moved);  ///< Meshes, surroundings and, where they
+                                                     ///< count, other links, after the map.
+  void accept();                                     ///< The motion under test.
+
+  /// Motion of the fastest point of `links` allowed now [m] (section 9, A30).
+  double allowed_motion(const std::vector<int>& links) const;
+
+  /// Measures every link anew, so that `smallest_distance` is exact up to a large step.
+  void measure_all();
+
+  const hands::HandConfiguration& configuration() const { return configuration_; }
+  const std::vector<geometry::RigidTransform>& X_OL() const { return X_OL_; }
+  const std::vector<geometry::RigidTransform>& trial_X_OL() const { return trial_X_OL_; }
+  const hands::HandModel& model() const { return model_; }
+  const std::vector<int>& all_links() const { return all_links_; }
+  /// d_min of a link [voxels]: its value or, well away from the object, a lower bound.
+  float distance(int link) const { return distance_[link]; }
+  float smallest_distance() const;
+  /// The link that the last refused motion was refused for; −1 if none.
+  int blocking_link() const { return blocking_link_; }
+  void forget_blocking() { blocking_link_ = -1; }
+
+ private:
+  /// How deep a link was in the object at a pose.
+  struct KnownDepth {
+    geometry::RigidTransform X_OL;
+    geometry::DepthBounds bounds;
+  };
+  /// The last pose at which the guard let it pass for its depth, and the last at which it did not.
+  struct KnownDepths {
+    std::optional<KnownDepth> let, cut;
+  };
+
+  float measured(int link, const geometry::RigidTransform& X_OL);
+  /// Never more than `enough`: what is farther comes nearer in later motions.
+  double measured_room(int link, double enough) const;
+  /// Whether the true meshes overlap by more than the guard lets them.
+  bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL);
+  /// Whether a link may be in the object by more than a voxel's edge: false is certain, true is
+  /// wrong by the tolerance at most.
+  bool is_too_deep(int link, const geometry::RigidTransform& X_OL);
+  /// Of any point of a link between two poses, or a little more [m].
+  double largest_motion(int link, const geometry::RigidTransform& X_from,
+                        const geometry::RigidTransform& X_to) const;
+
+  /// Whether the motion brings links into each other that were apart; then the moved one blocks.
+  bool meets_itself(const std::vector<int>& moved);
+
+  const FittingHand& hand_;
+  const hands::HandModel& model_;
+  const ObjectModel& object_;
+  const SurroundingsCollision& surroundings_;
+  const FittingOptions& options_;
+  const double voxel_size_;
+  std::vector<int> all_links_;
+  std::vector<std::pair<int, int>> pairs_;  ///< Links that must not meet; empty: not guarded.
+  std::vector<bool> guards_depth_;          ///< Per link.
+  std::vector<KnownDepths> known_depths_;
+  hands::HandConfiguration configuration_, trial_;
+  std::vector<geometry::RigidTransform> X_OL_, trial_X_OL_;
+  std::vector<float> distance_, trial_distance_;
+  /// Distance to the surroundings, a lower bound [m]; kept current by the motions.
+  std::vector<double> room_, trial_room_;
+  int blocking_link_ = -1;
+};
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,142 @@
+#include "graspfit/grasp/hand_fitting.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "fitting/fitting_loop.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using base::InvalidInput;
+using base::shortest_decimal;
+
+void require(bool holds, const std::string& field, const std::string& value,
+             const std::string& range) {
+  if (!holds) throw InvalidInput("FittingOptions: " + field + " = " + value + ", must be " + range);
+}
+
+/// The palm's target has to be the last of several, and the palm needs a pad to touch with.
+void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t num_targets) {
+  if (target + 1 != num_targets || num_targets < 2) {
+    throw InvalidInput("fit_hand: target " + std::to_string(target) +
+                       " is the palm's, which must be the last after a finger's");
+  }
+  if (hand.palm.pad < 0) {
+    throw InvalidInput("fit_hand: the palm of hand " + hand.name + " has no pad");
+  }
+}
+
+void require_tip_pad(const std::string& where, const hands::HandModel& hand, int finger) {
+  if (hand.fingers[finger].tip_pad >= 0) return;
+  throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
+}
+
+/// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand of
+/// which a link ends deeper in the object than a voxel's edge, one of twenty, is fitted again with
+/// an eye on the depth of that link at every motion.
+template <class Make, class Run>
+FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
+  std::vector<int> watched;
+  for (FittingResult spent;;) {
+    FittingLoop loop = make();
+    for (const int link : watched) loop.guard_depth(link);
+    FittingResult result = run(loop);
+    result.contact_tests_s += spent.contact_tests_s;
+    if (guard != PenetrationGuard::Voxels) return result;
+    const std::vector<int> deep = loop.links_too_deep();
+    if (deep.empty()) return result;
+    // Links that are watched already are none of these, so that this ends.
+    watched.insert(watched.end(), deep.begin(), deep.end());
+    spent = result;
+  }
+}
+
+}  // namespace
+
+void FittingOptions::validate() const {
+  const auto finite_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+  require(clearance >= 0.0 && std::isfinite(clearance), "clearance", shortest_decimal(clearance),
+          "finite and >= 0 m");
+  require(large_step_at >= 1.0 && std::isfinite(large_step_at), "large_step_at",
+          shortest_decimal(large_step_at), "finite and >= 1 voxel");
+  require(finite_positive(large_step_limit), "large_step_limit", shortest_decimal(large_step_limit),
+          "finite and > 0 voxels");
+  require(small_step > 0.0 && small_step <= 1.0, "small_step", shortest_decimal(small_step),
+          "in (0, 1] voxels");
+  require(max_halvings >= 0 && max_halvings <= 30, "max_halvings", std::to_string(max_halvings),
+          "in [0, 30]");
+  require(max_iterations >= 1, "max_iterations", std::to_string(max_iterations), ">= 1");
+  require(finite_positive(closing_tolerance), "closing_tolerance",
+          shortest_decimal(closing_tolerance), "finite and > 0 m");
+  require(give_up_distance >= 0.0 && std::isfinite(give_up_distance), "give_up_distance",
+          shortest_decimal(give_up_distance), "finite and >= 0 m");
+  require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing",
+          shortest_decimal(sample_spacing), "in [0.05, 0.85] voxels");
+}
+
+FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetContacts& targets,
+                       const PalmPlacement& placement, const FittingOptions& options,
+                       const std::optional<hands::HandConfiguration>& goal) {
+  options.validate();
+  scene.contact_options.validate();
+  if (targets.contacts.size() < 2) {
+    throw InvalidInput("fit_hand: " + std::to_string(targets.contacts.size()) +
+                       " targets, a grasp needs at least two");
+  }
+  const hands::HandModel& model = scene.hand.model();
+  RequestedParts requested;
+  for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
+    const int finger = targets.contacts[t].finger;
+    if (finger == contact::kPalm) {
+      require_palm(model, t, targets.contacts.size());
+      requested.palm = true;
+      continue;
+    }
+    if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
+      throw InvalidInput("fit_hand: a target is assigned to finger " + std::to_string(finger) +
+                         " of " + std::to_string(model.fingers.size()) +
+                         "; call assign_fingers first");
+    }
+    require_tip_pad("fit_hand", model, finger);
+    requested.fingers.push_back(finger);
+  }
+  return fitted(
+      options.guard, [&] { return FittingLoop(scene, style, requested, options); },
+      [&](FittingLoop& loop) { return loop.fit(targets, placement, goal); });
+}
+
+FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
+                         const hands::HandConfiguration& start, const RetreatRule& retreat,
+                         const FittingOptions& options) {
+  options.validate();
+  scene.contact_options.validate();
+  const hands::HandModel& model = scene.hand.model();
+  hands::validate(model, start);
+  if (requested.fingers.empty()) throw InvalidInput("close_hand: no finger is requested");
+  for (const int finger : requested.fingers) {
+    if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
+      throw InvalidInput("close_hand: finger " + std::to_string(finger) + " of " +
+                         std::to_string(model.fingers.size()));
+    }
+    require_tip_pad("close_hand", model, finger);
+  }
+  if (requested.palm && model.palm.pad < 0) {
+    throw InvalidInput("close_hand: the palm of hand " + model.name + " has no pad");
+  }
+  if (const double step = retreat.step.value_or(1.0); !(step > 0.0 && std::isfinite(step))) {
+    throw InvalidInput("close_hand: retreat step = " + shortest_decimal(step) +
+                       ", must be finite and > 0 m");
+  }
+  if (retreat.most_steps.value_or(0) < 0) {
+    throw InvalidInput("close_hand: retreat of at most " + std::to_string(*retreat.most_steps) +
+                       " steps, must be >= 0");
+  }
+  return fitted(
+      options.guard, [&] { return FittingLoop(scene, style, requested, options); },
+      [&](FittingLoop& loop) { return loop.close(start, retreat); });
+}
+
+}  // namespace graspfit::grasp

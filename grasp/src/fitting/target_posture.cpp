@@ -1,0 +1,343 @@
+#include "fitting/target_posture.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "fitting/finger_alignment.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using geometry::RigidTransform;
+
+// A centimeter off counts as a pad that leans by 1 / 1.5 rad: then both limit a grasp alike.
+constexpr double kMissUnit = 0.01;    // [m]
+constexpr double kTiltWeight = 1.5;   // per unit length of the difference of two unit normals
+constexpr double kRestWeight = 0.04;  // per share of a joint's range off its start: decides what
+                                      // targets leave open, and little else
+// Of pads that do not look at each other against pads that lean. Valid of 30 attempts with 0, 1, 2:
+// bunny00 28, 29, 30; ball 28, 28, 30; horse 11, 11, 14; but 2 costs M (README).
+constexpr double kPairWeight = 0.5;
+constexpr int kIterations = 20;
+constexpr double kSmallGain = 1e-3;  // of the squared error, at which the search ends
+
+/// Fraction of the way to closed from which the search starts.
+constexpr double kStartClosed = 0.45;
+
+/// One fingertip with a target.
+struct Tip {
+  int pad = -1;
+  Vector3d contact_C = Vector3d::Zero();
+  std::vector<int> links;  ///< Root to the pad's link.
+  const TargetContact* target = nullptr;
+};
+
+/// The search: variables are three translations of the palm, its turn, and independent joints.
+class Search {
+ public:
+  Search(const hands::HandModel& hand, const TargetContacts& targets,
+         const hands::HandConfiguration& start, const std::optional<double>& palm_room)
+      : hand_(hand),
+        direction_((start.X_OH.linear() * hand.palm.direction_H).normalized()),
+        centroid_(targets.centroid()),
+        palm_room_(palm_room),
+        variable_of_(hand.joints.size(), -1),
+        start_(start) {
+    for (const TargetContact& target : targets.contacts) {
+      if (target.finger == contact::kPalm) {
+        palm_target_ = &target;
+        continue;
+      }
+      const int pad = hand.fingers[target.finger].tip_pad;
+      tips_.push_back({pad, hands::pad_contact_point_C(hand.pads[pad]),
+                       chain_to(hand, hand.pads[pad].link), &target});
+      for (const int link : tips_.back().links) {
+        const int joint = hand.links[link].parent_joint;
+        if (joint < 0) continue;
+        const int leader = leader_of(joint).first;
+        if (variable_of_[leader] >= 0 || hand.joints[leader].upper <= hand.joints[leader].lower) {
+          continue;
+        }
+        variable_of_[leader] = 4 + static_cast<int>(joints_.size());
+        joints_.push_back(leader);
+      }
+    }
+    num_residuals_ = 6 * static_cast<int>(tips_.size()) + 3 + 1 + static_cast<int>(joints_.size());
+    pose_.resize(hand.links.size());
+  }
+
+  TargetPosture run() {
+    hands::HandConfiguration best = start_;
+    VectorXd residual(num_residuals_);
+    MatrixXd jacobian(num_residuals_, 4 + static_cast<int>(joints_.size()));
+    evaluate(best, residual, &jacobian);
+    double error = residual.squaredNorm();
+    double damping = 1e-3;
+    for (int iteration = 0; iteration < kIterations && damping < 1e3; ++iteration) {
+      const VectorXd step = bounded_step(best, residual, jacobian, damping);
+      hands::HandConfiguration trial = moved(best, step);
+      VectorXd trial_residual(num_residuals_);
+      evaluate(trial, trial_residual, nullptr);
+      const double trial_error = trial_residual.squaredNorm();
+      if (!(trial_error < error)) {
+        damping *= 8.0;
+        continue;
+      }
+      const bool is_done = error - trial_error < kSmallGain * error;
+      best = std::move(trial);
+      error = trial_error;
+      damping = std::max(damping / 8.0, 1e-6);
+      if (is_done) break;
+      evaluate(best, residual, &jacobian);
+    }
+    return measured(best);
+  }
+
+ private:
+  /// The independent joint behind `joint`, and how far `joint` moves for each unit of it.
+  std::pair<int, double> leader_of(int joint) const {
+    double ratio = 1.0;
+    while (hand_.joints[joint].coupling) {
+      ratio *= hand_.joints[joint].coupling->ratio;
+      joint = hand_.joints[joint].coupling->leader;
+    }
+    return {joint, ratio};
+  }
+
+  hands::HandConfiguration moved(const hands::HandConfiguration& from, const VectorXd& step) const {
+    hands::HandConfiguration result = start_;
+    result.X_OH = turned(from.X_OH, from.X_OH * hand_.palm.center_H, direction_, step[3]);
+    result.X_OH.pretranslate(Vector3d(step.head<3>() * kMissUnit));
+    for (const int joint : joints_) {
+      result.q[joint] = std::clamp(from.q[joint] + step[variable_of_[joint]],
+                                   hand_.joints[joint].lower, hand_.joints[joint].upper);
+    }
+    hands::apply_couplings(hand_, result.q);
+    return result;
+  }
+
+  /// Damped least squares; joints that stand at a limit and would leave it are held.
+  VectorXd bounded_step(const hands::HandConfiguration& at, const VectorXd& residual,
+                        const MatrixXd& jacobian, double damping) const {
+    MatrixXd normal = jacobian.transpose() * jacobian;
+    VectorXd gradient = jacobian.transpose() * residual;
+    for (const int joint : joints_) {
+      const int i = variable_of_[joint];
+      const bool is_held = (at.q[joint] <= hand_.joints[joint].lower && gradient[i] > 0.0) ||
+                           (at.q[joint] >= hand_.joints[joint].upper && gradient[i] < 0.0);
+      if (!is_held) continue;
+      normal.row(i).setZero();
+      normal.col(i).setZero();
+      normal(i, i) = 1.0;
+      gradient[i] = 0.0;
+    }
+    normal.diagonal().array() += damping;
+    return -normal.ldlt().solve(gradient);
+  }
+
+  void evaluate(const hands::HandConfiguration& at, VectorXd& residual, MatrixXd* jacobian) {
+    residual.setZero();
+    if (jacobian) jacobian->setZero();
+    int row = 0;
+    const Vector3d palm = at.X_OH * hand_.palm.center_H;
+    for (const Tip& tip : tips_) {
+      for (const int link : tip.links) {
+        const int parent = hand_.links[link].parent_link;
+        pose_[link] = parent < 0 ? at.X_OH : link_pose(hand_, link, pose_[parent], at.q);
+      }
+      const RigidTransform X_OC = pose_[tip.links.back()] * hand_.pads[tip.pad].X_LC;
+      const Vector3d point = X_OC * tip.contact_C;
+      const Vector3d normal = X_OC.linear().col(2);
+      residual.segment<3>(row) = (point - tip.target->point_O) / kMissUnit;
+      residual.segment<3>(row + 3) = kTiltWeight * (normal + tip.target->outward_normal_O);
+      if (jacobian) {
+        jacobian->block<3, 3>(row, 0).setIdentity();
+        jacobian->block<3, 1>(row, 3) = direction_.cross(point - palm) / kMissUnit;
+        jacobian->block<3, 1>(row + 3, 3) = kTiltWeight * direction_.cross(normal);
+        add_joints(tip, at, point, normal, row, *jacobian);
+      }
+      row += 6;
+    }
+    if (palm_target_) {
+      residual.segment<3>(row) = (palm - palm_target_->point_O) / kMissUnit;
+      if (jacobian) jacobian->block<3, 3>(row, 0).setIdentity();
+    }
+    row += 3;
+    const double room = (centroid_ - palm).dot(direction_);
+    if (palm_room_ && room < *palm_room_) {
+      residual[row] = (*palm_room_ - room) / kMissUnit;
+      if (jacobian) jacobian->block<1, 3>(row, 0) = direction_.transpose();
+    }
+    ++row;
+    for (const int joint : joints_) {
+      const double range = hand_.joints[joint].upper - hand_.joints[joint].lower;
+      residual[row] = kRestWeight * (at.q[joint] - start_.q[joint]) / range;
+      if (jacobian) (*jacobian)(row, variable_of_[joint]) = kRestWeight / range;
+      ++row;
+    }
+  }
+
+  void add_joints(const Tip& tip, const hands::HandConfiguration& at, const Vector3d& point,
+                  const Vector3d& normal, int row, MatrixXd& jacobian) const {
+    for (const int link : tip.links) {
+      const int index = hand_.links[link].parent_joint;
+      if (index < 0) continue;
+      const auto [leader, ratio] = leader_of(index);
+      const int column = variable_of_[leader];
+      const hands::Joint& joint = hand_.joints[index];
+      // A follower at its limit does not follow.
+      const bool is_stopped =
+          joint.coupling && (at.q[index] <= joint.lower || at.q[index] >= joint.upper);
+      if (column < 0 || is_stopped) continue;
+      const RigidTransform X_OJ = pose_[joint.parent_link] * joint.X_PJ;
+      const Vector3d axis = X_OJ.linear() * joint.axis_J;
+      if (joint.type == hands::JointType::Prismatic) {
+        jacobian.block<3, 1>(row, column) += ratio * axis / kMissUnit;
+      } else {
+        jacobian.block<3, 1>(row, column) +=
+            ratio * axis.cross(point - X_OJ.translation()) / kMissUnit;
+        jacobian.block<3, 1>(row + 3, column) += ratio * kTiltWeight * axis.cross(normal);
+      }
+    }
+  }
+
+  TargetPosture measured(const hands::HandConfiguration& best) {
+    TargetPosture result;
+    result.configuration = best;
+    VectorXd residual(num_residuals_);
+    evaluate(best, residual, nullptr);
+    for (std::size_t i = 0; i < tips_.size(); ++i) {
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
+      result.largest_miss =
+          std::max(result.largest_miss, residual.segment<3>(row).norm() * kMissUnit);
+      const double chord = residual.segment<3>(row + 3).norm() / kTiltWeight;
+      result.largest_tilt =
+          std::max(result.largest_tilt, 2.0 * std::asin(std::min(1.0, chord / 2.0)));
+    }
+    if (palm_target_) {
+      const Eigen::Index row = 6 * static_cast<Eigen::Index>(tips_.size());
+      result.largest_miss =
+          std::max(result.largest_miss, residual.segment<3>(row).norm() * kMissUnit);
+    }
+    return result;
+  }
+
+  const hands::HandModel& hand_;
+  const Vector3d direction_;
+  const Vector3d centroid_;
+  const std::optional<double> palm_room_;
+  std::vector<Tip> tips_;
+  const TargetContact* palm_target_ = nullptr;
+  std::vector<int> joints_;       ///< Independent joints that move a tip.
+  std::vector<int> variable_of_;  ///< Per joint; −1 if it is none.
+  hands::HandConfiguration start_;
+  int num_residuals_ = 0;
+  std::vector<RigidTransform> pose_;
+};
+
+}  // namespace
+
+RigidTransform link_pose(const hands::HandModel& hand, int link, const RigidTransform& X_OP,
+                         const VectorXd& q) {
+  const hands::Link& description = hand.links[link];
+  if (description.parent_joint < 0) return X_OP * description.X_PL_fixed;
+  const hands::Joint& joint = hand.joints[description.parent_joint];
+  RigidTransform motion = RigidTransform::Identity();
+  if (joint.type == hands::JointType::Revolute) {
+    motion.linear() =
+        Eigen::AngleAxisd(q[description.parent_joint], joint.axis_J).toRotationMatrix();
+  } else {
+    motion.translation() = q[description.parent_joint] * joint.axis_J;
+  }
+  return X_OP * joint.X_PJ * motion;
+}
+
+std::vector<int> chain_to(const hands::HandModel& hand, int link) {
+  std::vector<int> links;
+  for (int i = link; i >= 0; i = hand.links[i].parent_link) links.push_back(i);
+  std::reverse(links.begin(), links.end());
+  return links;
+}
+
+TargetPosture target_posture(const hands::HandModel& hand, const TargetContacts& targets,
+                             const hands::HandConfiguration& start,
+                             const std::optional<double>& palm_room) {
+  return Search(hand, targets, start, palm_room).run();
+}
+
+TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& targets,
+                          const PalmPlacement& placement) {
+  hands::HandConfiguration start = aligned_open_hand(hand, targets, placement, 0.0);
+  for (const TargetContact& target : targets.contacts) {
+    if (target.finger == contact::kPalm) continue;
+    for (const int index : hand.fingers[target.finger].joints) {
+      const hands::Joint& joint = hand.joints[index];
+      if (joint.closing_sign == 0 || joint.coupling) continue;
+      const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
+      const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
+      start.q[index] = open + kStartClosed * (closed - open);
+    }
+  }
+  hands::apply_couplings(hand, start.q);
+  // The fingertips' middle onto that of their targets: step 2, all at once.
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, start);
+  Vector3d shift = Vector3d::Zero();
+  int count = 0;
+  for (const TargetContact& target : targets.contacts) {
+    const bool is_palm = target.finger == contact::kPalm;
+    shift += target.point_O -
+             (is_palm ? Vector3d(start.X_OH * hand.palm.center_H)
+                      : hands::pad_contact_point(hand, hand.fingers[target.finger].tip_pad, X_OL));
+    ++count;
+  }
+  start.X_OH.pretranslate(Vector3d(shift / count));
+  return target_posture(hand, targets, start, placement.palm_room);
+}
+
+namespace {
+
+/// What a fingertip misses counts as much as leaning, by the same exchange as in the search.
+double tilt_and_miss(const TargetPosture& posture) {
+  return posture.largest_tilt + posture.largest_miss / (kTiltWeight * kMissUnit);
+}
+
+/// Between the line from one pad to another and their normals, the larger one [rad].
+double pair_angle(const Vector3d& point_a, const Vector3d& normal_a, const Vector3d& point_b,
+                  const Vector3d& normal_b) {
+  const Vector3d line = point_b - point_a;
+  const auto angle = [](const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  };
+  return std::max(angle(normal_a, line), angle(normal_b, -line));
+}
+
+}  // namespace
+
+double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
+                    const TargetPosture& posture) {
+  if (targets.contacts.back().finger == contact::kPalm) return tilt_and_miss(posture);
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, posture.configuration);
+  const auto pad_of = [&](const TargetContact& target) {
+    const int pad = hand.fingers[target.finger].tip_pad;
+    return std::make_pair(hands::pad_contact_point(hand, pad, X_OL),
+                          Vector3d(hands::pad_pose(hand, pad, X_OL).linear().col(2)));
+  };
+  const auto [seed_point, seed_normal] = pad_of(targets.contacts.front());
+  double sum = 0.0;
+  for (std::size_t t = 1; t < targets.contacts.size(); ++t) {
+    const auto [point, normal] = pad_of(targets.contacts[t]);
+    sum += pair_angle(seed_point, seed_normal, point, normal);
+  }
+  return tilt_and_miss(posture) +
+         kPairWeight * sum / static_cast<double>(targets.contacts.size() - 1);
+}
+
+}  // namespace graspfit::grasp

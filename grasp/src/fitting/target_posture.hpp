@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+
+/// \file
+/// The posture at which the paper's five steps would rest were there no object: fingertips (and
+/// palm) at their targets as nearly as the hand can. Steps 2 to 5 move the hand toward it.
+
+namespace graspfit::grasp {
+
+/// Pose of a link's frame in that of the frame in which its parent's pose is given.
+geometry::RigidTransform link_pose(const hands::HandModel& hand, int link,
+                                   const geometry::RigidTransform& X_OP, const Eigen::VectorXd& q);
+
+/// Links from the root to `link`, that included.
+std::vector<int> chain_to(const hands::HandModel& hand, int link);
+
+/// A posture and what it leaves.
+struct TargetPosture {
+  hands::HandConfiguration configuration;
+  double largest_miss = 0.0;  ///< Of a fingertip's contact point from its target [m].
+  double largest_tilt = 0.0;  ///< Of a fingertip's pad from its target's surface [rad].
+};
+
+/// Least squares over the palm's place along and across `start`'s palm direction, its turn about
+/// that direction, and the joints of fingers with targets: distance of each fingertip from its
+/// target and of its normal from the target's reversed one; the palm center from the palm's target.
+/// The palm direction of `start` is kept [P]. Levenberg-Marquardt with joint limits; local.
+///
+/// @param palm_room the palm center stays at least this far before the targets' centroid [m], as a
+/// preference.
+TargetPosture target_posture(const hands::HandModel& hand, const TargetContacts& targets,
+                             const hands::HandConfiguration& start,
+                             const std::optional<double>& palm_room);
+
+/// `target_posture` from the open hand aligned with the targets (section 7), its fingers half way
+/// closed.
+TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& targets,
+                          const PalmPlacement& placement);
+
+/// By what the planner chooses among target sets, smaller is better [rad] [R]: how far the hand
+/// would be from reaching assigned targets, were there no object. In `posture`, that of these
+/// targets: the largest angle between a fingertip pad's normal and its target's inward normal, plus
+/// the largest miss, 15 mm of it counting as one radian; and, where the palm has no target (against
+/// which fingers press), half the mean angle by which pairs of fingertips miss looking at each
+/// other. The pairs are those of the seed's finger with every other one, as in selection (A17); a
+/// pair's angle is the larger one between a pad's normal and the line to the other pad's contact
+/// point. Where pads lie flat their normals are those of the contacts, so that a set with small
+/// angles leaves stable pairs even if the fingertips land beside their targets: "the ideal grasp
+/// scores high on M" and contacts "the hand can plausibly reach" (paper section 1; no formula
+/// there) read through the hand's kinematics.
+double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
+                    const TargetPosture& posture);
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,91 @@
+#include "graspfit/grasp/grasp_diversity.hpp"
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "graspfit/base/option_check.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Configurations = std::span<const hands::HandConfiguration>;
+
+/// Sets of items, each named by one of them.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parents_(count) {
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+  }
+  std::size_t name_of_set(std::size_t item) {
+    while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
+    return item;
+  }
+  /// Whether two sets became one.
+  bool join(std::size_t a, std::size_t b) {
+    a = name_of_set(a);
+    b = name_of_set(b);
+    parents_[a] = b;
+    return a != b;
+  }
+
+ private:
+  std::vector<std::size_t> parents_;
+};
+
+/// A grasp as a point: what `grasp_diversity` says.
+Eigen::VectorXd point_of(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
+                         const DistinctOptions& options) {
+  Eigen::VectorXd point = Eigen::VectorXd::Zero(12 + grasp.q.size());
+  point.head(3) = grasp.X_OH * hand.palm.center_H / options.translation;
+  // Two rotations by an angle apart differ by 2 √2 sin(angle / 2) in the Frobenius norm.
+  point.segment(3, 9) = grasp.X_OH.linear().reshaped() / (std::numbers::sqrt2 * options.rotation);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    const hands::Joint& joint = hand.joints[j];
+    if (joint.coupling) continue;
+    const double scale = joint.type == hands::JointType::Prismatic ? options.slide_scale : 1.0;
+    const auto index = static_cast<Eigen::Index>(j);
+    point[12 + index] = grasp.q[index] / (options.joints * scale);
+  }
+  return point;
+}
+
+}  // namespace
+
+GraspDiversity grasp_diversity(const hands::HandModel& hand, Configurations configurations,
+                               const DistinctOptions& options) {
+  options.validate();
+  for (const auto& [field, value] :
+       {std::pair("translation", options.translation), std::pair("rotation", options.rotation),
+        std::pair("joints", options.joints)}) {
+    base::require(value > 0.0, "grasp_diversity", field, value, "positive");
+  }
+  GraspDiversity diversity;
+  diversity.num_grasps = diversity.num_clusters = static_cast<int>(configurations.size());
+  if (configurations.empty()) return diversity;
+  configuration_distance(hand, configurations[0], configurations[0], options.slide_scale);
+  DisjointSets clusters(configurations.size());
+  for (std::size_t i = 1; i < configurations.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!are_distinct(hand, configurations[i], configurations[j], options) &&
+          clusters.join(i, j)) {
+        --diversity.num_clusters;
+      }
+    }
+  }
+  Eigen::MatrixXd points(12 + configurations[0].q.size(), configurations.size());
+  for (std::size_t i = 0; i < configurations.size(); ++i) {
+    points.col(static_cast<Eigen::Index>(i)) = point_of(hand, configurations[i], options);
+  }
+  const Eigen::MatrixXd centered = points.colwise() - points.rowwise().mean();
+  const Eigen::VectorXd spread = Eigen::JacobiSVD<Eigen::MatrixXd>(centered).singularValues();
+  // What rounding of the mean leaves of equal grasps is no spread.
+  if (spread[0] > 1e-12 * points.cwiseAbs().maxCoeff()) {
+    diversity.first_axis_share = spread[0] * spread[0] / spread.squaredNorm();
+  }
+  return diversity;
+}
+
+}  // namespace graspfit::grasp

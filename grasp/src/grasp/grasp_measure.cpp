@@ -1,0 +1,89 @@
+#include "grasp/grasp_measure.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "graspfit/grasp/grasp_measure.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using geometry::RigidTransform;
+
+/// Marks the contacts of `pad` as targets; whether one of them is near enough.
+bool claim(std::vector<contact::Contact>& contacts, int pad,
+           const std::optional<double>& largest_gap) {
+  bool is_any_near = false;
+  for (contact::Contact& contact : contacts) {
+    if (contact.pad != pad) continue;
+    contact.is_target = true;
+    is_any_near = is_any_near || !largest_gap || contact.gap <= *largest_gap;
+  }
+  return is_any_near;
+}
+
+}  // namespace
+
+Grasp internal::with_contacts(const MeasuringScene& scene,
+                              const hands::HandConfiguration& configuration,
+                              const RequestedParts& requested) {
+  const hands::HandModel& hand = scene.hand;
+  hands::validate(hand, configuration);
+  Grasp grasp;
+  grasp.configuration = configuration;
+  grasp.contacts = contact::estimate_contacts(hand, hands::forward_kinematics(hand, configuration),
+                                              scene.object, scene.contact_options, scene.weak);
+  grasp.has_all_contacts = true;
+  for (const int pad : requested_pads(hand, requested)) {
+    const bool has_contact = claim(grasp.contacts, pad, scene.largest_gap);
+    grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
+  }
+  grasp.quality =
+      contact::contact_quality(grasp.contacts, scene.quality_context, scene.quality_options);
+  return grasp;
+}
+
+Grasp internal::with_self_penetration(const MeasuringScene& scene, Grasp grasp) {
+  const hands::HandCollision::Result with_self =
+      scene.collision.against_self(hands::forward_kinematics(scene.hand, grasp.configuration));
+  grasp.penetration.self_intersects = with_self.intersects;
+  grasp.penetration.self_depth = with_self.depth;
+  grasp.penetration.self_link_a = with_self.link_a;
+  grasp.penetration.self_link_b = with_self.link_b;
+  return grasp;
+}
+
+Grasp internal::with_all_measures(const MeasuringScene& scene, Grasp grasp) {
+  const std::vector<RigidTransform> X_OL =
+      hands::forward_kinematics(scene.hand, grasp.configuration);
+  const hands::HandCollision::Result with_object =
+      scene.collision.against_object(scene.object, X_OL);
+  GraspPenetration& penetration = grasp.penetration;
+  penetration.object_intersects = with_object.intersects;
+  penetration.object_depth = with_object.depth;
+  penetration.object_depth_bound = with_object.depth_bound;
+  penetration.object_link = with_object.link_a;
+  for (std::size_t link = 0; link < X_OL.size(); ++link) {
+    penetration.surroundings_touched =
+        penetration.surroundings_touched ||
+        scene.surroundings.touches(scene.collision, static_cast<int>(link), X_OL[link]);
+  }
+  const std::vector<contact::Contact> touching =
+      contact::touching_contacts(grasp.contacts, scene.bearing_gap);
+  if (!touching.empty()) {
+    grasp.wrench = contact::wrench_quality(contact::grasp_wrench_space(
+        touching, contact::wrench_convention(contact::WrenchTool::GraspIt, scene.wrench_object,
+                                             touching, scene.friction)));
+  }
+  return grasp;
+}
+
+Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
+                    const RequestedParts& requested) {
+  return internal::with_all_measures(
+      scene, internal::with_self_penetration(
+                 scene, internal::with_contacts(scene, configuration, requested)));
+}
+
+}  // namespace graspfit::grasp

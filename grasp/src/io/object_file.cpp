@@ -1,0 +1,97 @@
+#include "graspfit/grasp/object_file.hpp"
+
+#include <cmath>
+
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/sha256.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using base::shortest_decimal;
+
+/// Runs `work`; if it refuses the mesh, the message gets the file's name in front.
+template <class Work>
+auto naming_file(const std::filesystem::path& file, const Work& work) {
+  const std::string name = file.string();
+  const auto message = [&name](const std::exception& error) {
+    const std::string what = error.what();
+    return what.find(name) == std::string::npos ? name + ": " + what : what;
+  };
+  try {
+    return work();
+  } catch (const base::InvalidInput& error) {
+    throw base::InvalidInput(message(error));
+  } catch (const base::DegenerateGeometry& error) {
+    throw base::DegenerateGeometry(message(error));
+  }
+}
+
+}  // namespace
+
+void ObjectReadOptions::validate() const {
+  const auto check = [](const char* field, double value) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      throw base::InvalidInput(std::string(field) + " must be positive and finite, not " +
+                               shortest_decimal(value));
+    }
+  };
+  check("meters_per_file_unit", meters_per_file_unit);
+  if (longest_extent) check("longest_extent", *longest_extent);
+  repair.validate();
+}
+
+ObjectFile read_object_file(const std::filesystem::path& file, const ObjectReadOptions& options) {
+  options.validate();
+  geometry::MeshFile read = geometry::read_mesh(file);
+  return naming_file(file, [&] {
+    ObjectFile object;
+    object.report = std::move(read.report);
+    ObjectRecord& record = object.record;
+    record.file = file.string();
+    record.sha256 = base::sha256_hex(base::read_file(file));
+    record.repair = options.repair;
+    record.meters_per_file_unit = options.meters_per_file_unit;
+    if (options.longest_extent) {
+      const double extent = geometry::longest_extent(read.mesh);
+      if (!(extent > 0.0)) throw base::DegenerateGeometry("the mesh has no extent");
+      record.meters_per_file_unit = *options.longest_extent / extent;
+    }
+    const geometry::TriangleMesh in_meters =
+        record.meters_per_file_unit == 1.0
+            ? std::move(read.mesh)
+            : geometry::scaled(read.mesh, record.meters_per_file_unit);
+
+    geometry::RepairedMesh repaired = geometry::repair_mesh(in_meters, options.repair);
+    object.mesh = std::move(repaired.mesh);
+    object.before = repaired.before;
+    record.analysis = repaired.after;
+    record.repairs = std::move(repaired.steps);
+    record.normalizing_radius = 0.5 * record.analysis.box.diagonal().norm();
+    // Only `AsIs` lets a mesh through that is not closed; its mass is left at zero.
+    if (record.analysis.is_closed && record.analysis.is_outward) {
+      const geometry::MassProperties mass = geometry::mass_properties(object.mesh);
+      record.center_of_mass_O = mass.center_of_mass;
+      record.volume = mass.volume;
+    }
+    return object;
+  });
+}
+
+geometry::TriangleMesh read_object(const ObjectRecord& record, const std::filesystem::path& file) {
+  const std::filesystem::path found = file.empty() ? std::filesystem::path(record.file) : file;
+  const std::string sha256 = base::sha256_hex(base::read_file(found));
+  if (sha256 != record.sha256) {
+    throw base::IoError(found.string() + ": is not the file that was planned on: its SHA-256 is " +
+                        sha256 + ", not " + record.sha256);
+  }
+  ObjectReadOptions options;
+  options.meters_per_file_unit = record.meters_per_file_unit;
+  options.repair = record.repair;
+  return read_object_file(found, options).mesh;
+}
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,189 @@
+// Hand-object geometric fitting, the paper's method: contacts to reach are chosen on the object by
+// their scores and the hand's kinematics, and the hand is fitted to them.
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+#include <utility>
+
+#include "graspfit/contact/grasp_balance.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
+#include "methods/guidance_list.hpp"
+#include "methods/target_sides.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+// Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
+// sets are drawn.
+constexpr int kSidesPerDraw = 2;
+
+const char* failure_name(TargetFailure failure) {
+  switch (failure) {
+    case TargetFailure::NoSeed:
+      return "no seed";
+    case TargetFailure::NoSecond:
+      return "no second";
+    case TargetFailure::NoFurther:
+      return "no further";
+    case TargetFailure::NoPalm:
+      return "no palm";
+  }
+  return "";
+}
+
+class FittingGuidance : public GraspGuidance {
+ public:
+  explicit FittingGuidance(const GuidanceScene& scene)
+      : scene_(scene),
+        torque_scale_(
+            geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)),
+        distances_(part_distances(scene.hand.model())) {
+    if (scene.options.targets.search == TargetSearch::Ranked) {
+      ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
+    } else {
+      selector_.emplace(scene.object, distances_, scene.parts, scene.options.targets,
+                        IdealMeasure{&scene.hand.model(), scene.options.quality});
+    }
+  }
+
+  GuidedStarts starts(std::int64_t number) const override {
+    GuidedStarts result;
+    result.starts =
+        starts_from(ranked_ ? ranked_sides(number, result) : drawn_sides(number, result), scene_);
+    return result;
+  }
+
+  std::vector<std::string> failures() const override {
+    std::vector<std::string> names;
+    for (const TargetFailure failure : {TargetFailure::NoSeed, TargetFailure::NoSecond,
+                                        TargetFailure::NoFurther, TargetFailure::NoPalm}) {
+      names.emplace_back(failure_name(failure));
+    }
+    return names;
+  }
+
+  /// The score map: one point per partial voxel.
+  GuidanceModel model() const override {
+    GuidanceModel model;
+    model.columns = {"x_m",
+                     "y_m",
+                     "z_m",
+                     "nx",
+                     "ny",
+                     "nz",
+                     "score",
+                     "mean_plane_distance_voxels",
+                     "mean_normal_angle_deg"};
+    const ContactScoreMap& scores = scene_.object.scores;
+    for (std::size_t i = 0; i < scene_.object.patches.size(); ++i) {
+      const geometry::SurfacePatch& patch = scene_.object.patches[i];
+      model.rows.push_back({patch.centroid.x(), patch.centroid.y(), patch.centroid.z(),
+                            patch.outward_normal.x(), patch.outward_normal.y(),
+                            patch.outward_normal.z(), scores.scores[i],
+                            scores.mean_plane_distance[i], scores.mean_normal_angle_deg[i]});
+    }
+    return model;
+  }
+
+ private:
+  /// The next of the sets in their order.
+  std::vector<TargetSide> ranked_sides(std::int64_t number, GuidedStarts& result) const {
+    const std::optional<TargetContacts> targets = ranked_targets(number);
+    if (!targets) {
+      result.is_exhausted = true;
+      if (number == 0) result.failure = failure_name(ranked_->failure());
+      return {};
+    }
+    std::vector<TargetSide> sides = sides_of(*targets, scene_, true);
+    if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
+    std::stable_sort(sides.begin(), sides.end(), by_misfit);
+    return sides;
+  }
+
+  /// Of several random sets the one whose best side goes first, or those of all of them.
+  std::vector<TargetSide> drawn_sides(std::int64_t number, GuidedStarts& result) const {
+    const PlannerOptions& options = scene_.options;
+    base::Random random = base::Random::stream(options.seed, static_cast<std::uint64_t>(number));
+    std::vector<TargetSide> best;
+    TargetFailure failure = TargetFailure::NoFurther;  // no side within the cone of approach
+    int num_judged = 0;
+    // Where sets are rare, the seeds of one search are the budget of all draws together.
+    const auto may_draw = [&](int draw) {
+      return draw < num_draws() && num_judged < kSidesPerDraw * num_draws() &&
+             (best.empty() || result.seeds_tried < options.targets.max_seeds);
+    };
+    for (int draw = 0; may_draw(draw); ++draw) {
+      const TargetSelection selection = selector_->select(random);
+      result.seeds_tried += selection.seeds_tried;
+      if (!selection.targets) {
+        failure = selection.failure;
+        break;  // the search gave up after many seeds of its own
+      }
+      std::vector<TargetSide> sides =
+          sides_of(*selection.targets, scene_, options.target_draws > 1);
+      if (sides.empty()) continue;
+      num_judged += static_cast<int>(sides.size());
+      if (options.target_draws == 1) return sides;
+      if (options.attempt_choice != AttemptChoice::First) {
+        const int set_imbalance = imbalance(*selection.targets);
+        for (TargetSide& side : sides) side.imbalance = set_imbalance;
+      }
+      std::stable_sort(sides.begin(), sides.end(), by_misfit);
+      if (options.attempt_choice == AttemptChoice::Strongest) {
+        std::move(sides.begin(), sides.end(), std::back_inserter(best));
+      } else if (best.empty() || by_misfit(sides.front(), best.front())) {
+        best = std::move(sides);
+      }
+    }
+    std::stable_sort(best.begin(), best.end(), by_misfit);
+    if (best.empty()) result.failure = failure_name(failure);
+    return best;
+  }
+
+  /// 0: forces at the targets balance one another as a squeeze must, within its cones; 1: within
+  /// those of `friction` only; 2: within neither.
+  int imbalance(const TargetContacts& targets) const {
+    const std::vector<contact::Contact> contacts = contacts_at(targets);
+    const PlannerOptions& options = scene_.options;
+    const auto do_balance = [&](double friction) {
+      const contact::BalanceForces forces = contact::balance_forces(
+          contacts, scene_.object.mass.center_of_mass, contact::Wrench::Zero(),
+          {.friction = friction, .least_normal_sum = 1.0, .torque_scale = torque_scale_});
+      return forces.residual_norm <= options.squeeze.largest_residual;
+    };
+    if (do_balance(options.squeeze_friction)) return 0;
+    return do_balance(options.friction) ? 1 : 2;
+  }
+
+  /// Sets with a target for the palm are chosen by the fingers' reach already.
+  int num_draws() const {
+    const int draws = scene_.options.target_draws;
+    return scene_.parts.palm ? std::max(1, draws / 4) : draws;
+  }
+
+  std::optional<TargetContacts> ranked_targets(std::int64_t number) const {
+    const std::lock_guard<std::mutex> lock(ranked_lock_);
+    while (static_cast<std::int64_t>(ranked_sets_.size()) <= number) {
+      std::optional<TargetContacts> next = ranked_->next();
+      if (!next) return std::nullopt;
+      ranked_sets_.push_back(std::move(*next));
+    }
+    return ranked_sets_[static_cast<std::size_t>(number)];
+  }
+
+  const GuidanceScene scene_;
+  const double torque_scale_;               ///< As of squeezes [m].
+  const PartDistances distances_;           ///< Outlives the searches, which refer to it.
+  std::optional<TargetSelector> selector_;  ///< Of the random search.
+  mutable std::mutex ranked_lock_;
+  mutable std::optional<RankedTargets> ranked_;
+  mutable std::vector<TargetContacts> ranked_sets_;  ///< Those that `ranked_` gave so far.
+};
+
+}  // namespace
+
+std::unique_ptr<GraspGuidance> fitting_guidance(const GuidanceScene& scene) {
+  return std::make_unique<FittingGuidance>(scene);
+}
+
+}  // namespace graspfit::grasp::internal

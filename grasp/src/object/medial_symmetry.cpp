@@ -1,0 +1,163 @@
+#include "graspfit/grasp/medial_symmetry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/hands/palm_pose.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Eigen::Vector3d;
+
+// How far a ball's center may be off, over its radius: what the tolerance of `medial_balls` leaves
+// on faceted round bodies.
+constexpr double kCenterAccuracy = 0.03;
+constexpr int kRandomCandidates = 8;  // As many as an axis has.
+
+MedialSymmetry symmetry_of(const geometry::MedialBall& ball, const std::vector<Vector3d>& centers,
+                           double least_spread, const MedialSymmetryOptions& options) {
+  MedialSymmetry symmetry{.ball = ball};
+  symmetry.neighbors = static_cast<int>(centers.size()) - 1;
+  for (const Vector3d& center : centers) symmetry.center_of_gravity_O += center;
+  symmetry.center_of_gravity_O /= static_cast<double>(centers.size());
+  if (symmetry.neighbors < 1) return symmetry;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Vector3d& center : centers) {
+    const Vector3d off = center - symmetry.center_of_gravity_O;
+    scatter += off * off.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);  // smallest first
+  const double first = std::max(0.0, axes.eigenvalues()[2]);
+  const double second = std::max(0.0, axes.eigenvalues()[1]);
+  const double noise = std::max(least_spread, kCenterAccuracy * ball.radius);
+  if (std::sqrt(first / static_cast<double>(centers.size())) <= noise) {
+    symmetry.kind = SymmetryKind::Point;
+    return symmetry;
+  }
+  symmetry.ratio = second / first;
+  symmetry.first_axis_O = axes.eigenvectors().col(2);
+  symmetry.second_axis_O = axes.eigenvectors().col(1);
+  symmetry.kind = symmetry.ratio <= options.axis_ratio  ? SymmetryKind::Axis
+                  : symmetry.ratio <= options.rim_ratio ? SymmetryKind::Rim
+                                                        : SymmetryKind::Interior;
+  return symmetry;
+}
+
+Vector3d random_direction(base::Random& random) {
+  const double z = random.uniform(-1.0, 1.0);
+  const double turn = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+}  // namespace
+
+void MedialSymmetryOptions::validate() const {
+  const auto require = [](bool is_met, std::string_view field, const auto& value,
+                          std::string_view rule) {
+    base::require(is_met, "MedialSymmetryOptions", field, value, rule);
+  };
+  require(samples >= 1 && samples <= 1000000, "samples", samples, "in [1, 1000000]");
+  require(min_object_angle_deg >= 0.0 && min_object_angle_deg <= 180.0, "min_object_angle_deg",
+          min_object_angle_deg, "in [0, 180] degrees");
+  require(axis_ratio >= 0.0 && axis_ratio <= 1.0, "axis_ratio", axis_ratio, "in [0, 1]");
+  require(rim_ratio >= axis_ratio && rim_ratio <= 1.0, "rim_ratio", rim_ratio,
+          "in [axis_ratio, 1]");
+  require(search_radius > 0.0 && std::isfinite(search_radius), "search_radius", search_radius,
+          "finite and > 0 m");
+  require(search_radius_rel >= 0.0 && std::isfinite(search_radius_rel), "search_radius_rel",
+          search_radius_rel, "finite and >= 0");
+  require(least_spread_rel >= 0.0 && std::isfinite(least_spread_rel), "least_spread_rel",
+          least_spread_rel, "finite and >= 0");
+}
+
+double search_radius(const geometry::TriangleMesh& mesh, const MedialSymmetryOptions& options) {
+  return std::max(options.search_radius,
+                  options.search_radius_rel * geometry::longest_extent(mesh));
+}
+
+std::vector<MedialSymmetry> medial_symmetries(std::span<const geometry::MedialBall> balls,
+                                              double radius, double longest_extent,
+                                              const MedialSymmetryOptions& options) {
+  options.validate();
+  std::vector<MedialSymmetry> symmetries;
+  std::vector<Vector3d> centers;
+  for (const geometry::MedialBall& ball : balls) {
+    centers.clear();
+    for (const geometry::MedialBall& other : balls) {
+      if ((other.center - ball.center).squaredNorm() <= radius * radius) {
+        centers.push_back(other.center);
+      }
+    }
+    symmetries.push_back(
+        symmetry_of(ball, centers, options.least_spread_rel * longest_extent, options));
+  }
+  return symmetries;
+}
+
+std::vector<MedialSymmetry> medial_symmetries(const ObjectModel& object,
+                                              const MedialSymmetryOptions& options,
+                                              std::uint64_t seed) {
+  options.validate();
+  const auto samples = geometry::sample_surface(
+      object.mesh(), {.count = static_cast<std::size_t>(options.samples), .seed = seed});
+  const auto balls = geometry::medial_balls(
+      object.query, samples,
+      {.min_object_angle_deg = options.min_object_angle_deg, .num_threads = 1});
+  return medial_symmetries(balls, search_radius(object.mesh(), options),
+                           geometry::longest_extent(object.mesh()), options);
+}
+
+std::vector<MedialCandidate> medial_candidates(std::span<const MedialSymmetry> symmetries,
+                                               std::uint64_t seed) {
+  std::vector<MedialCandidate> candidates;
+  for (std::size_t i = 0; i < symmetries.size(); ++i) {
+    const MedialSymmetry& symmetry = symmetries[i];
+    const Vector3d& center = symmetry.ball.center;
+    const auto add = [&](const Vector3d& outward, const Vector3d& axis) {
+      candidates.push_back({center, outward, axis, static_cast<std::int32_t>(i)});
+    };
+    switch (symmetry.kind) {
+      case SymmetryKind::Axis: {
+        const Vector3d& along = symmetry.first_axis_O;
+        const Vector3d across = along.cross(symmetry.second_axis_O).normalized();
+        for (const Vector3d& outward : {symmetry.second_axis_O, across,
+                                        Vector3d(-symmetry.second_axis_O), Vector3d(-across)}) {
+          add(outward, along);
+          add(outward, -along);
+        }
+        break;
+      }
+      case SymmetryKind::Rim: {
+        const double side =
+            symmetry.second_axis_O.dot(center - symmetry.center_of_gravity_O) < 0.0 ? -1.0 : 1.0;
+        const Vector3d outward = side * symmetry.second_axis_O;
+        add(outward, symmetry.first_axis_O);
+        add(outward, -symmetry.first_axis_O);
+        break;
+      }
+      case SymmetryKind::Point: {
+        base::Random random = base::Random::stream(seed, i);
+        for (int k = 0; k < kRandomCandidates; ++k) {
+          const Vector3d outward = random_direction(random);
+          const double turn = random.uniform(0.0, 2.0 * std::numbers::pi);
+          add(outward, hands::turned_axis(hands::any_normal(outward), outward, turn));
+        }
+        break;
+      }
+      case SymmetryKind::Interior:
+      case SymmetryKind::Alone:
+        break;
+    }
+  }
+  return candidates;
+}
+
+}  // namespace graspfit::grasp

@@ -1,0 +1,144 @@
+#include "graspfit/grasp/planner_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
+#include "graspfit/grasp/option_names.hpp"
+#include "targets/object_size.hpp"
+
+namespace graspfit::grasp {
+
+using base::InvalidInput;
+using base::shortest_decimal;
+
+void PlannerOptions::validate() const {
+  const auto require = [](bool is_met, std::string_view field, const auto& value,
+                          std::string_view rule) {
+    base::require(is_met, "PlannerOptions", field, value, rule);
+  };
+  require(count >= 1, "count", count, ">= 1");
+  require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
+  if (max_iterations) require(*max_iterations >= 1, "max_iterations", *max_iterations, ">= 1");
+  const bool has_palm = palm.value_or(style == GraspStyle::Power);
+  const int least_fingers = has_palm ? 1 : 2;
+  require(!fingers.empty() || num_contacts >= least_fingers, "num_contacts", num_contacts,
+          has_palm ? ">= 1 beside the palm" : ">= 2");
+  require(fingers.empty() || static_cast<int>(fingers.size()) >= least_fingers, "fingers",
+          fingers.size(), has_palm ? "at least one name beside the palm" : "at least two names");
+  require(resolution >= 4 && resolution <= 512, "resolution", resolution, "in [4, 512]");
+  if (approach_O) {
+    require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
+            shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
+                shortest_decimal((*approach_O)[2]),
+            "finite and not zero");
+  }
+  if (wall_clock_limit_s) {
+    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", *wall_clock_limit_s, "> 0 s");
+  }
+  if (clip_thickness) {
+    require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
+            *clip_thickness, "finite and > 0 m");
+  }
+  if (largest_deviation) {
+    require(*largest_deviation > 0.0 && std::isfinite(*largest_deviation), "largest_deviation",
+            *largest_deviation, "finite and > 0 m");
+  }
+  require(target_draws >= 1, "target_draws", target_draws, ">= 1");
+  require(max_placements >= 1, "max_placements", max_placements, ">= 1");
+  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap", self_overlap,
+          "finite and >= 0 m");
+  require(approach_angle > 0.0 && approach_angle <= std::numbers::pi, "approach_angle",
+          approach_angle, "in (0, pi] rad");
+  if (contact_score_threshold) {
+    require(*contact_score_threshold >= 0.0 && *contact_score_threshold < 1.0,
+            "contact_score_threshold", *contact_score_threshold, "in [0, 1)");
+  }
+  require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
+  require(squeeze_friction >= 0.0 && std::isfinite(squeeze_friction), "squeeze_friction",
+          squeeze_friction, "finite and >= 0");
+  require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
+          name_of(missing_contact), "fails with refine, which accepts no part without contact");
+  score.validate();
+  if (weak) weak->validate();
+  targets.validate();
+  fitting.validate();
+  sampling.validate();
+  medial_symmetry.validate();
+  refinement.validate();
+  pre_grasp.validate();
+  squeeze.validate();
+  distinct.validate();
+  quality.validate();
+}
+
+double clip_thickness(const PlannerOptions& options, double voxel_size) {
+  return options.clip_thickness.value_or(std::max(0.5 * voxel_size, 0.001));
+}
+
+double merge_distance(const PlannerOptions& options, double voxel_size) {
+  return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
+}
+
+double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand) {
+  if (options.largest_deviation) return *options.largest_deviation;
+  return internal::fingertip_width(hand, requested_parts(hand, options).fingers);
+}
+
+contact::ContactEstimationOptions contact_estimation(const PlannerOptions& options,
+                                                     double clip_thickness) {
+  const bool is_power = options.style == GraspStyle::Power;
+  return {.clip_thickness = clip_thickness,
+          .averaging = options.averaging,
+          .pads = options.counted_pads.value_or(is_power ? contact::CountedPads::All
+                                                         : contact::CountedPads::TipsAndPalm),
+          .pieces = options.contact_pieces};
+}
+
+std::optional<double> bearing_gap(const PlannerOptions& options) {
+  return options.refine ? std::optional(options.refinement.largest_gap) : std::nullopt;
+}
+
+RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {
+  RequestedParts parts;
+  parts.palm = options.palm.value_or(options.style == GraspStyle::Power);
+  if (parts.palm && hand.palm.pad < 0) {
+    throw InvalidInput("the palm of hand " + hand.name +
+                       " has no contact pad, so it cannot be asked to touch");
+  }
+  std::vector<int>& fingers = parts.fingers;
+  if (options.fingers.empty()) {
+    if (options.num_contacts > static_cast<int>(hand.fingers.size())) {
+      throw InvalidInput("hand " + hand.name + " has " + std::to_string(hand.fingers.size()) +
+                         " fingers, " + std::to_string(options.num_contacts) +
+                         " contacts were asked for");
+    }
+    fingers.push_back(hand.thumb());
+    for (int finger = 0; static_cast<int>(fingers.size()) < options.num_contacts; ++finger) {
+      if (finger != hand.thumb()) fingers.push_back(finger);
+    }
+  } else {
+    for (const std::string& name : options.fingers) {
+      const int finger = hand.finger_index(name);
+      if (std::find(fingers.begin(), fingers.end(), finger) != fingers.end()) {
+        throw InvalidInput("finger " + name + " is named twice");
+      }
+      fingers.push_back(finger);
+    }
+  }
+  for (const int finger : fingers) {
+    if (hand.fingers[finger].tip_pad < 0) {
+      throw InvalidInput("finger " + hand.fingers[finger].name + " of hand " + hand.name +
+                         " has no fingertip pad");
+    }
+  }
+  const auto thumb = std::find(fingers.begin(), fingers.end(), hand.thumb());
+  if (thumb != fingers.end()) std::rotate(fingers.begin(), thumb, thumb + 1);
+  return parts;
+}
+
+}  // namespace graspfit::grasp

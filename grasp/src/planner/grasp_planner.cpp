@@ -1,0 +1,215 @@
+#include "graspfit/grasp/grasp_planner.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/stopwatch.hpp"
+#include "graspfit/hands/hand_model.hpp"
+#include "planner/planner_attempts.hpp"
+#include "targets/object_size.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Takes the results of attempts in the order of their numbers, whoever made them, until the run is
+/// over. So nothing depends on the number of threads.
+class Search {
+ public:
+  Search(const ObjectModel& object, const hands::HandModel& hand, const PlannerOptions& options,
+         const Surroundings& surroundings, const PlanningRun& run)
+      : attempts_(object, hand, options, surroundings, run.methods),
+        hand_(hand),
+        options_(options),
+        run_(run) {
+    for (int outcome = 0; outcome <= static_cast<int>(AttemptOutcome::PoorShape); ++outcome) {
+      result_.statistics.outcomes[static_cast<AttemptOutcome>(outcome)] = 0;
+    }
+    for (const std::string& failure : attempts_.guidance().failures()) {
+      result_.statistics.target_failures[failure] = 0;
+    }
+    result_.statistics.guidance = attempts_.guidance().counts();
+    result_.timings.guidance_s = attempts_.guidance_s();
+  }
+
+  PlannerResult operator()() {
+    const std::size_t wanted = run_.num_threads > 0
+                                   ? static_cast<std::size_t>(run_.num_threads)
+                                   : std::max(1U, std::thread::hardware_concurrency());
+    const std::size_t useful =
+        std::min(wanted, static_cast<std::size_t>(std::max(1, options_.max_attempts)));
+    {
+      std::vector<std::jthread> threads;
+      for (std::size_t t = 1; t < useful; ++t) threads.emplace_back([this] { work(); });
+      work();
+    }
+    if (failure_) std::rethrow_exception(failure_);
+    if (!is_over_ && run_.stop.stop_requested()) end(PlannerStop::Interrupted);
+    select();
+    result_.timings.total_s = base::seconds_since(start_);
+    return std::move(result_);
+  }
+
+ private:
+  /// One thread: makes attempts until there are no more to make.
+  void work() {
+    while (!is_over_ && !run_.stop.stop_requested()) {
+      const std::int64_t number = next_++;
+      if (number >= options_.max_attempts) return;
+      try {
+        internal::AttemptResult made = attempts_.make(number);
+        const std::lock_guard<std::mutex> lock(lock_);
+        waiting_.emplace(number, std::move(made));
+        take_in_order();
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(lock_);
+        if (!failure_) failure_ = std::current_exception();
+        is_over_ = true;
+      }
+    }
+  }
+
+  void take_in_order() {
+    while (!is_over_ && !waiting_.empty() && waiting_.begin()->first == num_taken_) {
+      take(std::move(waiting_.begin()->second));
+      waiting_.erase(waiting_.begin());
+    }
+  }
+
+  void take(internal::AttemptResult made) {
+    ++num_taken_;
+    PlannerStatistics& statistics = result_.statistics;
+    result_.timings += made.timings;
+    if (made.target_failure) {
+      ++statistics.target_failures[*made.target_failure];
+    }
+    if (made.is_exhausted) {
+      end(PlannerStop::Exhausted);
+      return;
+    }
+    ++statistics.attempts;
+    ++statistics.outcomes[made.outcome];
+    statistics.seeds_tried += made.seeds_tried;
+    statistics.fitting_iterations += made.fitting_iterations;
+    statistics.refinement_iterations += made.refinement_iterations;
+    if (made.grasp && made.is_accepted) keep(std::move(*made.grasp));
+    if (run_.progress) {
+      run_.progress(statistics.attempts, static_cast<std::int64_t>(result_.grasps.size()));
+    }
+    if (options_.search == SearchRule::First &&
+        static_cast<int>(result_.grasps.size()) >= options_.count) {
+      end(PlannerStop::Count);
+    } else if (num_taken_ == options_.max_attempts) {
+      end(PlannerStop::Attempts);
+    } else if (options_.max_iterations &&
+               statistics.fitting_iterations + statistics.refinement_iterations >=
+                   *options_.max_iterations) {
+      end(PlannerStop::Iterations);
+    } else if (options_.wall_clock_limit_s &&
+               base::seconds_since(start_) > *options_.wall_clock_limit_s) {
+      end(PlannerStop::WallClock);
+    }
+  }
+
+  void end(PlannerStop stop) {
+    result_.stop = stop;
+    is_over_ = true;
+  }
+
+  bool is_unlike(const Grasp& grasp, const std::vector<Grasp>& others) const {
+    return std::all_of(others.begin(), others.end(), [&](const Grasp& other) {
+      return are_distinct(hand_, grasp.configuration, other.configuration, options_.distinct);
+    });
+  }
+
+  /// In the search for the first grasps, only those that differ from all before them.
+  void keep(Grasp grasp) {
+    if (options_.search == SearchRule::Best || is_unlike(grasp, result_.grasps)) {
+      result_.grasps.push_back(std::move(grasp));
+    } else {
+      ++result_.statistics.duplicates;
+    }
+  }
+
+  /// Best M first; of those too like a better one, none.
+  void select() {
+    std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
+                     [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
+    if (options_.search == SearchRule::First) return;
+    std::vector<Grasp> selected;
+    for (Grasp& grasp : result_.grasps) {
+      if (!is_unlike(grasp, selected)) {
+        ++result_.statistics.duplicates;
+      } else if (static_cast<int>(selected.size()) < options_.count) {
+        selected.push_back(std::move(grasp));
+      }
+    }
+    result_.grasps = std::move(selected);
+  }
+
+  const Clock::time_point start_ = Clock::now();
+  const internal::PlannerAttempts attempts_;
+  const hands::HandModel& hand_;
+  const PlannerOptions& options_;
+  const PlanningRun& run_;
+  std::atomic<std::int64_t> next_ = 0;
+  std::atomic<bool> is_over_ = false;
+  std::mutex lock_;  ///< Of all below.
+  std::map<std::int64_t, internal::AttemptResult> waiting_;
+  std::int64_t num_taken_ = 0;
+  std::exception_ptr failure_;
+  PlannerResult result_;
+};
+
+}  // namespace
+
+std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
+                                        const hands::HandModel& hand,
+                                        const PlannerOptions& options) {
+  const RequestedParts parts = requested_parts(hand, options);
+  return internal::size_refusal(mesh, hand, parts.fingers,
+                                internal::widest_opening(part_distances(hand), parts));
+}
+
+ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const PlannerOptions& options,
+                           ObjectModelTimings* timings, const base::ContentCache& cache) {
+  options.validate();
+  ObjectModelOptions object_options;
+  object_options.resolution = options.resolution;
+  object_options.averaging = options.averaging;
+  object_options.score = options.score;
+  object_options.weak = options.weak;
+  return cached_object_model(mesh, object_options, cache, timings);
+}
+
+ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
+                           const PlannerOptions& options, ObjectModelTimings* timings,
+                           const base::ContentCache& cache) {
+  options.validate();
+  if (const auto refusal = size_refusal(mesh, hand, options)) throw base::InvalidInput(*refusal);
+  return prepare_object(mesh, options, timings, cache);
+}
+
+PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
+                          const PlannerOptions& options, const Surroundings& surroundings,
+                          const PlanningRun& run) {
+  return Search(object, hand, options, surroundings, run)();
+}
+
+GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& hand,
+                             const PlannerOptions& options, const Surroundings& surroundings) {
+  return internal::PlannerAttempts(object, hand, options, surroundings, planning_methods())
+      .guidance()
+      .model();
+}
+
+}  // namespace graspfit::grasp

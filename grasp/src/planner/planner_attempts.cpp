@@ -1,0 +1,417 @@
+#include "planner/planner_attempts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "grasp/grasp_measure.hpp"
+#include "graspfit/base/stopwatch.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
+#include "graspfit/grasp/grasp_measure.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/hands/palm_pose.hpp"
+#include "targets/object_size.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+constexpr double kHighQuality = 0.6;  // of M (A36)
+constexpr double kIdealShare = 0.5;   // of the targets' own M (A36)
+// More than refinement may exceed its largest turn by [rad].
+constexpr double kAngleSlack = 1e-6;
+
+/// `options` with what the planner's rules set where they leave it open.
+PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
+                                  PlannerOptions options) {
+  options.validate();
+  const RequestedParts parts = requested_parts(hand, options);
+  if (options.targets.min_separation == 0.0) {
+    options.targets.min_separation = fingertip_width(hand, parts.fingers);
+  }
+  options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
+  // Refinement takes over there, which moves the palm too and would undo the rest of closing.
+  if (options.refine) options.fitting.contact_state = ContactState::FirstGraze;
+  // Where other contacts may do, fingers close however far one of them has stopped.
+  if (options.missing_contact == MissingContact::Measured) {
+    options.fitting.give_up_distance = std::numeric_limits<double>::max();
+  }
+  return options;
+}
+
+MeasuringScene measuring_scene(const ObjectModel& object, const FittingHand& hand,
+                               const SurroundingsCollision& surroundings,
+                               const PlannerOptions& options) {
+  MeasuringScene scene{.hand = hand.model(),
+                       .collision = hand.collision(),
+                       .object = object.query,
+                       .surroundings = surroundings};
+  scene.weak = object.weak ? &*object.weak : nullptr;
+  scene.wrench_object = contact::wrench_object(object.mesh(), object.mass.center_of_mass);
+  scene.friction = options.friction;
+  scene.quality_context = {.center_of_mass_O = object.mass.center_of_mass,
+                           .normalizing_radius = object.normalizing_radius,
+                           .hand = &hand.model()};
+  scene.quality_options = options.quality;
+  scene.contact_options =
+      contact_estimation(options, clip_thickness(options, object.grid.lattice.voxel_size));
+  scene.largest_gap = scene.bearing_gap = bearing_gap(options);
+  return scene;
+}
+
+/// Why M is zero.
+AttemptOutcome unusable_outcome(const Grasp& grasp) {
+  const bool is_all_weak =
+      !grasp.contacts.empty() &&
+      std::all_of(grasp.contacts.begin(), grasp.contacts.end(),
+                  [](const contact::Contact& contact) { return contact.weak.value_or(false); });
+  if (is_all_weak) return AttemptOutcome::Weak;
+  return grasp.quality.stable_pairs.empty() ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape;
+}
+
+/// Of the squeeze; infinite without one.
+double squeeze_residual(const AttemptResult& result) {
+  return result.grasp && result.grasp->squeeze ? result.grasp->squeeze->residual
+                                               : std::numeric_limits<double>::infinity();
+}
+
+bool is_balanced(const AttemptResult& result) {
+  return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
+}
+
+/// ε of the contacts that touch, within the cones of the squeeze, negative where those do not
+/// close; least possible without any.
+double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
+  std::vector<contact::Contact> contacts;
+  if (result.grasp)
+    contacts = contact::touching_contacts(result.grasp->contacts, scene.bearing_gap);
+  if (contacts.empty()) return -std::numeric_limits<double>::infinity();
+  contact::WrenchConvention convention = contact::wrench_convention(
+      contact::WrenchTool::House, scene.wrench_object, contacts, friction);
+  convention.options.outside = contact::OutsideValue::Signed;
+  return contact::epsilon_quality(contact::grasp_wrench_space(contacts, convention));
+}
+
+}  // namespace
+
+int stage_of(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::NoTargets:
+      return 0;
+    case AttemptOutcome::InitialCollision:
+      return 1;
+    case AttemptOutcome::IterationLimit:
+      return 2;
+    case AttemptOutcome::BlockedFinger:
+    case AttemptOutcome::MissedContact:
+      return 3;
+    case AttemptOutcome::GapLeft:
+      return 4;
+    case AttemptOutcome::Weak:
+    case AttemptOutcome::Unstable:
+    case AttemptOutcome::PoorShape:
+      return 5;
+    case AttemptOutcome::SelfCollision:
+      return 6;
+    case AttemptOutcome::Rejected:
+      return 7;
+    case AttemptOutcome::NoWayIn:
+      return 8;
+    case AttemptOutcome::UsableOnly:
+      return 9;
+    case AttemptOutcome::Valid:
+      return 10;
+  }
+  return 0;
+}
+
+PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandModel& hand,
+                                 const PlannerOptions& options, const Surroundings& surroundings,
+                                 const PlanningMethods& methods)
+    : object_(object),
+      hand_(hand),
+      options_(with_planner_rules(object, hand, options)),
+      parts_(requested_parts(hand, options)),
+      fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
+      surroundings_(hand, surroundings),
+      scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
+      claimed_pads_(requested_pads(hand, parts_)),
+      largest_deviation_(largest_deviation(options_, hand)) {
+  const PlanningMethod& method = methods.at(options_.planner);
+  const base::Stopwatch watch(guidance_s_);
+  guidance_ = method.make(
+      {{fitting_hand_, object_, surroundings_, scene_.contact_options}, parts_, options_});
+}
+
+AttemptResult PlannerAttempts::make(std::int64_t number) const {
+  AttemptResult work;  // counters and times of everything that this attempt tries
+  GuidedStarts guided;
+  {
+    const base::Stopwatch watch(work.timings.targets_s);
+    guided = guidance_->starts(number);
+  }
+  work.target_failure = std::move(guided.failure);
+  work.is_exhausted = guided.is_exhausted;
+  work.seeds_tried = guided.seeds_tried;
+  std::vector<AttemptResult> tried;
+  std::size_t best = 0;
+  for (const GuidedStart& start : guided.starts) {
+    tried.push_back(try_start(start, number));
+    best = best_of(tried);
+    if (!is_enough(tried[best])) continue;
+    best = best_with_way_in(tried);
+    if (is_enough(tried[best])) break;
+  }
+  if (!tried.empty()) best = best_with_way_in(tried);
+  for (const AttemptResult& result : tried) {
+    work.fitting_iterations += result.fitting_iterations;
+    work.refinement_iterations += result.refinement_iterations;
+    work.timings += result.timings;
+  }
+  if (!tried.empty()) {
+    work.outcome = tried[best].outcome;
+    work.grasp = std::move(tried[best].grasp);
+    work.is_accepted = tried[best].is_accepted;
+  }
+  return work;
+}
+
+/// The first of the highest rank, a way in taken for granted where it was not looked for yet.
+std::size_t PlannerAttempts::best_of(const std::vector<AttemptResult>& tried) const {
+  std::size_t best = 0;
+  StartRank best_rank = rank_of(tried[0]);
+  for (std::size_t i = 1; i < tried.size(); ++i) {
+    const StartRank rank = rank_of(tried[i]);
+    if (!(rank > best_rank)) continue;
+    best_rank = rank;
+    best = i;
+  }
+  return best;
+}
+
+/// The same when all ways in are known: only those of the best are looked for, until one of them
+/// has what it takes, since no grasp gets better by its way in.
+std::size_t PlannerAttempts::best_with_way_in(std::vector<AttemptResult>& tried) const {
+  for (;;) {
+    const std::size_t best = best_of(tried);
+    if (!tried[best].is_way_in_open_question) return best;
+    find_way_in(tried[best]);
+  }
+}
+
+/// An accepted grasp before any other, then the later stage, then what the choice asks for.
+PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result) const {
+  StartRank rank{result.is_accepted, stage_of(result.outcome), false, 0.0};
+  switch (options_.attempt_choice) {
+    case AttemptChoice::First:
+      break;
+    case AttemptChoice::Balanced:
+      std::get<3>(rank) = -squeeze_residual(result);
+      break;
+    case AttemptChoice::Strongest:
+      std::get<2>(rank) = is_balanced(result);
+      std::get<3>(rank) = strength(result, scene_, options_.squeeze_friction);
+      break;
+  }
+  return rank;
+}
+
+/// Whether no further start can be kept instead of this one.
+bool PlannerAttempts::is_enough(const AttemptResult& result) const {
+  switch (options_.attempt_choice) {
+    case AttemptChoice::First:
+      return result.is_accepted;
+    case AttemptChoice::Balanced:
+      return result.is_accepted && is_balanced(result);
+    case AttemptChoice::Strongest:
+      break;
+  }
+  return false;
+}
+
+/// One hand closed from one start.
+AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t number) const {
+  AttemptResult result;
+  hands::HandConfiguration configuration;
+  std::optional<AttemptOutcome> failure = close(start, configuration, result);
+  // Refinement also brings fingers home that stopped short of the surface.
+  const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
+  if (is_refinable) failure = refine(start.targets, configuration, result);
+  const bool is_measured =
+      !failure ||
+      (options_.missing_contact == MissingContact::Measured &&
+       (*failure == AttemptOutcome::BlockedFinger || *failure == AttemptOutcome::MissedContact));
+  if (!is_measured) {
+    result.outcome = *failure;
+    return result;
+  }
+  Grasp grasp;
+  {
+    const base::Stopwatch watch(result.timings.measure_s);
+    grasp = with_contacts(scene_, configuration, parts_);
+    grasp.targets = start.targets;
+    if (!start.targets.contacts.empty()) {
+      grasp.ideal_m = ideal_m(object_, start.targets, {&hand_, options_.quality});
+    }
+    grasp.attempt = number;
+    grasp.iterations = static_cast<int>(result.fitting_iterations);
+    grasp.refinement_iterations = static_cast<int>(result.refinement_iterations);
+  }
+  if (!grasp.is_usable()) {
+    result.outcome = failure.value_or(unusable_outcome(grasp));
+    return result;
+  }
+  {
+    const base::Stopwatch watch(result.timings.measure_s);
+    grasp = with_self_penetration(scene_, std::move(grasp));
+  }
+  if (!options_.refine && grasp.penetration.self_depth > options_.self_overlap) {
+    result.outcome = AttemptOutcome::SelfCollision;
+    return result;
+  }
+  if (is_rejected(grasp)) {
+    result.outcome = AttemptOutcome::Rejected;
+    return result;
+  }
+  {
+    const base::Stopwatch watch(result.timings.measure_s);
+    grasp = with_all_measures(scene_, std::move(grasp));
+  }
+  if (options_.attempt_choice != AttemptChoice::First) add_squeeze(grasp, result);
+  // A start that cut something may have been turned before refinement.
+  const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle &&
+                           are_scores_high(grasp.contacts);
+  const bool is_valid = is_as_asked && grasp.is_valid();
+  result.outcome = is_valid ? AttemptOutcome::Valid : AttemptOutcome::UsableOnly;
+  result.is_accepted = is_as_asked && is_accepted(grasp);
+  result.is_way_in_open_question = true;
+  result.grasp = std::move(grasp);
+  return result;
+}
+
+/// From the start to the object, at the level of voxels. Why it failed, if it did; the
+/// configuration it ended at in any case.
+std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
+                                                     hands::HandConfiguration& configuration,
+                                                     AttemptResult& result) const {
+  const base::Stopwatch watch(result.timings.fitting_s);
+  const FittingResult fitted = start.close();
+  result.fitting_iterations += fitted.iterations;
+  result.timings.contact_tests_s += fitted.contact_tests_s;
+  configuration = fitted.configuration;
+  switch (fitted.stop) {
+    case FittingStop::InitialCollision:
+      return AttemptOutcome::InitialCollision;
+    case FittingStop::BlockedFinger:
+      return AttemptOutcome::BlockedFinger;
+    case FittingStop::MissedContact:
+      return AttemptOutcome::MissedContact;
+    case FittingStop::IterationLimit:
+      return AttemptOutcome::IterationLimit;
+    case FittingStop::Contact:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// From voxels to true contact.
+std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targets,
+                                                      hands::HandConfiguration& configuration,
+                                                      AttemptResult& result) const {
+  const base::Stopwatch watch(result.timings.refinement_s);
+  RefinementOptions refinement = options_.refinement;
+  if (options_.approach_O) {
+    const double left = options_.approach_angle - angle_from_approach(configuration) - kAngleSlack;
+    refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
+  }
+  const RefinementResult refined = refine_contacts(
+      {fitting_hand_, object_, surroundings_, scene_.contact_options}, claimed_pads_,
+      targets.contacts.empty() ? nullptr : &targets, configuration, refinement);
+  result.refinement_iterations += refined.iterations;
+  configuration = refined.configuration;
+  switch (refined.stop) {
+    case RefinementStop::Contact:
+      return std::nullopt;
+    case RefinementStop::OutOfReach:
+      return AttemptOutcome::MissedContact;
+    case RefinementStop::Intersecting:
+      return AttemptOutcome::BlockedFinger;
+    case RefinementStop::SelfCollision:
+      return AttemptOutcome::SelfCollision;
+    case RefinementStop::GapLeft:
+    case RefinementStop::IterationLimit:
+      break;
+  }
+  return AttemptOutcome::GapLeft;
+}
+
+void PlannerAttempts::add_squeeze(Grasp& grasp, AttemptResult& result) const {
+  const base::Stopwatch watch(result.timings.pre_grasp_s);
+  grasp.squeeze = contact::squeeze_configuration(
+      hand_, grasp.configuration, grasp.contacts, object_.mass.center_of_mass,
+      scene_.wrench_object.largest_radius, options_.squeeze_friction, options_.squeeze,
+      scene_.bearing_gap);
+}
+
+/// Completes a grasp: its way in, without which it fails where one is asked for, and its squeeze.
+void PlannerAttempts::find_way_in(AttemptResult& result) const {
+  result.is_way_in_open_question = false;
+  Grasp& grasp = *result.grasp;
+  if (options_.pre_grasps && !grasp.penetration.is_any()) {
+    const base::Stopwatch watch(result.timings.pre_grasp_s);
+    grasp.pre_grasp = find_pre_grasp(hand_, fitting_hand_.collision(), object_.query, surroundings_,
+                                     grasp.configuration, options_.pre_grasp);
+  }
+  if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
+    result.outcome = AttemptOutcome::NoWayIn;
+    result.is_accepted = false;
+    result.grasp.reset();
+    return;
+  }
+  if (!grasp.squeeze) add_squeeze(grasp, result);
+}
+
+/// Between the palm's direction and the one asked for [rad]; 0 if none is.
+double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& configuration) const {
+  return hands::angle_from_approach(configuration.X_OH.linear() * hand_.palm.direction_H,
+                                    options_.approach_O);
+}
+
+/// Fingers miss their targets, so a target's score says little about the contact's.
+bool PlannerAttempts::are_scores_high(const std::vector<contact::Contact>& contacts) const {
+  if (!options_.contact_score_threshold) return true;
+  return std::all_of(contacts.begin(), contacts.end(), [&](const contact::Contact& contact) {
+    return contact_score_at(object_, contact.point_O).value_or(0.0) >
+           *options_.contact_score_threshold;
+  });
+}
+
+bool PlannerAttempts::is_accepted(const Grasp& grasp) const {
+  switch (options_.acceptance) {
+    case Acceptance::Valid:
+      return grasp.is_valid();
+    case Acceptance::Usable:
+      return grasp.is_usable();
+  }
+  return false;
+}
+
+bool PlannerAttempts::is_rejected(const Grasp& grasp) const {
+  const bool has_targets = !grasp.targets.contacts.empty();
+  switch (options_.rejection) {
+    case Rejection::None:
+      return false;
+    case Rejection::Deviation: {
+      const std::vector<double> distances = target_distances(grasp);
+      return std::any_of(distances.begin(), distances.end(),
+                         [&](double distance) { return distance > largest_deviation_; });
+    }
+    case Rejection::Quality:
+      return grasp.quality.m <
+             (has_targets ? std::min(kIdealShare * grasp.ideal_m, kHighQuality) : kHighQuality);
+  }
+  return false;
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "graspfit/grasp/grasp_guidance.hpp"
+#include "graspfit/grasp/grasp_measure.hpp"
+#include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// What one attempt came to.
+struct AttemptResult {
+  AttemptOutcome outcome = AttemptOutcome::NoTargets;
+  bool is_exhausted = false;  ///< The method had nothing left to try: not an attempt at all.
+  std::optional<std::string> target_failure;
+  std::optional<Grasp> grasp;  ///< Where the outcome is Valid or UsableOnly.
+  bool is_accepted = false;    ///< The grasp is one of those looked for.
+  /// The grasp's way in was not looked for yet, nor perhaps its squeeze; taken for granted so far.
+  bool is_way_in_open_question = false;
+  std::int64_t seeds_tried = 0;
+  std::int64_t fitting_iterations = 0;
+  std::int64_t refinement_iterations = 0;
+  PlannerTimings timings;
+};
+
+/// The attempts of one run of the planner: what stays the same over all of them. An attempt depends
+/// on its number alone, so they can be made in any order and by several threads.
+class PlannerAttempts {
+ public:
+  PlannerAttempts(const ObjectModel& object, const hands::HandModel& hand,
+                  const PlannerOptions& options, const Surroundings& surroundings,
+                  const PlanningMethods& methods);
+
+  AttemptResult make(std::int64_t number) const;
+
+  const GraspGuidance& guidance() const { return *guidance_; }
+  double guidance_s() const { return guidance_s_; }  ///< What it took to prepare.
+
+ private:
+  /// Accepted, stage, and what the choice of an attempt asks for: balanced, and a number.
+  using StartRank = std::tuple<bool, int, bool, double>;
+
+  AttemptResult try_start(const GuidedStart& start, std::int64_t number) const;
+  std::optional<AttemptOutcome> close(const GuidedStart& start,
+                                      hands::HandConfiguration& configuration,
+                                      AttemptResult& result) const;
+  std::optional<AttemptOutcome> refine(const TargetContacts& targets,
+                                       hands::HandConfiguration& configuration,
+                                       AttemptResult& result) const;
+  std::size_t best_of(const std::vector<AttemptResult>& tried) const;
+  std::size_t best_with_way_in(std::vector<AttemptResult>& tried) const;
+  void add_squeeze(Grasp& grasp, AttemptResult& result) const;
+  void find_way_in(AttemptResult& result) const;
+  double angle_from_approach(const hands::HandConfiguration& configuration) const;
+  bool are_scores_high(const std::vector<contact::Contact>& contacts) const;
+  bool is_accepted(const Grasp& grasp) const;
+  StartRank rank_of(const AttemptResult& result) const;
+  bool is_rejected(const Grasp& grasp) const;
+  bool is_enough(const AttemptResult& result) const;
+
+  const ObjectModel& object_;
+  const hands::HandModel& hand_;
+  const PlannerOptions options_;
+  const RequestedParts parts_;
+  const FittingHand fitting_hand_;
+  const SurroundingsCollision surroundings_;
+  const MeasuringScene scene_;
+  std::vector<int> claimed_pads_;
+  const double largest_deviation_;  ///< From targets [m].
+  std::unique_ptr<GraspGuidance> guidance_;
+  double guidance_s_ = 0.0;
+};
+
+/// How far an attempt that ended so had come, for telling better failures from worse.
+int stage_of(AttemptOutcome outcome);
+
+}  // namespace graspfit::grasp::internal

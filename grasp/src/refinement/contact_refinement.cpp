@@ -1,0 +1,520 @@
+#include "graspfit/grasp/contact_refinement.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "graspfit/base/option_check.hpp"
+#include "graspfit/contact/contact_estimation.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "refinement/constrained_least_squares.hpp"
+#include "scene/clearance.hpp"
+#include "scene/hand_motion.hpp"
+
+namespace graspfit::grasp {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using hands::HandConfiguration;
+using internal::LinkPoses;
+using internal::NearPoints;
+
+// Weights of the least squares, against 1 for a length moved: gaps come first, then room, then
+// where the targets are and how the pads lie there.
+constexpr double kPalmWeight = 1.0;
+constexpr double kJointWeight = 0.5;
+constexpr double kGapWeight = 30.0;
+constexpr double kRoomWeight = 3.0;
+constexpr double kTargetWeight = 0.1;
+constexpr double kTiltWeight = 0.5;
+constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
+
+// Sliding: gaps still come first, but the targets weigh as much as a length moved.
+constexpr double kSlideWeight = 1.0;
+constexpr double kShortestSlide = 1e-4;  // [m]; below it the rest is not worth the work
+
+constexpr double kLongestStep = 4e-3;   // of every entry of a motion [m]
+constexpr double kNearPerStep = 2.0;    // near is what is within so many times the step
+constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
+constexpr double kRoomPerGap = 0.1;     // kept to everything, per largest gap that is left
+constexpr double kMostRoom = 3e-4;      // [m]
+constexpr double kPartingShare = 0.3;   // of a step that bodies too near may be asked to part by
+constexpr int kMostHalvings = 5;
+constexpr double kTrustGrowth = 2.0;      // of the longest step, after one that was taken whole
+constexpr double kLeastTrust = 0.1;       // of the longest step, after one that was not taken
+constexpr double kLeastSlideTrust = 0.3;  // the same while sliding
+constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 are rounded so far
+constexpr int kPatience = 8;              // steps within which the gaps must shrink
+constexpr double kLeastProgress = 0.85;   // to this share
+
+// The way out of a start that cuts something: steps that grow, 3 cm in all.
+constexpr int kMostOpenings = 14;
+constexpr double kFirstOpening = 5e-4;  // [m]
+constexpr double kOpeningGrowth = 1.2;
+constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm
+
+/// A pad that must touch.
+struct Claim {
+  int pad = -1;
+  int link = -1;
+  const TargetContact* target = nullptr;
+  double gap = 0.0;
+  Vector3d point_O = Vector3d::Zero();   ///< On the pad, nearest to the object.
+  Vector3d normal_O = Vector3d::Zero();  ///< Unit, from the object to it.
+  geometry::ProximitySeed seed;
+};
+
+/// The rows of one least squares problem.
+class Rows {
+ public:
+  void want(const RowVectorXd& row, double value, double weight) {
+    rows_.push_back(weight * row);
+    values_.push_back(weight * value);
+  }
+  void require(const RowVectorXd& row, double least) {
+    limits_.push_back(row);
+    least_.push_back(least);
+  }
+  /// Limits that cannot all be met at once ask for no more than that nothing gets worse.
+  VectorXd solve() const {
+    const MatrixXd a = matrix(rows_), g = matrix(limits_);
+    const VectorXd b = vector(values_), h = vector(least_);
+    const VectorXd x = internal::constrained_least_squares(a, b, g, h);
+    if (((g * x - h).array() >= -kShortestStep).all()) return x;
+    return internal::constrained_least_squares(a, b, g, h.cwiseMin(0.0));
+  }
+  std::vector<RowVectorXd>& limits() { return limits_; }
+  std::vector<double>& least() { return least_; }
+
+ private:
+  static MatrixXd matrix(const std::vector<RowVectorXd>& rows) {
+    MatrixXd result(static_cast<Index>(rows.size()), rows.front().size());
+    for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Index>(i)) = rows[i];
+    return result;
+  }
+  static VectorXd vector(const std::vector<double>& values) {
+    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+  }
+  std::vector<RowVectorXd> rows_, limits_;
+  std::vector<double> values_, least_;
+};
+
+/// One refinement.
+class Refinement {
+ public:
+  Refinement(const GraspScene& scene, const std::vector<int>& claimed_pads,
+             const TargetContacts* targets, const RefinementOptions& options)
+      : hand_(scene.hand),
+        model_(scene.hand.model()),
+        object_(scene.object),
+        contact_options_(scene.contact_options),
+        options_(options),
+        least_(0.5 * options.least_distance),
+        clearance_(scene.hand, scene.object, scene.surroundings),
+        motion_(scene.hand.model(), options.largest_shift > 0.0, options.largest_turn > 0.0) {
+    for (const int pad : claimed_pads) claims_.push_back(claim_of(pad, targets));
+  }
+
+  RefinementResult run(const HandConfiguration& start) {
+    start_ = start;
+    go_to(start);
+    RefinementResult result;
+    result.stop = make_clear();
+    if (result.stop == RefinementStop::Contact) {
+      const HandConfiguration clear = configuration_;
+      result.stop = approach(result.iterations, options_.max_iterations);
+      if (result.stop == RefinementStop::Contact && options_.slide_steps > 0) {
+        const HandConfiguration touching = configuration_;
+        slide(result.iterations);
+        if (!is_clear()) go_to(touching);
+      }
+      // Nearest points tell to rounding; what counts is exact.
+      if (!is_clear()) {
+        go_to(clear);
+        result.stop = RefinementStop::GapLeft;
+      }
+      if (result.stop == RefinementStop::Contact) bring_near_pads(result.iterations);
+    }
+    result.configuration = configuration_;
+    measure_gaps();
+    for (const Claim& claim : claims_) result.largest_gap = std::max(result.largest_gap, claim.gap);
+    return result;
+  }
+
+ private:
+  Claim claim_of(int pad, const TargetContacts* targets) const {
+    base::require(pad >= 0 && pad < static_cast<int>(model_.pads.size()), "refine_contacts",
+                  "claimed pad", pad, "an index into the pads of hand " + model_.name);
+    Claim claim;
+    claim.pad = pad;
+    claim.link = model_.pads[static_cast<std::size_t>(pad)].link;
+    if (!targets) return claim;
+    const int finger = model_.pads[static_cast<std::size_t>(pad)].finger;
+    for (const TargetContact& target : targets->contacts) {
+      const bool is_own = finger < 0
+                              ? target.finger == contact::kPalm
+                              : target.finger == finger &&
+                                    model_.fingers[static_cast<std::size_t>(finger)].tip_pad == pad;
+      if (is_own) claim.target = &target;
+    }
+    return claim;
+  }
+
+  void go_to(const HandConfiguration& configuration) {
+    configuration_ = configuration;
+    X_OL_ = hands::forward_kinematics(model_, configuration_);
+  }
+
+  Vector3d palm_center(const HandConfiguration& configuration) const {
+    return configuration.X_OH * model_.palm.center_H;
+  }
+  Vector3d shift(const HandConfiguration& configuration) const {
+    return palm_center(configuration) - palm_center(start_);
+  }
+  Vector3d turn(const HandConfiguration& configuration) const {
+    const Eigen::AngleAxisd turned(
+        Eigen::Matrix3d(configuration.X_OH.linear() * start_.X_OH.linear().transpose()));
+    return turned.angle() * turned.axis();
+  }
+  bool is_within_limits(const HandConfiguration& configuration) const {
+    constexpr double kRounding = 1e-12;  // a palm that stays is turned by rounding only
+    return shift(configuration).norm() <= options_.largest_shift + kRounding &&
+           turn(configuration).norm() <= options_.largest_turn + kTurnRounding;
+  }
+
+  /// Opens and withdraws until clear; `Contact` means that it is.
+  RefinementStop make_clear() {
+    double step = kFirstOpening;
+    for (int round = 0;; ++round, step *= kOpeningGrowth) {
+      const internal::Clearance::Blocked blocked = clearance_.blocked(X_OL_, least_);
+      if (blocked.is_empty()) {
+        if (!clearance_.is_clear_of_world(X_OL_)) return RefinementStop::Intersecting;
+        return clearance_.is_clear_of_itself(X_OL_) ? RefinementStop::Contact
+                                                    : RefinementStop::SelfCollision;
+      }
+      const HandConfiguration opened = opened_by(blocked, round, step);
+      if (round == kMostOpenings || !is_within_limits(opened)) {
+        return blocked.links.empty() ? RefinementStop::SelfCollision : RefinementStop::Intersecting;
+      }
+      go_to(opened);
+    }
+  }
+
+  HandConfiguration opened_by(const internal::Clearance::Blocked& blocked, int round, double step) {
+    motion_.set(configuration_, X_OL_, palm_center(configuration_));
+    VectorXd motion = VectorXd::Zero(motion_.size());
+    bool withdraws = false;
+    const auto open = [&](int link) {
+      const VectorXd opening = motion_.opening(link, step);
+      for (Index i = 0; i < motion.size(); ++i) {
+        if (opening[i] != 0.0) motion[i] = opening[i];
+      }
+      return !opening.isZero(0.0);
+    };
+    for (const int link : blocked.by_own_hand) {
+      open(link);
+      const VectorXd straightening = motion_.straightening(link, step);
+      for (Index i = 0; i < motion.size(); ++i) {
+        if (straightening[i] != 0.0) motion[i] = straightening[i];
+      }
+    }
+    for (const int link : blocked.links) {
+      withdraws = !open(link) || round >= kOpeningsOfFingersAlone || withdraws;
+    }
+    HandConfiguration opened = motion_.moved(motion);
+    if (withdraws && options_.largest_shift > 0.0) {
+      opened.X_OH.pretranslate(-step * (opened.X_OH.linear() * model_.palm.direction_H));
+    }
+    return opened;
+  }
+
+  /// Exact.
+  bool is_clear() {
+    return clearance_.is_clear_of_world(X_OL_) && clearance_.is_clear_of_itself(X_OL_);
+  }
+
+  /// False if a pad is farther than twice the reach.
+  bool measure_gaps() {
+    for (Claim& claim : claims_) {
+      const auto nearest = geometry::nearest_points(object_.query, hand_.pad_surface(claim.pad),
+                                                    X_OL_[static_cast<std::size_t>(claim.link)],
+                                                    2.0 * options_.reach, claim.seed);
+      claim.gap = 2.0 * options_.reach;
+      if (!nearest) return false;
+      claim.gap = nearest->distance;
+      claim.seed = {nearest->face_a, nearest->face_b};
+      claim.point_O = nearest->point_on_b_A;
+      claim.normal_O = (nearest->point_on_b_A - nearest->point_on_a_A).normalized();
+    }
+    return true;
+  }
+
+  double largest_gap() const {
+    double largest = 0.0;
+    for (const Claim& claim : claims_) largest = std::max(largest, claim.gap);
+    return largest;
+  }
+  double sum_of_gaps() const {
+    double sum = 0.0;
+    for (const Claim& claim : claims_) sum += std::max(claim.gap, options_.wanted_gap);
+    return sum;
+  }
+
+  bool all_touch() const {
+    return largest_gap() <= options_.largest_gap &&
+           std::all_of(claims_.begin(), claims_.end(), [&](const Claim& claim) {
+             return contact::has_contact(model_, claim.pad,
+                                         hands::pad_pose(model_, claim.pad, X_OL_), object_.query,
+                                         contact_options_);
+           });
+  }
+
+  /// Closes the gaps from a clear start, in so many steps at most.
+  RefinementStop approach(int& iterations, int max_iterations) {
+    if (!measure_gaps() || largest_gap() > options_.reach) return RefinementStop::OutOfReach;
+    double trust = kLongestStep;
+    std::vector<double> sums = {sum_of_gaps()};
+    bool has_moved = true;
+    while (!all_touch()) {
+      if (is_stuck(sums) || trust < kShortestStep) return RefinementStop::GapLeft;
+      if (iterations == max_iterations) return RefinementStop::IterationLimit;
+      ++iterations;
+      if (has_moved) {
+        near_ = clearance_.find(X_OL_, kNearPerStep * trust);
+      } else {
+        std::erase_if(near_,
+                      [&](const NearPoints& near) { return near.distance > kNearPerStep * trust; });
+      }
+      const double share = step(trust);
+      has_moved = share > 0.0;
+      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
+                           : trust * std::max(share, kLeastTrust);
+      if (has_moved) measure_gaps();
+      sums.push_back(sum_of_gaps());
+    }
+    return RefinementStop::Contact;
+  }
+
+  /// Pads beside the claimed ones that nearly touch, one after the other: what is not brought to
+  /// touch within its steps, or takes another's contact, is given up.
+  void bring_near_pads(int& iterations) {
+    if (options_.near_pad_steps == 0) return;
+    const std::vector<Claim> claimed = claims_;
+    std::vector<Claim> near = near_pads();
+    for (Claim& pad : near) {
+      const HandConfiguration touching = configuration_;
+      claims_.push_back(pad);
+      int steps = 0;
+      const RefinementStop stop = approach(steps, options_.near_pad_steps);
+      iterations += steps;
+      if (stop == RefinementStop::Contact && is_clear()) continue;
+      claims_.pop_back();
+      go_to(touching);
+    }
+    claims_ = claimed;
+    measure_gaps();
+  }
+
+  /// Not claimed, with surface in their clip volumes and a gap; the smallest first.
+  std::vector<Claim> near_pads() const {
+    std::vector<Claim> near;
+    for (int pad = 0; pad < static_cast<int>(model_.pads.size()); ++pad) {
+      const bool is_claimed = std::any_of(claims_.begin(), claims_.end(),
+                                          [&](const Claim& claim) { return claim.pad == pad; });
+      if (is_claimed || !contact::is_counted(model_, pad, contact_options_) ||
+          !contact::has_contact(model_, pad, hands::pad_pose(model_, pad, X_OL_), object_.query,
+                                contact_options_)) {
+        continue;
+      }
+      Claim claim = claim_of(pad, nullptr);
+      claim.gap =
+          contact::pad_gap(hand_.pad_surface(pad), X_OL_[static_cast<std::size_t>(claim.link)],
+                           object_.query, options_.reach)
+              .value_or(options_.reach);
+      if (claim.gap > options_.largest_gap) near.push_back(claim);
+    }
+    std::stable_sort(near.begin(), near.end(),
+                     [](const Claim& a, const Claim& b) { return a.gap < b.gap; });
+    return near;
+  }
+
+  /// How far the pads are from their targets, and how far from lying flat there [m²].
+  double squared_miss() const {
+    double sum = 0.0;
+    for (const Claim& claim : claims_) {
+      if (!claim.target) continue;
+      const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
+      const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
+      sum += (claim.target->point_O - middle).squaredNorm() +
+             (kTiltLever * (pad_normal + claim.target->outward_normal_O)).squaredNorm();
+    }
+    return sum;
+  }
+
+  /// Moves touching pads over the surface toward their targets; the nearest place where all touch
+  /// stays.
+  void slide(int& iterations) {
+    if (std::none_of(claims_.begin(), claims_.end(), [](const Claim& c) { return c.target; })) {
+      return;
+    }
+    target_weight_ = tilt_weight_ = kSlideWeight;
+    HandConfiguration best = configuration_;
+    double best_miss = squared_miss();
+    double trust = kLongestStep;
+    for (int i = 0; i < options_.slide_steps && trust > kShortestSlide; ++i) {
+      ++iterations;
+      near_ = clearance_.find(X_OL_, kNearPerStep * trust);
+      const double share = step(trust);
+      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
+                           : trust * std::max(share, kLeastSlideTrust);
+      if (share > 0.0) measure_gaps();
+      const double miss = squared_miss();
+      if (miss >= best_miss || !all_touch()) continue;
+      best = configuration_;
+      best_miss = miss;
+    }
+    go_to(best);
+    measure_gaps();
+  }
+
+  /// Whether the last steps have hardly shrunk the gaps, given their sums after each step.
+  static bool is_stuck(const std::vector<double>& sums) {
+    return static_cast<int>(sums.size()) > kPatience &&
+           sums.back() > kLeastProgress * sums[sums.size() - 1 - kPatience];
+  }
+
+  /// Takes one step, shortened until clear; returns the share of it taken, 0 for none.
+  double step(double trust) {
+    const VectorXd motion = wanted_motion(trust);
+    double share = 1.0;
+    for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
+      const HandConfiguration candidate = motion_.moved(share * motion);
+      if (!is_within_limits(candidate)) continue;
+      const LinkPoses X_OL = hands::forward_kinematics(model_, candidate);
+      if (!clearance_.is_apart(X_OL, least_)) continue;
+      configuration_ = candidate;
+      X_OL_ = X_OL;
+      return share;
+    }
+    return 0.0;
+  }
+
+  VectorXd wanted_motion(double trust) {
+    Vector3d pivot = Vector3d::Zero();
+    for (const Claim& claim : claims_) pivot += claim.point_O / static_cast<double>(claims_.size());
+    motion_.set(configuration_, X_OL_, pivot);
+    const double room = std::clamp(kRoomPerGap * largest_gap(), options_.least_distance, kMostRoom);
+    Rows rows;
+    for (Index i = 0; i < motion_.size(); ++i) {
+      rows.want(RowVectorXd::Unit(motion_.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
+    }
+    for (const Claim& claim : claims_) {
+      const double wanted = std::max(options_.wanted_gap, room) - claim.gap;
+      rows.want(motion_.row(claim.link, claim.point_O, claim.normal_O), wanted, kGapWeight);
+      if (claim.target) draw_to_target(claim, trust, rows);
+    }
+    for (const NearPoints& near : near_) {
+      RowVectorXd row = motion_.row(near.link, near.point_O, near.normal_O);
+      if (near.other_link >= 0) {
+        row -= motion_.row(near.other_link, near.point_on_other_O, near.normal_O);
+      }
+      // What even the longest step leaves clear needs no row.
+      if (near.distance - trust * row.cwiseAbs().sum() > room) continue;
+      // Bodies that all but touch go apart first: along a curved surface they would meet at once.
+      rows.require(row, std::min(room - near.distance, kPartingShare * trust));
+      if (near.distance < room) rows.want(row, room - near.distance, kRoomWeight);
+    }
+    add_limits(trust, rows);
+    return rows.solve();
+  }
+
+  /// The weak wishes: the pad's middle to the target, its normal against the surface's.
+  void draw_to_target(const Claim& claim, double trust, Rows& rows) const {
+    const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
+    Vector3d way = claim.target->point_O - middle;
+    if (way.norm() > trust) way *= trust / way.norm();
+    const Vector3d outward = claim.target->outward_normal_O;
+    const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
+    const Vector3d turn = pad_normal.cross(-outward);
+    for (int axis = 0; axis < 3; ++axis) {
+      rows.want(motion_.row(claim.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
+      rows.want(kTiltLever * motion_.turn_row(claim.link, Vector3d::Unit(axis)),
+                std::clamp(kTiltLever * turn[axis], -trust, trust), tilt_weight_);
+    }
+  }
+
+  void add_limits(double trust, Rows& rows) const {
+    VectorXd lower, upper;
+    motion_.bounds(trust, lower, upper);
+    for (Index i = 0; i < motion_.size(); ++i) {
+      rows.require(RowVectorXd::Unit(motion_.size(), i), lower[i]);
+      rows.require(-RowVectorXd::Unit(motion_.size(), i), -upper[i]);
+    }
+    motion_.breakaway_rows(rows.limits(), rows.least());
+    const Vector3d shifted = shift(configuration_);
+    if (shifted.norm() > 0.5 * options_.largest_shift && shifted.norm() > 0.0) {
+      rows.require(
+          -motion_.row(model_.palm.link, palm_center(configuration_), shifted.normalized()),
+          shifted.norm() - options_.largest_shift);
+    }
+    const Vector3d turned = turn(configuration_);
+    if (turned.norm() > 0.5 * options_.largest_turn && turned.norm() > 0.0) {
+      rows.require(-motion_.turn_row(model_.palm.link, turned.normalized()),
+                   turned.norm() - options_.largest_turn);
+    }
+  }
+
+  const FittingHand& hand_;
+  const hands::HandModel& model_;
+  const ObjectModel& object_;
+  const contact::ContactEstimationOptions& contact_options_;
+  const RefinementOptions& options_;
+  const double least_;  ///< What a step must keep: half of what it aims at [m].
+  internal::Clearance clearance_;
+  internal::HandMotion motion_;
+  std::vector<Claim> claims_;
+  HandConfiguration start_;
+  HandConfiguration configuration_;
+  LinkPoses X_OL_;
+  std::vector<NearPoints> near_;
+  double target_weight_ = kTargetWeight;
+  double tilt_weight_ = kTiltWeight;
+};
+
+}  // namespace
+
+void RefinementOptions::validate() const {
+  const auto require_length = [](bool is_met, const char* field, double value, const char* rule) {
+    base::require(is_met && std::isfinite(value), "RefinementOptions", field, value, rule);
+  };
+  require_length(largest_gap > 0.0, "largest_gap", largest_gap, "finite and above 0 m");
+  require_length(wanted_gap > 0.0 && wanted_gap < largest_gap, "wanted_gap", wanted_gap,
+                 "above 0 m and below largest_gap");
+  require_length(least_distance > 0.0 && least_distance <= wanted_gap, "least_distance",
+                 least_distance, "above 0 m and at most wanted_gap");
+  const auto require_steps = [](int least, const char* field, int value, const char* rule) {
+    base::require(value >= least && value <= kMostSteps, "RefinementOptions", field, value, rule);
+  };
+  require_steps(1, "max_iterations", max_iterations, "in [1, 1000]");
+  require_steps(0, "near_pad_steps", near_pad_steps, "in [0, 1000]");
+  require_steps(0, "slide_steps", slide_steps, "in [0, 1000]");
+  require_length(reach > 0.0, "reach", reach, "finite and above 0 m");
+  require_length(largest_shift >= 0.0, "largest_shift", largest_shift, "finite and at least 0 m");
+  require_length(largest_turn >= 0.0, "largest_turn", largest_turn, "finite and at least 0 rad");
+}
+
+RefinementResult refine_contacts(const GraspScene& scene, const std::vector<int>& claimed_pads,
+                                 const TargetContacts* targets, const HandConfiguration& start,
+                                 const RefinementOptions& options) {
+  options.validate();
+  scene.contact_options.validate();
+  hands::validate(scene.hand.model(), start);
+  return Refinement(scene, claimed_pads, targets, options).run(start);
+}
+
+}  // namespace graspfit::grasp

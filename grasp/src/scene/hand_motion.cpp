@@ -1,0 +1,193 @@
+#include "scene/hand_motion.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "graspfit/hands/forward_kinematics.hpp"
+
+namespace graspfit::grasp::internal {
+
+using Eigen::Index;
+using Eigen::RowVectorXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using hands::RigidTransform;
+
+HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns)
+    : hand_(hand), palm_translates_(palm_translates), palm_turns_(palm_turns) {
+  constexpr double kShortestLever = 0.02;  // [m]; a shorter one would let a joint spin
+  const auto num_joints = hand.joints.size();
+  entry_of_joint_.assign(num_joints, -1);
+  ratio_.assign(num_joints, 1.0);
+  lever_.assign(num_joints, 1.0);
+  const hands::HandConfiguration open = hands::open_configuration(hand);
+  open_q_ = open.q;
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, open);
+  for (std::size_t j = 0; j < num_joints; ++j) {
+    const hands::Joint& joint = hand.joints[j];
+    if (joint.type == hands::JointType::Revolute) {
+      const Vector3d origin = X_OL[static_cast<std::size_t>(joint.child_link)].translation();
+      double reach = kShortestLever;
+      for (const int link : hands::links_moved_by(hand, static_cast<int>(j))) {
+        const auto index = static_cast<std::size_t>(link);
+        for (const Vector3d& vertex : hand.links[index].mesh_L.vertices) {
+          reach = std::max(reach, (X_OL[index] * vertex - origin).norm());
+        }
+      }
+      lever_[j] = reach;
+    }
+    if (!joint.coupling || joint.coupling->breakaway) {
+      entry_of_joint_[j] = 6 + static_cast<int>(free_joints_.size());
+      free_joints_.push_back(static_cast<int>(j));
+    }
+  }
+  for (std::size_t j = 0; j < num_joints; ++j) {
+    const hands::Joint& joint = hand.joints[j];
+    if (entry_of_joint_[j] >= 0) continue;
+    entry_of_joint_[j] = entry_of_joint_[static_cast<std::size_t>(joint.coupling->leader)];
+    ratio_[j] = joint.coupling->ratio;
+  }
+}
+
+void HandMotion::set(const hands::HandConfiguration& configuration,
+                     const std::vector<RigidTransform>& X_OL, const Vector3d& pivot_O) {
+  configuration_ = configuration;
+  X_OL_ = X_OL;
+  pivot_O_ = pivot_O;
+}
+
+/// How far a joint goes along with its entry: not at all where its own limit holds it back.
+double HandMotion::share_of_follower(int j) const {
+  const auto index = static_cast<std::size_t>(j);
+  const hands::Joint& joint = hand_.joints[index];
+  if (!joint.coupling || joint.coupling->breakaway) return 1.0;
+  const double follows =
+      joint.coupling->ratio * configuration_.q[joint.coupling->leader] + joint.coupling->offset;
+  return follows < joint.lower || follows > joint.upper ? 0.0 : ratio_[index];
+}
+
+RowVectorXd HandMotion::row(int link, const Vector3d& point_O, const Vector3d& direction_O) const {
+  RowVectorXd result = RowVectorXd::Zero(size());
+  if (palm_translates_) result.head<3>() = direction_O.transpose();
+  if (palm_turns_) {
+    result.segment<3>(3) = (point_O - pivot_O_).cross(direction_O).transpose() / kTurnLever;
+  }
+  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
+    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
+    if (j < 0) continue;
+    const auto index = static_cast<std::size_t>(j);
+    const RigidTransform& X_OJ = X_OL_[static_cast<std::size_t>(at)];
+    const Vector3d axis_O = X_OJ.linear() * hand_.joints[index].axis_J;
+    const bool is_prismatic = hand_.joints[index].type == hands::JointType::Prismatic;
+    const double rate = is_prismatic ? axis_O.dot(direction_O)
+                                     : axis_O.cross(point_O - X_OJ.translation()).dot(direction_O);
+    const int entry = entry_of_joint_[index];
+    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
+    result[entry] += share_of_follower(j) * rate / lever_[leader];
+  }
+  return result;
+}
+
+RowVectorXd HandMotion::turn_row(int link, const Vector3d& axis) const {
+  RowVectorXd result = RowVectorXd::Zero(size());
+  if (palm_turns_) result.segment<3>(3) = axis.transpose() / kTurnLever;
+  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
+    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
+    if (j < 0) continue;
+    const auto index = static_cast<std::size_t>(j);
+    if (hand_.joints[index].type == hands::JointType::Prismatic) continue;
+    const Vector3d axis_O =
+        X_OL_[static_cast<std::size_t>(at)].linear() * hand_.joints[index].axis_J;
+    const int entry = entry_of_joint_[index];
+    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
+    result[entry] += share_of_follower(j) * axis_O.dot(axis) / lever_[leader];
+  }
+  return result;
+}
+
+void HandMotion::bounds(double trust, VectorXd& lower, VectorXd& upper) const {
+  lower = VectorXd::Constant(size(), -trust);
+  upper = VectorXd::Constant(size(), trust);
+  for (std::size_t k = 0; k < free_joints_.size(); ++k) {
+    const auto j = static_cast<std::size_t>(free_joints_[k]);
+    const hands::Joint& joint = hand_.joints[j];
+    const double q = configuration_.q[free_joints_[k]];
+    const auto entry = static_cast<Index>(6 + k);
+    lower[entry] = std::max(-trust, std::min(0.0, (joint.lower - q) * lever_[j]));
+    upper[entry] = std::min(trust, std::max(0.0, (joint.upper - q) * lever_[j]));
+  }
+}
+
+void HandMotion::breakaway_rows(std::vector<RowVectorXd>& g, std::vector<double>& h) const {
+  for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
+    const hands::Joint& joint = hand_.joints[j];
+    if (!joint.coupling || !joint.coupling->breakaway) continue;
+    const auto leader = static_cast<std::size_t>(joint.coupling->leader);
+    const double sign = joint.closing_sign;
+    const double follows = std::clamp(
+        joint.coupling->ratio * configuration_.q[joint.coupling->leader] + joint.coupling->offset,
+        joint.lower, joint.upper);
+    const double beyond = sign * (configuration_.q[static_cast<Index>(j)] - follows);
+    RowVectorXd row = RowVectorXd::Zero(size());
+    row[entry_of_joint_[j]] += sign / lever_[j];
+    row[entry_of_joint_[leader]] -= sign * joint.coupling->ratio * ratio_[leader] / lever_[leader];
+    g.push_back(row * lever_[j]);
+    h.push_back(-std::max(0.0, beyond) * lever_[j]);
+  }
+}
+
+VectorXd HandMotion::opening(int link, double step) const {
+  VectorXd motion = VectorXd::Zero(size());
+  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
+    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
+    if (j < 0) continue;
+    const auto index = static_cast<std::size_t>(j);
+    const hands::Joint& joint = hand_.joints[index];
+    const double sign = -joint.closing_sign * (ratio_[index] < 0.0 ? -1.0 : 1.0);
+    if (sign != 0.0) motion[entry_of_joint_[index]] = sign * step;
+  }
+  VectorXd lower, upper;
+  bounds(step, lower, upper);
+  return motion.cwiseMax(lower).cwiseMin(upper);
+}
+
+VectorXd HandMotion::straightening(int link, double step) const {
+  VectorXd motion = VectorXd::Zero(size());
+  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
+    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
+    if (j < 0 || hand_.joints[static_cast<std::size_t>(j)].closing_sign != 0) continue;
+    const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
+    if (entry < 0) continue;
+    const int joint = free_joints_[static_cast<std::size_t>(entry - 6)];
+    const double way = open_q_[joint] - configuration_.q[joint];
+    motion[entry] = std::clamp(way * lever_[static_cast<std::size_t>(joint)], -step, step);
+  }
+  return motion;
+}
+
+hands::HandConfiguration HandMotion::moved(const VectorXd& motion) const {
+  hands::HandConfiguration result = configuration_;
+  if (palm_turns_) {
+    const Vector3d turn = motion.segment<3>(3) / kTurnLever;
+    const double angle = turn.norm();
+    if (angle > 0.0) {
+      const Eigen::AngleAxisd rotation(angle, turn / angle);
+      Eigen::Quaterniond orientation(rotation * configuration_.X_OH.linear());
+      orientation.normalize();
+      result.X_OH.linear() = orientation.toRotationMatrix();
+      result.X_OH.translation() =
+          pivot_O_ + rotation * Vector3d(configuration_.X_OH.translation() - pivot_O_);
+    }
+  }
+  if (palm_translates_) result.X_OH.translation() += motion.head<3>();
+  for (std::size_t k = 0; k < free_joints_.size(); ++k) {
+    result.q[free_joints_[k]] +=
+        motion[static_cast<Index>(6 + k)] / lever_[static_cast<std::size_t>(free_joints_[k])];
+  }
+  hands::clamp_to_limits(hand_, result.q);
+  hands::apply_couplings(hand_, result.q);
+  return result;
+}
+
+}  // namespace graspfit::grasp::internal

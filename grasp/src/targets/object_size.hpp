@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/geometry/triangle_mesh.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// Width of the widest fingertip pad among `fingers` [m].
+double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fingers);
+
+/// Largest distance between two of the parts [m].
+double widest_opening(const PartDistances& distances, const RequestedParts& parts);
+
+/// Why an object could not be held whatever its pose, with its extents: smaller than one fingertip,
+/// or thicker than `widest`, both along the axes of the mesh's own frame; and what to do: say the
+/// object's unit, or, where no hand is like that, mend the hand's. Empty: it may be.
+std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
+                                        const hands::HandModel& hand,
+                                        const std::vector<int>& fingers, double widest);
+
+}  // namespace graspfit::grasp::internal

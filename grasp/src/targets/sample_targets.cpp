@@ -1,0 +1,68 @@
+#include "targets/sample_targets.hpp"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace graspfit::grasp::internal {
+namespace {
+
+constexpr int kDrawsPerSeed = 100;
+
+std::vector<Place> places_of(const std::vector<geometry::SurfaceSample>& samples) {
+  std::vector<Place> places;
+  for (const geometry::SurfaceSample& sample : samples) {
+    places.push_back({sample.point, -sample.normal, kNoPatch});
+  }
+  return places;
+}
+
+/// Whether fingers can have the first places as their targets; `orders` are the ways to.
+bool are_in_reach(const TargetRules& rules, Places fingers, std::vector<FingerOrder>& orders) {
+  orders = TargetRules::seed_orders();
+  std::array<double, kMostParts> distances{};
+  for (std::size_t i = 1; i < fingers.size(); ++i) {
+    if (!rules.is_stable_pair(fingers[0], fingers[i])) return false;
+    for (std::size_t k = 0; k < i; ++k) distances[k] = rules.distance(fingers[k], fingers[i]);
+    orders = rules.extended(orders, {distances.data(), i});
+    if (orders.empty()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+SampleTargets::SampleTargets(const ObjectModel& object, const PartDistances& distances,
+                             const RequestedParts& parts, const TargetOptions& options,
+                             const std::vector<geometry::SurfaceSample>& samples)
+    : rules_(object, distances, parts, options, places_of(samples)) {}
+
+TargetSelection SampleTargets::select(base::Random& random) const {
+  TargetSelection result;
+  if (rules_.pool().empty()) return result;
+  result.failure = TargetFailure::NoFurther;
+  std::array<std::int32_t, kMostParts> drawn{};
+  const std::size_t num_parts = rules_.num_fingers() + (rules_.has_palm() ? 1 : 0);
+  std::vector<FingerOrder> orders;
+  for (int seed = 0; seed < rules_.options().max_seeds; ++seed) {
+    ++result.seeds_tried;
+    for (int draw = 0; draw < kDrawsPerSeed; ++draw) {
+      for (std::size_t i = 0; i < num_parts; ++i) {
+        drawn[i] = static_cast<std::int32_t>(random.index(rules_.pool().size()));
+      }
+      const Places fingers(drawn.data(), rules_.num_fingers());
+      if (!are_in_reach(rules_, fingers, orders)) continue;
+      std::optional<double> palm_misfit;
+      if (rules_.has_palm()) {
+        palm_misfit = rules_.palm_misfit(fingers, orders, drawn[num_parts - 1]);
+        if (!palm_misfit) continue;
+      }
+      result.targets =
+          rules_.as_targets({drawn.data(), num_parts}, palm_misfit, result.seeds_tried);
+      return result;
+    }
+  }
+  return result;
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "graspfit/contact/contact_quality.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "targets/reachable_turns.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// Stands for the patch of a place that is none.
+inline constexpr std::int32_t kNoPatch = -1;
+
+/// A place that may become a target.
+struct Place {
+  Eigen::Vector3d point_O;
+  Eigen::Vector3d inward_normal_O;
+  std::int32_t patch;  ///< Or kNoPatch.
+};
+
+/// One way to give targets to fingers: position in `RequestedParts::fingers` by target, the seed's
+/// 0 first.
+using FingerOrder = std::array<std::int8_t, kMostParts>;
+
+/// Places of a set: indices into `TargetRules::pool`, the seed first.
+using Places = std::span<const std::int32_t>;
+
+/// What may be a target, and which targets go together (paper section 6): the same for every way of
+/// searching. Several threads may ask at once.
+class TargetRules {
+ public:
+  /// Refers to the object and the distances. @throws InvalidInput as `TargetSelector`.
+  TargetRules(const ObjectModel& object, const PartDistances& distances,
+              const RequestedParts& parts, const TargetOptions& options);
+  /// With a pool of its own.
+  TargetRules(const ObjectModel& object, const PartDistances& distances,
+              const RequestedParts& parts, const TargetOptions& options, std::vector<Place> pool);
+
+  const TargetOptions& options() const { return options_; }
+  /// Of patches: ascending by patch.
+  const std::vector<Place>& pool() const { return pool_; }
+  const std::vector<int>& fingers() const { return parts_.fingers; }
+  std::size_t num_fingers() const { return parts_.fingers.size(); }
+  bool has_palm() const { return parts_.palm; }
+  double normalizing_radius() const { return object_.normalizing_radius; }
+  const Eigen::Vector3d& center_of_mass_O() const { return object_.mass.center_of_mass; }
+
+  double distance(std::int32_t a, std::int32_t b) const {
+    return (pool_[a].point_O - pool_[b].point_O).norm();
+  }
+
+  bool is_stable_pair(std::int32_t a, std::int32_t b) const {
+    return stable_pairs_(pool_[a].point_O, pool_[a].inward_normal_O, pool_[b].point_O,
+                         pool_[b].inward_normal_O);
+  }
+  /// Mean angle of a stable pair over theta_max.
+  double angle_share(std::int32_t a, std::int32_t b) const;
+  /// Number of pairs that have to be stable among that many targets.
+  static double num_stable_pairs(PairRule rule, std::size_t num_targets);
+
+  /// Whether the seed's finger and another reach `distance`.
+  bool is_in_seed_reach(double distance) const;
+  /// The only way to give the seed to a finger.
+  static std::vector<FingerOrder> seed_orders() { return {FingerOrder{}}; }
+  /// The ways of giving one more target to a finger left: `distances` are those from the targets
+  /// that `orders` are about to it, in order.
+  std::vector<FingerOrder> extended(const std::vector<FingerOrder>& orders,
+                                    std::span<const double> distances) const;
+  bool is_extendable(const std::vector<FingerOrder>& orders,
+                     std::span<const double> distances) const;
+
+  /// Distance of the places' centroid from the center of mass over the normalizing radius.
+  double centroid_error(Places places) const;
+  /// Mean error of all edges but the first; 0 for two. Independent of the order of all but the
+  /// first two, to the bit.
+  double edge_error(Places fingers) const;
+  /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last place.
+  double rank(Places places, std::optional<double> palm_misfit) const;
+
+  /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
+  /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
+  std::optional<double> palm_misfit(Places fingers, const std::vector<FingerOrder>& orders,
+                                    std::int32_t palm) const;
+
+  TargetContacts as_targets(Places places, std::optional<double> palm_misfit,
+                            int seeds_tried) const;
+
+ private:
+  bool reaches(int order_a, int order_b, double distance) const;
+  bool can_take(const FingerOrder& order, std::size_t size, int finger,
+                std::span<const double> distances) const;
+  bool has_room(std::int32_t palm) const;
+  std::optional<double> tip_misfit(Places fingers, const std::vector<FingerOrder>& orders,
+                                   const Place& palm) const;
+
+  const ObjectModel& object_;
+  const PartDistances& distances_;
+  const RequestedParts parts_;
+  const TargetOptions options_;
+  const contact::StablePairTest stable_pairs_;
+  std::vector<Place> pool_;
+  /// Per place: whether there is room for the palm, or −1 while unknown.
+  mutable std::vector<std::atomic<signed char>> room_;
+  std::vector<Eigen::Matrix3d> turns_H_;  ///< About the palm's direction.
+  std::optional<PalmAxes> palm_axes_;
+  std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.
+};
+
+}  // namespace graspfit::grasp::internal

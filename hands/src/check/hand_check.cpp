@@ -1,0 +1,332 @@
+#include "graspfit/hands/hand_check.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "check/coupling_check.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_closing.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/hand_workspace.hpp"
+#include "library/hand_assembly.hpp"
+#include "model/finding_text.hpp"
+#include "model/findings.hpp"
+#include "model/hand_size.hpp"
+#include "model/joint_tree.hpp"
+
+namespace graspfit::hands {
+
+namespace {
+
+using Eigen::Vector3d;
+using internal::Findings;
+using internal::JointTree;
+using internal::listed;
+using internal::rounded;
+
+// ---- Links
+// ----------------------------------------------------------------------------------------
+
+/// `has_geometry`: links whose description names a shape, whether or not it could be read.
+void look_for_missing_meshes(const JointTree& joints, const std::set<std::string>& has_geometry,
+                             Findings& findings) {
+  // Links that move as one: -1 (the root) first.
+  for (int body = -1; body < joints.num_joints(); ++body) {
+    bool has_mesh = false;
+    std::vector<std::string> names;
+    for (std::size_t l = 0; l < joints.tree().links.size(); ++l) {
+      if (joints.above_link(l) != body) continue;
+      names.push_back(joints.tree().links[l].name);
+      has_mesh = has_mesh || has_geometry.contains(names.back());
+    }
+    if (has_mesh) continue;
+    const std::string item = "link " + names[0];
+    if (body == -1) {
+      findings.suspicious(item, "the palm has no mesh: nothing collides with it or touches it");
+    } else if (joints.next(body).empty()) {
+      findings.suspicious(item, "has no mesh, and the hand ends there: nothing to touch with");
+    } else {
+      findings.note(item, "has no mesh; it stands between joints");
+    }
+  }
+}
+
+void look_at_inertia(const Link& link, Findings& findings) {
+  // Of the diagonal of the link's box; a solid box has 1/sqrt(12) = 0.29 of it, whatever its shape.
+  constexpr double kSmallestGyration = 0.05;
+  constexpr double kLargestGyration = 1.0;
+  constexpr double kOutside = 0.5;
+  constexpr double kSlack = 1e-3;  // of the largest moment: rounding of the text
+  if (!link.inertia || link.inertia->mass == 0.0 || link.mesh_L.faces.empty()) return;
+  const std::string item = "link " + link.name;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(link.mesh_L);
+  const double diagonal = box.diagonal().norm();
+  const double outside = box.exteriorDistance(link.inertia->center_L);
+  if (outside > kOutside * diagonal) {
+    findings.suspicious(item, "its center of mass lies " + rounded(outside) +
+                                  " m outside its mesh, which is " + rounded(diagonal) + " m long");
+  }
+  if (link.inertia->inertia_L.isZero(0.0)) return;
+  const Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia->inertia_L).eigenvalues();
+  const double slack = kSlack * moments[2];
+  if (moments[0] < -slack || moments[2] > moments[0] + moments[1] + slack) {
+    findings.suspicious(item, "no body has the principal moments of inertia " +
+                                  rounded(moments[0]) + ", " + rounded(moments[1]) + ", " +
+                                  rounded(moments[2]) + " kg m^2");
+    return;
+  }
+  const double gyration = std::sqrt(0.5 * moments.sum() / link.inertia->mass);
+  if (gyration < kSmallestGyration * diagonal || gyration > kLargestGyration * diagonal) {
+    findings.suspicious(item, "its inertia is that of a body with a radius of gyration of " +
+                                  rounded(gyration) + " m, but its mesh is " + rounded(diagonal) +
+                                  " m long; are its units kg m^2?");
+  }
+}
+
+void look_at_masses(const HandModel& tree, Findings& findings) {
+  std::vector<std::string> without;
+  std::size_t num_bodies = 0;
+  for (const Link& link : tree.links) {
+    look_at_inertia(link, findings);
+    if (link.mesh_L.faces.empty()) continue;
+    ++num_bodies;
+    if (!link.inertia || link.inertia->mass == 0.0) without.push_back(link.name);
+  }
+  if (without.empty()) return;
+  findings.note("", std::to_string(without.size()) + " of " + std::to_string(num_bodies) +
+                        " links with a mesh have no mass: " + listed(without));
+}
+
+// ---- Closing
+// --------------------------------------------------------------------------------------
+
+/// The position of a joint at the end of its closing.
+double closed_position(const Joint& joint) {
+  return joint.closing_sign > 0 ? joint.upper : joint.lower;
+}
+
+constexpr int kClosingSteps = 16;  // per range: under 10 degrees each
+
+/// Whether a joint's travel, all others open, takes the pad along where it looks or backward.
+void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
+  constexpr double kShortestTurn = 0.1;    // [rad]
+  constexpr double kShortestSlide = 1e-3;  // [m]
+  constexpr double kBackward = -0.5;       // of the path: more backward than sideways
+  const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
+  const std::string item = "joint " + joint.name;
+  const double travel = joint.upper - joint.lower;
+  const bool is_revolute = joint.type == JointType::Revolute;
+  if (travel < (is_revolute ? kShortestTurn : kShortestSlide)) {
+    findings.suspicious(item, "closes by " + rounded(travel) + (is_revolute ? " rad" : " m") +
+                                  " only: its limits keep it from closing");
+    return;
+  }
+  for (const Finger& finger : hand.fingers) {
+    const bool is_mine =
+        std::find(finger.joints.begin(), finger.joints.end(), j) != finger.joints.end();
+    if (!is_mine || finger.tip_pad < 0) continue;
+    HandConfiguration c = open_configuration(hand);
+    const double from = c.q[j];
+    RigidTransform X_last = pad_pose(hand, finger.tip_pad, forward_kinematics(hand, c));
+    double forward = 0.0;
+    double path = 0.0;
+    for (int step = 1; step <= kClosingSteps; ++step) {
+      c.q[j] = from + (closed_position(joint) - from) * step / kClosingSteps;
+      apply_couplings(hand, c.q);
+      const RigidTransform X_OC = pad_pose(hand, finger.tip_pad, forward_kinematics(hand, c));
+      const Vector3d moved = X_OC.translation() - X_last.translation();
+      forward += moved.dot(X_last.linear().col(2));
+      path += moved.norm();
+      X_last = X_OC;
+    }
+    if (forward < kBackward * path) {
+      findings.suspicious(item, "its closing sign " + std::to_string(joint.closing_sign) +
+                                    " takes the pad of finger " + finger.name +
+                                    " backward, away from what it should touch");
+    }
+  }
+}
+
+/// How near a finger's tip comes when it closes, over how near it is when open: to the palm's
+/// center line, the palm center, and the tips of the other fingers, which close too.
+void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& findings) {
+  constexpr double kNearer = 0.9;
+  const Finger& finger = hand.fingers[f];
+  const std::string item = "finger " + finger.name;
+  const bool closes = std::any_of(finger.joints.begin(), finger.joints.end(), [&](int j) {
+    return hand.joints[static_cast<std::size_t>(j)].closing_sign != 0;
+  });
+  if (!closes) {
+    findings.suspicious(item, "has no joint that closes: list one under closing in the sidecar");
+    return;
+  }
+  if (finger.tip_pad < 0) return;
+  const HandConfiguration open = open_configuration(hand);
+  const auto distances = [&](int step) {
+    HandConfiguration c = open;
+    for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+      if (hand.joints[j].closing_sign == 0) continue;
+      double& q = c.q[static_cast<Eigen::Index>(j)];
+      q += (closed_position(hand.joints[j]) - q) * step / kClosingSteps;
+    }
+    apply_couplings(hand, c.q);
+    const auto X_OL = forward_kinematics(hand, c);
+    const Vector3d tip = pad_pose(hand, finger.tip_pad, X_OL).translation();
+    const Vector3d from_center = tip - hand.palm.center_H;
+    std::vector<double> result = {from_center.norm(),
+                                  from_center.cross(hand.palm.direction_H).norm()};
+    for (std::size_t other = 0; other < hand.fingers.size(); ++other) {
+      if (other == f || hand.fingers[other].tip_pad < 0) continue;
+      result.push_back(
+          (pad_pose(hand, hand.fingers[other].tip_pad, X_OL).translation() - tip).norm());
+    }
+    return result;
+  };
+  const std::vector<double> when_open = distances(0);
+  for (int step = 1; step <= kClosingSteps; ++step) {
+    const std::vector<double> now = distances(step);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      if (now[k] < kNearer * when_open[k]) return;
+    }
+  }
+  findings.suspicious(item,
+                      "does not close: from open to closed its tip comes no nearer to the palm or "
+                      "to another tip; its closing signs or limits are wrong");
+}
+
+/// Fingers that self-collision keeps open: whoever closes the hand finds them straight.
+void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
+  constexpr double kStillOpen = 0.1;  // of the way
+  const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
+  for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
+    if (stop.finger < 0 || stop.share >= kStillOpen) continue;
+    const std::string a = name(stop.link_a);
+    const std::string b = name(stop.link_b);
+    findings.suspicious("finger " + hand.fingers[static_cast<std::size_t>(stop.finger)].name,
+                        "closing leaves it open: after " + rounded(100.0 * stop.share) +
+                            " % of its way link " + a + " meets link " + b +
+                            "; if that is how they are built, exclude the pair from collision in "
+                            "the sidecar: \"exclusions\": [[\"" +
+                            a + "\", \"" + b + "\"]]");
+  }
+}
+
+void look_for_tips_that_never_meet(const HandModel& hand, Findings& findings) {
+  if (hand.fingers.size() < 2) {
+    findings.suspicious("", "one finger only: nothing to hold an object against but the palm");
+    return;
+  }
+  // Whether tips face each other at all needs no fine grid: its ends are moved on.
+  constexpr std::int64_t kCoarse = std::int64_t{1} << 16;
+  const HandWorkspace workspace = hand_workspace(hand, {.max_configurations = kCoarse});
+  const auto thumb = static_cast<std::size_t>(hand.thumb());
+  const std::string thumb_name = hand.fingers[thumb].name;
+  if (workspace.any_graspable_diameter.largest <= 0.0) {
+    findings.suspicious("finger " + thumb_name,
+                        "no ball fits between its tip pad and that of any other finger: they never "
+                        "face each other");
+    return;
+  }
+  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
+    if (f == thumb || workspace.graspable_diameter[f].largest > 0.0) continue;
+    findings.note("finger " + hand.fingers[f].name,
+                  "no ball fits between its tip pad and that of " + thumb_name);
+  }
+}
+
+// ---- The whole hand
+// -------------------------------------------------------------------------------
+
+void look_for_overlaps(const HandModel& hand, Findings& findings) {
+  const auto overlap =
+      HandCollision(hand).against_self(forward_kinematics(hand, open_configuration(hand)));
+  if (!overlap.intersects) return;
+  const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
+  findings.suspicious("link " + name(overlap.link_a),
+                      "overlaps link " + name(overlap.link_b) + " by " +
+                          rounded(overlap.depth * 1e3) +
+                          " mm in the open configuration; exclude the pair from collision in the "
+                          "sidecar if that is how they are built");
+}
+
+void tell_exclusions(const HandModel& hand, Findings& findings) {
+  std::vector<std::string> pairs;
+  for (const CollisionExclusion& pair : hand.exclusions) {
+    pairs.push_back(hand.links[static_cast<std::size_t>(pair.link_a)].name + " - " +
+                    hand.links[static_cast<std::size_t>(pair.link_b)].name);
+  }
+  findings.note("", std::to_string(pairs.size()) + " pairs of links are excluded from collision" +
+                        (pairs.empty() ? "" : ": " + listed(pairs)));
+}
+
+void tell_idle_joints(const HandModel& hand, Findings& findings) {
+  std::vector<std::string> idle;
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    const bool is_used =
+        std::any_of(hand.fingers.begin(), hand.fingers.end(), [&](const Finger& finger) {
+          return std::find(finger.joints.begin(), finger.joints.end(), static_cast<int>(j)) !=
+                 finger.joints.end();
+        });
+    if (!is_used) idle.push_back(hand.joints[j].name);
+  }
+  if (!idle.empty()) findings.note("", "joints that belong to no finger: " + listed(idle));
+}
+
+void look_at_whole(const HandModel& hand, Findings& findings) {
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    if (hand.joints[j].closing_sign != 0 && !hand.joints[j].coupling) {
+      look_at_closing_joint(hand, static_cast<int>(j), findings);
+    }
+  }
+  for (std::size_t f = 0; f < hand.fingers.size(); ++f) look_at_closing_finger(hand, f, findings);
+  look_for_tips_that_never_meet(hand, findings);
+  look_for_overlaps(hand, findings);
+  look_for_blocked_fingers(hand, findings);
+  tell_exclusions(hand, findings);
+  tell_idle_joints(hand, findings);
+}
+
+}  // namespace
+
+std::size_t HandCheck::count(FindingKind kind) const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(),
+                    [&](const HandFinding& finding) { return finding.kind == kind; }));
+}
+
+HandCheck check_hand(const std::filesystem::path& description_file) {
+  Findings findings(Findings::AtFault::Collect);
+  const internal::HandSources sources = internal::read_sources(description_file, findings);
+  HandCheck check;
+  check.model = internal::assemble(sources, findings);
+  if (sources.tree) {
+    const JointTree joints(*sources.tree);
+    std::set<std::string> has_geometry;
+    for (const internal::DescribedLink& link : sources.description.links) {
+      if (!link.visual.empty() || !link.collision.empty()) has_geometry.insert(link.name);
+    }
+    look_for_missing_meshes(joints, has_geometry, findings);
+    look_at_masses(*sources.tree, findings);
+    if (!sources.sidecar.couplings) internal::look_for_lost_couplings(joints, findings);
+  }
+  const bool is_hand_sized = sources.tree && !findings.has_faults() &&
+                             internal::extent_at_rest(*sources.tree) <= internal::kLargestHand;
+  if (check.model && is_hand_sized) {
+    findings.attempt([&] { look_at_whole(*check.model, findings); });
+  } else if (check.model) {
+    findings.note("", "how it closes is looked at once its lengths are meters");
+  }
+  check.findings = findings.list();
+  std::stable_sort(check.findings.begin(), check.findings.end(),
+                   [](const HandFinding& a, const HandFinding& b) { return a.kind < b.kind; });
+  return check;
+}
+
+}  // namespace graspfit::hands

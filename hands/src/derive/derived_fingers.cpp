@@ -1,0 +1,290 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "derive/deriver.hpp"
+#include "graspfit/geometry/mesh_intersection.hpp"
+
+namespace graspfit::hands::internal {
+namespace {
+
+constexpr double kTipShare = 0.2;  // of a link's length: what counts as its tip
+
+}  // namespace
+
+Vector3d Deriver::tip_of(const Body& body) const {
+  const bool is_slide = tree_.joints[at(body.joint)].type == JointType::Prismatic;
+  Vector3d far = Vector3d::Zero();
+  for (const Vector3d& v : body.mesh.vertices) {
+    if (v.squaredNorm() > far.squaredNorm()) far = v;
+  }
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : body.mesh.vertices) {
+    if (is_slide || v.dot(far) >= (1.0 - kTipShare) * far.squaredNorm()) box.extend(v);
+  }
+  return box.center();
+}
+
+double Deriver::reach_of(const Chain& chain) const {
+  const auto X_HL = poses(rest());
+  return (tip(chain, X_HL) - pose_of_body(X_HL, chain.bodies.front()).translation()).norm();
+}
+
+void Deriver::chains() {
+  if (given_.fingers) {
+    given_chains();
+  } else {
+    // A leaf of the tree of bodies ends a finger, if it has a surface; else the last body above
+    // it that has one.
+    std::vector<bool> is_end(bodies_.size(), false);
+    std::vector<bool> has_end_below(bodies_.size(), false);
+    for (std::size_t b = bodies_.size(); b-- > 1;) {
+      is_end[b] = !has_end_below[b] && !bodies_[b].mesh.faces.empty();
+      if (is_end[b] || has_end_below[b]) has_end_below[at(bodies_[b].parent)] = true;
+    }
+    for (std::size_t b = 1; b < bodies_.size(); ++b) {
+      if (!is_end[b]) continue;
+      Chain chain;
+      for (int up = static_cast<int>(b); up > 0; up = bodies_[at(up)].parent) {
+        chain.bodies.insert(chain.bodies.begin(), up);
+      }
+      chains_.push_back(std::move(chain));
+    }
+    for (Chain& chain : chains_) complete(chain);
+    drop_linkage_members();
+    share_out_trunks();
+  }
+  if (chains_.empty()) {
+    fail(
+        "no link with a surface hangs on a movable joint: no finger can be derived; write "
+        "\"fingers\" into the sidecar");
+  }
+}
+
+void Deriver::given_chains() {
+  const std::vector<int> body_of = body_of_links(bodies_, tree_.links.size());
+  for (const SidecarFinger& finger : *given_.fingers) {
+    Chain chain;
+    for (const std::string& name : finger.links) {
+      for (std::size_t i = 0; i < tree_.links.size(); ++i) {
+        if (tree_.links[i].name != name) continue;
+        const int body = body_of[i];
+        if (body > 0 && (chain.bodies.empty() || chain.bodies.back() != body)) {
+          chain.bodies.push_back(body);
+        }
+      }
+    }
+    if (chain.bodies.empty()) {
+      fail("finger " + finger.name + ": none of its links moves: nothing can be derived for it");
+    }
+    complete(chain);
+    chains_.push_back(std::move(chain));
+  }
+}
+
+void Deriver::complete(Chain& chain) const {
+  chain.joints.clear();
+  chain.leaders.clear();
+  for (const int body : chain.bodies) {
+    const int joint = bodies_[at(body)].joint;
+    chain.joints.push_back(joint);
+    const int leader = leader_of(joint);
+    if (std::find(chain.leaders.begin(), chain.leaders.end(), leader) == chain.leaders.end()) {
+      chain.leaders.push_back(leader);
+    }
+  }
+  chain.tip_B = tip_of(bodies_[at(chain.bodies.back())]);
+}
+
+void Deriver::drop_linkage_members() {
+  std::vector<std::vector<RigidTransform>> samples;
+  for (std::size_t s = 0; s < 5; ++s) samples.push_back(poses(sampled(s)));
+  std::vector<Chain> kept;
+  for (const Chain& chain : chains_) {
+    const bool only_follows = std::all_of(chain.joints.begin(), chain.joints.end(), [&](int j) {
+      return tree_.joints[at(j)].coupling.has_value();
+    });
+    const Chain* carrier = nullptr;
+    for (const Chain& other : chains_) {
+      if (!only_follows || &other == &chain || other.leaders != chain.leaders) continue;
+      if (reach_from_palm(other) <= reach_from_palm(chain)) continue;
+      if (always_touch(chain, other, samples)) carrier = &other;
+    }
+    if (carrier == nullptr) {
+      kept.push_back(chain);
+      continue;
+    }
+    findings_.note("link " + name_of_body(chain.bodies.back()),
+                   "is no finger: it follows its joints and always touches link " +
+                       name_of_body(carrier->bodies.back()) + ", a bar of that finger's linkage");
+  }
+  chains_ = std::move(kept);
+}
+
+double Deriver::reach_from_palm(const Chain& chain) const {
+  const auto X_HL = poses(rest());
+  const Body& body = bodies_[at(chain.bodies.back())];
+  double reach = 0.0;
+  for (const Vector3d& v : body.mesh.vertices) {
+    reach = std::max(reach, (pose_of_body(X_HL, chain.bodies.back()) * v).norm());
+  }
+  return reach;
+}
+
+bool Deriver::always_touch(const Chain& a, const Chain& b,
+                           const std::vector<std::vector<RigidTransform>>& samples) const {
+  for (const auto& X_HL : samples) {
+    bool touch = false;
+    for (const int body_a : a.bodies) {
+      for (const int body_b : b.bodies) {
+        if (touch || body_a == body_b) continue;
+        const TriangleMesh& mesh_a = bodies_[at(body_a)].mesh;
+        const TriangleMesh& mesh_b = bodies_[at(body_b)].mesh;
+        if (mesh_a.faces.empty() || mesh_b.faces.empty()) continue;
+        touch = geometry::do_intersect(
+            MeshQuery(mesh_a), MeshQuery(mesh_b),
+            pose_of_body(X_HL, body_a).inverse() * pose_of_body(X_HL, body_b));
+      }
+    }
+    if (!touch) return false;
+  }
+  return true;
+}
+
+void Deriver::share_out_trunks() {
+  std::set<int> taken;
+  std::vector<std::size_t> order(chains_.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return reach_of(chains_[a]) > reach_of(chains_[b]);
+  });
+  for (const std::size_t c : order) {
+    std::erase_if(chains_[c].bodies, [&](int body) { return taken.contains(body); });
+    taken.insert(chains_[c].bodies.begin(), chains_[c].bodies.end());
+    complete(chains_[c]);
+  }
+}
+
+std::string Deriver::name_of_body(int body) const {
+  const Body& b = bodies_[at(body)];
+  for (const int link : b.links) {
+    if (!tree_.links[at(link)].mesh_L.faces.empty()) return tree_.links[at(link)].name;
+  }
+  return tree_.links[at(b.links.front())].name;
+}
+
+int Deriver::thumb() const {
+  if (chains_.size() < 3) return -1;
+  const auto open = poses(closed_by(0.0));
+  const auto closed = poses(closed_by(0.5));
+  std::vector<Vector3d> way;
+  for (const Chain& chain : chains_) {
+    Vector3d w = tip(chain, closed) - tip(chain, open);
+    w -= w.dot(palm_direction_) * palm_direction_;
+    way.push_back(w.norm() > 0.0 ? Vector3d(w.normalized()) : w);
+  }
+  int least = -1;
+  double agreement = 0.0;
+  double second = 0.0;
+  for (std::size_t f = 0; f < way.size(); ++f) {
+    double sum = 0.0;
+    for (std::size_t g = 0; g < way.size(); ++g) {
+      if (g != f) sum += way[f].dot(way[g]) / static_cast<double>(way.size() - 1);
+    }
+    if (least == -1 || sum < agreement) {
+      second = agreement;
+      agreement = sum;
+      least = static_cast<int>(f);
+    } else if (least == 0 && f == 1) {
+      second = sum;
+    } else {
+      second = std::min(second, sum);
+    }
+  }
+  constexpr double kClear = 0.2;  // difference of mean cosines
+  return second - agreement >= kClear ? least : -1;
+}
+
+std::vector<std::string> Deriver::names() const {
+  std::vector<std::string> result;
+  for (const Chain& chain : chains_) {
+    std::string prefix;
+    bool is_first = true;
+    for (const int body : chain.bodies) {
+      for (const int link : bodies_[at(body)].links) {
+        const std::string& name = tree_.links[at(link)].name;
+        if (is_first) prefix = name;
+        is_first = false;
+        const auto differ = std::mismatch(prefix.begin(), prefix.end(), name.begin(), name.end());
+        prefix.erase(differ.first, prefix.end());
+      }
+    }
+    while (!prefix.empty() && std::string("_-. /").find(prefix.back()) != std::string::npos) {
+      prefix.pop_back();
+    }
+    result.push_back(prefix);
+  }
+  const std::set<std::string> distinct(result.begin(), result.end());
+  const bool are_names =
+      distinct.size() == result.size() && !distinct.contains("palm") &&
+      std::all_of(result.begin(), result.end(), [](const auto& n) { return n.size() > 1; });
+  for (std::size_t f = 0; f < result.size() && !are_names; ++f) {
+    result[f] = "finger_" + std::to_string(f + 1);
+  }
+  return result;
+}
+
+std::vector<SidecarFinger> Deriver::fingers() {
+  std::vector<SidecarFinger> result;
+  const int its_thumb = thumb();
+  const std::vector<std::string> its_names = names();
+  const auto X_rest = poses(rest());
+  for (std::size_t f = 0; f < chains_.size(); ++f) {
+    const Chain& chain = chains_[f];
+    SidecarFinger finger;
+    finger.name = its_names[f];
+    finger.is_thumb = static_cast<int>(f) == its_thumb;
+    for (const int body : chain.bodies) {
+      for (const int link : bodies_[at(body)].links) {
+        finger.links.push_back(tree_.links[at(link)].name);
+      }
+    }
+    // Bodies are complete subtrees of fixed links, which may interleave with the next joint's.
+    std::sort(finger.links.begin(), finger.links.end(),
+              [&](const std::string& a, const std::string& b) {
+                return tree_.link_index(a) < tree_.link_index(b);
+              });
+    for (const int joint : chain.joints) finger.joints.push_back(tree_.joints[at(joint)].name);
+    // Of the joints that neither close nor open, the one whose axis is nearest to the palm's
+    // direction; a tenth of a cosine decides nothing, then the proximal one does.
+    double nearest = -0.1;
+    for (const int joint : chain.joints) {
+      if (tree_.joints[at(joint)].closing_sign != 0) continue;
+      if (tree_.joints[at(joint)].type == JointType::Prismatic) continue;
+      const double cosine = std::abs(axis_H(joint, X_rest).dot(palm_direction_));
+      if (cosine <= nearest + 0.1) continue;
+      nearest = cosine;
+      finger.swing_joint = tree_.joints[at(joint)].name;
+    }
+    if (given_.pads) {  // pads that are given name their fingers
+      for (const SidecarPad& pad : *given_.pads) {
+        if (std::find(finger.links.begin(), finger.links.end(), pad.link) != finger.links.end()) {
+          finger.name = pad.finger;
+        }
+      }
+    }
+    result.push_back(std::move(finger));
+  }
+  std::string text;
+  for (const SidecarFinger& finger : result) {
+    text += (text.empty() ? "" : "; ") + finger.name + (finger.is_thumb ? " (thumb)" : "");
+    for (const std::string& joint : finger.joints) {
+      text += " " + joint + (finger.swing_joint == joint ? " (swing)" : "");
+    }
+  }
+  findings_.note("", "fingers derived from the tree's leaves: " + text);
+  return result;
+}
+
+}  // namespace graspfit::hands::internal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "description/robot_description.hpp"
+#include "graspfit/hands/hand_model.hpp"
+#include "model/findings.hpp"
+
+namespace graspfit::hands::internal {
+
+/// The kinematic tree of a description: links and joints parents first (depth first, children in
+/// the order of the description), its couplings and exclusions. Without surfaces, fingers, pads.
+///
+/// The root link is `root` if given; what does not hang below it is left out. Else it is the
+/// description's root, except that an arm before the hand is left out: while only one movable joint
+/// hangs on the root (and the links fixed to it), its child becomes the root, if joints branch
+/// further on. What is left out is noted, and so is a coupling to a joint that is: the follower
+/// then becomes independent.
+///
+/// Faults, prefixed by `file`: a cycle, two roots, no movable joint, names that nothing bears.
+/// Empty after a fault of the tree itself where they are collected; couplings with a fault are left
+/// out.
+/// @throws InvalidInput at the first fault where they are thrown.
+std::optional<HandModel> build_tree(const RobotDescription& description, const std::string& file,
+                                    const std::optional<std::string>& root, Findings& findings);
+
+}  // namespace graspfit::hands::internal

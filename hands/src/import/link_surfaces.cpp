@@ -1,0 +1,264 @@
+#include "import/link_surfaces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "description/description_package.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/shapes.hpp"
+
+namespace graspfit::hands::internal {
+
+namespace {
+
+namespace fs = std::filesystem;
+using base::InvalidInput;
+using base::IoError;
+
+template <typename... Alternatives>
+struct Overloaded : Alternatives... {
+  using Alternatives::operator()...;
+};
+template <typename... Alternatives>
+Overloaded(Alternatives...) -> Overloaded<Alternatives...>;
+
+/// The file that `name` of a <mesh> means. `package://NAME/rest` is looked for in the folders named
+/// NAME above the description, then in the package's folder, the description's own, and beside it.
+fs::path mesh_path(const fs::path& description_file, const std::string& name,
+                   const std::string& item) {
+  const std::string scheme = "package://";
+  const fs::path package = package_folder(description_file);
+  const fs::path folder = fs::weakly_canonical(description_file).parent_path();
+  const std::vector<fs::path> readable = readable_folders(description_file);
+  struct Candidate {
+    std::vector<fs::path> folders;  ///< One of which the file must lie in.
+    fs::path path;
+  };
+  std::vector<Candidate> candidates;
+  if (name.rfind(scheme, 0) == 0) {
+    const fs::path in_scheme = name.substr(scheme.size());
+    const fs::path package_name = *in_scheme.begin();
+    const fs::path rest = in_scheme.lexically_relative(package_name);
+    for (fs::path at = folder; at.has_relative_path(); at = at.parent_path()) {
+      if (at.filename() == package_name) candidates.push_back({{at}, at / rest});
+    }
+    candidates.push_back({readable, package / rest});
+    candidates.push_back({{folder}, folder / rest});
+    const fs::path beside = (folder.parent_path() / rest).lexically_normal();
+    if (lies_in(beside, readable)) candidates.push_back({readable, beside});
+  } else if (name.find("://") != std::string::npos && name.rfind("file://", 0) != 0) {
+    throw InvalidInput(item + ": mesh " + name + ": only files and package:// are read");
+  } else {
+    const fs::path plain = name.rfind("file://", 0) == 0 ? name.substr(7) : name;
+    candidates.push_back({readable, plain.is_absolute() ? plain : folder / plain});
+  }
+  std::error_code error;
+  for (const Candidate& candidate : candidates) {
+    const fs::path file = fs::weakly_canonical(candidate.path, error);
+    if (error) throw IoError(item + ": mesh " + name + ": " + error.message());
+    if (!lies_in(file, candidate.folders)) {
+      throw InvalidInput(item + ": mesh " + name + " " + outside_text(description_file, file));
+    }
+    if (fs::is_regular_file(file, error)) return file;
+  }
+  throw IoError(item + ": mesh " + name + " is not there");
+}
+
+/// A link's mesh; what is wrong with it is said with the description and the link.
+TriangleMesh read_link_mesh(const fs::path& file, const std::string& item) {
+  try {
+    return geometry::read_mesh(file).mesh;
+  } catch (const IoError& error) {
+    throw IoError(item + ": " + error.what());
+  } catch (const base::Error& error) {
+    throw InvalidInput(item + ": " + error.what());
+  }
+}
+
+TriangleMesh scaled_by(TriangleMesh mesh, const Eigen::Vector3d& scale) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
+  if (scale.prod() < 0.0) {  // a mirror turns the surface inside out
+    for (geometry::Face& face : mesh.faces) std::swap(face[1], face[2]);
+  }
+  return mesh;
+}
+
+/// The surface of one <visual> or <collision> in the link's frame. Primitives are inscribed: their
+/// vertices lie on the round surface. The file of a <mesh> is added to `mesh_files`.
+TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_file,
+                     const std::string& item, std::vector<std::string>& mesh_files) {
+  const TriangleMesh mesh_G = std::visit(
+      Overloaded{[](const BoxShape& box) { return geometry::box(box.size); },
+                 [](const CylinderShape& cylinder) {
+                   return geometry::cylinder(cylinder.radius, cylinder.length, 48);
+                 },
+                 [](const CapsuleShape& capsule) {
+                   return geometry::capsule(capsule.radius, capsule.length);
+                 },
+                 [](const EllipsoidShape& ellipsoid) {
+                   return scaled_by(geometry::ball(1.0, 3), ellipsoid.radii);
+                 },
+                 [](const SphereShape& sphere) { return geometry::ball(sphere.radius, 3); },
+                 [&](const LoadedMeshShape& loaded) {
+                   if (!loaded.filename.empty()) mesh_files.push_back(loaded.filename);
+                   return loaded.mesh;
+                 },
+                 [&](const MeshFileShape& mesh) {
+                   const fs::path file = mesh_path(description_file, mesh.filename, item);
+                   const fs::path folder = fs::weakly_canonical(description_file).parent_path();
+                   mesh_files.push_back(file.lexically_relative(folder).generic_string());
+                   return scaled_by(read_link_mesh(file, item), mesh.scale);
+                 }},
+      part.shape);
+  return transformed(mesh_G, part.X_LG);
+}
+
+/// The connected parts of a mesh, corners being the same where their coordinates are; the mesh
+/// itself if there are more than kMostParts.
+std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
+  constexpr std::size_t kMostParts = 200;  // more is a soup of triangles
+  const auto less = [&](std::int32_t a, std::int32_t b) {
+    const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(a)];
+    const Eigen::Vector3d& q = mesh.vertices[static_cast<std::size_t>(b)];
+    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+  };
+  std::map<std::int32_t, std::int32_t, decltype(less)> place_of(less);
+  std::vector<std::int32_t> place(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto own = static_cast<std::int32_t>(v);
+    place[v] = place_of.emplace(own, own).first->second;
+  }
+  std::vector<std::int32_t> above(place);  // union-find over places
+  const auto root = [&](std::int32_t v) {
+    v = place[static_cast<std::size_t>(v)];
+    while (above[static_cast<std::size_t>(v)] != v) {
+      v = above[static_cast<std::size_t>(v)] =
+          above[static_cast<std::size_t>(above[static_cast<std::size_t>(v)])];
+    }
+    return v;
+  };
+  for (const geometry::Face& face : mesh.faces) {
+    for (const int k : {1, 2}) {
+      const std::int32_t a = root(face[0]);
+      const std::int32_t b = root(face[static_cast<std::size_t>(k)]);
+      above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  }
+  std::map<std::int32_t, std::size_t> number;  // by first vertex: the order of the file
+  for (const geometry::Face& face : mesh.faces) number.emplace(root(face[0]), 0);
+  if (number.size() > kMostParts) return {mesh};
+  std::vector<TriangleMesh> parts(number.size());
+  std::size_t next = 0;
+  for (auto& [first, own] : number) own = next++;
+  std::vector<std::int32_t> in_part(mesh.vertices.size(), -1);
+  for (const geometry::Face& face : mesh.faces) {
+    TriangleMesh& part = parts[number.at(root(face[0]))];
+    geometry::Face own;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::int32_t& index = in_part[static_cast<std::size_t>(face[k])];
+      if (index < 0) {
+        index = static_cast<std::int32_t>(part.vertices.size());
+        part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(face[k])]);
+      }
+      own[k] = index;
+    }
+    part.faces.push_back(own);
+  }
+  return parts;
+}
+
+/// What was done to one link, for its note.
+struct ClosingReport {
+  std::size_t num_boundary_edges = 0;
+  std::size_t num_inward_parts = 0;
+  std::map<std::string, std::size_t> steps;  ///< By name, counts added up.
+  double farthest = 0.0;                     ///< [m]
+  double wrap_offset = 0.0;                  ///< [m]; 0: nothing was wrapped.
+
+  void add(const geometry::RepairedMesh& repaired, double offset) {
+    num_boundary_edges += repaired.before.num_boundary_edges;
+    num_inward_parts += repaired.before.num_inward_parts;
+    double moved = 0.0;
+    for (const geometry::RepairStep& step : repaired.steps) {
+      steps[step.what] += step.count;
+      moved += step.hausdorff_bound;
+      if (step.what == "wrapped") wrap_offset = std::max(wrap_offset, offset);
+    }
+    farthest = std::max(farthest, moved);
+  }
+};
+
+/// A closed, outward surface of a mesh that is neither: each connected part is mended (holes of any
+/// size are filled), and one that cannot be, or has no volume, is wrapped.
+TriangleMesh closed_surface(const TriangleMesh& mesh, ClosingReport& report) {
+  geometry::MeshRepairOptions options;
+  options.max_hole_extent_rel = 1.0;  // the ends of a tube are as wide as the tube
+  options.max_misfilled_rel = 1.0;    // a link that is filled somehow is nearer to it than a shell
+  options.max_removed_rel = 1.0;
+  try {
+    const geometry::RepairedMesh repaired = geometry::repair_mesh(mesh, options);
+    report.add(repaired, 0.0);
+    return repaired.mesh;
+  } catch (const base::Error&) {
+    // Part by part then, so that only what is broken is wrapped.
+  }
+  std::vector<TriangleMesh> closed;
+  options.wrap = geometry::AlphaWrap{.alpha_rel = 0.05, .offset_rel = 0.005};
+  for (const TriangleMesh& part : connected_parts(mesh)) {
+    const geometry::RepairedMesh repaired = geometry::repair_mesh(part, options);
+    report.add(repaired, options.wrap->offset_rel * geometry::longest_extent(part));
+    closed.push_back(repaired.mesh);
+  }
+  return geometry::concatenated(closed);
+}
+
+std::string in_millimeters(double meters) {
+  return base::shortest_decimal(std::round(meters * 1e4) / 10.0) + " mm";
+}
+
+std::string text_of(const ClosingReport& report) {
+  std::string text =
+      "its surface was mended for collision: " + std::to_string(report.num_boundary_edges) +
+      " boundary edges, " + std::to_string(report.num_inward_parts) + " parts inside out";
+  for (const auto& [what, count] : report.steps) text += ", " + what + " " + std::to_string(count);
+  if (report.wrap_offset > 0.0) {
+    text += "; wrapped at a distance of " + in_millimeters(report.wrap_offset);
+  }
+  return text + "; no point of the new surface is farther than " + in_millimeters(report.farthest) +
+         " from the old one";
+}
+
+}  // namespace
+
+void read_link_surface(const DescribedLink& source, const std::filesystem::path& description_file,
+                       Link& link, Findings& findings) {
+  const std::vector<DescribedGeometry>& parts =
+      source.collision.empty() ? source.visual : source.collision;
+  const std::string item = description_file.string() + ": link " + source.name;
+  std::vector<TriangleMesh> meshes;
+  ClosingReport report;
+  for (const DescribedGeometry& part : parts) {
+    TriangleMesh mesh = surface(part, description_file, item, link.mesh_files);
+    const geometry::MeshAnalysis analysis = geometry::analyze(mesh);
+    if (!analysis.is_closed || !analysis.is_manifold || !analysis.is_outward) {
+      try {
+        mesh = closed_surface(mesh, report);
+      } catch (const base::Error& error) {
+        throw InvalidInput(item + ": its surface is not closed: " + error.what());
+      }
+    }
+    const bool is_known = std::find(meshes.begin(), meshes.end(), mesh) != meshes.end();
+    if (!is_known) meshes.push_back(std::move(mesh));  // the same twice is once
+  }
+  if (!report.steps.empty()) findings.note("link " + source.name, text_of(report));
+  link.mesh_L = geometry::concatenated(meshes);
+}
+
+}  // namespace graspfit::hands::internal

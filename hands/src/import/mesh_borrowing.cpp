@@ -1,0 +1,296 @@
+#include "import/mesh_borrowing.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "import/hand_tree.hpp"
+#include "import/urdf.hpp"
+
+namespace graspfit::hands::internal {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// How far apart two lines may be that are the same axis: rotations are written with four decimals,
+/// 5e-5 each, which over the 0.2 m of a finger is 1e-5 m.
+constexpr double kSameDirection = 5e-4;  // [rad]
+constexpr double kSamePlace = 5e-5;      // [m]
+/// Limits of equal width: written with three digits.
+constexpr double kSameWidth = 1e-3;  // [rad] or [m]
+
+struct AxisLine {
+  Vector3d point;
+  Vector3d direction;  ///< Unit.
+};
+
+double distance(const AxisLine& a, const Vector3d& point) {
+  return (point - a.point).cross(a.direction).norm();
+}
+
+bool are_parallel(const AxisLine& a, const AxisLine& b) {
+  return a.direction.cross(b.direction).norm() < kSameDirection;
+}
+
+/// A tree, how its joints branch, and the positions at which it is compared.
+struct Skeleton {
+  explicit Skeleton(const HandModel& tree)
+      : model(tree),
+        q(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree.joints.size()))),
+        above(tree.links.size(), -1) {
+    for (std::size_t i = 1; i < model.links.size(); ++i) {
+      const Link& link = model.links[i];
+      above[i] = link.parent_joint >= 0 ? link.parent_joint
+                                        : above[static_cast<std::size_t>(link.parent_link)];
+    }
+  }
+
+  /// The joints next after `joint`, −1 for the root.
+  std::vector<int> next(int joint) const {
+    std::vector<int> result;
+    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+      const auto parent = static_cast<std::size_t>(model.joints[j].parent_link);
+      if (above[parent] == joint) result.push_back(static_cast<int>(j));
+    }
+    return result;
+  }
+
+  const Joint& joint(int index) const { return model.joints[static_cast<std::size_t>(index)]; }
+
+  std::vector<RigidTransform> poses() const {
+    return forward_kinematics(model, {.X_OH = RigidTransform::Identity(), .q = q});
+  }
+
+  /// A joint's axis in the root link's frame.
+  AxisLine axis(int index) const {
+    const RigidTransform X_HJ =
+        poses()[static_cast<std::size_t>(joint(index).parent_link)] * joint(index).X_PJ;
+    return {X_HJ.translation(), X_HJ.linear() * joint(index).axis_J};
+  }
+
+  const HandModel& model;
+  Eigen::VectorXd q;
+  std::vector<int> above;  ///< Per link: the joint that moves it; −1 if none does.
+};
+
+/// Finds the joint of `theirs` for every joint of `ours`, and the positions of theirs at which both
+/// trees stand alike while ours are at zero.
+class JointMatcher {
+ public:
+  JointMatcher(const Skeleton& ours, Skeleton& theirs)
+      : ours_(ours), theirs_(theirs), match_(ours.model.joints.size(), -1) {}
+
+  /// Empty if they match, or else why not.
+  std::optional<std::string> find() {
+    if (ours_.model.joints.size() != theirs_.model.joints.size()) {
+      return "it has " + std::to_string(theirs_.model.joints.size()) + " joints, not " +
+             std::to_string(ours_.model.joints.size());
+    }
+    if (match_after(-1, -1)) return std::nullopt;
+    return "no joint of it stands where " + unmatched_ + " does";
+  }
+
+  const std::vector<int>& match() const { return match_; }
+
+ private:
+  bool match_after(int our_joint, int their_joint) {
+    const std::vector<int> ours = ours_.next(our_joint);
+    const std::vector<int> theirs = theirs_.next(their_joint);
+    if (ours.size() != theirs.size()) {
+      if (!ours.empty()) unmatched_ = "joint " + ours_.joint(ours[0]).name;
+      return false;
+    }
+    std::vector<bool> taken(theirs.size(), false);
+    for (const int a : ours) {
+      bool found = false;
+      for (std::size_t k = 0; k < theirs.size() && !found; ++k) {
+        if (taken[k] || !stand_alike(a, theirs[k])) continue;
+        found = taken[k] = match_from(a, theirs[k]);
+      }
+      if (!found) {
+        if (unmatched_.empty()) unmatched_ = "joint " + ours_.joint(a).name;
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool match_from(int a, int b) {
+    for (const double position : candidates(a, b)) {
+      theirs_.q[b] = position;
+      unmatched_.clear();
+      if (match_after(a, b)) {
+        match_[static_cast<std::size_t>(a)] = b;
+        return true;
+      }
+    }
+    theirs_.q[b] = 0.0;
+    return false;
+  }
+
+  bool stand_alike(int a, int b) const {
+    if (ours_.joint(a).type != theirs_.joint(b).type) return false;
+    const AxisLine ours = ours_.axis(a);
+    const AxisLine theirs = theirs_.axis(b);
+    // Where a sliding joint's axis lies says nothing.
+    return are_parallel(ours, theirs) && (ours_.joint(a).type == JointType::Prismatic ||
+                                          distance(ours, theirs.point) < kSamePlace);
+  }
+
+  /// Positions of their joint that could correspond to zero of ours, the likeliest first.
+  std::vector<double> candidates(int a, int b) const {
+    const std::vector<int> ours = ours_.next(a);
+    const std::vector<int> theirs = theirs_.next(b);
+    if (ours.empty()) return {position_by_limits(a, b)};
+    std::vector<double> positions = {0.0};
+    const AxisLine target = ours_.axis(ours[0]);
+    for (const int next : theirs) {
+      const std::vector<double> more = positions_that_align(b, target, theirs_.axis(next));
+      positions.insert(positions.end(), more.begin(), more.end());
+    }
+    return positions;
+  }
+
+  double position_by_limits(int a, int b) const {
+    const Joint& ours = ours_.joint(a);
+    const Joint& theirs = theirs_.joint(b);
+    const double width = ours.upper - ours.lower;
+    if (std::abs(width - (theirs.upper - theirs.lower)) > kSameWidth) return 0.0;
+    const bool is_same_way = ours_.axis(a).direction.dot(theirs_.axis(b).direction) > 0.0;
+    return is_same_way ? theirs.lower - ours.lower : theirs.upper + ours.lower;
+  }
+
+  /// Positions of joint b that bring the line `from`, which it moves, onto `to`, if any do.
+  std::vector<double> positions_that_align(int b, const AxisLine& to, const AxisLine& from) const {
+    const AxisLine axis = theirs_.axis(b);
+    const double at = theirs_.q[b];
+    const Vector3d& z = axis.direction;
+    if (theirs_.joint(b).type == JointType::Prismatic) {
+      // Along z until the lines meet: the part of the shift across `to` must vanish.
+      const Vector3d across = z - z.dot(to.direction) * to.direction;
+      if (across.norm() < kSameDirection) return {};
+      return {at + (to.point - from.point).dot(across) / across.squaredNorm()};
+    }
+    // Seen along the axis: turn the direction, or, where that is parallel to the axis, the point.
+    const auto flat = [&](const Vector3d& v) { return Vector3d(v - z.dot(v) * z); };
+    const auto angle = [&](const Vector3d& u, const Vector3d& v) {
+      return std::atan2(z.dot(u.cross(v)), u.dot(v));
+    };
+    Vector3d u = flat(from.direction);
+    Vector3d v = flat(to.direction);
+    const bool is_parallel = u.norm() < kSameDirection;
+    if (is_parallel) {
+      u = flat(from.point - axis.point);
+      v = flat(to.point - axis.point);
+      if (u.norm() < kSamePlace) return {};
+      return {at + angle(u, v)};
+    }
+    return {at + angle(u, v), at + angle(-u, v)};
+  }
+
+  const Skeleton& ours_;
+  Skeleton& theirs_;
+  std::vector<int> match_;  ///< Per joint of ours; −1 where none was found.
+  std::string unmatched_;   ///< The joint of ours at which the last attempt ended.
+};
+
+LinkInertia moved(const LinkInertia& inertia, const RigidTransform& X) {
+  return {inertia.mass, X * inertia.center_L,
+          X.linear() * inertia.inertia_L * X.linear().transpose()};
+}
+
+std::string name_of(const DescribedGeometry& part) {
+  const auto* mesh = std::get_if<MeshFileShape>(&part.shape);
+  return mesh ? mesh->filename : "a primitive";
+}
+
+/// The first link that hangs on no joint: the whole tree is wanted, not from the palm on.
+std::optional<std::string> root_of(const RobotDescription& description) {
+  for (const DescribedLink& link : description.links) {
+    if (std::none_of(description.joints.begin(), description.joints.end(),
+                     [&](const DescribedJoint& joint) { return joint.child == link.name; })) {
+      return link.name;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The only URDF in a folder.
+fs::path urdf_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".urdf") found.push_back(entry.path());
+  }
+  if (found.size() != 1) {
+    throw base::InvalidInput("there are " + std::to_string(found.size()) +
+                             " URDF files beside it, not one");
+  }
+  return found[0];
+}
+
+void borrow(const fs::path& file, RobotDescription& description, Findings& findings) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  const fs::path urdf_file = urdf_in(folder);
+  Findings strict(Findings::AtFault::Throw);  // what is odd about the URDF's joints is of no matter
+  const RobotDescription urdf = parse_urdf(base::read_file(urdf_file), urdf_file.string(), strict);
+  const HandModel our_tree = *build_tree(description, file.string(), root_of(description), strict);
+  const HandModel their_tree = *build_tree(urdf, urdf_file.string(), root_of(urdf), strict);
+  const Skeleton ours(our_tree);
+  Skeleton theirs(their_tree);
+  JointMatcher matcher(ours, theirs);
+  if (const auto why = matcher.find()) {
+    throw base::InvalidInput(urdf_file.filename().string() + ": " + *why);
+  }
+  const std::vector<RigidTransform> X_HL = ours.poses();
+  const std::vector<RigidTransform> X_HU = theirs.poses();
+  for (DescribedLink& link : description.links) {
+    if (!link.visual.empty() || !link.collision.empty()) continue;
+    const auto l = static_cast<std::size_t>(our_tree.link_index(link.name));
+    const int body =
+        ours.above[l] < 0 ? -1 : matcher.match()[static_cast<std::size_t>(ours.above[l])];
+    std::vector<const DescribedLink*> with_inertia;
+    RigidTransform X_with_inertia = RigidTransform::Identity();
+    std::string names;
+    for (const DescribedLink& source : urdf.links) {
+      const auto u = static_cast<std::size_t>(their_tree.link_index(source.name));
+      if (theirs.above[u] != body) continue;
+      const RigidTransform X_LU = X_HL[l].inverse() * X_HU[u];
+      for (DescribedGeometry part : source.collision.empty() ? source.visual : source.collision) {
+        part.X_LG = X_LU * part.X_LG;
+        names += (names.empty() ? "" : ", ") + name_of(part);
+        link.collision.push_back(std::move(part));
+      }
+      if (!source.inertia) continue;
+      with_inertia.push_back(&source);
+      X_with_inertia = X_LU;
+    }
+    if (with_inertia.size() == 1) link.inertia = moved(*with_inertia[0]->inertia, X_with_inertia);
+    if (!names.empty()) {
+      findings.note("link " + link.name, "its mesh is not there; taken from " +
+                                             urdf_file.filename().string() +
+                                             ", whose joints stand in the same places: " + names);
+    }
+  }
+}
+
+}  // namespace
+
+void borrow_meshes(const fs::path& file, RobotDescription& description, Findings& findings) {
+  try {
+    borrow(file, description, findings);
+  } catch (const base::Error& error) {
+    findings.suspicious("", "link meshes are not there, and none can be taken from a URDF: " +
+                                std::string(error.what()));
+  }
+}
+
+}  // namespace graspfit::hands::internal

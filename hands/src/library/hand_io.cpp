@@ -1,0 +1,35 @@
+#include "graspfit/hands/hand_io.hpp"
+
+#include "library/hand_assembly.hpp"
+#include "model/findings.hpp"
+
+namespace graspfit::hands {
+
+namespace fs = std::filesystem;
+using internal::Findings;
+
+fs::path sidecar_file_of(const fs::path& description_file) {
+  return fs::path(description_file).replace_extension(".graspfit.json");
+}
+
+HandReading read_hand(const fs::path& description_file) {
+  Findings findings(Findings::AtFault::Throw);
+  const internal::HandSources sources = internal::read_sources(description_file, findings);
+  HandReading reading;
+  reading.description = sources.sidecar.description;
+  reading.model = *internal::assemble(sources, findings);
+  reading.findings = findings.list();
+  return reading;
+}
+
+HandModel read_hand_model(const fs::path& description_file) {
+  return read_hand(description_file).model;
+}
+
+std::string derived_sidecar_text(const fs::path& description_file) {
+  Findings findings(Findings::AtFault::Throw);
+  const internal::HandSources sources = internal::read_sources(description_file, findings);
+  return internal::completed_sidecar_text(sources, findings);
+}
+
+}  // namespace graspfit::hands

@@ -1,0 +1,74 @@
+#include "graspfit/hands/forward_kinematics.hpp"
+
+#include "graspfit/base/errors.hpp"
+
+namespace graspfit::hands {
+
+namespace {
+
+/// Motion of a joint by position `q`, in its joint frame.
+RigidTransform motion(const Joint& joint, double q) {
+  RigidTransform X = RigidTransform::Identity();
+  if (joint.type == JointType::Revolute) {
+    X.linear() = Eigen::AngleAxisd(q, joint.axis_J).toRotationMatrix();
+  } else {
+    X.translation() = q * joint.axis_J;
+  }
+  return X;
+}
+
+}  // namespace
+
+std::vector<RigidTransform> forward_kinematics(const HandModel& model,
+                                               const HandConfiguration& configuration) {
+  if (configuration.q.size() != static_cast<Eigen::Index>(model.joints.size())) {
+    throw base::InvalidInput("hand " + model.name + ": " + std::to_string(configuration.q.size()) +
+                             " joint positions for " + std::to_string(model.joints.size()) +
+                             " joints");
+  }
+  std::vector<RigidTransform> X_OL(model.links.size());
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    if (link.parent_link < 0) {
+      X_OL[i] = configuration.X_OH;
+      continue;
+    }
+    const RigidTransform& X_OP = X_OL[static_cast<std::size_t>(link.parent_link)];
+    if (link.parent_joint < 0) {
+      X_OL[i] = X_OP * link.X_PL_fixed;
+    } else {
+      const Joint& joint = model.joints[static_cast<std::size_t>(link.parent_joint)];
+      X_OL[i] = X_OP * joint.X_PJ * motion(joint, configuration.q[link.parent_joint]);
+    }
+  }
+  return X_OL;
+}
+
+Eigen::Vector3d pad_contact_point(const HandModel& model, int pad,
+                                  const std::vector<RigidTransform>& X_OL) {
+  const RigidTransform X_OC = pad_pose(model, pad, X_OL);
+  return X_OC.translation() + pad_contact_point_C(model.pads[pad]).z() * X_OC.linear().col(2);
+}
+
+std::vector<int> links_moved_by(const HandModel& model, int joint) {
+  if (joint < 0 || joint >= static_cast<int>(model.joints.size())) {
+    throw base::InvalidInput("hand " + model.name + ": joint " + std::to_string(joint) + " of " +
+                             std::to_string(model.joints.size()));
+  }
+  std::vector<int> moved;
+  std::vector<bool> moves(model.links.size(), false);
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    if (link.parent_link < 0) continue;
+    moves[i] = moves[static_cast<std::size_t>(link.parent_link)];
+    if (link.parent_joint >= 0) {
+      const Joint& own = model.joints[static_cast<std::size_t>(link.parent_joint)];
+      moves[i] = moves[i] || link.parent_joint == joint ||
+                 (own.coupling && own.coupling->leader == joint && own.coupling->ratio != 0.0);
+    }
+    if (moves[i]) moved.push_back(static_cast<int>(i));
+  }
+  return moved;
+}
+
+}  // namespace graspfit::hands

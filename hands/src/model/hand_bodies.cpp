@@ -1,0 +1,57 @@
+#include "model/hand_bodies.hpp"
+
+namespace graspfit::hands::internal {
+
+std::vector<Body> bodies_of(const HandModel& tree) {
+  std::vector<Body> bodies;
+  std::vector<int> body_of(tree.links.size(), -1);
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Link& link = tree.links[i];
+    const int above =
+        link.parent_link < 0 ? -1 : body_of[static_cast<std::size_t>(link.parent_link)];
+    if (above >= 0 && link.parent_joint < 0) {
+      body_of[i] = above;
+    } else {
+      body_of[i] = static_cast<int>(bodies.size());
+      Body& body = bodies.emplace_back();
+      body.joint = link.parent_joint;
+      body.parent = above;
+      if (above >= 0) bodies[static_cast<std::size_t>(above)].children.push_back(body_of[i]);
+    }
+    bodies[static_cast<std::size_t>(body_of[i])].links.push_back(static_cast<int>(i));
+  }
+  for (Body& body : bodies) {
+    const std::vector<RigidTransform> X_BL = poses_in_body(tree, body);
+    std::vector<TriangleMesh> meshes;
+    for (std::size_t i = 0; i < body.links.size(); ++i) {
+      meshes.push_back(
+          transformed(tree.links[static_cast<std::size_t>(body.links[i])].mesh_L, X_BL[i]));
+    }
+    body.mesh = geometry::concatenated(meshes);
+  }
+  return bodies;
+}
+
+std::vector<int> body_of_links(const std::vector<Body>& bodies, std::size_t num_links) {
+  std::vector<int> body_of(num_links, -1);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const int link : bodies[b].links)
+      body_of[static_cast<std::size_t>(link)] = static_cast<int>(b);
+  }
+  return body_of;
+}
+
+std::vector<RigidTransform> poses_in_body(const HandModel& tree, const Body& body) {
+  std::vector<RigidTransform> X_BL;
+  for (const int link : body.links) {
+    RigidTransform X = RigidTransform::Identity();
+    for (int at = link; at != body.links.front();
+         at = tree.links[static_cast<std::size_t>(at)].parent_link) {
+      X = tree.links[static_cast<std::size_t>(at)].X_PL_fixed * X;
+    }
+    X_BL.push_back(X);
+  }
+  return X_BL;
+}
+
+}  // namespace graspfit::hands::internal

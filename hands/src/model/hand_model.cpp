@@ -1,0 +1,541 @@
+#include "graspfit/hands/hand_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/nearest_name.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/convex_hull.hpp"
+
+namespace graspfit::hands {
+
+namespace {
+
+using base::InvalidInput;
+using base::shortest_decimal;
+
+/// "a, b, c" of the names of some items.
+template <typename Items>
+std::string names_of(const Items& items) {
+  std::string text;
+  for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
+  return text.empty() ? "none" : text;
+}
+
+template <typename Items>
+int index_of(const HandModel& model, const Items& items, const std::string& name,
+             const std::string& kind) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name) return static_cast<int>(i);
+  }
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
+  throw InvalidInput("hand " + model.name + ": no " + kind + " named " + name + "; there are " +
+                     names_of(items) + base::did_you_mean(name, names));
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// A line of the outline as unit inward normal n and offset: n · p ≥ offset inside.
+struct Side {
+  Eigen::Vector2d inward;
+  double offset = 0.0;
+};
+
+std::vector<Side> sides(const std::vector<Eigen::Vector2d>& outline) {
+  std::vector<Side> result;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& a = outline[i];
+    const Eigen::Vector2d edge = outline[(i + 1) % outline.size()] - a;
+    const double length = edge.norm();
+    if (length == 0.0) continue;
+    const Eigen::Vector2d inward = Eigen::Vector2d(-edge.y(), edge.x()) / length;
+    result.push_back({inward, inward.dot(a)});
+  }
+  return result;
+}
+
+double distance_inside(const std::vector<Side>& lines, const Eigen::Vector2d& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Side& line : lines) least = std::min(least, line.inward.dot(point) - line.offset);
+  return lines.empty() ? 0.0 : std::max(least, 0.0);
+}
+
+/// Corners of the hull whose upper side is the pad: the outline at z = 0, then the surface's.
+std::vector<Eigen::Vector3d> hull_points(const ContactPad& pad) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector2d& corner : pad.outline) {
+    points.emplace_back(corner.x(), corner.y(), 0.0);
+  }
+  points.insert(points.end(), pad.surface.begin(), pad.surface.end());
+  return points;
+}
+
+double shoelace(const std::vector<Eigen::Vector2d>& outline) {
+  double twice = 0.0;
+  for (std::size_t i = 1; i + 1 < outline.size(); ++i) {
+    twice += cross(outline[i] - outline[0], outline[i + 1] - outline[0]);
+  }
+  return 0.5 * twice;
+}
+
+void require_thickness(const char* function, const ContactPad& pad, double thickness) {
+  if (thickness > 0.0 && std::isfinite(thickness)) return;
+  throw InvalidInput(std::string(function) + ": pad " + pad.name + ": thickness " +
+                     shortest_decimal(thickness) + " is not positive");
+}
+
+/// Collects what every check of `validate` needs: the hand's name and a way to complain.
+class Checker {
+ public:
+  explicit Checker(const HandModel& model) : model_(model) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InvalidInput("hand " + (model_.name.empty() ? std::string("(no name)") : model_.name) +
+                       ": " + what);
+  }
+
+  void require(bool condition, const std::string& what) const {
+    if (!condition) fail(what);
+  }
+
+  void require_index(int index, std::size_t size, const std::string& what) const {
+    require(index >= 0 && static_cast<std::size_t>(index) < size,
+            what + " has index " + std::to_string(index) + " of " + std::to_string(size));
+  }
+
+  void require_pose(const RigidTransform& pose, const std::string& what) const {
+    require(pose.matrix().allFinite(), what + " is not finite");
+    // Rotations that come from text have 12 or more digits; 1e-6 only tells them from shears.
+    const Eigen::Matrix3d defect =
+        pose.linear().transpose() * pose.linear() - Eigen::Matrix3d::Identity();
+    require(defect.norm() < 1e-6 && pose.linear().determinant() > 0.0, what + " is not a rotation");
+  }
+
+  template <typename Items>
+  void require_distinct_names(const Items& items, const std::string& kind) const {
+    std::set<std::string> seen;
+    for (const auto& item : items) {
+      require(!item.name.empty(), kind + " without a name");
+      require(seen.insert(item.name).second, "two " + kind + "s named " + item.name);
+    }
+  }
+
+  void inertia(const Link& link) const {
+    if (!link.inertia) return;
+    const std::string what = "link " + link.name + ": ";
+    require(std::isfinite(link.inertia->mass) && link.inertia->mass >= 0.0,
+            what + "mass " + shortest_decimal(link.inertia->mass) + " is negative or not finite");
+    require(link.inertia->center_L.allFinite(), what + "center of mass is not finite");
+    require(link.inertia->inertia_L.allFinite(), what + "inertia is not finite");
+  }
+
+  void links() const {
+    require(!model_.links.empty(), "no links");
+    require_distinct_names(model_.links, "link");
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      const Link& link = model_.links[i];
+      const std::string what = "link " + link.name;
+      inertia(link);
+      if (i == 0) {
+        require(link.parent_link == -1 && link.parent_joint == -1,
+                what + ": the root has a parent");
+        continue;
+      }
+      require(link.parent_link >= 0 && link.parent_link < static_cast<int>(i),
+              what + ": its parent link " + std::to_string(link.parent_link) +
+                  " does not come before it");
+      require_pose(link.X_PL_fixed, what + ": fixed pose");
+      if (link.parent_joint == -1) continue;
+      require_index(link.parent_joint, model_.joints.size(), what + ": parent joint");
+      const Joint& joint = model_.joints[static_cast<std::size_t>(link.parent_joint)];
+      require(joint.child_link == static_cast<int>(i) && joint.parent_link == link.parent_link,
+              what + ": joint " + joint.name + " joins other links");
+    }
+  }
+
+  void joints() const {
+    require(!model_.joints.empty(), "no movable joint");
+    require_distinct_names(model_.joints, "joint");
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      const Joint& joint = model_.joints[j];
+      const std::string what = "joint " + joint.name;
+      require_index(joint.parent_link, model_.links.size(), what + ": parent link");
+      require_index(joint.child_link, model_.links.size(), what + ": child link");
+      require(model_.links[static_cast<std::size_t>(joint.child_link)].parent_joint ==
+                  static_cast<int>(j),
+              what + ": its child link hangs on another joint");
+      require_pose(joint.X_PJ, what + ": origin");
+      require(joint.axis_J.allFinite() && std::abs(joint.axis_J.norm() - 1.0) < 1e-9,
+              what + ": axis is not a unit vector");
+      require(
+          std::isfinite(joint.lower) && std::isfinite(joint.upper) && joint.lower <= joint.upper,
+          what + ": limits " + shortest_decimal(joint.lower) + " to " +
+              shortest_decimal(joint.upper) + " are reversed or not finite");
+      require(
+          joint.closing_sign >= -1 && joint.closing_sign <= 1,
+          what + ": closing sign " + std::to_string(joint.closing_sign) + " is none of -1, 0, 1");
+      if (!joint.coupling) continue;
+      require_index(joint.coupling->leader, model_.joints.size(), what + ": leader");
+      const Joint& leader = model_.joints[static_cast<std::size_t>(joint.coupling->leader)];
+      require(joint.coupling->leader != static_cast<int>(j), what + " follows itself");
+      require(!leader.coupling, what + ": its leader " + leader.name + " follows another joint");
+      require(std::isfinite(joint.coupling->ratio) && std::isfinite(joint.coupling->offset),
+              what + ": coupling is not finite");
+      require(!joint.coupling->breakaway || joint.closing_sign != 0,
+              what + ": breakaway without a closing direction");
+    }
+  }
+
+  void fingers() const {
+    require(!model_.fingers.empty(), "no fingers");
+    require_distinct_names(model_.fingers, "finger");
+    std::set<int> taken;
+    int num_thumbs = 0;
+    for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
+      const Finger& finger = model_.fingers[f];
+      const std::string what = "finger " + finger.name;
+      require(finger.name != "palm", what + ": the name palm is taken by the palm");
+      require(!finger.links.empty(), what + ": no links");
+      require(!finger.joints.empty(), what + ": no joints");
+      for (std::size_t i = 0; i < finger.links.size(); ++i) {
+        const int link = finger.links[i];
+        require_index(link, model_.links.size(), what + ": link");
+        const std::string& link_name = model_.links[static_cast<std::size_t>(link)].name;
+        require(link != model_.palm.link, what + ": link " + link_name + " is the palm");
+        require(taken.insert(link).second, what + ": link " + link_name + " is listed twice");
+        require(i == 0 || link > finger.links[i - 1],
+                what + ": links are not ordered from proximal to distal");
+      }
+      for (std::size_t i = 0; i < finger.joints.size(); ++i) {
+        const int joint = finger.joints[i];
+        require_index(joint, model_.joints.size(), what + ": joint");
+        const Joint& j = model_.joints[static_cast<std::size_t>(joint)];
+        require(
+            std::find(finger.links.begin(), finger.links.end(), j.child_link) != finger.links.end(),
+            what + ": joint " + j.name + " moves none of its links");
+        require(i == 0 || joint > finger.joints[i - 1],
+                what + ": joints are not ordered from proximal to distal");
+      }
+      if (finger.swing_joint) {
+        require(std::find(finger.joints.begin(), finger.joints.end(), *finger.swing_joint) !=
+                    finger.joints.end(),
+                what + ": its swing joint is not one of its joints");
+      }
+      if (finger.tip_pad != -1) {
+        require_index(finger.tip_pad, model_.pads.size(), what + ": tip pad");
+        require(model_.pads[static_cast<std::size_t>(finger.tip_pad)].finger == static_cast<int>(f),
+                what + ": its tip pad " +
+                    model_.pads[static_cast<std::size_t>(finger.tip_pad)].name +
+                    " belongs to another finger");
+      }
+      num_thumbs += finger.is_thumb ? 1 : 0;
+    }
+    require(num_thumbs <= 1, std::to_string(num_thumbs) + " fingers are marked as thumb");
+  }
+
+  void pads() const {
+    require_distinct_names(model_.pads, "pad");
+    for (const ContactPad& pad : model_.pads) {
+      const std::string what = "pad " + pad.name;
+      require_index(pad.link, model_.links.size(), what + ": link");
+      if (pad.finger == -1) {
+        require(pad.link == model_.palm.link, what + " of the palm is not on the palm link");
+      } else {
+        require_index(pad.finger, model_.fingers.size(), what + ": finger");
+        const Finger& finger = model_.fingers[static_cast<std::size_t>(pad.finger)];
+        require(std::find(finger.links.begin(), finger.links.end(), pad.link) != finger.links.end(),
+                what + ": its link " + model_.links[static_cast<std::size_t>(pad.link)].name +
+                    " is none of finger " + finger.name);
+      }
+      require_pose(pad.X_LC, what + ": frame");
+      outline(pad.outline, what);
+      surface(pad, what);
+      require(
+          !pad.clip_thickness || (std::isfinite(*pad.clip_thickness) && *pad.clip_thickness > 0.0),
+          what + ": clip thickness is not positive");
+    }
+  }
+
+  void outline(const std::vector<Eigen::Vector2d>& points, const std::string& what) const {
+    require(points.size() >= 3,
+            what + ": outline has " + std::to_string(points.size()) + " corners");
+    for (const Eigen::Vector2d& point : points) {
+      require(point.allFinite(), what + ": outline is not finite");
+    }
+    const double area = shoelace(points);
+    require(area != 0.0, what + ": outline has no area");
+    require(area > 0.0, what + ": outline is clockwise");
+    // Convex: no corner lies to the right of any side, up to the rounding of decimal input.
+    const double slack = 1e-9 * std::sqrt(area);
+    const std::vector<Side> lines = sides(points);
+    double turn = 0.0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      for (const Eigen::Vector2d& point : points) {
+        require(lines[i].inward.dot(point) - lines[i].offset >= -slack,
+                what + ": outline is not convex");
+      }
+      const Eigen::Vector2d& next = lines[(i + 1) % lines.size()].inward;
+      turn += std::atan2(cross(lines[i].inward, next), lines[i].inward.dot(next));
+    }
+    // Corners that go around twice lie left of every side, too.
+    require(turn < 3.0 * std::numbers::pi, what + ": outline goes around more than once");
+  }
+
+  void surface(const ContactPad& pad, const std::string& what) const {
+    require(pad.surface.empty() == pad.planes.empty(),
+            what + ": surface and planes do not belong together");
+    if (pad.surface.empty()) return;
+    const std::vector<Side> lines = sides(pad.outline);
+    // Rounding of decimal input, relative to the pad's size.
+    const double slack = 1e-9 * std::sqrt(shoelace(pad.outline));
+    // The pad is the hull: what lies this little below it may stay, as rounding of points on a
+    // straight line does.
+    constexpr double kDentRel = 1e-3;  // of the pad's size
+    double height = 0.0;
+    for (std::size_t i = 0; i < pad.surface.size(); ++i) {
+      const Eigen::Vector3d& point = pad.surface[i];
+      const std::string which = what + ": surface point " + std::to_string(i);
+      require(point.allFinite(), which + " is not finite");
+      require(point.z() >= 0.0, which + " lies behind the pad's plane");
+      for (const Side& side : lines) {
+        require(side.inward.dot(point.head<2>()) - side.offset >= -slack,
+                which + " lies beside the outline");
+      }
+      require(height_over_pad(pad, point) >= -kDentRel * std::sqrt(shoelace(pad.outline)),
+              which + " lies below the others: the surface is not convex");
+      height = std::max(height, point.z());
+    }
+    require(height > slack, what + ": its surface does not rise over its plane");
+  }
+
+  void palm() const {
+    require(model_.palm.link == 0, "the palm link is not the root link " + model_.links[0].name);
+    require(model_.palm.center_H.allFinite(), "palm center is not finite");
+    require(model_.palm.direction_H.allFinite() &&
+                std::abs(model_.palm.direction_H.norm() - 1.0) < 1e-9,
+            "palm direction is not a unit vector");
+    if (model_.palm.pad == -1) return;
+    require_index(model_.palm.pad, model_.pads.size(), "palm pad");
+    require(model_.pads[static_cast<std::size_t>(model_.palm.pad)].finger == -1,
+            "the palm's pad belongs to a finger");
+  }
+
+  void exclusions() const {
+    for (const CollisionExclusion& pair : model_.exclusions) {
+      require_index(pair.link_a, model_.links.size(), "collision exclusion");
+      require_index(pair.link_b, model_.links.size(), "collision exclusion");
+    }
+  }
+
+ private:
+  const HandModel& model_;
+};
+
+}  // namespace
+
+int HandModel::num_intrinsic_dof() const {
+  return static_cast<int>(std::count_if(joints.begin(), joints.end(),
+                                        [](const Joint& joint) { return !joint.coupling; }));
+}
+
+int HandModel::finger_index(const std::string& finger_name) const {
+  return index_of(*this, fingers, finger_name, "finger");
+}
+
+int HandModel::joint_index(const std::string& joint_name) const {
+  return index_of(*this, joints, joint_name, "joint");
+}
+
+int HandModel::link_index(const std::string& link_name) const {
+  return index_of(*this, links, link_name, "link");
+}
+
+int HandModel::thumb() const {
+  for (std::size_t f = 0; f < fingers.size(); ++f) {
+    if (fingers[f].is_thumb) return static_cast<int>(f);
+  }
+  return 0;
+}
+
+bool HandModel::is_excluded(int link_a, int link_b) const {
+  if (link_a == link_b) return true;
+  return std::any_of(exclusions.begin(), exclusions.end(), [&](const CollisionExclusion& pair) {
+    return (pair.link_a == link_a && pair.link_b == link_b) ||
+           (pair.link_a == link_b && pair.link_b == link_a);
+  });
+}
+
+void validate(const HandModel& model) {
+  const Checker check(model);
+  check.links();
+  check.joints();
+  check.palm();
+  check.fingers();
+  check.pads();
+  check.exclusions();
+}
+
+double pad_area(const ContactPad& pad) { return shoelace(pad.outline); }
+
+double boundary_distance(const ContactPad& pad, const Eigen::Vector2d& point_C) {
+  return distance_inside(sides(pad.outline), point_C);
+}
+
+double largest_boundary_distance(const ContactPad& pad) {
+  // The largest inscribed circle touches three sides (or can be moved until it does), so its center
+  // is among the points with equal distance r from three lines: n · c − r = offset for each.
+  const std::vector<Side> lines = sides(pad.outline);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::size_t j = i + 1; j < lines.size(); ++j) {
+      for (std::size_t k = j + 1; k < lines.size(); ++k) {
+        Eigen::Matrix3d system;
+        Eigen::Vector3d offsets;
+        int row = 0;
+        for (const std::size_t s : {i, j, k}) {
+          system.row(row) << lines[s].inward.x(), lines[s].inward.y(), -1.0;
+          offsets[row++] = lines[s].offset;
+        }
+        const Eigen::FullPivLU<Eigen::Matrix3d> solver(system);
+        if (!solver.isInvertible()) continue;
+        const Eigen::Vector3d center = solver.solve(offsets);
+        largest = std::max(largest, distance_inside(lines, center.head<2>()));
+      }
+    }
+  }
+  return largest;
+}
+
+std::vector<geometry::HalfSpace> surface_planes(const ContactPad& pad) {
+  std::vector<geometry::HalfSpace> planes;
+  if (pad.surface.empty()) return planes;
+  const std::vector<Eigen::Vector3d> points = hull_points(pad);
+  // Facets steeper than this stand on the outline: walls that the outline's sides give already.
+  constexpr double kWall = 1e-6;  // cosine; a facet of the bulge leans by far more
+  constexpr double kSame = 1e-9;  // difference of unit normals of coplanar facets
+  for (const geometry::HullFacet& facet : geometry::convex_hull(points).facets) {
+    const Eigen::Vector3d& a = points[facet[0]];
+    const Eigen::Vector3d normal = (points[facet[1]] - a).cross(points[facet[2]] - a).normalized();
+    if (!(normal.z() > kWall)) continue;
+    const bool is_known = std::any_of(
+        planes.begin(), planes.end(),
+        [&](const geometry::HalfSpace& plane) { return (plane.normal - normal).norm() < kSame; });
+    if (!is_known) planes.push_back({normal, normal.dot(a)});
+  }
+  return planes;
+}
+
+double height_over_pad(const ContactPad& pad, const Eigen::Vector3d& point_C) {
+  if (pad.planes.empty()) return point_C.z();
+  double height = -std::numeric_limits<double>::infinity();
+  for (const geometry::HalfSpace& plane : pad.planes) {
+    height = std::max(height, (plane.normal.dot(point_C) - plane.offset) / plane.normal.z());
+  }
+  return height;
+}
+
+double pad_height(const ContactPad& pad) {
+  double height = 0.0;
+  for (const Eigen::Vector3d& point : pad.surface) height = std::max(height, point.z());
+  return height;
+}
+
+Eigen::Vector3d pad_contact_point_C(const ContactPad& pad) {
+  return {0.0, 0.0, std::max(0.0, -height_over_pad(pad, Eigen::Vector3d::Zero()))};
+}
+
+geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
+  require_thickness("clip_volume_C", pad, thickness);
+  geometry::ConvexVolume volume;
+  for (const Side& side : sides(pad.outline)) {
+    volume.push_back({Eigen::Vector3d(-side.inward.x(), -side.inward.y(), 0.0), -side.offset});
+  }
+  volume.push_back({-Eigen::Vector3d::UnitZ(), 0.0});
+  if (pad.planes.empty()) volume.push_back({Eigen::Vector3d::UnitZ(), thickness});
+  // Seen along z the surface ends at the outline, so that moving it along z sweeps no further
+  // walls.
+  for (const geometry::HalfSpace& plane : pad.planes) {
+    volume.push_back({plane.normal, plane.offset + plane.normal.z() * thickness});
+  }
+  return volume;
+}
+
+TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness) {
+  require_thickness("clip_volume_mesh_C", pad, thickness);
+  std::vector<Eigen::Vector3d> points = hull_points(pad);
+  const std::size_t num_points = points.size();
+  for (std::size_t i = 0; i < num_points; ++i) {
+    points.push_back(points[i] + thickness * Eigen::Vector3d::UnitZ());
+  }
+  const geometry::ConvexHull3 hull = geometry::convex_hull(points);
+  // Corners only: points of the pad that ended up inside the hull are left out.
+  std::vector<std::int32_t> number(points.size(), -1);
+  TriangleMesh mesh;
+  for (const std::size_t vertex : hull.vertices) {
+    number[vertex] = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(points[vertex]);
+  }
+  for (const geometry::HullFacet& facet : hull.facets) {
+    mesh.faces.push_back({number[facet[0]], number[facet[1]], number[facet[2]]});
+  }
+  return mesh;
+}
+
+geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C,
+                                   const RigidTransform& X_AC) {
+  geometry::ConvexVolume volume_A;
+  volume_A.reserve(volume_C.size());
+  for (const geometry::HalfSpace& half_space : volume_C) {
+    const Eigen::Vector3d normal_A = X_AC.linear() * half_space.normal;
+    volume_A.push_back({normal_A, half_space.offset + normal_A.dot(X_AC.translation())});
+  }
+  return volume_A;
+}
+
+double largest_reach(const HandModel& model) {
+  // A link whose pose in H never changes is measured from the palm center as it stands; every joint
+  // after that adds at most the length of its fixed part and its stroke.
+  struct Bound {
+    bool is_fixed = true;
+    RigidTransform X_HL = RigidTransform::Identity();  ///< Where fixed.
+    double distance = 0.0;  ///< Upper bound of |link origin − palm center| [m].
+  };
+  std::vector<Bound> bounds(model.links.size());
+  double reach = 0.0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    Bound& bound = bounds[i];
+    if (i == 0) {
+      bound.distance = model.palm.center_H.norm();
+    } else {
+      const Bound& parent = bounds[static_cast<std::size_t>(link.parent_link)];
+      const Joint* joint = link.parent_joint < 0
+                               ? nullptr
+                               : &model.joints[static_cast<std::size_t>(link.parent_joint)];
+      const RigidTransform& X_PL = joint ? joint->X_PJ : link.X_PL_fixed;
+      bound.is_fixed = parent.is_fixed && joint == nullptr;
+      bound.X_HL = parent.X_HL * X_PL;
+      bound.distance = parent.is_fixed ? (bound.X_HL.translation() - model.palm.center_H).norm()
+                                       : parent.distance + X_PL.translation().norm();
+      if (joint && joint->type == JointType::Prismatic) {
+        bound.distance += std::max(std::abs(joint->lower), std::abs(joint->upper));
+      }
+    }
+    reach = std::max(reach, bound.distance);
+    for (const Eigen::Vector3d& vertex : link.mesh_L.vertices) {
+      const double of_vertex = bound.is_fixed ? (bound.X_HL * vertex - model.palm.center_H).norm()
+                                              : bound.distance + vertex.norm();
+      reach = std::max(reach, of_vertex);
+    }
+  }
+  return reach;
+}
+
+}  // namespace graspfit::hands

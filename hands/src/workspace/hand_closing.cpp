@@ -1,0 +1,128 @@
+#include "graspfit/hands/hand_closing.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+
+namespace graspfit::hands {
+
+namespace {
+
+/// Independent joints that close together and stop together.
+struct Group {
+  int finger = -1;  ///< −1: of no finger.
+  std::vector<int> joints;
+};
+
+/// One group per finger that has a closing joint of its own, then one per closing joint of none.
+std::vector<Group> closing_groups(const HandModel& model) {
+  std::vector<bool> is_taken(model.joints.size(), false);
+  const auto take = [&](int joint, Group& group) {
+    const Joint& own = model.joints[static_cast<std::size_t>(joint)];
+    const int moved = own.coupling ? own.coupling->leader : joint;
+    if (model.joints[static_cast<std::size_t>(moved)].closing_sign == 0) return;
+    if (is_taken[static_cast<std::size_t>(moved)]) return;
+    is_taken[static_cast<std::size_t>(moved)] = true;
+    group.joints.push_back(moved);
+  };
+  std::vector<Group> groups;
+  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+    Group group{static_cast<int>(f), {}};
+    for (const int joint : model.fingers[f].joints) take(joint, group);
+    if (!group.joints.empty()) groups.push_back(std::move(group));
+  }
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    Group group;
+    take(static_cast<int>(j), group);
+    if (!group.joints.empty()) groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+/// The model with every pair excluded that touches while the hand is open.
+HandModel without_open_overlaps(HandModel model) {
+  const auto X_HL = forward_kinematics(model, open_configuration(model));
+  while (true) {
+    const HandCollision::Result found = HandCollision(model).against_self(X_HL);
+    if (!found.intersects) return model;
+    model.exclusions.push_back({found.link_a, found.link_b});
+  }
+}
+
+struct Closing {
+  HandConfiguration configuration;
+  std::vector<ClosingStop> stops;
+};
+
+Closing closing_of(const HandModel& model, double share) {
+  constexpr int kSteps = 64;
+  const HandConfiguration open = open_configuration(model);
+  const HandConfiguration closed = closed_configuration(model, share);
+  const std::vector<Group> groups = closing_groups(model);
+  const HandCollision collision(without_open_overlaps(model));
+
+  std::vector<int> steps(groups.size(), 0);
+  const auto configuration = [&] {
+    HandConfiguration result = open;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const double way = static_cast<double>(steps[g]) / kSteps;
+      for (const int joint : groups[g].joints) {
+        result.q[joint] = (1.0 - way) * open.q[joint] + way * closed.q[joint];
+      }
+    }
+    apply_couplings(model, result.q);
+    return result;
+  };
+  std::vector<ClosingStop> stops;
+  std::vector<bool> has_stopped(groups.size(), false);
+  for (int step = 1; step <= kSteps; ++step) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (has_stopped[g]) continue;
+      steps[g] = step;
+      const HandCollision::Result found =
+          collision.against_self(forward_kinematics(model, configuration()));
+      if (!found.intersects) continue;
+      steps[g] = step - 1;
+      has_stopped[g] = true;
+      stops.push_back(
+          {groups[g].finger, static_cast<double>(step - 1) / kSteps, found.link_a, found.link_b});
+    }
+  }
+  return {configuration(), std::move(stops)};
+}
+
+}  // namespace
+
+HandConfiguration closed_configuration(const HandModel& model, double share) {
+  // Written so that NaN fails.
+  if (!(share >= 0.0 && share <= 1.0)) {
+    throw base::InvalidInput("hand " + model.name + ": share of closing " +
+                             base::shortest_decimal(share) + " is not in 0 to 1");
+  }
+  HandConfiguration configuration = open_configuration(model);
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const Joint& joint = model.joints[j];
+    if (joint.closing_sign == 0 || joint.coupling) continue;
+    double& position = configuration.q[static_cast<Eigen::Index>(j)];
+    const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
+    position = (1.0 - share) * position + share * closed;
+  }
+  // Followers start open: one that may break away would keep a position that is further closed.
+  apply_couplings(model, configuration.q);
+  return configuration;
+}
+
+HandConfiguration closed_without_overlap(const HandModel& model, double share) {
+  return closing_of(model, share).configuration;
+}
+
+std::vector<ClosingStop> closing_stops(const HandModel& model, double share) {
+  return closing_of(model, share).stops;
+}
+
+}  // namespace graspfit::hands

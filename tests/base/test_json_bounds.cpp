@@ -1,0 +1,75 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/json_bounds.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace {
+
+using namespace graspfit::base;
+using graspfit::testing::TemporaryFolder;
+
+/// What a text is refused with; "accepted" if it is not.
+std::string refusal(const std::string& text) {
+  try {
+    require_bounded_json(text, "a.json");
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string nested(int depth) {
+  return std::string(static_cast<std::size_t>(depth), '[') +
+         std::string(static_cast<std::size_t>(depth), ']');
+}
+
+TEST_CASE("JSON may nest to the limit and not one level deeper", "[geometry][json_bounds]") {
+  CHECK(refusal("") == "accepted");
+  CHECK(refusal("7") == "accepted");
+  CHECK(refusal(nested(kDeepestJson)) == "accepted");
+  const std::string one_more = "{\n \"a\": " + nested(kDeepestJson) + "}";
+  CHECK(refusal(one_more) ==
+        "a.json: line 2, column 70: nests deeper than 64 levels, which is as deep as JSON is read");
+  CHECK(refusal(nested(kDeepestJson + 1)).starts_with("a.json: line 1, column 65: nests deeper"));
+  CHECK(refusal(std::string(1000000, '[')).starts_with("a.json: line 1, column 65: nests deeper"));
+  // Beside one another is not inside one another.
+  std::string wide = "[[]";
+  for (int i = 0; i < 1000; ++i) wide += ",{\"a\": [0]}";
+  CHECK(refusal(wide + "]") == "accepted");
+}
+
+TEST_CASE("Brackets in JSON strings do not nest, and escaped quotes do not end a string",
+          "[geometry][json_bounds]") {
+  const std::string brackets(100, '[');
+  CHECK(refusal("{\"" + brackets + "\": \"" + brackets + "\"}") == "accepted");
+  CHECK(refusal(R"(["\")" + brackets + R"("])") == "accepted");
+  CHECK(refusal(R"(["\\\")" + brackets + R"("])") == "accepted");
+  // A backslash that is escaped itself escapes nothing.
+  CHECK(refusal(R"(["\\", )" + brackets).starts_with("a.json: line 1"));
+  CHECK(refusal(R"(["\u005b"])") == "accepted");
+  // Texts that end inside of a string are for the parser to refuse.
+  CHECK(refusal("[\"" + brackets) == "accepted");
+  CHECK(refusal("[\"\\") == "accepted");
+}
+
+TEST_CASE("A JSON file that is too large is refused before it is read", "[geometry][json_bounds]") {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "large.json";
+  std::ofstream(file) << "{}";
+  CHECK(read_json_file(file) == "{}");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a hole: takes no room on the disk
+  try {
+    read_json_file(file);
+    FAIL("accepted");
+  } catch (const IoError& error) {
+    CHECK(error.what() == file.string() +
+                              ": has 1099511627776 bytes; JSON is read up to "
+                              "268435456 bytes");
+  }
+}
+
+}  // namespace

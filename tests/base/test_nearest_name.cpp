@@ -1,0 +1,41 @@
+#include "graspfit/base/nearest_name.hpp"
+#include "support/catch.hpp"
+
+using graspfit::base::did_you_mean;
+using graspfit::base::nearest_name;
+
+TEST_CASE("A mistyped name is told from its nearest known one", "[geometry][nearest_name]") {
+  const std::vector<std::string> known = {"plan", "inspect", "evaluate", "hold", "hand", "shape"};
+  // One letter replaced, left out, inserted; two neighbors swapped; another case.
+  for (const char* name : {"plam", "pla", "plaan", "paln", "PLAN"}) {
+    INFO(name);
+    CHECK(nearest_name(name, known) == "plan");
+  }
+  CHECK(nearest_name("inpsect", known) == "inspect");
+  CHECK(nearest_name("evalaute", known) == "evaluate");
+  CHECK(nearest_name("evauate", known) == "evaluate");
+  CHECK(did_you_mean("plam", known) == "; did you mean \"plan\"?");
+}
+
+TEST_CASE("A third of the letters is near, more is not", "[geometry][nearest_name]") {
+  CHECK(nearest_name("abcxyf", {"abcdef"}) == "abcdef");  // 2 of 6
+  CHECK_FALSE(nearest_name("abxyzf", {"abcdef"}));        // 3 of 6
+  CHECK(nearest_name("ab", {"ac"}) == "ac");              // at least one
+  CHECK_FALSE(nearest_name("a", {"b"}));                  // of which none would be left
+  CHECK_FALSE(nearest_name("", {"a"}));
+  CHECK_FALSE(nearest_name("whatever", {}));
+  CHECK(did_you_mean("whatever", {"plan"}).empty());
+}
+
+TEST_CASE("Of names equally near the first is meant, and a nearer one before it",
+          "[geometry][nearest_name]") {
+  CHECK(nearest_name("w4", {"w1", "w2", "w3"}) == "w1");
+  CHECK(nearest_name("table2", {"table1", "tables", "table1_refined"}) == "table1");
+  CHECK(nearest_name("tabel_2", {"tab_e_3", "table_2"}) == "table_2");
+}
+
+TEST_CASE("The beginning of a longer name is completed where nothing is near",
+          "[geometry][nearest_name]") {
+  CHECK(nearest_name("dexonomy", {"dexgraspbench-100g", "dexonomy-hard"}) == "dexonomy-hard");
+  CHECK_FALSE(nearest_name("de", {"dexonomy-hard"}));
+}

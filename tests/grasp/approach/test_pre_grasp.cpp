@@ -1,0 +1,494 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "contact/random_contacts.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/geometry/mesh_intersection.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "scene/straight_way.hpp"
+#include "support/catch.hpp"
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+using base::InvalidInput;
+using base::Random;
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using geometry::MeshQuery;
+using geometry::RigidTransform;
+using geometry::TriangleMesh;
+using grasp::internal::are_apart_on_way;
+using hands::HandConfiguration;
+using hands::HandModel;
+
+namespace {
+
+TriangleMesh box_at(const Vector3d& size, const Vector3d& center) {
+  TriangleMesh mesh = geometry::box(size);
+  for (Vector3d& vertex : mesh.vertices) vertex += center;
+  return mesh;
+}
+
+/// The parallel gripper around a box of 40 x 20 x 30 mm at the origin, its pads `gap` beside it.
+struct Pinch {
+  explicit Pinch(double gap) : hand(hands::find_hand("parallel_gripper")), collision(hand) {
+    grasp = hands::open_configuration(hand);
+    grasp.q.setConstant(0.02 + gap);
+    grasp.X_OH.translation().z() = -0.062;  // the pads' middle at the origin
+  }
+  std::optional<PreGrasp> find(const PreGraspOptions& options, Surroundings around = {}) const {
+    const SurroundingsCollision surroundings(hand, std::move(around));
+    return find_pre_grasp(hand, collision, object, surroundings, grasp, options);
+  }
+  HandModel hand;
+  hands::HandCollision collision;
+  MeshQuery object{geometry::box({0.04, 0.02, 0.03})};
+  HandConfiguration grasp;
+};
+
+HandConfiguration random_configuration(const HandModel& hand, Random& random) {
+  HandConfiguration configuration = hands::open_configuration(hand);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    configuration.q[static_cast<Eigen::Index>(j)] =
+        random.uniform(hand.joints[j].lower, hand.joints[j].upper);
+  }
+  configuration.X_OH.linear() =
+      AngleAxisd(random.uniform(0.0, 3.0), testing::random_direction(random)).toRotationMatrix();
+  configuration.X_OH.translation() = 0.2 * testing::random_direction(random);
+  return configuration;
+}
+
+/// What a hand may touch, asked by exact tests.
+struct Scene {
+  HandModel hand;
+  hands::HandCollision collision;
+  MeshQuery object;
+  SurroundingsCollision surroundings;
+
+  bool is_clear(const HandConfiguration& at) const {
+    const auto X_OL = hands::forward_kinematics(hand, at);
+    for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+      if (collision.link_intersects(object, link, X)) return false;
+      if (surroundings.touches(collision, link, X)) return false;
+    }
+    return !collision.against_self(X_OL).intersects;
+  }
+
+  double clearance(const HandConfiguration& at) const {
+    const auto X_OL = hands::forward_kinematics(hand, at);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+      if (!collision.link_solid(link)) continue;
+      nearest =
+          std::min({nearest, geometry::distance(object, *collision.link_solid(link), X).distance,
+                    surroundings.distance(collision, link, X, 1.0).distance});
+    }
+    return nearest;
+  }
+};
+
+/// The hand closed around what it holds: every finger's closing joints together, in turn, as far as
+/// exact tests let them, to within 1e-5 of their range.
+HandConfiguration closed_onto(const Scene& scene, HandConfiguration at) {
+  const HandConfiguration start = at;
+  for (const hands::Finger& finger : scene.hand.fingers) {
+    const auto closed = [&](double share) {
+      HandConfiguration moved = at;
+      for (const int joint : finger.joints) {
+        const hands::Joint& j = scene.hand.joints[static_cast<std::size_t>(joint)];
+        if (j.closing_sign == 0) continue;
+        const double limit = j.closing_sign > 0 ? j.upper : j.lower;
+        moved.q[joint] = (1.0 - share) * start.q[joint] + share * limit;
+      }
+      hands::apply_couplings(scene.hand, moved.q);
+      return moved;
+    };
+    double low = 0.0;
+    while (low < 0.97 && scene.is_clear(closed(low + 0.02))) low += 0.02;
+    double high = low + 0.02;
+    while (high - low > 1e-5) {
+      const double middle = 0.5 * (low + high);
+      (scene.is_clear(closed(middle)) ? low : high) = middle;
+    }
+    at =
+        closed(std::max(0.0, low - 0.002));  // not so near that no proof could tell it from a touch
+  }
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("Poses between two are linear in place and joints and turn along the shortest arc",
+          "[grasp][pre_grasp]") {
+  HandConfiguration from;
+  HandConfiguration to;
+  from.q = VectorXd::LinSpaced(3, 0.1, 0.3);
+  to.q = VectorXd::LinSpaced(3, 1.1, -0.5);
+  from.X_OH.translation() = Vector3d(1.0, 2.0, 3.0);
+  to.X_OH.translation() = Vector3d(2.0, 2.0, -1.0);
+  to.X_OH.linear() = AngleAxisd(-1.2, Vector3d(0.6, 0.0, 0.8)).toRotationMatrix();
+  const HandConfiguration quarter = interpolated(from, to, 0.25);
+  CHECK(quarter.X_OH.translation().isApprox(Vector3d(1.25, 2.0, 2.0), 1e-15));
+  CHECK(quarter.X_OH.linear().isApprox(AngleAxisd(-0.3, Vector3d(0.6, 0.0, 0.8)).toRotationMatrix(),
+                                       1e-14));
+  CHECK(quarter.q.isApprox(Vector3d(0.35, 0.225, 0.1), 1e-14));
+  CHECK(interpolated(from, to, 0.0).X_OH.matrix() == from.X_OH.matrix());
+  CHECK(interpolated(from, to, 1.0).X_OH.matrix() == to.X_OH.matrix());
+  CHECK(interpolated(from, to, 1.0).q == to.q);
+  // 350 degrees one way are 10 the other.
+  to.X_OH.linear() =
+      AngleAxisd(350.0 / 180.0 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix();
+  CHECK(interpolated(from, to, 0.5)
+            .X_OH.linear()
+            .isApprox(
+                AngleAxisd(-5.0 / 180.0 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix(),
+                1e-14));
+  to.q.conservativeResize(2);
+  CHECK_THROWS_AS(interpolated(from, to, 0.5), InvalidInput);
+  CHECK_THROWS_AS(interpolated(from, from, 1.01), InvalidInput);
+  CHECK_THROWS_AS(interpolated(from, from, std::nan("")), InvalidInput);
+}
+
+TEST_CASE("No point of a link moves faster than the bound of its way", "[grasp][pre_grasp]") {
+  Random random(31);
+  double tightest = 0.0;
+  for (const char* name : {"barrett", "human_hand", "parallel_gripper"}) {
+    const HandModel hand = hands::find_hand(name);
+    const int num_links = static_cast<int>(hand.links.size());
+    for (int trial = 0; trial < 4; ++trial) {
+      const HandConfiguration from = random_configuration(hand, random);
+      const HandConfiguration to = random_configuration(hand, random);
+      const grasp::internal::StraightWay way(hand, from, to);
+      constexpr int kSteps = 40;
+      auto before = hands::forward_kinematics(hand, from);
+      for (int step = 1; step <= kSteps; ++step) {
+        const auto now = hands::forward_kinematics(
+            hand, interpolated(from, to, static_cast<double>(step) / kSteps));
+        for (int a = 0; a < num_links; ++a) {
+          const auto ia = static_cast<std::size_t>(a);
+          const int b = static_cast<int>(random.index(hand.links.size()));
+          const auto ib = static_cast<std::size_t>(b);
+          double in_O = 0.0;
+          double in_B = 0.0;  // how far points of A move, seen from B, bounds from below
+          for (const Vector3d& p : hand.links[ia].mesh_L.vertices) {
+            in_O = std::max(in_O, (now[ia] * p - before[ia] * p).norm());
+          }
+          // The distance of a point of A and a point of B changes by no more than both go.
+          const auto& points_a = hand.links[ia].mesh_L.vertices;
+          const auto& points_b = hand.links[ib].mesh_L.vertices;
+          for (int i = 0; i < 20 && !points_a.empty() && !points_b.empty(); ++i) {
+            const Vector3d& p = points_a[random.index(points_a.size())];
+            const Vector3d& q = points_b[random.index(points_b.size())];
+            in_B = std::max(in_B, std::abs((now[ia] * p - now[ib] * q).norm() -
+                                           (before[ia] * p - before[ib] * q).norm()));
+          }
+          CHECK(in_O * kSteps <= way.speed(a) * (1.0 + 1e-12));
+          CHECK(in_B * kSteps <= way.relative_speed(a, b) * (1.0 + 1e-12) + 1e-12);
+          tightest = std::max(tightest, in_O * kSteps / way.speed(a));
+        }
+        before = now;
+      }
+      CHECK(way.relative_speed(0, 0) == 0.0);
+    }
+  }
+  CHECK(tightest > 0.8);  // no bound so wide that nothing could break it
+}
+
+TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp][pre_grasp]") {
+  // Distances of a body that moves with speed 1, as functions of the share x.
+  int num_asked = 0;
+  const auto proven = [&](double tolerance, const auto& distance) {
+    num_asked = 0;
+    return are_apart_on_way(1.0, tolerance, [&](double share, double enough) {
+      ++num_asked;
+      return std::min(distance(share), enough);
+    });
+  };
+  // Past a thin wall that stands 1 mm, 2 um and no distance beside the way at 0.3712.
+  const auto passing = [](double gap) {
+    return [gap](double x) { return std::max(gap, std::hypot(x - 0.3712, gap) - 1e-12); };
+  };
+  CHECK(proven(1e-5, passing(1e-3)));
+  CHECK(proven(1e-5, passing(2e-6)));
+  CHECK_FALSE(proven(1e-5, passing(0.0)));
+  // Toward a touch of gap g at half the speed: to the end if g is there, up to the tolerance if
+  // not.
+  const auto closing = [](double gap) {
+    return [gap](double x) { return std::max(0.0, gap + 0.5 * (1.0 - x)); };
+  };
+  CHECK(proven(1e-5, closing(2e-5)));
+  CHECK(num_asked < 60);
+  CHECK(proven(1e-5, closing(1e-6)));
+  CHECK(proven(1e-5, closing(0.0)));
+  CHECK_FALSE(proven(1e-5, closing(-1e-4)));                    // cut before the end
+  CHECK(proven(1e-3, closing(-1e-4)));                          // as deep as the tolerance allows
+  CHECK_FALSE(proven(1e-5, [](double x) { return 0.5 * x; }));  // starts in touch
+  // A slide at 0.1 um is not free, nor endless work.
+  CHECK_FALSE(proven(1e-5, [](double) { return 1e-7; }));
+  CHECK(num_asked <= 500);
+  CHECK(proven(1e-5, [](double) { return 0.01; }));
+  // A body that does not move stays where it is.
+  CHECK(are_apart_on_way(0.0, 1e-5, [](double, double) { return 0.0; }));
+  // Without a tolerance it has to be apart there; rounding is no motion.
+  for (const double speed : {0.0, 1e-17}) {
+    CHECK_FALSE(are_apart_on_way(speed, 0.0, [](double, double) { return 0.0; }));
+    CHECK(are_apart_on_way(speed, 0.0, [](double, double enough) { return enough; }));
+  }
+}
+
+TEST_CASE("Jaws open as little as the clearance asks, by the step", "[grasp][pre_grasp]") {
+  const double gap = 2e-5;
+  const Pinch scene(gap);
+  const double left = 0.0425 - 0.02 - gap;  // to the limit
+  // Without a retreat: 5 mm take 3 of 10 steps of 2.248 mm each.
+  const auto opened = scene.find({.largest_retreat = 0.0});
+  REQUIRE(opened);
+  CHECK(opened->opening == Approx(0.3));
+  CHECK(opened->retreat == 0.0);
+  CHECK(opened->clearance == Approx(gap + 0.3 * left).epsilon(1e-9));
+  CHECK(opened->configuration.q[0] == Approx(0.02 + gap + 0.3 * left));
+  CHECK(opened->configuration.q[1] == opened->configuration.q[0]);
+  CHECK(opened->configuration.X_OH.matrix() == scene.grasp.X_OH.matrix());
+  // Finer steps come nearer to 5 mm, and never below.
+  const auto fine = scene.find({.largest_retreat = 0.0, .opening_steps = 1000});
+  REQUIRE(fine);
+  CHECK(fine->clearance >= 0.005);
+  CHECK(fine->clearance < 0.005 + left / 1000);
+  // With one, the first step already: the jaws are drawn off the box, whose upper side is 15 mm
+  // over the pads' middle, and their lower side far enough below it.
+  const auto drawn = scene.find({});
+  REQUIRE(drawn);
+  CHECK(drawn->opening == Approx(0.1));
+  CHECK(drawn->retreat > 0.0);
+  CHECK(drawn->clearance >= 0.005);
+  CHECK(drawn->configuration.X_OH.translation().z() == Approx(-0.062 - drawn->retreat));
+}
+
+TEST_CASE("A grasp that touches has a way in, one that cuts the object has none",
+          "[grasp][pre_grasp]") {
+  const PreGraspOptions options{.largest_retreat = 0.0};
+  CHECK(Pinch(1e-6).find(options));
+  CHECK(Pinch(0.0).find(options));
+  CHECK(Pinch(-5e-6).find(options));  // less than the tolerance
+  CHECK_FALSE(Pinch(-1e-4).find(options));
+}
+
+TEST_CASE("What stands beside the open jaws is not touched", "[grasp][pre_grasp]") {
+  const Pinch scene(2e-5);
+  // Walls 4 mm behind the fingers' backs leave no opening with 5 mm to both sides...
+  double back = 0.0;
+  for (const Vector3d& vertex : scene.collision.link_solid(1)->mesh().vertices) {
+    if (std::abs(vertex.z()) < 0.03) back = std::max(back, vertex.x());
+  }
+  const auto wall = [&](double side) {
+    return MeshQuery(
+        box_at({0.002, 0.2, 0.06}, {side * (0.02 + 2e-5 + back + 0.004 + 0.001), 0.0, 0.0}));
+  };
+  const Surroundings walls{{}, {wall(1.0), wall(-1.0)}};
+  CHECK_FALSE(scene.find({.largest_retreat = 0.0}, walls));
+  // ... but with a retreat out from between them,
+  const PreGraspOptions far{.largest_retreat = 0.3};
+  const auto drawn = scene.find(far, walls);
+  REQUIRE(drawn);
+  CHECK(drawn->retreat > 0.0);
+  // unless a sheet thinner than any step of a search by samples stands behind the gripper.
+  const double behind =
+      scene.grasp.X_OH.translation().z() + scene.collision.link_solid(0)->box().min().z() - 0.01;
+  Surroundings closed = walls;
+  closed.obstacles.emplace_back(box_at({0.5, 0.5, 1e-5}, {0.0, 0.0, behind}));
+  CHECK_FALSE(scene.find(far, closed));
+  // Beyond the sheet the gripper would be clear of everything: only the way there is not.
+  HandConfiguration beyond = scene.grasp;
+  beyond.X_OH.translation().z() -= 0.3;
+  const Scene all{scene.hand, scene.collision, scene.object,
+                  SurroundingsCollision(scene.hand, closed)};
+  CHECK(all.clearance(beyond) > 0.005);
+  CHECK(all.is_clear(beyond));
+}
+
+TEST_CASE("A palm in touch is drawn back", "[grasp][pre_grasp]") {
+  Pinch scene(2e-5);
+  scene.object = MeshQuery(box_at({0.04, 0.02, 0.1}, {0.0, 0.0, -0.012 + 1e-5}));
+  const auto found = scene.find({.opening_steps = 1});
+  REQUIRE(found);
+  CHECK(found->retreat == Approx(0.01));  // the first that clears the palm by 5 mm
+  CHECK_FALSE(scene.find({.largest_retreat = 0.0}));
+}
+
+TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]") {
+  // Two blocks on slides along x that change places as they open.
+  HandModel hand;
+  hand.name = "crossing";
+  hand.links.resize(3);
+  hand.palm.link = 0;
+  for (int i = 0; i < 2; ++i) {
+    hands::Link& link = hand.links[static_cast<std::size_t>(i) + 1];
+    link.mesh_L = geometry::box({0.01, 0.01, 0.01});
+    link.parent_link = 0;
+    link.parent_joint = i;
+    hands::Joint joint;
+    joint.name = i == 0 ? "to_right" : "to_left";
+    joint.type = hands::JointType::Prismatic;
+    joint.parent_link = 0;
+    joint.child_link = i + 1;
+    joint.axis_J = i == 0 ? Vector3d::UnitX() : Vector3d(-Vector3d::UnitX());
+    joint.lower = -0.05;
+    joint.upper = 0.05;
+    joint.closing_sign = 1;
+    hand.joints.push_back(joint);
+  }
+  const HandConfiguration grasp{RigidTransform::Identity(), Eigen::Vector2d(0.05, 0.05)};
+  const MeshQuery object(box_at({0.01, 0.01, 0.01}, {0.0, 0.0, 0.02}));
+  const auto find = [&](const PreGraspOptions& options) {
+    return find_pre_grasp(hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}),
+                          grasp, options);
+  };
+  const PreGraspOptions at_once{.largest_retreat = 0.0, .opening_steps = 1};
+  CHECK_FALSE(find(at_once));
+  // A fifth of the way is as far as they can go: not yet past each other.
+  const auto part = find({.largest_retreat = 0.0, .opening_steps = 5});
+  REQUIRE(part);
+  CHECK(part->opening == Approx(0.2));
+  // Excluded pairs may.
+  hand.exclusions = {{1, 2}};
+  CHECK(find(at_once));
+}
+
+TEST_CASE("Neutral joints open along where that is allowed and nothing else is free",
+          "[grasp][pre_grasp]") {
+  // Two blocks on slides along x that change places as they open; one of them stands on a slide
+  // along y that neither opens nor closes, 30 mm aside when it is at rest.
+  HandModel hand;
+  hand.name = "passing";
+  hand.links.resize(4);
+  hand.palm.link = 0;
+  const auto slide = [&](const char* name, int parent, int child, const Vector3d& axis, int sign) {
+    hands::Joint joint;
+    joint.name = name;
+    joint.type = hands::JointType::Prismatic;
+    joint.parent_link = parent;
+    joint.child_link = child;
+    joint.axis_J = axis;
+    joint.lower = -0.05;
+    joint.upper = 0.05;
+    joint.closing_sign = sign;
+    hands::Link& link = hand.links[static_cast<std::size_t>(child)];
+    link.parent_link = parent;
+    link.parent_joint = static_cast<int>(hand.joints.size());
+    hand.joints.push_back(joint);
+  };
+  slide("to_right", 0, 1, Vector3d::UnitX(), 1);
+  slide("aside", 0, 2, Vector3d::UnitY(), 0);
+  slide("to_left", 2, 3, -Vector3d::UnitX(), 1);
+  hand.joints[1].X_PJ.translation().y() = 0.03;
+  for (const std::size_t link : {1, 3}) hand.links[link].mesh_L = geometry::box({0.01, 0.01, 0.01});
+  const HandConfiguration grasp{RigidTransform::Identity(), Vector3d(0.05, -0.03, 0.05)};
+  const MeshQuery object(box_at({0.01, 0.01, 0.01}, {0.0, 0.0, 0.02}));
+  const auto find = [&](const HandConfiguration& at, const PreGraspOptions& options) {
+    return find_pre_grasp(hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}),
+                          at, options);
+  };
+  CHECK_FALSE(find(grasp, {.largest_retreat = 0.0, .opening_steps = 1}));
+  const PreGraspOptions with_neutral{
+      .largest_retreat = 0.0, .opening_steps = 1, .open_neutral = true};
+  const auto passing = find(grasp, with_neutral);
+  REQUIRE(passing);
+  CHECK((passing->configuration.q - Vector3d(-0.05, 0.0, -0.05)).norm() < 1e-15);
+  CHECK(passing->opening == 1.0);
+  // Where closing joints do alone, the neutral one stays.
+  HandConfiguration apart = grasp;
+  apart.q[1] = -0.01;
+  const auto found = find(apart, with_neutral);
+  REQUIRE(found);
+  CHECK(found->configuration.q[1] == -0.01);
+}
+
+TEST_CASE(
+    "Ways of the Barrett and the human hand are clear wherever they are looked at, and no "
+    "option before them is",
+    "[grasp][pre_grasp]") {
+  Random random(11);
+  int num_found = 0;
+  for (const char* name : {"barrett", "human_hand"}) {
+    const HandModel hand = hands::find_hand(name);
+    for (int trial = 0; trial < 2; ++trial) {
+      Scene scene{hand, hands::HandCollision(hand), MeshQuery(geometry::ball(0.03, 2)),
+                  SurroundingsCollision(hand, {-0.034, {}})};
+      HandConfiguration start = hands::open_configuration(hand);
+      // The palm above the ball, which lies on the table, and looking down, a little askew.
+      start.X_OH.linear() =
+          (AngleAxisd(std::numbers::pi, Vector3d::UnitX()) *
+           AngleAxisd(random.uniform(0.0, 0.3), testing::random_direction(random)))
+              .toRotationMatrix();
+      start.X_OH.translation() =
+          -(start.X_OH.linear() * (hand.palm.center_H + 0.09 * hand.palm.direction_H));
+      if (!scene.is_clear(start)) continue;
+      const HandConfiguration grasp = closed_onto(scene, start);
+      const PreGraspOptions options{
+          .largest_retreat = 0.06, .retreat_step = 0.03, .opening_steps = 3};
+      const auto found =
+          find_pre_grasp(hand, scene.collision, scene.object, scene.surroundings, grasp, options);
+      // What the contract calls free, by exact tests at many poses.
+      const auto looks_free = [&](const HandConfiguration& from) {
+        for (int i = 0; i < 30; ++i) {
+          if (!scene.is_clear(interpolated(from, grasp, i / 30.0))) return false;
+        }
+        return true;
+      };
+      INFO(name << " " << trial << " found " << found.has_value());
+      bool is_before = true;
+      const HandConfiguration open = hands::open_configuration(hand);
+      for (int step = 1; step <= 3 && is_before; ++step) {
+        for (int i = 0; i <= 2 && is_before; ++i) {
+          HandConfiguration option = grasp;
+          for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+            const auto index = static_cast<Eigen::Index>(j);
+            if (hand.joints[j].closing_sign != 0) {
+              option.q[index] += step / 3.0 * (open.q[index] - option.q[index]);
+            }
+          }
+          option.X_OH.translation() -= 0.03 * i * (grasp.X_OH.linear() * hand.palm.direction_H);
+          const double clearance = scene.clearance(option);
+          if (found && std::abs(found->opening - step / 3.0) < 1e-9 &&
+              std::abs(found->retreat - 0.03 * i) < 1e-9) {
+            is_before = false;
+            CHECK((option.q - found->configuration.q).norm() < 1e-12);
+            CHECK(found->clearance == Approx(clearance).epsilon(1e-9));
+            CHECK(looks_free(found->configuration));
+            ++num_found;
+          } else {
+            CHECK((clearance < options.clearance || !looks_free(option)));
+          }
+        }
+      }
+      CHECK(found.has_value() != is_before);
+    }
+  }
+  CHECK(num_found >= 2);
+}
+
+TEST_CASE("Options and grasps that make no sense are refused", "[grasp][pre_grasp]") {
+  const Pinch scene(2e-5);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const PreGraspOptions& bad :
+       {PreGraspOptions{.clearance = 0.0}, PreGraspOptions{.largest_retreat = -0.1},
+        PreGraspOptions{.retreat_step = 0.0}, PreGraspOptions{.retreat_step = 1e-6},
+        PreGraspOptions{.retreat_step = nan}, PreGraspOptions{.opening_steps = 0},
+        PreGraspOptions{.way_tolerance = 0.0}}) {
+    CHECK_THROWS_AS(scene.find(bad), InvalidInput);
+  }
+  Pinch beyond(0.03);
+  CHECK_THROWS_AS(beyond.find({}), InvalidInput);
+}

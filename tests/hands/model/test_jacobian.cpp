@@ -1,0 +1,157 @@
+#include <numbers>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "graspfit/hands/jacobian.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace graspfit;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using hands::HandConfiguration;
+using hands::HandModel;
+using hands::RigidTransform;
+
+/// A chain with everything: turn, fixed link, slide, turn that follows the slide.
+HandModel mixed_chain() {
+  HandModel hand;
+  hand.name = "chain";
+  hand.links.resize(5);
+  const auto add_joint = [&](int link, hands::JointType type, const Vector3d& axis) {
+    hands::Joint joint;
+    joint.type = type;
+    joint.parent_link = link - 1;
+    joint.child_link = link;
+    joint.X_PJ.translation() = Vector3d(0.03, -0.01, 0.02);
+    joint.X_PJ.linear() =
+        Eigen::AngleAxisd(0.6, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    joint.axis_J = axis.normalized();
+    joint.lower = -2.0;
+    joint.upper = 2.0;
+    hand.links[static_cast<std::size_t>(link)].parent_joint = static_cast<int>(hand.joints.size());
+    hand.joints.push_back(joint);
+  };
+  for (int link = 1; link < 5; ++link)
+    hand.links[static_cast<std::size_t>(link)].parent_link = link - 1;
+  add_joint(1, hands::JointType::Revolute, {0.2, -1, 0.4});
+  hand.links[2].X_PL_fixed.translation() = Vector3d(0.1, 0, 0.05);
+  hand.links[2].X_PL_fixed.linear() = Eigen::AngleAxisd(-1.1, Vector3d::UnitY()).toRotationMatrix();
+  add_joint(3, hands::JointType::Prismatic, {1, 1, 0.3});
+  add_joint(4, hands::JointType::Revolute, {0, 0.3, 1});
+  hand.joints[2].coupling = hands::Coupling{.leader = 1, .ratio = -1.7, .offset = 0.2};
+  return hand;
+}
+
+/// Central difference of the point's position and of its link's rotation over `step` of column
+/// `set`.
+Eigen::Matrix<double, 6, 1> difference(const HandModel& hand, const HandConfiguration& at, int link,
+                                       const Vector3d& point_L, const Eigen::VectorXd& direction) {
+  constexpr double kStep = 1e-5;  // error of second order 1e-10, of rounding 1e-16 / 1e-5
+  HandConfiguration plus = at, minus = at;
+  plus.q += kStep * direction;
+  minus.q -= kStep * direction;
+  const RigidTransform X_plus =
+      hands::forward_kinematics(hand, plus)[static_cast<std::size_t>(link)];
+  const RigidTransform X_minus =
+      hands::forward_kinematics(hand, minus)[static_cast<std::size_t>(link)];
+  const Eigen::AngleAxisd turn(X_plus.linear() * X_minus.linear().transpose());
+  Eigen::Matrix<double, 6, 1> result;
+  result << (X_plus * point_L - X_minus * point_L) / (2 * kStep),
+      turn.angle() * turn.axis() / (2 * kStep);
+  return result;
+}
+
+void check_against_differences(const HandModel& hand, base::Random& random) {
+  HandConfiguration c;
+  c.q.resize(static_cast<Eigen::Index>(hand.joints.size()));
+  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+    c.q[static_cast<Eigen::Index>(j)] = random.uniform(hand.joints[j].lower, hand.joints[j].upper);
+  }
+  c.X_OH.linear() =
+      Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d(2, -1, 1).normalized()).toRotationMatrix();
+  c.X_OH.translation() = Vector3d(0.2, -0.4, 0.1);
+  const Vector3d point_L(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.05);
+  for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+    CAPTURE(hand.name, link);
+    const auto jacobian = hands::point_jacobian(hand, c, link, point_L);
+    REQUIRE(jacobian.cols() == c.q.size());
+    for (Eigen::Index j = 0; j < c.q.size(); ++j) {
+      const auto expected =
+          difference(hand, c, link, point_L, Eigen::VectorXd::Unit(c.q.size(), j));
+      CHECK((jacobian.col(j) - expected).norm() < 1e-8);
+    }
+    // Folded: moving an independent joint moves its followers by their ratios.
+    const MatrixXd independent = hands::folded(hand, jacobian);
+    const std::vector<int> leaders = hands::independent_joints(hand);
+    REQUIRE(independent.cols() == static_cast<Eigen::Index>(hand.num_intrinsic_dof()));
+    for (std::size_t k = 0; k < leaders.size(); ++k) {
+      Eigen::VectorXd direction = Eigen::VectorXd::Unit(c.q.size(), leaders[k]);
+      for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+        const auto& coupling = hand.joints[j].coupling;
+        if (coupling && coupling->leader == leaders[k]) {
+          direction[static_cast<Eigen::Index>(j)] = coupling->ratio;
+        }
+      }
+      const auto expected = difference(hand, c, link, point_L, direction);
+      CHECK((independent.col(static_cast<Eigen::Index>(k)) - expected).norm() < 1e-8);
+    }
+  }
+}
+
+TEST_CASE(
+    "Jacobians are the derivative of forward kinematics for turning, sliding and coupled joints",
+    "[hands][jacobian]") {
+  base::Random random(3);
+  const HandModel chain = mixed_chain();
+  for (int k = 0; k < 20; ++k) check_against_differences(chain, random);
+}
+
+TEST_CASE("Jacobians of every shipped hand are the derivative of its forward kinematics",
+          "[hands][jacobian]") {
+  base::Random random(5);
+  for (const std::string& name : hands::shipped_hands()) {
+    const HandModel hand = hands::find_hand(name);
+    for (int k = 0; k < 3; ++k) check_against_differences(hand, random);
+  }
+}
+
+TEST_CASE("A folded Jacobian is what apply_couplings does away from limits", "[hands][jacobian]") {
+  const HandModel hand = hands::find_hand("barrett");
+  const int leader = hand.joint_index("thumb_proximal");
+  const int link = hand.link_index("thumb_distal_link");
+  const Vector3d tip(0.056, 0, 0);
+  HandConfiguration c = hands::open_configuration(hand);
+  const auto at = [&](double q) {
+    // From the open hand: a breakaway joint that was further closed would stay there.
+    HandConfiguration result = hands::open_configuration(hand);
+    result.q[leader] = q;
+    hands::apply_couplings(hand, result.q);
+    return result;
+  };
+  c = at(0.7);
+  const Vector3d moved =
+      (hands::forward_kinematics(hand, at(0.7 + 1e-5))[static_cast<std::size_t>(link)] * tip -
+       hands::forward_kinematics(hand, at(0.7 - 1e-5))[static_cast<std::size_t>(link)] * tip) /
+      2e-5;
+  const std::vector<int> joints = hands::independent_joints(hand);
+  const auto column = std::find(joints.begin(), joints.end(), leader) - joints.begin();
+  const MatrixXd folded = hands::folded(hand, hands::point_jacobian(hand, c, link, tip));
+  CHECK((folded.col(column).head<3>() - moved).norm() < 1e-8);
+  // The coupled distal joint adds a third of its own motion: it is not the plain column.
+  CHECK((hands::point_jacobian(hand, c, link, tip).col(leader).head<3>() - moved).norm() > 0.01);
+}
+
+TEST_CASE("A Jacobian asks for a link and positions of its own hand", "[hands][jacobian]") {
+  const HandModel hand = mixed_chain();
+  const HandConfiguration c{.q = Eigen::VectorXd::Zero(3)};
+  CHECK_THROWS_AS(hands::point_jacobian(hand, c, 5, Vector3d::Zero()), base::InvalidInput);
+  CHECK_THROWS_AS(hands::point_jacobian(hand, c, -1, Vector3d::Zero()), base::InvalidInput);
+  CHECK_THROWS_AS(hands::point_jacobian(hand, {}, 1, Vector3d::Zero()), base::InvalidInput);
+  CHECK_THROWS_AS(hands::folded(hand, MatrixXd::Zero(6, 2)), base::InvalidInput);
+}
+
+}  // namespace

@@ -1,0 +1,146 @@
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "support/catch.hpp"
+
+namespace {
+
+using namespace graspfit;
+using Eigen::Vector3d;
+using hands::HandCollision;
+using hands::HandConfiguration;
+using hands::HandModel;
+using std::numbers::pi;
+
+const HandModel& barrett() {
+  static const HandModel hand = hands::find_hand("barrett");
+  return hand;
+}
+
+const HandCollision& collision() {
+  static const HandCollision result(barrett());
+  return result;
+}
+
+HandConfiguration configuration(double spread, double finger_1, double finger_2, double thumb) {
+  HandConfiguration result = hands::open_configuration(barrett());
+  result.q[barrett().joint_index("finger_1_spread")] = spread;
+  result.q[barrett().joint_index("finger_1_proximal")] = finger_1;
+  result.q[barrett().joint_index("finger_2_proximal")] = finger_2;
+  result.q[barrett().joint_index("thumb_proximal")] = thumb;
+  hands::apply_couplings(barrett(), result.q);
+  return result;
+}
+
+HandCollision::Result self(const HandConfiguration& c) {
+  return collision().against_self(hands::forward_kinematics(barrett(), c));
+}
+
+TEST_CASE("The open Barrett hand does not touch itself at any spread", "[hands][hand_collision]") {
+  for (int k = 0; k <= 18; ++k) {
+    const auto found = self(configuration(k * pi / 18, 0, 0, 0));
+    CAPTURE(k, found.link_a, found.link_b, found.depth);
+    CHECK_FALSE(found.intersects);
+    CHECK(found.depth == 0.0);
+  }
+}
+
+TEST_CASE("Half closed, the Barrett hand does not touch itself at any spread",
+          "[hands][hand_collision]") {
+  for (int k = 0; k <= 18; ++k) {
+    const auto found = self(configuration(k * pi / 18, 0.8, 0.8, 0.8));
+    CAPTURE(k, found.link_a, found.link_b, found.depth);
+    CHECK_FALSE(found.intersects);
+  }
+}
+
+TEST_CASE("Fingers closed on nothing meet each other, and both links are named",
+          "[hands][hand_collision]") {
+  // At a spread of 90 degrees fingers 1 and 2 oppose each other, with bases 50 mm apart: their tip
+  // points meet at 108 degrees. (At spread 0 they pass the thumb on both sides.)
+  const auto found = self(configuration(pi / 2, 2.0, 2.0, 0));
+  CHECK(found.intersects);
+  CHECK(found.depth > 0.0);
+  CHECK(found.depth <= found.depth_bound);
+  REQUIRE(found.link_a >= 0);
+  REQUIRE(found.link_b >= 0);
+  CHECK(found.link_a < found.link_b);
+  CHECK(found.link_a == barrett().link_index("finger_1_distal_link"));
+  CHECK(found.link_b == barrett().link_index("finger_2_distal_link"));
+}
+
+TEST_CASE("Self-collision does not depend on where the hand is", "[hands][hand_collision]") {
+  base::Random random(11);
+  int collides = 0;
+  constexpr int kCount = 60;
+  for (int k = 0; k < kCount; ++k) {
+    HandConfiguration c =
+        configuration(random.uniform(0, pi), random.uniform(0, 140.0 / 180 * pi),
+                      random.uniform(0, 140.0 / 180 * pi), random.uniform(0, 140.0 / 180 * pi));
+    const auto here = self(c);
+    c.X_OH.linear() = Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d(1, -1, 2).normalized())
+                          .toRotationMatrix();
+    c.X_OH.translation() = Vector3d(0.3, -0.1, 0.2);
+    const auto there = self(c);
+    CHECK(here.intersects == there.intersects);
+    // Depths are found to 1e-5 m.
+    CHECK(here.depth == Approx(there.depth).margin(2e-5));
+    collides += here.intersects ? 1 : 0;
+  }
+  // Uniform joint positions close the fingers on nothing: 14 of these 60 hands touch themselves.
+  CHECK(collides > 0);
+  CHECK(collides < kCount / 2);
+}
+
+TEST_CASE("A ball is hit exactly when it reaches the palm, and the depth is how far",
+          "[hands][hand_collision]") {
+  const auto X_OL = hands::forward_kinematics(barrett(), hands::open_configuration(barrett()));
+  const double radius = 0.03;
+  const geometry::TriangleMesh ball = geometry::ball(radius, 3);
+  double lowest = 0.0;
+  for (const Vector3d& v : ball.vertices) lowest = std::min(lowest, v.z());
+  for (const double height :
+       {0.01, 0.001, -0.001, -0.005}) {  // of the ball's lowest point over z = 0
+    CAPTURE(height);
+    hands::RigidTransform lift = hands::RigidTransform::Identity();
+    lift.translation().z() = height - lowest;
+    const geometry::MeshQuery object(geometry::transformed(ball, lift));
+    const auto found = collision().against_object(object, X_OL);
+    CHECK(found.intersects == (height < 0.0));
+    CHECK(found.depth == Approx(std::max(-height, 0.0)).margin(2e-5));
+    if (found.intersects) {
+      CHECK(found.link_a == 0);
+      CHECK(found.link_b == -1);
+    }
+  }
+}
+
+TEST_CASE("Links overlap by more than what their depth says, and by no less",
+          "[hands][hand_collision]") {
+  const auto X_OL = hands::forward_kinematics(barrett(), configuration(pi / 2, 2.0, 2.0, 0));
+  const HandCollision::Result found = collision().against_self(X_OL);
+  REQUIRE(found.depth > 1e-3);
+  CHECK(collision().overlaps_self(X_OL, 1e-5));
+  CHECK(collision().overlaps_self(X_OL, 0.4 * found.depth));
+  CHECK_FALSE(collision().overlaps_self(X_OL, 1.01 * found.depth_bound));
+  const auto X_open = hands::forward_kinematics(barrett(), configuration(0, 0, 0, 0));
+  CHECK_FALSE(collision().overlaps_self(X_open, 1e-9));
+}
+
+TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collision]") {
+  HandModel hand = barrett();
+  for (hands::Link& link : hand.links) link.mesh_L = {};
+  const HandCollision nothing(hand);
+  const auto X_OL = hands::forward_kinematics(hand, configuration(pi / 2, 2.0, 2.0, 0));
+  CHECK_FALSE(nothing.against_self(X_OL).intersects);
+  CHECK_FALSE(nothing.against_object(geometry::MeshQuery(geometry::ball(1.0, 1)), X_OL).intersects);
+  CHECK_THROWS_AS(nothing.against_self({}), base::InvalidInput);
+  CHECK_THROWS_AS(nothing.overlaps_self({}, 1e-3), base::InvalidInput);
+}
+
+}  // namespace
