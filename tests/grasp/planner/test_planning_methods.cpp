@@ -11,6 +11,7 @@
 
 namespace {
 
+using graspfit::testing::Contains;
 using namespace graspfit;
 using namespace graspfit::testing;
 
@@ -30,6 +31,20 @@ TEST_CASE("Methods have names and titles of their own", "[grasp][planning_method
   CHECK(titles.size() == names.size());
   CHECK(grasp::planning_methods().names() == "fitting|gs-targets|gs|ma|ma-full-retreat");
   CHECK_THROWS_AS(grasp::planning_methods().at("Fitting"), base::InvalidInput);
+
+  grasp::PlanningMethods methods = grasp::planning_methods();
+  grasp::PlanningMethod method = methods.at("gs");
+  CHECK_THROWS_WITH(methods.add(method), Contains("name = gs, must be new"));
+  method.name = "mine";
+  method.title = "";
+  CHECK_THROWS_WITH(methods.add(method), Contains("title of mine"));
+  method.title = "one of mine";
+  method.make = nullptr;
+  CHECK_THROWS_WITH(methods.add(method), Contains("make of mine"));
+  method.make = methods.at("gs").make;
+  methods.add(method);
+  CHECK(methods.names() == "fitting|gs-targets|gs|ma|ma-full-retreat|mine");
+  CHECK(grasp::planning_methods().find("mine") == nullptr);
 }
 
 TEST_CASE("Valid grasps of every method keep every promise", "[grasp][planning_methods]") {
