@@ -18,8 +18,9 @@ assert list(table["varied"]) == ["defaults", "resolution_16", "alpha_4", "beta_0
 assert (table["status"] == "ok").all(), "a cell has no result"
 figure, axes = plt.subplots(figsize=(6, 3), layout="constrained")
 bars = axes.bar(table["varied"], table["palm_spread_m"] * 1000)
-axes.bar_label(bars, ["M %.3f" % m for m in table["best_m"]])
+axes.bar_label(bars, ["%d grasps\nM %.3f" % row for row in zip(table["grasps"], table["best_m"])])
+axes.margins(y=0.25)
 axes.set_ylabel("largest distance of palms (mm)")
-axes.set_title("3 grasps of %s" % table["object"][0])
+axes.set_title("Grasps of the %s, the best M" % table["object"][0])
 axes.tick_params(axis="x", labelrotation=15)
 figure.savefig(sys.argv[2], dpi=100)

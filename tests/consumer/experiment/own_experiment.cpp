@@ -15,7 +15,7 @@ using namespace graspfit;
 std::vector<sweep::Column> columns() {
   return {{"grasps", "1", "distinct usable grasps"},
           {"best_m", "1", "M of the best one"},
-          {"palm_spread_m", "m", "largest distance of two of their palms"}};
+          {"palm_spread_m", "m", "largest distance of two of their palms, if there are two"}};
 }
 
 // What one cell computes, on one thread; several cells may run at once.
@@ -38,10 +38,8 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   }
   sweep::CellResult result{sweep::ResultRow(columns()), sweep::ResultRow({})};
   result.row.set("grasps", static_cast<std::int64_t>(grasps.size()));
-  if (!grasps.empty()) {
-    result.row.set("best_m", grasps.front().quality.m);
-    result.row.set("palm_spread_m", spread);
-  }
+  if (!grasps.empty()) result.row.set("best_m", grasps.front().quality.m);
+  if (grasps.size() > 1) result.row.set("palm_spread_m", spread);
   return result;
 }
 
