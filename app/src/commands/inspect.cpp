@@ -276,7 +276,6 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
     return kSuccess;
   }
   grasp::PlannerOptions options;
-  require_ranges(flags);
   read_score_map_flags(flags, options);
   geometry::WeakRegionOptions weak_options;
   weak_options.weak_thickness = 1e-3 * flags.number("weak-thickness-mm", base::above(0));

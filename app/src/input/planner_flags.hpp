@@ -13,11 +13,8 @@ boost::program_options::options_description score_map_options();
 /// Flags of everything else that decides what the planner does.
 boost::program_options::options_description planner_options();
 
-/// Checks the ranges of all flags that are settings of the planner, by those settings.
-/// @throws UsageError, InvalidInput: flag, value and range.
-void require_ranges(const Flags& flags);
-
-/// Sets what the flags of `score_map_options` say.
+/// Sets what the flags of `score_map_options` say, each checked. @throws UsageError, InvalidInput:
+/// flag, value and range.
 void read_score_map_flags(const Flags& flags, grasp::PlannerOptions& options);
 
 /// What all planner flags say, validated. @throws UsageError, InvalidInput.

@@ -5,6 +5,7 @@
 
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
+#include "graspfit/grasp/option_names.hpp"
 #include "settings/planning_setting_list.hpp"
 #include "settings/planning_setting_schemas.hpp"
 

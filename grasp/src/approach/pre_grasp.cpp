@@ -11,6 +11,7 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "rows/range_check.hpp"
 #include "scene/infinity.hpp"
 #include "scene/straight_way.hpp"
 
@@ -238,20 +239,9 @@ class PreGraspSearch {
 }  // namespace
 
 void PreGraspOptions::validate() const {
-  const auto require = [](bool is_met, std::string_view field, const auto& value,
-                          std::string_view rule) {
-    base::require(is_met, "PreGraspOptions", field, value, rule);
-  };
-  require(clearance > 0.0 && std::isfinite(clearance), "clearance", clearance, "finite and > 0 m");
-  require(largest_retreat >= 0.0 && std::isfinite(largest_retreat), "largest_retreat",
-          largest_retreat, "finite and >= 0 m");
-  require(retreat_step > 0.0 && std::isfinite(retreat_step) &&
-              largest_retreat / retreat_step <= kMostSteps,
-          "retreat_step", retreat_step, "> 0 m and at least a thousandth of largest_retreat");
-  require(opening_steps >= 1 && opening_steps <= kMostSteps, "opening_steps", opening_steps,
-          "in [1, 1000]");
-  require(way_tolerance > 0.0 && std::isfinite(way_tolerance), "way_tolerance", way_tolerance,
-          "finite and > 0 m");
+  internal::require_ranges("PreGraspOptions", *this, internal::pre_grasp_rows);
+  base::require(largest_retreat / retreat_step <= kMostSteps, "PreGraspOptions", "retreat_step_m",
+                retreat_step, "at least a thousandth of largest_retreat_m");
 }
 
 HandConfiguration interpolated(const HandConfiguration& from, const HandConfiguration& to,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
+#include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
 
@@ -27,14 +28,7 @@ double angle_of(const Eigen::Matrix3d& rotation) {
 }  // namespace
 
 void DistinctOptions::validate() const {
-  const auto require = [](double value, std::string_view field, std::string_view rule,
-                          bool is_met) {
-    base::require(is_met && std::isfinite(value), "DistinctOptions", field, value, rule);
-  };
-  require(translation, "translation", "finite and >= 0 m", translation >= 0.0);
-  require(rotation, "rotation", "finite and >= 0 rad", rotation >= 0.0);
-  require(joints, "joints", "finite and >= 0 rad", joints >= 0.0);
-  require(slide_scale, "slide_scale", "finite and > 0 m", slide_scale > 0.0);
+  internal::require_ranges("DistinctOptions", *this, internal::distinct_rows);
 }
 
 ConfigurationDistance configuration_distance(const hands::HandModel& hand,

@@ -5,6 +5,7 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
+#include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -60,17 +61,7 @@ std::vector<geometry::SurfaceSample> box_ray_hits(const ObjectModel& object,
 }  // namespace
 
 void ApproachSamplingOptions::validate() const {
-  const auto require = [](bool is_met, std::string_view field, const auto& value,
-                          std::string_view rule) {
-    base::require(is_met, "ApproachSamplingOptions", field, value, rule);
-  };
-  require(count >= 1 && count <= 1000000, "count", count, "in [1, 1000000]");
-  require(box_margin > 0.0 && std::isfinite(box_margin), "box_margin", box_margin,
-          "finite and > 0 m");
-  require(box_spacing > 0.0 && std::isfinite(box_spacing), "box_spacing", box_spacing,
-          "finite and > 0 m");
-  require(largest_standoff >= 0.0 && std::isfinite(largest_standoff), "largest_standoff",
-          largest_standoff, "finite and >= 0 m");
+  internal::require_ranges("ApproachSamplingOptions", *this, internal::sampling_rows);
 }
 
 std::vector<geometry::SurfaceSample> approach_samples(const ObjectModel& object,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
+#include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -102,20 +103,8 @@ double median(std::vector<double> values) {
 }  // namespace
 
 void ScoreOptions::validate() const {
-  const auto require_positive = [](double value, std::string_view field) {
-    base::require(value > 0.0 && std::isfinite(value), "ScoreOptions", field, value,
-                  "finite and above 0");
-  };
-  base::require(neighborhood >= 3 && neighborhood <= 63 && neighborhood % 2 == 1, "ScoreOptions",
-                "neighborhood", neighborhood, "odd and in [3, 63]");
-  require_positive(gamma_deg, "gamma_deg");
-  require_positive(length_voxels, "length_voxels");
-  base::require(mean_filter_radius >= 0 && mean_filter_radius <= 31, "ScoreOptions",
-                "mean_filter_radius", mean_filter_radius, "in [0, 31]");
-  base::require(mean_filter_passes >= 0 && mean_filter_passes <= 1000, "ScoreOptions",
-                "mean_filter_passes", mean_filter_passes, "in [0, 1000]");
-  require_positive(floor, "floor");
-  require_positive(median_factor, "median_factor");
+  internal::require_ranges("ScoreOptions", *this, internal::score_rows);
+  base::require(neighborhood % 2 == 1, "ScoreOptions", "neighborhood", neighborhood, "odd");
 }
 
 ContactScoreMap contact_score_map(const std::vector<SurfacePatch>& patches,

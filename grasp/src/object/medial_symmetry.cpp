@@ -10,6 +10,7 @@
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/hands/palm_pose.hpp"
+#include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -60,22 +61,9 @@ Vector3d random_direction(base::Random& random) {
 }  // namespace
 
 void MedialSymmetryOptions::validate() const {
-  const auto require = [](bool is_met, std::string_view field, const auto& value,
-                          std::string_view rule) {
-    base::require(is_met, "MedialSymmetryOptions", field, value, rule);
-  };
-  require(samples >= 1 && samples <= 1000000, "samples", samples, "in [1, 1000000]");
-  require(min_object_angle_deg >= 0.0 && min_object_angle_deg <= 180.0, "min_object_angle_deg",
-          min_object_angle_deg, "in [0, 180] degrees");
-  require(axis_ratio >= 0.0 && axis_ratio <= 1.0, "axis_ratio", axis_ratio, "in [0, 1]");
-  require(rim_ratio >= axis_ratio && rim_ratio <= 1.0, "rim_ratio", rim_ratio,
-          "in [axis_ratio, 1]");
-  require(search_radius > 0.0 && std::isfinite(search_radius), "search_radius", search_radius,
-          "finite and > 0 m");
-  require(search_radius_rel >= 0.0 && std::isfinite(search_radius_rel), "search_radius_rel",
-          search_radius_rel, "finite and >= 0");
-  require(least_spread_rel >= 0.0 && std::isfinite(least_spread_rel), "least_spread_rel",
-          least_spread_rel, "finite and >= 0");
+  internal::require_ranges("MedialSymmetryOptions", *this, internal::medial_symmetry_rows);
+  base::require(rim_ratio >= axis_ratio, "MedialSymmetryOptions", "rim_ratio", rim_ratio,
+                "at least axis_ratio");
 }
 
 double search_radius(const geometry::TriangleMesh& mesh, const MedialSymmetryOptions& options) {

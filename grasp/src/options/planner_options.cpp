@@ -1,14 +1,13 @@
 #include "graspfit/grasp/planner_options.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/grasp/option_names.hpp"
+#include "rows/range_check.hpp"
 #include "targets/object_size.hpp"
 
 namespace graspfit::grasp {
@@ -17,50 +16,23 @@ using base::InvalidInput;
 using base::shortest_decimal;
 
 void PlannerOptions::validate() const {
+  internal::require_ranges("PlannerOptions", *this, internal::planner_rows);
   const auto require = [](bool is_met, std::string_view field, const auto& value,
                           std::string_view rule) {
     base::require(is_met, "PlannerOptions", field, value, rule);
   };
-  require(count >= 1, "count", count, ">= 1");
-  require(max_attempts >= 1, "max_attempts", max_attempts, ">= 1");
-  if (max_iterations) require(*max_iterations >= 1, "max_iterations", *max_iterations, ">= 1");
   const bool has_palm = palm.value_or(style == GraspStyle::Power);
   const int least_fingers = has_palm ? 1 : 2;
   require(!fingers.empty() || num_contacts >= least_fingers, "num_contacts", num_contacts,
           has_palm ? ">= 1 beside the palm" : ">= 2");
   require(fingers.empty() || static_cast<int>(fingers.size()) >= least_fingers, "fingers",
           fingers.size(), has_palm ? "at least one name beside the palm" : "at least two names");
-  require(resolution >= 4 && resolution <= 512, "resolution", resolution, "in [4, 512]");
   if (approach_O) {
     require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
             shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
                 shortest_decimal((*approach_O)[2]),
             "finite and not zero");
   }
-  if (wall_clock_limit_s) {
-    require(*wall_clock_limit_s > 0.0, "wall_clock_limit_s", *wall_clock_limit_s, "> 0 s");
-  }
-  if (clip_thickness) {
-    require(*clip_thickness > 0.0 && std::isfinite(*clip_thickness), "clip_thickness",
-            *clip_thickness, "finite and > 0 m");
-  }
-  if (largest_deviation) {
-    require(*largest_deviation > 0.0 && std::isfinite(*largest_deviation), "largest_deviation",
-            *largest_deviation, "finite and > 0 m");
-  }
-  require(target_draws >= 1, "target_draws", target_draws, ">= 1");
-  require(max_placements >= 1, "max_placements", max_placements, ">= 1");
-  require(self_overlap >= 0.0 && std::isfinite(self_overlap), "self_overlap", self_overlap,
-          "finite and >= 0 m");
-  require(approach_angle > 0.0 && approach_angle <= std::numbers::pi, "approach_angle",
-          approach_angle, "in (0, pi] rad");
-  if (contact_score_threshold) {
-    require(*contact_score_threshold >= 0.0 && *contact_score_threshold < 1.0,
-            "contact_score_threshold", *contact_score_threshold, "in [0, 1)");
-  }
-  require(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and >= 0");
-  require(squeeze_friction >= 0.0 && std::isfinite(squeeze_friction), "squeeze_friction",
-          squeeze_friction, "finite and >= 0");
   require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
           name_of(missing_contact), "fails with refine, which accepts no part without contact");
   score.validate();

@@ -9,6 +9,7 @@
 #include "graspfit/contact/contact_estimation.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "refinement/constrained_least_squares.hpp"
+#include "rows/range_check.hpp"
 #include "scene/clearance.hpp"
 #include "scene/hand_motion.hpp"
 
@@ -489,23 +490,11 @@ class Refinement {
 }  // namespace
 
 void RefinementOptions::validate() const {
-  const auto require_length = [](bool is_met, const char* field, double value, const char* rule) {
-    base::require(is_met && std::isfinite(value), "RefinementOptions", field, value, rule);
-  };
-  require_length(largest_gap > 0.0, "largest_gap", largest_gap, "finite and above 0 m");
-  require_length(wanted_gap > 0.0 && wanted_gap < largest_gap, "wanted_gap", wanted_gap,
-                 "above 0 m and below largest_gap");
-  require_length(least_distance > 0.0 && least_distance <= wanted_gap, "least_distance",
-                 least_distance, "above 0 m and at most wanted_gap");
-  const auto require_steps = [](int least, const char* field, int value, const char* rule) {
-    base::require(value >= least && value <= kMostSteps, "RefinementOptions", field, value, rule);
-  };
-  require_steps(1, "max_iterations", max_iterations, "in [1, 1000]");
-  require_steps(0, "near_pad_steps", near_pad_steps, "in [0, 1000]");
-  require_steps(0, "slide_steps", slide_steps, "in [0, 1000]");
-  require_length(reach > 0.0, "reach", reach, "finite and above 0 m");
-  require_length(largest_shift >= 0.0, "largest_shift", largest_shift, "finite and at least 0 m");
-  require_length(largest_turn >= 0.0, "largest_turn", largest_turn, "finite and at least 0 rad");
+  internal::require_ranges("RefinementOptions", *this, internal::refinement_rows);
+  base::require(wanted_gap < largest_gap, "RefinementOptions", "wanted_gap_m", wanted_gap,
+                "below largest_gap_m");
+  base::require(least_distance <= wanted_gap, "RefinementOptions", "least_distance_m",
+                least_distance, "at most wanted_gap_m");
 }
 
 RefinementResult refine_contacts(const GraspScene& scene, const std::vector<int>& claimed_pads,

@@ -2,40 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string_view>
 
-#include "graspfit/base/option_check.hpp"
 #include "graspfit/contact/contact.hpp"
+#include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
 
 using Eigen::Vector3d;
 
 void TargetOptions::validate() const {
-  const auto require = [](bool is_met, std::string_view field, const auto& value,
-                          std::string_view rule) {
-    base::require(is_met, "TargetOptions", field, value, rule);
-  };
-  require(score_threshold >= 0.0 && score_threshold < 1.0, "score_threshold", score_threshold,
-          "in [0, 1)");
-  require(theta_max > 0.0 && theta_max < std::numbers::pi / 2, "theta_max", theta_max,
-          "in (0, pi/2) rad");
-  const auto require_finite = [&](std::string_view field, double value, std::string_view rule) {
-    require(value >= 0.0 && std::isfinite(value), field, value, rule);
-  };
-  require_finite("edge_tolerance_rel", edge_tolerance_rel, "finite and >= 0");
-  require_finite("centroid_limit_rel", centroid_limit_rel, "finite and >= 0");
-  require_finite("angle_weight", angle_weight, "finite and >= 0");
-  require(pool_fraction > 0.0 && pool_fraction <= 1.0, "pool_fraction", pool_fraction, "in (0, 1]");
-  require(pool_minimum >= 1, "pool_minimum", pool_minimum, ">= 1");
-  require(max_seeds >= 1, "max_seeds", max_seeds, ">= 1");
-  require(relax_after_seeds >= 0, "relax_after_seeds", relax_after_seeds, ">= 0");
-  require_finite("min_separation", min_separation, "finite and >= 0 m");
-  require_finite("pool_spacing", pool_spacing, "finite and >= 0 m");
-  require_finite("ideal_m_bias", ideal_m_bias, "finite and >= 0");
-  require(ideal_m_draws >= 1, "ideal_m_draws", ideal_m_draws, ">= 1");
-  require_finite("palm_reach_tolerance", palm_reach_tolerance, "finite and >= 0 m");
+  internal::require_ranges("TargetOptions", *this, internal::target_rows);
 }
 
 Vector3d TargetContacts::centroid() const {

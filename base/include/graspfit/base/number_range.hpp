@@ -22,8 +22,8 @@ struct NumberRange {
   double checked(const std::string& name, double value) const;
 };
 
-inline NumberRange at_least(double least) { return {.least = least}; }
-inline NumberRange above(double least) { return {.least = least, .has_least = false}; }
-inline NumberRange between(double least, double most) { return {.least = least, .most = most}; }
+constexpr NumberRange at_least(double least) { return {.least = least}; }
+constexpr NumberRange above(double least) { return {.least = least, .has_least = false}; }
+constexpr NumberRange between(double least, double most) { return {.least = least, .most = most}; }
 
 }  // namespace graspfit::base
