@@ -168,18 +168,37 @@ struct RationalPlane {
   Rational offset;
 };
 
+/// The name of a plane that cut a triangle.
+struct CuttingPlane {
+  int axis = -1;  ///< 0…2: the plane `VoxelLattice::plane(axis, index)`. −1: of a ConvexVolume.
+  int index = -1;  ///< Of the lattice's plane, or of the half-space in its volume.
+};
+
+/// Where a corner of a piece comes from: all that is needed to compute its exact place.
+struct CornerOrigin {
+  enum class Kind {
+    Vertex,        ///< The triangle's corner `vertex`.
+    EdgeAndPlane,  ///< Edge `edge` and `planes[0]`.
+    TwoPlanes,     ///< The triangle's plane and both `planes`, which are not parallel in it.
+  };
+  Kind kind = Kind::Vertex;
+  int vertex = -1;                     ///< 0…2.
+  int edge = -1;                       ///< 0…2: from corner `edge` to the next.
+  std::array<CuttingPlane, 2> planes;  ///< In the order in which they cut.
+};
+
 /// Planes by the names that origins use.
-using PlaneOf = std::function<RationalPlane(const geometry::CuttingPlane&)>;
+using PlaneOf = std::function<RationalPlane(const CuttingPlane&)>;
 
 inline PlaneOf planes_of(const geometry::VoxelLattice& lattice) {
-  return [&lattice](const geometry::CuttingPlane& plane) {
+  return [&lattice](const CuttingPlane& plane) {
     return RationalPlane{exactly(Eigen::Vector3d::Unit(plane.axis)),
                          Rational(lattice.plane(plane.axis, plane.index))};
   };
 }
 
 inline PlaneOf planes_of(const geometry::ConvexVolume& volume) {
-  return [&volume](const geometry::CuttingPlane& plane) {
+  return [&volume](const CuttingPlane& plane) {
     const geometry::HalfSpace& half_space = volume.at(static_cast<std::size_t>(plane.index));
     return RationalPlane{exactly(half_space.normal), Rational(half_space.offset)};
   };
@@ -187,9 +206,9 @@ inline PlaneOf planes_of(const geometry::ConvexVolume& volume) {
 
 /// The exact place of a corner: on the segment where an edge meets a plane, or by Cramer's rule
 /// where the triangle's plane meets two.
-inline RationalPoint exact_place(const geometry::CornerOrigin& origin, const Triangle& triangle,
+inline RationalPoint exact_place(const CornerOrigin& origin, const Triangle& triangle,
                                  const PlaneOf& plane_of) {
-  using Kind = geometry::CornerOrigin::Kind;
+  using Kind = CornerOrigin::Kind;
   if (origin.kind == Kind::Vertex) return exactly(triangle.at(origin.vertex));
   const RationalPlane first = plane_of(origin.planes[0]);
   if (origin.kind == Kind::EdgeAndPlane) {
@@ -219,7 +238,7 @@ inline RationalPoint exact_place(const geometry::CornerOrigin& origin, const Tri
 }
 
 /// Exact places of a piece's corners.
-inline std::vector<RationalPoint> exact_places(const std::vector<geometry::CornerOrigin>& origins,
+inline std::vector<RationalPoint> exact_places(const std::vector<CornerOrigin>& origins,
                                                const Triangle& triangle, const PlaneOf& plane_of) {
   std::vector<RationalPoint> places;
   for (const auto& origin : origins) places.push_back(exact_place(origin, triangle, plane_of));

@@ -11,7 +11,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/parallel_for.hpp"
 #include "query/box_tree.hpp"
-#include "query/mesh_query_impl.hpp"
+#include "query/indexed_mesh.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -87,7 +87,7 @@ void ShapeDiameterOptions::validate() const {
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options) {
   // In the order of the tree's leaves: rays of neighbors run through the same memory.
   std::vector<std::int32_t> faces;
-  for (const auto& triangle : mesh.impl().tree.triangles) faces.push_back(triangle.face);
+  for (const auto& triangle : mesh.indexed().tree.triangles) faces.push_back(triangle.face);
   const ShapeDiameter in_order = shape_diameter(mesh, faces, options);
   ShapeDiameter result{std::vector<double>(faces.size()), std::vector<std::int32_t>(faces.size())};
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -107,7 +107,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
                                std::to_string(num_faces));
     }
   }
-  const internal::BoxTree& tree = mesh.impl().tree;
+  const internal::BoxTree& tree = mesh.indexed().tree;
   const std::vector<Vector3d> rays = cone_of_rays(options);
   std::vector<Vector3d> normals(num_faces);
   for (std::size_t face = 0; face < num_faces; ++face) {

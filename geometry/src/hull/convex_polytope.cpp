@@ -611,29 +611,4 @@ double ConvexPolytope::inradius(const Eigen::Ref<const VectorXd>& point) const {
   return std::min(-std::max(from_span, std::numeric_limits<double>::min()), within);
 }
 
-std::vector<int> ConvexPolytope::coplanar_groups() const {
-  std::vector<int> groups(static_cast<std::size_t>(impl_->facets.cols()));
-  std::iota(groups.begin(), groups.end(), 0);
-  const auto find = [&](int f) {
-    while (groups[f] != f) f = groups[f] = groups[groups[f]];
-    return f;
-  };
-  for (Index f = 0; f < impl_->facets.cols(); ++f) {
-    for (Index k = 0; k < impl_->facets.rows(); ++k) {
-      const Index neighbor = impl_->neighbors(k, f);
-      if (neighbor < f) continue;
-      Index opposite = 0;
-      while (impl_->neighbors(opposite, neighbor) != f) ++opposite;
-      const auto corner = impl_->points.col(impl_->facets(opposite, neighbor));
-      if (ScaledPoint(*impl_, corner).side(f).is_certain()) continue;
-      if (exact_side(*impl_, f, corner).sign != 0) continue;
-      const auto [low, high] =
-          std::minmax({find(static_cast<int>(f)), find(static_cast<int>(neighbor))});
-      groups[high] = low;
-    }
-  }
-  for (std::size_t f = 0; f < groups.size(); ++f) groups[f] = find(static_cast<int>(f));
-  return groups;
-}
-
 }  // namespace graspfit::geometry

@@ -14,7 +14,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "query/box_tree.hpp"
-#include "query/mesh_query_impl.hpp"
+#include "query/indexed_mesh.hpp"
 #include "query/winding.hpp"
 
 namespace graspfit::geometry {
@@ -144,7 +144,7 @@ bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform
 Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
                                const Vector3d& point_A) {
   internal::Winding winding(point_A);
-  const BoxTree& tree = b.impl().tree;
+  const BoxTree& tree = b.indexed().tree;
   std::vector<std::int32_t> open = {0};
   while (!open.empty()) {
     const std::int32_t index = open.back();
@@ -166,13 +166,13 @@ Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
 /// Whether some part of `inner` (surfaces do not cross) lies inside `outer`, both in one frame.
 bool holds_a_part(const MeshQuery& outer, const std::vector<Vector3d>& part_points) {
   return std::any_of(part_points.begin(), part_points.end(), [&](const Vector3d& point) {
-    return outer.impl().box.contains(point) && outer.containment(point) != Containment::Outside;
+    return outer.indexed().box.contains(point) && outer.containment(point) != Containment::Outside;
   });
 }
 
 std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& X) {
   std::vector<Vector3d> points;
-  for (const std::int32_t vertex : query.impl().part_vertices) {
+  for (const std::int32_t vertex : query.indexed().part_vertices) {
     points.push_back(X * query.mesh().vertices[vertex]);
   }
   return points;
@@ -245,7 +245,7 @@ class DeepestPoint {
   void push_node(const BoxTree& surface, std::int32_t index) {
     const BoxTree::Node& node = surface.nodes[index];
     const SeenBox box = seen_from(node, X_);
-    const Eigen::AlignedBox3d& solid_box = solid_.impl().box;
+    const Eigen::AlignedBox3d& solid_box = solid_.indexed().box;
     // What is deeper lies as far inside the solid's box.
     const Vector3d inset = Vector3d::Constant(depth);
     if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
@@ -285,14 +285,14 @@ class DeepestPoint {
   /// the solid from outside along an edge or a face. False means nothing.
   bool stays_outside(const Corners& corners) const {
     // Rounding of the corners, which is that of the largest coordinate far from the origin.
-    const Eigen::AlignedBox3d& whole = solid_.impl().box;
+    const Eigen::AlignedBox3d& whole = solid_.indexed().box;
     const double slack = 1e-12 * whole.diagonal().norm() +
                          1e-15 * whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
     Eigen::AlignedBox3d box(corners[0]);
     box.extend(corners[1]).extend(corners[2]);
     box.min().array() -= slack;
     box.max().array() += slack;
-    const BoxTree& tree = solid_.impl().tree;
+    const BoxTree& tree = solid_.indexed().tree;
     std::vector<std::int32_t> open = {0};
     while (!open.empty()) {
       const std::int32_t index = open.back();
@@ -380,9 +380,9 @@ void PenetrationOptions::validate() const {
 }
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
-  if (surfaces_intersect(a.impl().tree, b.impl().tree, X_AB)) return true;
-  const SeenBox box_b = seen_from(b.impl().tree.nodes.front(), X_AB);
-  const Eigen::AlignedBox3d& box_a = a.impl().box;
+  if (surfaces_intersect(a.indexed().tree, b.indexed().tree, X_AB)) return true;
+  const SeenBox box_b = seen_from(b.indexed().tree.nodes.front(), X_AB);
+  const Eigen::AlignedBox3d& box_a = a.indexed().box;
   if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
   if (holds_a_part(a, part_points(b, X_AB))) return true;
   const std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
@@ -399,9 +399,9 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   result.intersects = do_intersect(a, b, X_AB);
   if (!result.intersects) return result;
   DeepestPoint in_a(a, X_AB, options);
-  in_a.search(b.impl().tree);
+  in_a.search(b.indexed().tree);
   DeepestPoint in_b(b, X_AB.inverse(), options);
-  in_b.search(a.impl().tree);
+  in_b.search(a.indexed().tree);
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);
   result.depth_bound = std::max(in_a.bound, in_b.bound);
@@ -417,9 +417,9 @@ DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTrans
                              ", must be finite and >= 0 m");
   }
   DeepestPoint in_a(a, X_AB, options, floor);
-  in_a.search(b.impl().tree);
+  in_a.search(b.indexed().tree);
   DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);
-  in_b.search(a.impl().tree);
+  in_b.search(a.indexed().tree);
   return {in_b.depth > floor ? in_b.depth : 0.0, std::max(in_a.bound, in_b.bound)};
 }
 

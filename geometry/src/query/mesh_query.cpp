@@ -10,7 +10,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
-#include "query/mesh_query_impl.hpp"
+#include "query/indexed_mesh.hpp"
 #include "query/winding.hpp"
 
 namespace graspfit::geometry {
@@ -179,24 +179,25 @@ const TriangleMesh& checked(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshQuery::Impl::Impl(TriangleMesh the_mesh)
+internal::IndexedMesh::IndexedMesh(TriangleMesh the_mesh)
     : mesh(std::move(the_mesh)),
       tree(checked(mesh)),
       box(tree.nodes[0].lower, tree.nodes[0].upper),
       part_vertices(one_vertex_per_part(mesh)) {}
 
-MeshQuery::MeshQuery(TriangleMesh mesh) : impl_(std::make_shared<const Impl>(std::move(mesh))) {}
+MeshQuery::MeshQuery(TriangleMesh mesh)
+    : indexed_(std::make_shared<const internal::IndexedMesh>(std::move(mesh))) {}
 
-const TriangleMesh& MeshQuery::mesh() const { return impl_->mesh; }
+const TriangleMesh& MeshQuery::mesh() const { return indexed_->mesh; }
 
-const Eigen::AlignedBox3d& MeshQuery::box() const { return impl_->box; }
+const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }
 
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   struct Entry {
     std::int32_t node;
     double squared_distance;
   };
-  const BoxTree& tree = impl_->tree;
+  const BoxTree& tree = indexed_->tree;
   ClosestPoint best;
   best.squared_distance = std::numeric_limits<double>::infinity();
   std::array<Entry, kStackSize> stack;
@@ -232,7 +233,7 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
 internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
   Winding winding(point);
   traverse(
-      query.impl().tree,
+      query.indexed().tree,
       [&](const BoxTree::Node& node) { return winding.may_meet(node.lower, node.upper); },
       [&](const BoxTree::Triangle& triangle) { winding.add(triangle.corners); });
   return winding;
@@ -257,11 +258,11 @@ double MeshQuery::signed_distance(const Eigen::Vector3d& point) const {
 
 std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
                                            const Eigen::Vector3d& direction) const {
-  const Line line("MeshQuery::first_hit", impl_->box, origin, direction);
+  const Line line("MeshQuery::first_hit", indexed_->box, origin, direction);
   std::optional<RayHit> best;
   double best_t = 1.0;
   traverse(
-      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
+      indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
       [&](const BoxTree::Triangle& triangle) {
         const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
         if (!meeting) return;
@@ -278,11 +279,11 @@ std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
 
 std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
                                         const Eigen::Vector3d& direction, LineKind kind) const {
-  const Line line("MeshQuery::all_hits", impl_->box, origin, direction);
+  const Line line("MeshQuery::all_hits", indexed_->box, origin, direction);
   const double from = kind == LineKind::Ray ? 0.0 : -1.0;
   std::vector<RayHit> hits;
   traverse(
-      impl_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
+      indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
       [&](const BoxTree::Triangle& triangle) {
         if (const auto meeting = line.meet(triangle.corners, from)) {
           hits.push_back(line.hit(*meeting, triangle));
@@ -300,7 +301,7 @@ std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) 
     return (lower.array() <= box.max().array()).all() && (upper.array() >= box.min().array()).all();
   };
   traverse(
-      impl_->tree, [&](const BoxTree::Node& node) { return meets(node.lower, node.upper); },
+      indexed_->tree, [&](const BoxTree::Node& node) { return meets(node.lower, node.upper); },
       [&](const BoxTree::Triangle& triangle) {
         const auto& [a, b, c] = triangle.corners;
         if (meets(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) {

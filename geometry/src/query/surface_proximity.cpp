@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "query/box_tree.hpp"
-#include "query/mesh_query_impl.hpp"
+#include "query/indexed_mesh.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -96,8 +96,8 @@ class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
          double share, double near_enough)
-      : a_(a.impl()),
-        b_(b.impl()),
+      : a_(a.indexed()),
+        b_(b.indexed()),
         X_AB_(X_AB),
         turn_(X_AB.linear().cwiseAbs()),
         squared_enough_(enough * enough),
@@ -261,8 +261,8 @@ class Search {
     }
   }
 
-  const MeshQuery::Impl& a_;
-  const MeshQuery::Impl& b_;
+  const internal::IndexedMesh& a_;
+  const internal::IndexedMesh& b_;
   const RigidTransform& X_AB_;
   const Eigen::Matrix3d turn_;
   const double squared_enough_;

@@ -29,9 +29,8 @@ class Clipper {
     if (vector_area.isZero(0.0)) return std::nullopt;  // The corners are collinear.
     cutter_.reset(triangle);
     cutter_.whole(polygon_);
-    for (std::size_t i = 0; i < volume_.size(); ++i) {
-      const std::uint32_t line =
-          cutter_.add_plane(volume_[i].normal, volume_[i].offset, static_cast<int>(i));
+    for (const auto& [normal, offset] : volume_) {
+      const std::uint32_t line = cutter_.add_plane(normal, offset);
       cutter_.split(polygon_, line, internal::TriangleCutter::InPlane::Inside, rest_, nullptr);
       std::swap(polygon_, rest_);
       if (polygon_.empty()) return std::nullopt;
@@ -44,15 +43,6 @@ class Clipper {
     for (const internal::CutEdge& of : polygon_) piece.polygon.push_back(cutter_.corner(of).point);
     return piece;
   }
-
-  /// Of the piece last clipped.
-  std::vector<CornerOrigin> origins() const {
-    std::vector<CornerOrigin> result;
-    for (const internal::CutEdge& of : polygon_) result.push_back(cutter_.origin(of));
-    return result;
-  }
-
-  const ClipStatistics& statistics() const { return cutter_.statistics(); }
 
  private:
   const ConvexVolume& volume_;
@@ -90,16 +80,6 @@ Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& 
     if ((candidate - point).squaredNorm() < (closest - point).squaredNorm()) closest = candidate;
   }
   return closest;
-}
-
-ClippedWithOrigins clip_with_origins(const std::array<Eigen::Vector3d, 3>& triangle,
-                                     const ConvexVolume& volume) {
-  Clipper clipper(volume);
-  ClippedWithOrigins result;
-  result.piece = clipper.clip(triangle);
-  if (result.piece) result.origins = clipper.origins();
-  result.statistics = clipper.statistics();
-  return result;
 }
 
 }  // namespace graspfit::geometry

@@ -97,8 +97,7 @@ struct PieceName {
 struct Layer {
   std::vector<Piece> pieces;
   std::vector<Eigen::Vector3d> corners;
-  std::vector<PieceName> names;                    // Once complete, ascending by voxel, then face.
-  std::vector<std::vector<CornerOrigin>> origins;  // As `pieces`, if asked for.
+  std::vector<PieceName> names;  // Once complete, ascending by voxel, then face.
 
   bool is_whole(std::int32_t piece) const { return end_of(piece) == pieces[piece].first_corner; }
   // Of a piece that is not a whole face.
@@ -110,7 +109,6 @@ struct Layer {
     pieces.clear();
     corners.clear();
     names.clear();
-    origins.clear();
   }
 
  private:
@@ -152,8 +150,8 @@ Eigen::Vector3d centroid_of(const std::array<Eigen::Vector3d, 3>& triangle) {
 // each of those along x.
 class VoxelCutter {
  public:
-  VoxelCutter(const TriangleMesh& mesh, const VoxelLattice& lattice, bool with_origins)
-      : mesh_(mesh), lattice_(lattice), with_origins_(with_origins) {
+  VoxelCutter(const TriangleMesh& mesh, const VoxelLattice& lattice)
+      : mesh_(mesh), lattice_(lattice) {
     if (!(lattice.voxel_size > 0.0) || !std::isfinite(lattice.voxel_size) ||
         (lattice.counts.array() < 1).any()) {
       throw base::InvalidInput("the lattice is empty");
@@ -209,8 +207,6 @@ class VoxelCutter {
     }
   }
 
-  const ClipStatistics& statistics() const { return cutter_.statistics(); }
-
  private:
   struct Level {
     CutPolygon rest;   // Not yet cut along this axis.
@@ -252,7 +248,7 @@ class VoxelCutter {
     cutter_.reset(triangle);
     for (int axis = 0; axis < 3; ++axis) {
       for (int i = first_[axis]; i < last_[axis]; ++i) {
-        const std::uint32_t line = cutter_.add_axis_plane(axis, lattice_.plane(axis, i + 1), i + 1);
+        const std::uint32_t line = cutter_.add_axis_plane(axis, lattice_.plane(axis, i + 1));
         if (i == first_[axis]) first_line_[axis] = line;
       }
     }
@@ -315,9 +311,6 @@ class VoxelCutter {
       squared_radius = std::max(squared_radius, (corner - centroid).squaredNorm());
     }
     add(layer, measure_.area, centroid, layer.corners.size(), squared_radius);
-    if (!with_origins_) return;
-    std::vector<CornerOrigin>& origins = layer.origins.emplace_back(3);
-    for (int i = 0; i < 3; ++i) origins[i].vertex = i;
   }
 
   void add_cut(const CutPolygon& polygon) {
@@ -331,9 +324,6 @@ class VoxelCutter {
       layer.corners.push_back(corner);
     }
     add(layer, measure.fraction * measure_.area, measure.centroid, first, squared_radius);
-    if (!with_origins_) return;
-    std::vector<CornerOrigin>& origins = layer.origins.emplace_back();
-    for (const CutEdge& of : polygon) origins.push_back(cutter_.origin(of));
   }
 
   void add(Layer& layer, double area, const Eigen::Vector3d& centroid, std::size_t first_corner,
@@ -356,7 +346,6 @@ class VoxelCutter {
 
   const TriangleMesh& mesh_;
   const VoxelLattice& lattice_;
-  const bool with_origins_;
   std::vector<VertexCode> codes_;
   std::vector<Layer> layers_;
   std::vector<Layer> spare_;  // Cleared ones, for their memory.
@@ -514,7 +503,7 @@ VoxelPiece voxel_piece(const TriangleMesh& mesh, const Layer& layer, const Piece
 
 std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
                                           const SurfacePatchOptions& options) {
-  VoxelCutter cutter(mesh, lattice, false);
+  VoxelCutter cutter(mesh, lattice);
   std::vector<SurfacePatch> patches;
   cutter.run([&](const Layer& layer, std::int64_t first_voxel) {
     if (patches.empty()) patches.reserve(expected_patches(mesh, lattice));
@@ -529,7 +518,7 @@ std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelL
 }
 
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice) {
-  VoxelCutter cutter(mesh, lattice, false);
+  VoxelCutter cutter(mesh, lattice);
   std::vector<VoxelPiece> pieces;
   cutter.run([&](const Layer& layer, std::int64_t first_voxel) {
     for (const PieceName& name : layer.names) {
@@ -537,20 +526,6 @@ std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLatt
     }
   });
   return pieces;
-}
-
-VoxelPiecesWithOrigins clip_by_voxels_with_origins(const TriangleMesh& mesh,
-                                                   const VoxelLattice& lattice) {
-  VoxelCutter cutter(mesh, lattice, true);
-  VoxelPiecesWithOrigins result;
-  cutter.run([&](const Layer& layer, std::int64_t first_voxel) {
-    for (const PieceName& name : layer.names) {
-      result.pieces.push_back(voxel_piece(mesh, layer, name, first_voxel));
-      result.origins.push_back(layer.origins[name.piece]);
-    }
-  });
-  result.statistics = cutter.statistics();
-  return result;
 }
 
 }  // namespace graspfit::geometry

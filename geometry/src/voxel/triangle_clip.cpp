@@ -94,7 +94,7 @@ void TriangleCutter::whole(CutPolygon& polygon) const {
   polygon = {{0, 2 * 2}, {1, 2 * 0}, {2, 2 * 1}};
 }
 
-std::uint32_t TriangleCutter::add_plane(const Eigen::Vector3d& normal, double offset, int index) {
+std::uint32_t TriangleCutter::add_plane(const Eigen::Vector3d& normal, double offset) {
   Line line;
   for (int i = 0; i < 3; ++i) {
     line.value[i] = offset - normal.dot(vertices_[i]);
@@ -104,12 +104,11 @@ std::uint32_t TriangleCutter::add_plane(const Eigen::Vector3d& normal, double of
   line.offset = offset;
   line.slack = normal.cwiseAbs().dot(slack_) +
                kValueBound * std::max({line.size[0], line.size[1], line.size[2]}) + kLeastSlack;
-  line.index = index;
   lines_.push_back(line);
   return static_cast<std::uint32_t>(lines_.size() - 1);
 }
 
-std::uint32_t TriangleCutter::add_axis_plane(int axis, double coordinate, int index) {
+std::uint32_t TriangleCutter::add_axis_plane(int axis, double coordinate) {
   Line& line = lines_.emplace_back();
   for (int i = 0; i < 3; ++i) {
     line.value[i] = coordinate - vertices_[i][axis];
@@ -118,31 +117,7 @@ std::uint32_t TriangleCutter::add_axis_plane(int axis, double coordinate, int in
   line.offset = coordinate;
   line.slack = slack_[axis];
   line.axis = axis;
-  line.index = index;
   return static_cast<std::uint32_t>(lines_.size() - 1);
-}
-
-CornerOrigin TriangleCutter::origin(const CutEdge& of) const {
-  const CutCorner& corner = corners_[of.corner];
-  CornerOrigin result;
-  if (of.corner < 3) {
-    result.kind = CornerOrigin::Kind::Vertex;
-    result.vertex = static_cast<int>(of.corner);
-    return result;
-  }
-  const auto [first, second] = std::minmax(corner.line_a, corner.line_b);
-  const auto plane = [&](std::uint32_t name) {
-    return CuttingPlane{lines_[name].axis, lines_[name].index};
-  };
-  if (first < 3) {
-    result.kind = CornerOrigin::Kind::EdgeAndPlane;
-    result.edge = static_cast<int>((first + 1) % 3);
-    result.planes[0] = plane(second);
-  } else {
-    result.kind = CornerOrigin::Kind::TwoPlanes;
-    result.planes = {plane(first), plane(second)};
-  }
-  return result;
 }
 
 template <typename Number>
@@ -217,7 +192,6 @@ std::array<Number, 3> TriangleCutter::exact_corner(std::uint32_t a, std::uint32_
 std::uint32_t TriangleCutter::meet(std::uint32_t a, std::uint32_t b) {
   // Counter-clockwise consecutive lines, each with the polygon on its positive side, have
   // h0 + h1 + h2 > 0; turning one of them changes the sign, exchanging the two changes it back.
-  ++statistics_.corners;
   CutCorner& corner = corners_.emplace_back();
   const bool is_turned = ((a ^ b) & 1) != 0;
   corner.line_a = (is_turned ? b : a) / 2;
@@ -254,7 +228,6 @@ void TriangleCutter::place(CutCorner& corner, const Line& p, const Line& q) {
     corner.lambda_1 = h[1] / sum;
     corner.lambda_2 = h[2] / sum;
   } else if (kLongLambdaBound * size <= kLambdaTolerance * sum && is_in_range(size)) {
-    ++statistics_.corners_in_long_doubles;
     const auto long_h = exact_corner<long double>(corner.line_a, corner.line_b);
     const long double long_sum = long_h[0] + long_h[1] + long_h[2];
     corner.lambda_1 = static_cast<double>(long_h[1] / long_sum);
@@ -292,7 +265,6 @@ void TriangleCutter::split(const CutPolygon& polygon, std::uint32_t line, InPlan
     any_inside |= sign > 0;
     any_outside |= sign < 0;
   }
-  statistics_.signs += static_cast<std::int64_t>(n);
   if (!any_outside && (any_inside || in_plane == InPlane::Inside)) {
     inside = polygon;
     if (outside != nullptr) outside->clear();

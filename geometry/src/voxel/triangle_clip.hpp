@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "graspfit/geometry/convex_clip.hpp"
-
 /// \file
 /// A triangle cut by planes, in its barycentric coordinates.
 ///
@@ -53,6 +51,14 @@ struct CutMeasure {
   Eigen::Vector3d centroid;
 };
 
+/// How often doubles could not decide or place something. Every entry counts, none sums.
+struct ClipStatistics {
+  std::int64_t signs_by_determinant = 0;  ///< Too near for the rounded corner to say.
+  std::int64_t signs_in_rationals = 0;    ///< Of these, in doubles not certain.
+  std::int64_t corners_in_rationals = 0;  ///< Too flat a cut for doubles and for long doubles.
+  std::int64_t areas_in_rationals = 0;    ///< Pieces too small for their rounded corners.
+};
+
 /// One triangle and the planes that cut it.
 ///
 /// Bounds: signs are exact. Barycentric coordinates are within 2^-44 of their exact places, so that
@@ -69,11 +75,12 @@ class TriangleCutter {
   void whole(CutPolygon& polygon) const;
 
   /// Line of the plane normal · p = offset, inside where normal · p ≤ offset. Returns its name;
-  /// names are consecutive. `index` is the plane's name in origins.
-  std::uint32_t add_plane(const Eigen::Vector3d& normal, double offset, int index);
+  /// names are consecutive, from 3 on: those below are the edges', each the name of the vertex that
+  /// it does not touch.
+  std::uint32_t add_plane(const Eigen::Vector3d& normal, double offset);
 
   /// Line of the plane p[axis] = coordinate, inside where p[axis] ≤ coordinate.
-  std::uint32_t add_axis_plane(int axis, double coordinate, int index);
+  std::uint32_t add_axis_plane(int axis, double coordinate);
 
   /// The part of `polygon` inside `line`, and, unless null, the part on its other side; parts
   /// without area are empty. A polygon in the plane goes to `in_plane`: to the inside or the other.
@@ -84,7 +91,6 @@ class TriangleCutter {
   CutMeasure measure(const CutPolygon& polygon);
 
   const CutCorner& corner(const CutEdge& of) const { return corners_[of.corner]; }
-  CornerOrigin origin(const CutEdge& of) const;
 
   /// Bound on |point[axis] − exact| of every corner of this triangle.
   double slack(int axis) const { return slack_[axis]; }
@@ -100,7 +106,6 @@ class TriangleCutter {
     double slack = 0.0;  // bound on |offset − normal · point| − its exact value at a cut corner.
     int axis = -1;       // The plane's axis if it is axis-aligned,
     int vertex = -1;     // or the index of the unit vector.
-    int index = -1;
   };
 
   int sign_at(std::uint32_t corner, std::uint32_t line);

@@ -1,11 +1,16 @@
-// Proofs of the shipped fast path: it hands out the origin of every corner, and what follows from
-// the origins is checked in rational numbers.
+// Proofs of the shipped fast path: its cutter knows the origin of every corner, and what follows
+// from the origins is checked in rational numbers.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "exact/predicates.hpp"
 #include "geometry/exact_clip.hpp"
 #include "geometry/rational_clip.hpp"
+#include "geometry/traced_clip.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -53,10 +58,39 @@ void check_bounds(const ClippedPiece& piece, const Triangle& triangle,
           4e-12 * whole * edge + corner_bound(triangle) * exact);
 }
 
+// The pieces of a mesh, each with the same polygon traced.
+struct TracedPieces {
+  std::vector<VoxelPiece> pieces;
+  std::vector<TracedPolygon> traced;
+  internal::ClipStatistics statistics;
+};
+
+// Requires that the traced polygons are those of the pieces, bit for bit.
+TracedPieces traced_pieces(const TriangleMesh& mesh, const VoxelLattice& lattice) {
+  ClipTracer tracer;
+  std::map<std::pair<std::int64_t, std::int32_t>, TracedPolygon> traced;
+  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    for (auto& [voxel, polygon] : tracer.clip_by_voxels(corners(mesh, face), lattice)) {
+      traced[{voxel, static_cast<std::int32_t>(face)}] = polygon;
+    }
+  }
+  TracedPieces result;
+  result.pieces = clip_by_voxels(mesh, lattice);
+  result.statistics = tracer.statistics();
+  REQUIRE(result.pieces.size() == traced.size());
+  auto next = traced.begin();
+  for (const auto& [voxel, piece] : result.pieces) {
+    const auto& [name, polygon] = *next++;
+    REQUIRE(name == std::pair(voxel, piece.face));
+    REQUIRE(polygon.corners == piece.polygon);
+    result.traced.push_back(polygon);
+  }
+  return result;
+}
+
 // Proves the pieces of every face in every voxel. Returns how often the fast path needed help.
-ClipStatistics prove_pieces(const TriangleMesh& mesh, const VoxelLattice& lattice) {
-  const VoxelPiecesWithOrigins traced = clip_by_voxels_with_origins(mesh, lattice);
-  REQUIRE(traced.origins.size() == traced.pieces.size());
+internal::ClipStatistics prove_pieces(const TriangleMesh& mesh, const VoxelLattice& lattice) {
+  const TracedPieces traced = traced_pieces(mesh, lattice);
   std::vector<std::vector<std::size_t>> of_face(mesh.faces.size());
   for (std::size_t i = 0; i < traced.pieces.size(); ++i) {
     of_face[traced.pieces[i].piece.face].push_back(i);
@@ -70,7 +104,7 @@ ClipStatistics prove_pieces(const TriangleMesh& mesh, const VoxelLattice& lattic
     RationalPoint sum = {0, 0, 0};
     for (std::size_t k = 0; k < exact.size(); ++k) {
       const auto& [index, piece] = traced.pieces[of_face[face][k]];
-      const std::vector<CornerOrigin>& origins = traced.origins[of_face[face][k]];
+      const std::vector<CornerOrigin>& origins = traced.traced[of_face[face][k]].origins;
       REQUIRE(index == exact[k].voxel);
       const std::vector<RationalPoint> places = exact_places(origins, triangle, plane_of);
       const Eigen::Vector3i voxel = lattice.voxel(index);
@@ -217,7 +251,7 @@ std::vector<Adversarial> adversarial_meshes() {
 }
 
 // Every `step`-th face of a real mesh, on the lattice of the whole one.
-ClipStatistics prove_packaged_mesh(const std::string& file, std::size_t step) {
+internal::ClipStatistics prove_packaged_mesh(const std::string& file, std::size_t step) {
   TriangleMesh mesh = read_mesh(*packaged_mesh(file)).mesh;
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 30});
   std::vector<Face> sampled;
@@ -253,7 +287,7 @@ TEST_CASE("Pieces of adversarial triangles are exact by their origins",
           "[geometry][surface_patch][clip_proofs]") {
   for (const Adversarial& adversarial : adversarial_meshes()) {
     CAPTURE(adversarial.name);
-    const ClipStatistics statistics = prove_pieces(adversarial.mesh, adversarial.lattice);
+    const internal::ClipStatistics statistics = prove_pieces(adversarial.mesh, adversarial.lattice);
     // The fast path alone would not do.
     CHECK(statistics.signs_in_rationals + statistics.corners_in_rationals +
               statistics.areas_in_rationals >
@@ -307,34 +341,45 @@ TEST_CASE("Duplicated faces have the same pieces, bit for bit",
   CHECK(i == 2 * single.size());
 }
 
-TEST_CASE("Asking for origins changes no bit of the pieces",
+TEST_CASE("Traced polygons are the pieces of clip and clip_by_voxels, bit for bit",
           "[geometry][convex_clip][surface_patch][clip_proofs]") {
   const TriangleMesh mesh = torus(1.0, 0.4, 24, 12);
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 12});
-  const auto pieces = clip_by_voxels(mesh, lattice);
-  const auto traced = clip_by_voxels_with_origins(mesh, lattice);
-  REQUIRE(pieces.size() == traced.pieces.size());
+  const TracedPieces voxels = traced_pieces(mesh, lattice);  // Which compares the polygons.
+  int num_cut = 0;
+  for (std::size_t i = 0; i < voxels.pieces.size(); ++i) {
+    const ClippedPiece& piece = voxels.pieces[i].piece;
+    const TracedPolygon& traced = voxels.traced[i];
+    const auto& [a, b, c] = corners(mesh, static_cast<std::size_t>(piece.face));
+    if (piece.polygon == std::vector<Eigen::Vector3d>{a, b, c}) continue;  // It met no plane.
+    ++num_cut;
+    const double whole = internal::accurate_vector_area(a, b, c).norm();
+    REQUIRE(piece.area == traced.measure.fraction * whole);
+    REQUIRE(piece.centroid == traced.measure.centroid);
+  }
+  CHECK(num_cut > 1000);
   const ConvexVolume volume = {{{1, 2, 3}, 0.5}, {{-1, 0, 1}, 0.25}};
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    REQUIRE(pieces[i].voxel == traced.pieces[i].voxel);
-    REQUIRE(pieces[i].piece.face == traced.pieces[i].piece.face);
-    REQUIRE(pieces[i].piece.polygon == traced.pieces[i].piece.polygon);
-    REQUIRE(pieces[i].piece.area == traced.pieces[i].piece.area);
-    REQUIRE(pieces[i].piece.centroid == traced.pieces[i].piece.centroid);
-  }
+  ClipTracer tracer;
+  int num_clipped = 0;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    const auto piece = clip(corners(mesh, face), volume);
-    const auto with_origins = clip_with_origins(corners(mesh, face), volume);
-    REQUIRE(piece.has_value() == with_origins.piece.has_value());
-    REQUIRE(with_origins.origins.size() == (piece ? piece->polygon.size() : 0));
-    if (piece) REQUIRE(piece->polygon == with_origins.piece->polygon);
+    const auto& [a, b, c] = corners(mesh, face);
+    const auto piece = clip({a, b, c}, volume);
+    const TracedPolygon traced = tracer.clip({a, b, c}, volume);
+    REQUIRE(piece.has_value() == !traced.corners.empty());
+    if (!piece) continue;
+    ++num_clipped;
+    REQUIRE(piece->polygon == traced.corners);
+    const double whole = internal::accurate_vector_area(a, b, c).stableNorm();
+    REQUIRE(piece->area == traced.measure.fraction * whole);
+    REQUIRE(piece->centroid == traced.measure.centroid);
   }
+  CHECK(num_clipped > 100);
 }
 
 TEST_CASE("The inside and the outside of a convex volume sum exactly to the triangle",
           "[geometry][convex_clip][clip_proofs]") {
   Random random(15);
-  ClipStatistics total;
+  ClipTracer tracer;
   const auto smooth = [&] { return random.uniform(-1.0, 1.0); };
   // Planes through corners and along edges of the triangles.
   const auto whole = [&] { return static_cast<double>(random.index(5)) - 2.0; };
@@ -361,16 +406,16 @@ TEST_CASE("The inside and the outside of a convex volume sum exactly to the tria
     }
     RationalPoint sum = {0, 0, 0};
     const auto take = [&](const ConvexVolume& part) {
-      const ClippedWithOrigins clipped = clip_with_origins(triangle, part);
+      const auto piece = clip(triangle, part);
+      const TracedPolygon traced = tracer.clip(triangle, part);
       const auto exact = exact_clip(triangle, part);
-      REQUIRE(clipped.piece.has_value() == exact.has_value());
-      if (!exact) return;
-      const auto places = exact_places(clipped.origins, triangle, planes_of(part));
-      check_bounds(*clipped.piece, triangle, places, rational(exact->centroid));
+      REQUIRE(piece.has_value() == exact.has_value());
+      REQUIRE(traced.corners.empty() == !piece);
+      if (!piece) return;
+      REQUIRE(traced.corners == piece->polygon);
+      const auto places = exact_places(traced.origins, triangle, planes_of(part));
+      check_bounds(*piece, triangle, places, rational(exact->centroid));
       add(sum, doubled_vector_area(places));
-      total.signs_by_determinant += clipped.statistics.signs_by_determinant;
-      total.signs_in_rationals += clipped.statistics.signs_in_rationals;
-      total.corners_in_rationals += clipped.statistics.corners_in_rationals;
     };
     take(volume);
     // Outside: within the first planes and beyond the next, for each next.
@@ -382,8 +427,8 @@ TEST_CASE("The inside and the outside of a convex volume sum exactly to the tria
     }
     REQUIRE(sum == own);
   }
-  CHECK(total.signs_by_determinant > total.signs_in_rationals);
-  CHECK(total.signs_in_rationals > 0);
+  CHECK(tracer.statistics().signs_by_determinant > tracer.statistics().signs_in_rationals);
+  CHECK(tracer.statistics().signs_in_rationals > 0);
 }
 
 TEST_CASE("The order of a triangle's corners changes no exact place",
@@ -394,12 +439,12 @@ TEST_CASE("The order of a triangle's corners changes no exact place",
   const auto places_of = [&](const Face& order) {
     TriangleMesh permuted = mesh;
     for (Face& f : permuted.faces) f = {f[order[0]], f[order[1]], f[order[2]]};
-    const auto traced = clip_by_voxels_with_origins(permuted, lattice);
+    const TracedPieces traced = traced_pieces(permuted, lattice);
     std::vector<std::pair<VoxelPiece, std::vector<RationalPoint>>> result;
     for (std::size_t i = 0; i < traced.pieces.size(); ++i) {
       const Triangle triangle =
           corners(permuted, static_cast<std::size_t>(traced.pieces[i].piece.face));
-      auto places = exact_places(traced.origins[i], triangle, plane_of);
+      auto places = exact_places(traced.traced[i].origins, triangle, plane_of);
       std::sort(places.begin(), places.end());
       result.emplace_back(traced.pieces[i], places);
     }

@@ -20,8 +20,8 @@ namespace graspfit::geometry {
 /// hull has no volume and no inside: all of it is boundary.
 ///
 /// Facets are simplices. Where more than `rank` extreme points lie in one facet's plane, it is
-/// given as several; `coplanar_groups` says which belong together. The result does not depend on
-/// the order of the points, but for their indices: of equal points the first counts.
+/// given as several. The result does not depend on the order of the points, but for their indices:
+/// of equal points the first counts.
 ///
 /// Cost: the number of facets, which for n points grows as n^⌊d/2⌋: 40 points in 6-D have some
 /// thousands. Copies share the data; all members are const and safe to call from several threads.
@@ -74,9 +74,6 @@ class ConvexPolytope {
   ///     < 0   outside: minus the largest distance to a facet's plane that separates the point, or
   ///           to the span; the distance to the polytope is at least that. −∞ without points
   double inradius(const Eigen::Ref<const Eigen::VectorXd>& point) const;
-
-  /// For each facet the lowest index of a facet in the same hyperplane. Exact.
-  std::vector<int> coplanar_groups() const;
 
   struct Impl;  ///< Defined in the source.
 

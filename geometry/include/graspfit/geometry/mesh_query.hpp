@@ -9,6 +9,10 @@
 
 namespace graspfit::geometry {
 
+namespace internal {
+struct IndexedMesh;
+}
+
 /// Where a point lies against a closed surface.
 enum class Containment { Inside, OnSurface, Outside };
 
@@ -89,11 +93,11 @@ class MeshQuery {
   /// Indices of all faces whose bounding box meets `box`, ascending. Exact on the given doubles.
   std::vector<std::int32_t> faces_near(const Eigen::AlignedBox3d& box) const;
 
-  struct Impl;  ///< The tree; defined in the source.
-  const Impl& impl() const { return *impl_; }
+  /// The mesh and its tree, for this library's own use.
+  const internal::IndexedMesh& indexed() const { return *indexed_; }
 
  private:
-  std::shared_ptr<const Impl> impl_;
+  std::shared_ptr<const internal::IndexedMesh> indexed_;
 };
 
 }  // namespace graspfit::geometry

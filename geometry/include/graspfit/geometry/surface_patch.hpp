@@ -66,17 +66,4 @@ struct VoxelPiece {
 /// of a triangle make it up without gap or overlap.
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice);
 
-/// What `clip_by_voxels` gives, each corner with its origin.
-struct VoxelPiecesWithOrigins {
-  std::vector<VoxelPiece> pieces;
-  std::vector<std::vector<CornerOrigin>> origins;  ///< Per piece, one per corner of its polygon.
-  ClipStatistics statistics;
-};
-
-/// As `clip_by_voxels`, bit for bit, with the origin of every corner. Exact: the origins are those
-/// of real arithmetic; a piece's polygon with its corners at the exact places of its origins is
-/// exactly the triangle's part in the voxel.
-VoxelPiecesWithOrigins clip_by_voxels_with_origins(const TriangleMesh& mesh,
-                                                   const VoxelLattice& lattice);
-
 }  // namespace graspfit::geometry
