@@ -171,7 +171,7 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
     for (std::size_t j = 0; j < hand.joints.size(); ++j) {
       if (hand.joints[j].closing_sign == 0) continue;
       double& q = c.q[static_cast<Eigen::Index>(j)];
-      q += (closed_position(hand.joints[j]) - q) * step / kClosingSteps;
+      q += (hand.joints[j].closed_limit() - q) * step / kClosingSteps;
     }
     apply_couplings(hand, c.q);
     const auto X_OL = forward_kinematics(hand, c);
