@@ -19,8 +19,8 @@ constexpr int kNumRays = 40;       // along the longer side; 1 to 2 mm on a fing
 constexpr double kMaxLean = 0.87;  // [rad], 50°: beyond it a fingertip touches with its side
 constexpr double kMaxStep = 1.2;   // [rad]: a steeper step between neighbors parts a surface
 
-/// The ray against z at a place of the search frame: what it meets of the link, if the others do
-/// not stand before it.
+}  // namespace
+
 Sample look(const MeshQuery& link, const std::vector<MeshQuery>& others,
             const Eigen::Matrix3d& R_LS, const Vector2d& place, double top) {
   const Vector3d origin_L = R_LS * Vector3d(place.x(), place.y(), top);
@@ -38,8 +38,6 @@ Sample look(const MeshQuery& link, const std::vector<MeshQuery>& others,
       R_LS.transpose() * geometry::face_normal(link.mesh(), static_cast<std::size_t>(hit->face));
   return sample;
 }
-
-}  // namespace
 
 SearchBox search_box(const MeshQuery& link, const std::vector<MeshQuery>& others,
                      const Eigen::Matrix3d& R_LS, const PadSearch& search) {
