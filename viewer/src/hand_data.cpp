@@ -5,15 +5,15 @@
 #include <utility>
 #include <vector>
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 namespace {
 
 Json links(const hands::HandModel& hand) {
   Json list = Json::array();
   for (const hands::Link& link : hand.links) {
     list.push_back({{"name", link.name},
-                    {"parent", link.parent_link},
-                    {"joint", link.parent_joint},
+                    {"parent", link.parent_link.value_or(-1)},
+                    {"joint", link.parent_joint.value_or(-1)},
                     {"X_PL", to_json(link.X_PL_fixed)},
                     {"mesh", to_json(link.mesh_L)}});
   }
@@ -103,4 +103,4 @@ Json hand_data(const hands::HandModel& hand, double clip_thickness) {
             {"direction", to_json(hand.palm.direction_H)}}}};
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

@@ -1,34 +1,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
-#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/palm_placement.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
 /// \file
-/// Directions around the palm: how far a finger is from looking at its target, and the turn of the
-/// hand and of its swinging joints that brings it there. Steps 3 and 4 of the paper's loop and its
-/// initial configuration share these.
+/// How a hand is turned toward its targets, and which joints of a finger close it.
 
-namespace graspfit::grasp {
-
-/// Signed angle [rad] that turns `from` toward `to` about the unit `axis`, both seen along it, in
-/// (−π, π]; zero where one of them is parallel to the axis.
-double azimuth_error(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                     const Eigen::Vector3d& axis);
+namespace graspfit::grasp::internal {
 
 /// `X_OH` turned by `angle` about the line through `pivot` along the unit `axis`.
 geometry::RigidTransform turned(const geometry::RigidTransform& X_OH, const Eigen::Vector3d& pivot,
                                 const Eigen::Vector3d& axis, double angle);
-
-/// Joint positions in which every finger that can swing around the palm looks at its assigned
-/// target as well as the joints allow; fingers that share a joint take the least sum of squared
-/// errors (A26). Other joints as in `configuration`.
-Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
-                              const hands::HandConfiguration& configuration,
-                              const TargetContacts& targets);
 
 /// Whether all fingertips of the open hand lie to one side of its palm center, seen along the palm
 /// direction: such a hand, as the human one, holds things before its fingers, not before its palm.
@@ -41,18 +28,10 @@ Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sid
                               const std::vector<geometry::RigidTransform>& X_OL,
                               const TargetContacts& targets);
 
-/// The joint that closes a finger: the first independent one that closes or, where all of them
-/// follow (a gripper's second jaw), the leader of the first; −1 if none closes.
-int closing_joint(const hands::HandModel& hand, const hands::Finger& finger);
-
-/// The finger's independent closing joints beyond the first, proximal to distal.
-std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger);
-
-/// By how much a distal joint of the target's finger would have to turn for the reversed normal of
-/// the fingertip to agree with the target's, seen along the joint's axis [rad] (section 8, step 5).
-double distal_change(const hands::HandModel& hand,
-                     const std::vector<geometry::RigidTransform>& X_OL, int joint,
-                     const TargetContact& target);
+/// The joints that close a finger one after the other, proximal to distal: its independent closing
+/// ones or, where all follow (a gripper's second jaw), the leader of the first; then those that a
+/// clutch frees (breakaway).
+std::vector<int> closing_joints(const hands::HandModel& hand, const hands::Finger& finger);
 
 /// The hand open, its palm looking along `placement`, its turning point `distance` before the
 /// targets' centroid (its palm center before the palm's target, where there is one), the seed's
@@ -62,4 +41,4 @@ hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const PalmPlacement& placement, double distance);
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

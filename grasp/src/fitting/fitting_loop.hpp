@@ -7,7 +7,7 @@
 #include "fitting/target_posture.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// One run of the adjustment loop (sections 7 to 9).
 class FittingLoop {
@@ -33,9 +33,9 @@ class FittingLoop {
   /// A finger that closes, while the loop runs.
   struct Part {
     enum class State { Free, Touching, Blocked, AtLimit };
-    int finger = -1;
-    int pad = -1;  ///< −1: a finger of a power grasp that has no tip pad.
-    int tip_link = -1;
+    int finger = 0;
+    std::optional<int> pad;  ///< Empty: a finger of a power grasp that has no tip pad.
+    int tip_link = 0;
     bool has_target = false;
     /// Joints that close it alone, proximal to distal; the last may be one that a clutch frees
     /// (breakaway). `stage` is the one that closes now.
@@ -116,4 +116,4 @@ class FittingLoop {
   double contact_tests_s_ = 0.0;
 };
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

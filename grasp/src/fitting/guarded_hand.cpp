@@ -8,11 +8,10 @@
 #include <numeric>
 
 #include "fitting/finger_crossing.hpp"
-#include "fitting/target_posture.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "scene/infinity.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 namespace {
 
 using geometry::RigidTransform;
@@ -143,9 +142,7 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
   // own center, before and after.
   const double change = std::numbers::sqrt2 * (length / voxel_size_ + std::numbers::sqrt3);
   for (const int link : moved) {
-    const int parent = model_.links[link].parent_link;
-    trial_X_OL_[link] =
-        parent < 0 ? trial_.X_OH : link_pose(model_, link, trial_X_OL_[parent], trial_.q);
+    trial_X_OL_[link] = hands::link_pose(model_, link, trial_X_OL_, trial_);
     trial_room_[link] -= length;
     const double bound = distance_[link] - change;
     if (bound > kFarEnough) {
@@ -158,7 +155,7 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
       return false;
     }
   }
-  blocking_link_ = -1;
+  blocking_link_.reset();
   return true;
 }
 
@@ -230,4 +227,4 @@ float GuardedHand::smallest_distance() const {
   return *std::min_element(distance_.begin(), distance_.end());
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

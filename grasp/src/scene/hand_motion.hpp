@@ -30,11 +30,18 @@ class HandMotion {
   Eigen::RowVectorXd turn_row(int link, const Eigen::Vector3d& axis_O) const;
 
   /// Least and greatest value of every entry: joint limits, and `trust` [m] each way.
-  void bounds(double trust, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
+  struct Bounds {
+    Eigen::VectorXd lower, upper;
+  };
+  Bounds bounds(double trust) const;
 
-  /// Rows g and right sides h with g · motion ≥ h ≤ 0: breakaway joints stay at least as closed as
-  /// their couplings ask.
-  void breakaway_rows(std::vector<Eigen::RowVectorXd>& g, std::vector<double>& h) const;
+  /// A limit: row · motion ≥ least ≤ 0.
+  struct Limit {
+    Eigen::RowVectorXd row;
+    double least;
+  };
+  /// Breakaway joints stay at least as closed as their couplings ask.
+  std::vector<Limit> breakaway_rows() const;
 
   /// The motion that opens the joints between a link and the palm, each by `step` [m] at its end.
   Eigen::VectorXd opening(int link, double step) const;
@@ -48,12 +55,18 @@ class HandMotion {
 
  private:
   double share_of_follower(int follower) const;
+  /// Adds what every joint above a link does to a row: `rate` of its `hands::JointVelocity`.
+  template <class Rate>
+  void add_joints(int link, const Eigen::Vector3d& point_O, const Rate& rate,
+                  Eigen::RowVectorXd& row) const;
 
   const hands::HandModel& hand_;
   bool palm_translates_;
   bool palm_turns_;
   std::vector<int> free_joints_;
-  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, its leader's; −1: none.
+  std::vector<std::vector<int>>
+      joints_above_;                 ///< Per link: those that move it, distal ones first.
+  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, or its leader.
   std::vector<double> ratio_;        ///< Of that entry.
   std::vector<double> lever_;        ///< Per joint [m/rad; 1 of a prismatic joint].
   Eigen::VectorXd open_q_;           ///< Of the open hand.

@@ -13,12 +13,13 @@
 #include "derive/pad_fit.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 #include "model/hand_bodies.hpp"
 
 /// \file
 /// How what a hand's sidecar does not say is derived from its tree and meshes: fingers
-/// (derived_fingers.cpp), which way joints close them (derived_closing.cpp), where the palm is and
-/// looks (derived_palm.cpp), and pads (derived_pads.cpp).
+/// (deriver_fingers.cpp), which way joints close them (deriver_closing.cpp), where the palm is and
+/// looks (deriver_palm.cpp), and pads (deriver_pads.cpp).
 
 namespace graspfit::hands::internal {
 
@@ -59,7 +60,6 @@ class Deriver {
   [[noreturn]] void fail(const std::string& what) const;
 
   // Kinematics
-  int leader_of(int joint) const;
   /// With followers where their leaders put them (breakaway is not counted).
   HandConfiguration followed(const VectorXd& q) const;
   std::vector<RigidTransform> poses(const VectorXd& q) const;
@@ -126,7 +126,7 @@ class Deriver {
   // Names and thumb
   /// The finger whose tip, when closing, goes against the others'; none if no one does so clearly,
   /// or if there are only two.
-  int thumb() const;
+  std::optional<int> thumb() const;
   /// What the names of a finger's links begin with, up to a separator; finger_1, … where that does
   /// not tell the fingers apart.
   std::vector<std::string> names() const;
