@@ -97,11 +97,11 @@ inline std::string all_fields(const Grasp& grasp) {
   }
   const grasp::GraspPenetration& penetration = grasp.penetration;
   out << grasp.ideal_m << ' ' << penetration.object_intersects << ' ' << penetration.object_depth
-      << ' ' << penetration.object_depth_bound << ' ' << penetration.object_link << ' '
+      << ' ' << penetration.object_depth_bound << ' ' << penetration.object_link.value_or(-1) << ' '
       << penetration.self_intersects << ' ' << penetration.self_depth << ' '
-      << penetration.self_link_a << ' ' << penetration.self_link_b << ' ' << grasp.has_all_contacts
-      << ' ' << grasp.attempt << ' ' << grasp.iterations << ' ' << grasp.refinement_iterations
-      << '\n';
+      << penetration.self_link_a.value_or(-1) << ' ' << penetration.self_link_b.value_or(-1) << ' '
+      << grasp.has_all_contacts << ' ' << grasp.attempt << ' ' << grasp.iterations << ' '
+      << grasp.refinement_iterations << '\n';
   return out.str();
 }
 

@@ -70,7 +70,9 @@ Json quality(const contact::ContactQuality& quality) {
 }
 
 Json penetration(const hands::HandModel& hand, const grasp::GraspPenetration& penetration) {
-  const auto link_name = [&](int link) { return link < 0 ? Json() : Json(hand.links[link].name); };
+  const auto link_name = [&](const std::optional<int>& link) {
+    return link ? Json(hand.links[*link].name) : Json();
+  };
   return {{"object", penetration.object_intersects},
           {"object_depth", penetration.object_depth},
           {"object_depth_bound", penetration.object_depth_bound},
@@ -221,10 +223,11 @@ void validate(const PageInput& input) {
                std::to_string(pair.second) + " of " + std::to_string(num_contacts));
       }
     }
-    for (const int link : {grasp.penetration.object_link, grasp.penetration.self_link_a,
-                           grasp.penetration.self_link_b}) {
-      if (!is_index(link, hand.links.size(), -1)) {
-        refuse(name + " penetrates with link " + std::to_string(link) + ", which " + hand.name +
+    for (const std::optional<int>& link :
+         {grasp.penetration.object_link, grasp.penetration.self_link_a,
+          grasp.penetration.self_link_b}) {
+      if (link && !is_index(*link, hand.links.size(), 0)) {
+        refuse(name + " penetrates with link " + std::to_string(*link) + ", which " + hand.name +
                " does not have");
       }
     }

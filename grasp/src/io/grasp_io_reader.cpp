@@ -1,78 +1,40 @@
 #include <algorithm>
-#include <limits>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/replacement_mark.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/grasp/planner_result.hpp"
-#include "io/json_node.hpp"
+#include "io/grasp_fields.hpp"
+#include "io/json_fields.hpp"
 #include "io/planner_options_json.hpp"
-#include "io/record_json.hpp"
 #include "io/recorded_hand.hpp"
 
 namespace graspfit::grasp {
 namespace {
 
 using internal::JsonNode;
-
-std::optional<double> number_or_none(const JsonNode& node) {
-  return node.is_null() ? std::nullopt : std::optional(node.number());
-}
-
-geometry::MeshAnalysis read_mesh_analysis(const JsonNode& node) {
-  geometry::MeshAnalysis mesh;
-  mesh.num_vertices = node.at("num_vertices").count();
-  mesh.num_faces = node.at("num_faces").count();
-  mesh.num_parts = node.at("num_parts").count();
-  mesh.is_closed = node.at("is_closed").flag();
-  mesh.is_manifold = node.at("is_manifold").flag();
-  mesh.is_outward = node.at("is_outward").flag();
-  mesh.num_unused_vertices = node.at("num_unused_vertices").count();
-  mesh.num_degenerate_faces = node.at("num_degenerate_faces").count();
-  mesh.num_doubled_faces = node.at("num_doubled_faces").count();
-  mesh.num_boundary_edges = node.at("num_boundary_edges").count();
-  mesh.num_nonmanifold_edges = node.at("num_nonmanifold_edges").count();
-  mesh.num_inconsistent_edges = node.at("num_inconsistent_edges").count();
-  mesh.num_inward_parts = node.at("num_inward_parts").count();
-  if (const JsonNode crossings = node.at("num_self_intersections"); !crossings.is_null()) {
-    mesh.num_self_intersections = crossings.count();
-  }
-  const JsonNode box = node.at("bounding_box_m");
-  mesh.box = {box.at("lower").vector3(), box.at("upper").vector3()};
-  return mesh;
-}
+using internal::JsonReader;
 
 ObjectRecord read_object_record(const JsonNode& node) {
   ObjectRecord object;
   object.file = node.at("file").path();
-  object.sha256 = node.at("sha256").text();
-  object.meters_per_file_unit = node.at("meters_per_file_unit").number();
-  const JsonNode repair = node.at("repair");
-  object.repair.mode = repair.at("mode").choice<geometry::RepairMode>();
-  object.repair.weld_distance_rel = repair.at("weld_distance_rel").number();
-  object.repair.max_hole_extent_rel = repair.at("max_hole_extent_rel").number();
-  object.repair.self_intersections =
-      repair.at("self_intersections").choice<geometry::SelfIntersections>();
-  if (const JsonNode wrap = repair.at("wrap"); !wrap.is_null()) {
-    object.repair.wrap = geometry::AlphaWrap{.alpha_rel = wrap.at("alpha_rel").number(),
-                                             .offset_rel = wrap.at("offset_rel").number()};
-  }
-  for (const JsonNode& step : repair.at("steps").items()) {
-    object.repairs.push_back({step.at("what").text(), step.at("count").count(),
-                              step.at("volume_change_m3").number(),
-                              step.at("hausdorff_bound_m").number()});
-  }
-  object.analysis = read_mesh_analysis(node.at("mesh"));
-  object.center_of_mass_O = node.at("center_of_mass_O_m").vector3();
-  object.volume = node.at("volume_m3").number();
-  object.normalizing_radius = node.at("normalizing_radius_m").number();
+  const JsonReader at(node);
+  at(object.sha256, "sha256");
+  at(object.meters_per_file_unit, "meters_per_file_unit");
+  at.group("repair", object, internal::repair_fields);
+  at.group("mesh", object.analysis, internal::mesh_fields);
+  const JsonNode box = node.at("mesh").at("bounding_box_m");
+  object.analysis.box = {box.at("lower").vector3(), box.at("upper").vector3()};
+  at(object.center_of_mass_O, "center_of_mass_O_m");
+  at(object.volume, "volume_m3");
+  at(object.normalizing_radius, "normalizing_radius_m");
   return object;
 }
 
 SurroundingsRecord read_surroundings_record(const JsonNode& node) {
   SurroundingsRecord surroundings;
-  surroundings.table_z_O = number_or_none(node.at("table_z_O_m"));
+  JsonReader{node}(surroundings.table_z_O, "table_z_O_m");
   for (const JsonNode& obstacle : node.at("obstacles").items()) {
     surroundings.obstacles.push_back(read_object_record(obstacle));
   }
@@ -107,53 +69,39 @@ internal::RecordedHand read_hand_record(const JsonNode& node) {
   return hand;
 }
 
-template <class Item>
-int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (items[i].name == name.text()) return static_cast<int>(i);
-  }
-  name.fail("the hand has nothing named \"" + name.text() + "\"");
-}
-
 /// Reads what refers to links, joints, fingers and pads of a hand by name.
 class GraspReader {
  public:
   explicit GraspReader(const hands::HandModel& hand) : hand_(hand) {}
 
   Grasp read(const JsonNode& node) const {
+    const JsonReader at(node, &hand_);
     Grasp grasp;
     grasp.configuration = read_configuration(node);
     if (const JsonNode pre_grasp = node.at("pre_grasp"); !pre_grasp.is_null()) {
       grasp.pre_grasp = read_pre_grasp(pre_grasp);
     }
-    grasp.has_all_contacts = node.at("has_all_contacts").flag();
-    for (const JsonNode& contact : node.at("contacts").items()) {
-      grasp.contacts.push_back(read_contact(contact));
-    }
+    at(grasp.has_all_contacts, "has_all_contacts");
+    at.list(grasp.contacts, "contacts", internal::contact_fields);
     if (const JsonNode squeeze = node.at("squeeze"); !squeeze.is_null()) {
       grasp.squeeze = read_squeeze(squeeze, grasp.contacts.size());
     }
-    grasp.quality = read_quality(node, grasp.contacts.size());
-    if (const JsonNode wrench = node.at("wrench"); !wrench.is_null()) {
-      grasp.wrench = read_wrench(wrench);
+    internal::quality_fields(at, grasp.quality);
+    grasp.quality.stable_pairs = read_stable_pairs(node.at("stable_pairs"), grasp.contacts.size());
+    if (!node.at("wrench").is_null()) {
+      at.group("wrench", grasp.wrench, internal::wrench_fields);
+      node.at("wrench").at("convention").at("torque_scale_m").positive_number();
     }
-    grasp.ideal_m = node.at("ideal_m").number();
-    grasp.penetration = read_penetration(node.at("penetration"));
-    grasp.targets = read_targets(node.at("targets"));
-    grasp.attempt = node.at("attempt").integer();
-    grasp.iterations = node.at("iterations").small_integer();
-    grasp.refinement_iterations = node.at("refinement_iterations").small_integer();
+    at(grasp.ideal_m, "ideal_m");
+    at.group("penetration", grasp.penetration, internal::penetration_fields);
+    at.group("targets", grasp.targets, internal::targets_fields);
+    at(grasp.attempt, "attempt");
+    at(grasp.iterations, "iterations");
+    at(grasp.refinement_iterations, "refinement_iterations");
     return grasp;
   }
 
  private:
-  int link_or_none(const JsonNode& name) const {
-    return name.is_null() ? -1 : index_by_name(hand_.links, name);
-  }
-  int finger_or_palm(const JsonNode& name) const {
-    return name.text() == "palm" ? contact::kPalm : index_by_name(hand_.fingers, name);
-  }
-
   hands::HandConfiguration read_configuration(const JsonNode& node) const {
     hands::HandConfiguration configuration;
     configuration.X_OH = node.at("X_OH").pose();
@@ -196,99 +144,20 @@ class GraspReader {
     return squeeze;
   }
 
-  static contact::WrenchQuality read_wrench(const JsonNode& node) {
-    contact::WrenchQuality wrench;
-    wrench.epsilon = node.at("epsilon").number();
-    wrench.volume = node.at("volume").number();
-    wrench.is_force_closure = node.at("is_force_closure").flag();
-    wrench.rank = node.at("rank").small_integer();
-    const JsonNode convention = node.at("convention");
-    if (const JsonNode tool = convention.at("tool"); !tool.is_null()) {
-      wrench.convention.tool = tool.choice<contact::WrenchTool>();
-    }
-    wrench.convention.reference_point_O = convention.at("reference_point_O_m").vector3();
-    contact::WrenchSpaceOptions& options = wrench.convention.options;
-    options.torque_scale = convention.at("torque_scale_m").positive_number();
-    options.friction = convention.at("friction").number();
-    options.num_cone_edges = convention.at("num_cone_edges").small_integer();
-    options.norm = convention.at("norm").choice<contact::ForceNorm>();
-    options.force_scaling = convention.at("force_scaling").choice<contact::ForceScaling>();
-    options.force_limit = convention.at("force_limit").number();
-    options.outside = convention.at("outside").choice<contact::OutsideValue>();
-    return wrench;
-  }
-
-  contact::Contact read_contact(const JsonNode& node) const {
-    contact::Contact contact;
-    contact.link = index_by_name(hand_.links, node.at("link"));
-    contact.pad = index_by_name(hand_.pads, node.at("pad"));
-    contact.finger = finger_or_palm(node.at("finger"));
-    contact.point_O = node.at("point_O_m").vector3();
-    contact.inward_normal_O = node.at("inward_normal_O").vector3();
-    contact.area = node.at("area_m2").number();
-    contact.pad_boundary_distance = node.at("pad_boundary_distance_m").number();
-    contact.gap = node.at("gap_m").number();
-    contact.is_target = node.at("target").flag();
-    if (const JsonNode weak = node.at("weak"); !weak.is_null()) contact.weak = weak.flag();
-    return contact;
-  }
-
-  static contact::ContactQuality read_quality(const JsonNode& node, std::size_t num_contacts) {
-    contact::ContactQuality quality;
-    quality.m = node.at("m").number();
-    quality.m1 = node.at("m1").number();
-    quality.m2 = node.at("m2").number();
-    quality.m3 = node.at("m3").number();
-    quality.regularity = node.at("regularity").number();
-    quality.centroid_distance = node.at("centroid_distance_m").number();
-    quality.scaled_centroid_distance = node.at("scaled_centroid_distance").number();
-    for (const JsonNode& term : node.at("sustainability_terms").items()) {
-      quality.terms.push_back({term.at("boundary_distance").number(), term.at("area").number(),
-                               term.at("strength").number()});
-    }
-    for (const JsonNode& pair : node.at("stable_pairs").items()) {
+  static std::vector<contact::StablePair> read_stable_pairs(const JsonNode& node,
+                                                            std::size_t num_contacts) {
+    std::vector<contact::StablePair> pairs;
+    for (const JsonNode& pair : node.items()) {
       const JsonNode contacts = pair.at("contacts");
       const std::vector<JsonNode> indices = contacts.items();
       if (indices.size() != 2) contacts.fail("is not a pair");
       for (const JsonNode& index : indices) {
         if (index.count() >= num_contacts) index.fail("is not the index of a contact");
       }
-      quality.stable_pairs.push_back(
+      pairs.push_back(
           {indices[0].small_integer(), indices[1].small_integer(), pair.at("angle_rad").number()});
     }
-    return quality;
-  }
-
-  GraspPenetration read_penetration(const JsonNode& node) const {
-    GraspPenetration penetration;
-    penetration.object_intersects = node.at("object_intersects").flag();
-    penetration.object_depth = node.at("object_depth_m").number();
-    penetration.object_depth_bound = node.at("object_depth_bound_m").number();
-    penetration.object_link = link_or_none(node.at("object_link"));
-    penetration.self_intersects = node.at("self_intersects").flag();
-    penetration.self_depth = node.at("self_depth_m").number();
-    penetration.self_link_a = link_or_none(node.at("self_link_a"));
-    penetration.self_link_b = link_or_none(node.at("self_link_b"));
-    penetration.surroundings_touched = node.at("surroundings_touched").flag();
-    return penetration;
-  }
-
-  TargetContacts read_targets(const JsonNode& node) const {
-    TargetContacts targets;
-    targets.seeds_tried = node.at("seeds_tried").small_integer();
-    targets.rank = node.at("rank").number();
-    for (const JsonNode& item : node.at("contacts").items()) {
-      TargetContact target;
-      const JsonNode finger = item.at("finger");
-      target.finger = finger.is_null() ? kUnassigned : finger_or_palm(finger);
-      target.point_O = item.at("point_O_m").vector3();
-      target.outward_normal_O = item.at("outward_normal_O").vector3();
-      target.patch = item.at("patch").small_integer();
-      const JsonNode score = item.at("score");
-      target.score = score.is_text() ? std::numeric_limits<double>::infinity() : score.number();
-      targets.contacts.push_back(target);
-    }
-    return targets;
+    return pairs;
   }
 
   const hands::HandModel& hand_;
@@ -296,11 +165,12 @@ class GraspReader {
 
 PlannerStatistics read_statistics(const JsonNode& node) {
   PlannerStatistics statistics;
-  statistics.attempts = node.at("attempts").integer();
-  statistics.seeds_tried = node.at("seeds_tried").integer();
-  statistics.fitting_iterations = node.at("fitting_iterations").integer();
-  statistics.refinement_iterations = node.at("refinement_iterations").integer();
-  statistics.duplicates = node.at("duplicates").integer();
+  const JsonReader at(node);
+  at(statistics.attempts, "attempts");
+  at(statistics.seeds_tried, "seeds_tried");
+  at(statistics.fitting_iterations, "fitting_iterations");
+  at(statistics.refinement_iterations, "refinement_iterations");
+  at(statistics.duplicates, "duplicates");
   // Every outcome is there, also those that a file leaves out. PoorShape is the last of them.
   for (int i = 0; i <= static_cast<int>(AttemptOutcome::PoorShape); ++i) {
     statistics.outcomes[static_cast<AttemptOutcome>(i)] = 0;
@@ -312,21 +182,15 @@ PlannerStatistics read_statistics(const JsonNode& node) {
     if (known == statistics.outcomes.end()) count.fail("is not an outcome of this version");
     known->second = count.integer();
   }
-  for (const auto& [what, count] : node.at("guidance").members()) {
-    statistics.guidance[what] = count.integer();
-  }
-  for (const auto& [reason, count] : node.at("target_failures").members()) {
-    statistics.target_failures[reason] = count.integer();
-  }
+  at.counts(statistics.guidance, "guidance");
+  at.counts(statistics.target_failures, "target_failures");
   return statistics;
 }
 
 HoldRecord read_hold(const JsonNode& node, std::size_t num_grasps) {
   HoldRecord hold;
   hold.protocol = node.at("protocol").text();
-  for (const auto& [stage, count] : node.at("stages").members()) {
-    hold.stages[stage] = count.integer();
-  }
+  JsonReader{node}.counts(hold.stages, "stages");
   const JsonNode margins = node.at("margins_N");
   if (margins.is_null()) return hold;
   for (const JsonNode& margin : margins.items()) hold.margins.push_back(margin.number());
@@ -335,26 +199,6 @@ HoldRecord read_hold(const JsonNode& node, std::size_t num_grasps) {
                  std::to_string(num_grasps) + " grasps");
   }
   return hold;
-}
-
-PlannerTimings read_timings(const JsonNode& node) {
-  PlannerTimings timings;
-  const JsonNode object = node.at("object");
-  timings.object.query_s = object.at("query_s").number();
-  timings.object.patches_s = object.at("patches_s").number();
-  timings.object.voxels_s = object.at("voxels_s").number();
-  timings.object.distance_s = object.at("distance_s").number();
-  timings.object.scores_s = object.at("scores_s").number();
-  timings.object.weak_s = object.at("weak_s").number();
-  timings.guidance_s = node.at("guidance_s").number();
-  timings.targets_s = node.at("targets_s").number();
-  timings.fitting_s = node.at("fitting_s").number();
-  timings.contact_tests_s = node.at("contact_tests_s").number();
-  timings.measure_s = node.at("measure_s").number();
-  timings.refinement_s = node.at("refinement_s").number();
-  timings.pre_grasp_s = node.at("pre_grasp_s").number();
-  timings.total_s = node.at("total_s").number();
-  return timings;
 }
 
 }  // namespace
@@ -390,7 +234,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.version = planner.at("version").text();
   const JsonNode used = planner.at("used");
   for (const JsonNode& finger : used.at("fingers").items()) {
-    index_by_name(file.hand.fingers, finger);
+    internal::index_by_name(file.hand.fingers, finger);
     file.fingers.push_back(finger.text());
   }
   file.palm = used.at("palm").flag();
@@ -412,7 +256,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
     if (key != "imported") continue;
     file.imported = {node.at("format").text(), node.at("file").path(), node.at("sha256").text()};
   }
-  file.timings = read_timings(root.at("timings"));
+  JsonReader{root}.group("timings", file.timings, internal::timings_fields);
   return file;
 }
 

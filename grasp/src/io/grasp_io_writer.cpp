@@ -6,6 +6,8 @@
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "io/grasp_fields.hpp"
+#include "io/json_fields.hpp"
 #include "io/json_text.hpp"
 #include "io/planner_options_json.hpp"
 #include "io/record_json.hpp"
@@ -15,20 +17,9 @@ namespace graspfit::grasp {
 namespace {
 
 using geometry::RigidTransform;
-using internal::finger_name;
 using internal::Json;
-using internal::or_null;
+using internal::JsonWriter;
 using internal::to_json;
-
-/// JSON has no infinity; raw scores of planes are infinite.
-Json score_or_infinity(double score) {
-  return std::isfinite(score) ? Json(score) : Json("infinity");
-}
-
-template <class Enum>
-Json choice(Enum value) {
-  return std::string(name_of(value));
-}
 
 Json conventions() {
   return {
@@ -168,172 +159,80 @@ Json squeeze_json(const hands::HandModel& hand, const std::optional<contact::Squ
   return json;
 }
 
-/// What the grasp withstands and all that the numbers depend on; null where it was not measured,
-/// which leaves the torque scale unset.
+/// Null where it was not measured, which leaves the torque scale unset.
 Json wrench_json(const contact::WrenchQuality& wrench) {
-  const contact::WrenchConvention& convention = wrench.convention;
-  const contact::WrenchSpaceOptions& options = convention.options;
-  if (std::isnan(options.torque_scale)) return nullptr;
-  return {{"epsilon", wrench.epsilon},
-          {"volume", wrench.volume},
-          {"is_force_closure", wrench.is_force_closure},
-          {"rank", wrench.rank},
-          {"convention",
-           {{"tool", convention.tool ? choice(*convention.tool) : Json(nullptr)},
-            {"reference_point_O_m", to_json(convention.reference_point_O)},
-            {"torque_scale_m", options.torque_scale},
-            {"friction", options.friction},
-            {"num_cone_edges", options.num_cone_edges},
-            {"norm", choice(options.norm)},
-            {"force_scaling", choice(options.force_scaling)},
-            {"force_limit", options.force_limit},
-            {"outside", choice(options.outside)}}}};
+  if (std::isnan(wrench.convention.options.torque_scale)) return nullptr;
+  Json json;
+  JsonWriter at(json);
+  internal::wrench_fields(at, wrench);
+  return json;
 }
 
-Json contact_json(const hands::HandModel& hand, const contact::Contact& contact) {
-  return {{"link", hand.links[contact.link].name},
-          {"pad", hand.pads[contact.pad].name},
-          {"finger", finger_name(hand, contact.finger)},
-          {"point_O_m", to_json(contact.point_O)},
-          {"inward_normal_O", to_json(contact.inward_normal_O)},
-          {"area_m2", contact.area},
-          {"pad_boundary_distance_m", contact.pad_boundary_distance},
-          {"gap_m", contact.gap},
-          {"weak", or_null(contact.weak)},
-          {"target", contact.is_target}};
-}
-
-/// Adds the measure and every term it came from to a grasp's object.
-void add_quality(const contact::ContactQuality& quality, Json& grasp) {
-  Json terms = Json::array();
-  for (const contact::SustainabilityTerm& term : quality.terms) {
-    terms.push_back({{"boundary_distance", term.boundary_distance},
-                     {"area", term.area},
-                     {"strength", term.strength}});
-  }
-  Json pairs = Json::array();
-  for (const contact::StablePair& pair : quality.stable_pairs) {
-    pairs.push_back(
+Json stable_pairs_json(const std::vector<contact::StablePair>& pairs) {
+  Json json = Json::array();
+  for (const contact::StablePair& pair : pairs) {
+    json.push_back(
         {{"contacts", Json::array({pair.first, pair.second})}, {"angle_rad", pair.angle}});
   }
-  grasp["m"] = quality.m;
-  grasp["m1"] = quality.m1;
-  grasp["m2"] = quality.m2;
-  grasp["m3"] = quality.m3;
-  grasp["regularity"] = quality.regularity;
-  grasp["centroid_distance_m"] = quality.centroid_distance;
-  grasp["scaled_centroid_distance"] = quality.scaled_centroid_distance;
-  grasp["sustainability_terms"] = terms;
-  grasp["stable_pairs"] = pairs;
-}
-
-Json penetration_json(const hands::HandModel& hand, const GraspPenetration& penetration) {
-  const auto link_name = [&hand](int link) {
-    return link < 0 ? Json(nullptr) : Json(hand.links[link].name);
-  };
-  return {{"object_intersects", penetration.object_intersects},
-          {"object_depth_m", penetration.object_depth},
-          {"object_depth_bound_m", penetration.object_depth_bound},
-          {"object_link", link_name(penetration.object_link)},
-          {"self_intersects", penetration.self_intersects},
-          {"self_depth_m", penetration.self_depth},
-          {"self_link_a", link_name(penetration.self_link_a)},
-          {"self_link_b", link_name(penetration.self_link_b)},
-          {"surroundings_touched", penetration.surroundings_touched}};
-}
-
-Json targets_json(const hands::HandModel& hand, const TargetContacts& targets) {
-  Json contacts = Json::array();
-  for (const TargetContact& target : targets.contacts) {
-    contacts.push_back({{"finger", finger_name(hand, target.finger)},
-                        {"point_O_m", to_json(target.point_O)},
-                        {"outward_normal_O", to_json(target.outward_normal_O)},
-                        {"patch", target.patch},
-                        {"score", score_or_infinity(target.score)}});
-  }
-  return {{"seeds_tried", targets.seeds_tried}, {"rank", targets.rank}, {"contacts", contacts}};
+  return json;
 }
 
 Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t rank) {
-  Json contacts = Json::array();
-  for (const contact::Contact& contact : grasp.contacts)
-    contacts.push_back(contact_json(hand, contact));
   Json json = {{"rank", rank},
                {"usable", grasp.is_usable()},
                {"valid", grasp.is_valid()},
                {"has_all_contacts", grasp.has_all_contacts}};
-  add_quality(grasp.quality, json);
-  json["ideal_m"] = grasp.ideal_m;
-  json["largest_penetration_m"] = largest_penetration(grasp);
-  json["largest_contact_gap_m"] = largest_contact_gap(grasp);
-  json["largest_claimed_gap_m"] = largest_claimed_gap(grasp);
+  JsonWriter at(json, &hand);
+  internal::quality_fields(at, grasp.quality);
+  json["stable_pairs"] = stable_pairs_json(grasp.quality.stable_pairs);
+  at(grasp.ideal_m, "ideal_m");
+  at(largest_penetration(grasp), "largest_penetration_m");
+  at(largest_contact_gap(grasp), "largest_contact_gap_m");
+  at(largest_claimed_gap(grasp), "largest_claimed_gap_m");
   json["wrench"] = wrench_json(grasp.wrench);
   json.update(configuration_json(hand, grasp.configuration));
-  json["contacts"] = contacts;
-  json["penetration"] = penetration_json(hand, grasp.penetration);
-  json["targets"] = targets_json(hand, grasp.targets);
-  json["attempt"] = grasp.attempt;
-  json["iterations"] = grasp.iterations;
-  json["refinement_iterations"] = grasp.refinement_iterations;
+  at.list(grasp.contacts, "contacts", internal::contact_fields);
+  at.group("penetration", grasp.penetration, internal::penetration_fields);
+  at.group("targets", grasp.targets, internal::targets_fields);
+  at(grasp.attempt, "attempt");
+  at(grasp.iterations, "iterations");
+  at(grasp.refinement_iterations, "refinement_iterations");
   json["pre_grasp"] = pre_grasp_json(hand, grasp.pre_grasp);
   json["squeeze"] = squeeze_json(hand, grasp.squeeze);
   return json;
 }
 
 Json hold_json(const HoldRecord& hold) {
-  Json stages = Json::object();
-  for (const auto& [stage, count] : hold.stages) stages[stage] = count;
-  return {{"protocol", hold.protocol},
-          {"stages", stages},
-          {"margins_N", hold.margins.empty() ? Json(nullptr) : Json(hold.margins)}};
-}
-
-Json results_json(const GraspFile& file) {
-  Json grasps = Json::array();
-  for (const Grasp& grasp : file.grasps) {
-    grasps.push_back(grasp_json(file.hand, grasp, grasps.size() + 1));
-  }
-  Json outcomes = Json::object();
-  for (const auto& [outcome, count] : file.statistics.outcomes) {
-    outcomes[outcome_name(outcome)] = count;
-  }
-  Json guidance = Json::object();
-  for (const auto& [what, count] : file.statistics.guidance) guidance[what] = count;
-  Json target_failures = Json::object();
-  for (const auto& [reason, count] : file.statistics.target_failures) {
-    target_failures[reason] = count;
-  }
-  Json json = {{"stop", choice(file.stop)},
-               {"statistics",
-                {{"attempts", file.statistics.attempts},
-                 {"outcomes", outcomes},
-                 {"target_failures", target_failures},
-                 {"guidance", guidance},
-                 {"seeds_tried", file.statistics.seeds_tried},
-                 {"fitting_iterations", file.statistics.fitting_iterations},
-                 {"refinement_iterations", file.statistics.refinement_iterations},
-                 {"duplicates", file.statistics.duplicates}}}};
-  if (file.hold) json["hold"] = hold_json(*file.hold);
-  json["grasps"] = grasps;
+  Json json = {{"protocol", hold.protocol}};
+  JsonWriter at(json);
+  at.counts(hold.stages, "stages");
+  json["margins_N"] = hold.margins.empty() ? Json(nullptr) : Json(hold.margins);
   return json;
 }
 
-Json timings_json(const PlannerTimings& timings) {
-  return {{"object",
-           {{"query_s", timings.object.query_s},
-            {"patches_s", timings.object.patches_s},
-            {"voxels_s", timings.object.voxels_s},
-            {"distance_s", timings.object.distance_s},
-            {"scores_s", timings.object.scores_s},
-            {"weak_s", timings.object.weak_s}}},
-          {"guidance_s", timings.guidance_s},
-          {"targets_s", timings.targets_s},
-          {"fitting_s", timings.fitting_s},
-          {"contact_tests_s", timings.contact_tests_s},
-          {"measure_s", timings.measure_s},
-          {"refinement_s", timings.refinement_s},
-          {"pre_grasp_s", timings.pre_grasp_s},
-          {"total_s", timings.total_s}};
+Json statistics_json(const PlannerStatistics& statistics) {
+  Json json = {{"attempts", statistics.attempts}, {"outcomes", Json::object()}};
+  for (const auto& [outcome, count] : statistics.outcomes) {
+    json["outcomes"][outcome_name(outcome)] = count;
+  }
+  JsonWriter at(json);
+  at.counts(statistics.target_failures, "target_failures");
+  at.counts(statistics.guidance, "guidance");
+  at(statistics.seeds_tried, "seeds_tried");
+  at(statistics.fitting_iterations, "fitting_iterations");
+  at(statistics.refinement_iterations, "refinement_iterations");
+  at(statistics.duplicates, "duplicates");
+  return json;
+}
+
+Json results_json(const GraspFile& file) {
+  Json json = {{"stop", name_of(file.stop)}, {"statistics", statistics_json(file.statistics)}};
+  if (file.hold) json["hold"] = hold_json(*file.hold);
+  json["grasps"] = Json::array();
+  for (const Grasp& grasp : file.grasps) {
+    json["grasps"].push_back(grasp_json(file.hand, grasp, json["grasps"].size() + 1));
+  }
+  return json;
 }
 
 }  // namespace
@@ -354,7 +253,7 @@ std::string to_json(const GraspFile& file) {
                         {"sha256", file.imported->sha256}};
   }
   json["results"] = results_json(file);
-  json["timings"] = timings_json(file.timings);
+  JsonWriter(json).group("timings", file.timings, internal::timings_fields);
   return internal::json_text(json);
 }
 

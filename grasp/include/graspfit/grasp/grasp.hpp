@@ -19,11 +19,11 @@ struct GraspPenetration {
   bool object_intersects = false;   ///< Exact: some link and the object share a point.
   double object_depth = 0.0;        ///< Deepest overlap of a link and the object found [m].
   double object_depth_bound = 0.0;  ///< The true depth is at most this [m].
-  int object_link = -1;             ///< The deepest link.
+  std::optional<int> object_link;   ///< The deepest link, if any overlaps.
   bool self_intersects = false;     ///< Exact: two links that are not excluded share a point.
   double self_depth = 0.0;          ///< [m]
-  int self_link_a = -1;
-  int self_link_b = -1;
+  std::optional<int> self_link_a;   ///< The two deepest in each other, if any overlap.
+  std::optional<int> self_link_b;
   bool surroundings_touched = false;  ///< Some link touches the table or an obstacle.
   bool is_any() const { return object_intersects || self_intersects || surroundings_touched; }
 };

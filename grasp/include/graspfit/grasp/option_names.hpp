@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,67 +27,129 @@ struct NamedValue {
   Enum value;
   std::string_view name;
 };
-
-/// All values of an enumeration of the planner and of wrench conventions, in their order of
-/// declaration. Defined for the types listed below; no others link.
 template <class Enum>
-std::span<const NamedValue<Enum>> named_values();
+NamedValue(Enum, const char*) -> NamedValue<Enum>;
 
+/// All values of an enumeration with their names, in their order of declaration: of those of the
+/// planner and of wrench conventions that follow; of others nothing, which does not compile.
+template <class Enum>
+inline constexpr auto kNames = nullptr;
 template <>
-std::span<const NamedValue<GraspStyle>> named_values<GraspStyle>();
+inline constexpr std::array kNames<GraspStyle> = {NamedValue{GraspStyle::Precision, "precision"},
+                                                  NamedValue{GraspStyle::Power, "power"}};
 template <>
-std::span<const NamedValue<Acceptance>> named_values<Acceptance>();
+inline constexpr std::array kNames<Acceptance> = {NamedValue{Acceptance::Valid, "valid"},
+                                                  NamedValue{Acceptance::Usable, "usable"}};
 template <>
-std::span<const NamedValue<MissingContact>> named_values<MissingContact>();
+inline constexpr std::array kNames<MissingContact> = {
+    NamedValue{MissingContact::Fails, "fails"}, NamedValue{MissingContact::Measured, "measured"}};
 template <>
-std::span<const NamedValue<ApproachSource>> named_values<ApproachSource>();
+inline constexpr std::array kNames<ApproachSource> = {
+    NamedValue{ApproachSource::Surface, "surface"},
+    NamedValue{ApproachSource::BoxRays, "box-rays"}};
 template <>
-std::span<const NamedValue<SearchRule>> named_values<SearchRule>();
+inline constexpr std::array kNames<SearchRule> = {NamedValue{SearchRule::Best, "best"},
+                                                  NamedValue{SearchRule::First, "first"}};
 template <>
-std::span<const NamedValue<AttemptChoice>> named_values<AttemptChoice>();
+inline constexpr std::array kNames<AttemptChoice> = {
+    NamedValue{AttemptChoice::First, "first"}, NamedValue{AttemptChoice::Balanced, "balanced"},
+    NamedValue{AttemptChoice::Strongest, "strongest"}};
 template <>
-std::span<const NamedValue<PenetrationGuard>> named_values<PenetrationGuard>();
+inline constexpr std::array kNames<PenetrationGuard> = {
+    NamedValue{PenetrationGuard::Voxels, "voxels"}, NamedValue{PenetrationGuard::Meshes, "meshes"}};
 template <>
-std::span<const NamedValue<Rejection>> named_values<Rejection>();
+inline constexpr std::array kNames<Rejection> = {NamedValue{Rejection::None, "none"},
+                                                 NamedValue{Rejection::Deviation, "deviation"},
+                                                 NamedValue{Rejection::Quality, "quality"}};
 template <>
-std::span<const NamedValue<ContactState>> named_values<ContactState>();
+inline constexpr std::array kNames<ContactState> = {
+    NamedValue{ContactState::Closed, "closed"},
+    NamedValue{ContactState::FirstGraze, "first-graze"}};
 template <>
-std::span<const NamedValue<PalmAfterContact>> named_values<PalmAfterContact>();
+inline constexpr std::array kNames<PalmAfterContact> = {
+    NamedValue{PalmAfterContact::Frozen, "frozen"},
+    NamedValue{PalmAfterContact::Recentred, "recentred"}};
 template <>
-std::span<const NamedValue<contact::CountedPads>> named_values<contact::CountedPads>();
+inline constexpr std::array kNames<contact::CountedPads> = {
+    NamedValue{contact::CountedPads::All, "all"},
+    NamedValue{contact::CountedPads::TipsAndPalm, "tips-and-palm"}};
 template <>
-std::span<const NamedValue<contact::ContactPieces>> named_values<contact::ContactPieces>();
+inline constexpr std::array kNames<contact::ContactPieces> = {
+    NamedValue{contact::ContactPieces::Joined, "joined"},
+    NamedValue{contact::ContactPieces::Separate, "separate"}};
 template <>
-std::span<const NamedValue<geometry::PatchAveraging>> named_values<geometry::PatchAveraging>();
+inline constexpr std::array kNames<geometry::PatchAveraging> = {
+    NamedValue{geometry::PatchAveraging::AreaWeighted, "area-weighted"},
+    NamedValue{geometry::PatchAveraging::Plain, "plain"}};
 template <>
-std::span<const NamedValue<ScoreNormalization>> named_values<ScoreNormalization>();
+inline constexpr std::array kNames<ScoreNormalization> = {
+    NamedValue{ScoreNormalization::FloorMedian, "floor-median"},
+    NamedValue{ScoreNormalization::Max, "max"}, NamedValue{ScoreNormalization::Raw, "raw"}};
 template <>
-std::span<const NamedValue<PlaneDistance>> named_values<PlaneDistance>();
+inline constexpr std::array kNames<PlaneDistance> = {
+    NamedValue{PlaneDistance::Unsigned, "unsigned"},
+    NamedValue{PlaneDistance::SignedMean, "signed-mean"}};
 template <>
-std::span<const NamedValue<PairRule>> named_values<PairRule>();
+inline constexpr std::array kNames<PairRule> = {NamedValue{PairRule::Seed, "seed"},
+                                                NamedValue{PairRule::AllPairs, "all-pairs"}};
 template <>
-std::span<const NamedValue<contact::MeasureUnits>> named_values<contact::MeasureUnits>();
+inline constexpr std::array kNames<contact::MeasureUnits> = {
+    NamedValue{contact::MeasureUnits::Normalized, "normalized"},
+    NamedValue{contact::MeasureUnits::Centimeters, "cm"}};
 template <>
-std::span<const NamedValue<contact::Regularity>> named_values<contact::Regularity>();
+inline constexpr std::array kNames<contact::Regularity> = {
+    NamedValue{contact::Regularity::Combined, "combined"},
+    NamedValue{contact::Regularity::AngleOnly, "angle-only"},
+    NamedValue{contact::Regularity::EdgeOnly, "edge-only"}};
 template <>
-std::span<const NamedValue<contact::HullCentroid>> named_values<contact::HullCentroid>();
+inline constexpr std::array kNames<contact::HullCentroid> = {
+    NamedValue{contact::HullCentroid::Measure, "measure"},
+    NamedValue{contact::HullCentroid::Vertices, "vertices"}};
 template <>
-std::span<const NamedValue<PlannerStop>> named_values<PlannerStop>();
+inline constexpr std::array kNames<PlannerStop> = {
+    NamedValue{PlannerStop::Count, "count"},
+    NamedValue{PlannerStop::Attempts, "attempts"},
+    NamedValue{PlannerStop::Exhausted, "exhausted"},
+    NamedValue{PlannerStop::WallClock, "wall-clock"},
+    NamedValue{PlannerStop::Iterations, "iterations"},
+    NamedValue{PlannerStop::Interrupted, "interrupted"}};
 template <>
-std::span<const NamedValue<TargetSearch>> named_values<TargetSearch>();
+inline constexpr std::array kNames<TargetSearch> = {NamedValue{TargetSearch::Random, "random"},
+                                                    NamedValue{TargetSearch::Ranked, "ranked"}};
 template <>
-std::span<const NamedValue<contact::WrenchTool>> named_values<contact::WrenchTool>();
+inline constexpr std::array kNames<contact::WrenchTool> = {
+    NamedValue{contact::WrenchTool::House, "house"},
+    NamedValue{contact::WrenchTool::GraspIt, "graspit"},
+    NamedValue{contact::WrenchTool::Simox, "simox"},
+    NamedValue{contact::WrenchTool::DexNet, "dex-net"},
+    NamedValue{contact::WrenchTool::Frogger, "frogger"},
+    NamedValue{contact::WrenchTool::DexGraspBench, "dexgraspbench"}};
 template <>
-std::span<const NamedValue<contact::ForceNorm>> named_values<contact::ForceNorm>();
+inline constexpr std::array kNames<contact::ForceNorm> = {NamedValue{contact::ForceNorm::L1, "l1"}};
 template <>
-std::span<const NamedValue<contact::ForceScaling>> named_values<contact::ForceScaling>();
+inline constexpr std::array kNames<contact::ForceScaling> = {
+    NamedValue{contact::ForceScaling::UnitNormal, "unit-normal"},
+    NamedValue{contact::ForceScaling::UnitEdge, "unit-edge"}};
 template <>
-std::span<const NamedValue<contact::OutsideValue>> named_values<contact::OutsideValue>();
+inline constexpr std::array kNames<contact::OutsideValue> = {
+    NamedValue{contact::OutsideValue::Zero, "zero"},
+    NamedValue{contact::OutsideValue::MinusOne, "minus-one"},
+    NamedValue{contact::OutsideValue::Signed, "signed"}};
 template <>
-std::span<const NamedValue<geometry::RepairMode>> named_values<geometry::RepairMode>();
+inline constexpr std::array kNames<geometry::RepairMode> = {
+    NamedValue{geometry::RepairMode::Repair, "repair"},
+    NamedValue{geometry::RepairMode::Strict, "strict"},
+    NamedValue{geometry::RepairMode::AsIs, "as-is"}};
 template <>
-std::span<const NamedValue<geometry::SelfIntersections>>
-named_values<geometry::SelfIntersections>();
+inline constexpr std::array kNames<geometry::SelfIntersections> = {
+    NamedValue{geometry::SelfIntersections::Leave, "leave"},
+    NamedValue{geometry::SelfIntersections::Report, "report"},
+    NamedValue{geometry::SelfIntersections::Resolve, "resolve"}};
+
+template <class Enum>
+constexpr std::span<const NamedValue<Enum>> named_values() {
+  return kNames<Enum>;
+}
 
 /// The name of a value; empty for a value that the enumeration does not have.
 template <class Enum>

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <type_traits>
+#include <vector>
+
+#include "graspfit/base/path_text.hpp"
+#include "graspfit/grasp/option_names.hpp"
+#include "graspfit/grasp/option_row.hpp"
+#include "io/json_node.hpp"
+#include "io/record_json.hpp"
+
+/// \file
+/// Structs as JSON objects, their fields named once: a function `[](auto& at, auto& s) {...}` names
+/// them to a writer or to a reader, in the order of the file.
+
+namespace graspfit::grasp::internal {
+
+/// Puts fields into a JSON object.
+class JsonWriter {
+ public:
+  /// `hand` is asked for the names of its parts; structs that refer to none do not need it.
+  explicit JsonWriter(Json& json, const hands::HandModel* hand = nullptr)
+      : json_(json), hand_(hand) {}
+
+  template <class Value>
+  void operator()(const Value& value, const char* key) {
+    json_[key] = json_of(value);
+  }
+  template <class Value>
+  void operator()(const Value& value, const OptionRow& row) {
+    json_[row.key] = json_of(value);
+  }
+  void path(const std::string& path, const char* key) { json_[key] = base::path_text(path); }
+  void counts(const std::map<std::string, std::int64_t>& counts, const char* key) {
+    json_[key] = Json::object();
+    for (const auto& [name, count] : counts) json_[key][name] = count;
+  }
+  void link(int link, const char* key) { json_[key] = hand_->links[link].name; }
+  void link(const std::optional<int>& link, const char* key) {
+    json_[key] = link ? Json(hand_->links[*link].name) : Json(nullptr);
+  }
+  void pad(int pad, const char* key) { json_[key] = hand_->pads[pad].name; }
+  template <class Part>
+  void part(const Part& part, const char* key) {
+    json_[key] = finger_name(*hand_, part);
+  }
+
+  template <class Struct, class Fields>
+  void group(std::string_view key, const Struct& within, const Fields& fields) {
+    json_[key] = object_of(within, fields);
+  }
+  template <class Struct, class Fields>
+  void optional_group(std::string_view key, const std::optional<Struct>& within,
+                      const Fields& fields) {
+    json_[key] = within ? object_of(*within, fields) : Json(nullptr);
+  }
+  template <class Struct, class Fields>
+  void list(const std::vector<Struct>& items, const char* key, const Fields& fields) {
+    json_[key] = Json::array();
+    for (const Struct& item : items) json_[key].push_back(object_of(item, fields));
+  }
+
+ private:
+  template <class Struct, class Fields>
+  Json object_of(const Struct& within, const Fields& fields) {
+    Json json = Json::object();
+    JsonWriter writer(json, hand_);
+    fields(writer, within);
+    return json;
+  }
+  static Json json_of(double value) {
+    return std::isinf(value) ? Json("infinity") : Json(value);  // JSON has no infinity
+  }
+  static Json json_of(const Eigen::Vector3d& value) { return to_json(value); }
+  template <class Value>
+  static Json json_of(const std::optional<Value>& value) {
+    return value ? json_of(*value) : Json(nullptr);
+  }
+  template <class Value>
+  static Json json_of(const Value& value) {
+    if constexpr (std::is_enum_v<Value>) {
+      return std::string(name_of(value));
+    } else {
+      return value;
+    }
+  }
+
+  Json& json_;
+  const hands::HandModel* hand_;
+};
+
+/// The index of the part of a hand that has this name.
+template <class Item>
+int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].name == name.text()) return static_cast<int>(i);
+  }
+  name.fail("the hand has nothing named \"" + name.text() + "\"");
+}
+
+/// Sets fields from the members of a JSON object. @throws IoError: file, place, what is wrong.
+class JsonReader {
+ public:
+  explicit JsonReader(JsonNode node, const hands::HandModel* hand = nullptr)
+      : node_(std::move(node)), hand_(hand) {}
+
+  template <class Value>
+  void operator()(Value& value, const char* key) const {
+    read(node_.at(key), value);
+  }
+  template <class Value>
+  void operator()(Value& value, const OptionRow& row) const {
+    read(node_.at(std::string(row.key)), value);
+  }
+  void path(std::string& path, const char* key) const { path = node_.at(key).path(); }
+  void counts(std::map<std::string, std::int64_t>& counts, const char* key) const {
+    for (const auto& [name, count] : node_.at(key).members()) counts[name] = count.integer();
+  }
+  void link(int& link, const char* key) const { link = index_by_name(hand_->links, node_.at(key)); }
+  void link(std::optional<int>& link, const char* key) const {
+    if (!node_.at(key).is_null()) link = index_by_name(hand_->links, node_.at(key));
+  }
+  void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
+  template <class Part>
+  void part(Part& part, const char* key) const {
+    const JsonNode name = node_.at(key);
+    if (name.is_null()) return;
+    part = name.text() == "palm" ? contact::kPalm : index_by_name(hand_->fingers, name);
+  }
+
+  template <class Struct, class Fields>
+  void group(std::string_view key, Struct& within, const Fields& fields) const {
+    JsonReader reader(node_.at(std::string(key)), hand_);
+    fields(reader, within);
+  }
+  template <class Struct, class Fields>
+  void optional_group(std::string_view key, std::optional<Struct>& within,
+                      const Fields& fields) const {
+    within.reset();
+    if (!node_.at(std::string(key)).is_null()) group(key, within.emplace(), fields);
+  }
+  template <class Struct, class Fields>
+  void list(std::vector<Struct>& items, const char* key, const Fields& fields) const {
+    for (const JsonNode& item : node_.at(key).items()) {
+      JsonReader reader(item, hand_);
+      fields(reader, items.emplace_back());
+    }
+  }
+
+ private:
+  static void read(const JsonNode& node, double& value) {
+    const bool is_infinite = node.is_text() && node.text() == "infinity";
+    value = is_infinite ? std::numeric_limits<double>::infinity() : node.number();
+  }
+  static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
+  static void read(const JsonNode& node, std::int64_t& value) { value = node.integer(); }
+  static void read(const JsonNode& node, std::size_t& value) { value = node.count(); }
+  static void read(const JsonNode& node, bool& value) { value = node.flag(); }
+  static void read(const JsonNode& node, std::string& value) { value = node.text(); }
+  static void read(const JsonNode& node, std::vector<std::string>& value) { value = node.texts(); }
+  static void read(const JsonNode& node, Eigen::Vector3d& value) { value = node.vector3(); }
+  template <class Value>
+  static void read(const JsonNode& node, std::optional<Value>& value) {
+    value.reset();
+    if (!node.is_null()) read(node, value.emplace());
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  static void read(const JsonNode& node, Enum& value) { value = node.choice<Enum>(); }
+
+  JsonNode node_;
+  const hands::HandModel* hand_;
+};
+
+}  // namespace graspfit::grasp::internal
