@@ -52,15 +52,6 @@ struct Piece {
   bool is_proven = false;  ///< The latter.
 };
 
-bool is_closed(const TriangleMesh& mesh) {
-  bool is_closed = !mesh.faces.empty();
-  internal::for_each_edge(internal::sorted_sides(mesh), [&](auto first, auto last) {
-    const auto up = std::count_if(first, last, [](const auto& side) { return side.runs_up(); });
-    is_closed = is_closed && 2 * up == last - first;
-  });
-  return is_closed;
-}
-
 /// Without vertices of no face.
 TriangleMesh used_part(const TriangleMesh& mesh) {
   std::vector<std::int32_t> index(mesh.vertices.size(), -1);
@@ -338,7 +329,7 @@ void ConvexDecompositionOptions::validate() const {
 ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,
                                          const ConvexDecompositionOptions& options) {
   options.validate();
-  if (!is_closed(mesh)) {
+  if (mesh.faces.empty() || !internal::bounds_solid(mesh)) {
     throw base::DegenerateGeometry(
         "convex_decomposition: the mesh is not closed and bounds no solid; repair it first");
   }

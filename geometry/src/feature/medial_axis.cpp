@@ -7,7 +7,7 @@
 #include <string>
 
 #include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/base/parallel_for.hpp"
 
 namespace graspfit::geometry {
@@ -60,20 +60,11 @@ std::optional<MedialBall> shrunken_ball(const MeshQuery& object, const SurfaceSa
 }  // namespace
 
 void MedialBallOptions::validate() const {
-  const auto check = [](const char* field, double value, double least, double most) {
-    if (value >= least && value <= most) return;
-    throw base::InvalidInput(std::string("MedialBallOptions: ") + field + " = " +
-                             base::shortest_decimal(value) + ", must be in [" +
-                             base::shortest_decimal(least) + ", " + base::shortest_decimal(most) +
-                             "]");
-  };
-  check("min_object_angle_deg", min_object_angle_deg, 0.0, 180.0);
-  check("min_radius_rel", min_radius_rel, 0.0, 1.0);
-  check("emptiness_tolerance", emptiness_tolerance, 1e-12, 0.1);
-  if (num_threads < 0) {
-    throw base::InvalidInput("MedialBallOptions: num_threads = " + std::to_string(num_threads) +
-                             ", must be >= 0");
-  }
+  const char* const where = "MedialBallOptions";
+  base::require_between(0.0, 180.0, where, "min_object_angle_deg", min_object_angle_deg);
+  base::require_between(0.0, 1.0, where, "min_radius_rel", min_radius_rel);
+  base::require_between(1e-12, 0.1, where, "emptiness_tolerance", emptiness_tolerance);
+  base::require(num_threads >= 0, where, "num_threads", num_threads, ">= 0");
 }
 
 std::vector<MedialBall> medial_balls(const MeshQuery& object,

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/base/parallel_for.hpp"
 #include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
@@ -68,20 +68,12 @@ double trimmed_mean(std::vector<double>& lengths, double deviations) {
 }  // namespace
 
 void ShapeDiameterOptions::validate() const {
-  const auto refuse = [](const char* field, const std::string& value, const char* range) {
-    throw base::InvalidInput(std::string("ShapeDiameterOptions: ") + field + " = " + value +
-                             ", must be " + range);
-  };
-  if (num_rays < 1 || num_rays > 10000) {
-    refuse("num_rays", std::to_string(num_rays), "in [1, 10000]");
-  }
-  if (!(cone_angle_deg >= 0.0 && cone_angle_deg <= 179.0)) {
-    refuse("cone_angle_deg", base::shortest_decimal(cone_angle_deg), "in [0, 179] degrees");
-  }
-  if (!(trim_deviations > 0.0)) {
-    refuse("trim_deviations", base::shortest_decimal(trim_deviations), "> 0");
-  }
-  if (num_threads < 0) refuse("num_threads", std::to_string(num_threads), ">= 0");
+  const char* const where = "ShapeDiameterOptions";
+  base::require_between(1, 10000, where, "num_rays", num_rays);
+  base::require(cone_angle_deg >= 0.0 && cone_angle_deg <= 179.0, where, "cone_angle_deg",
+                cone_angle_deg, "in [0, 179] degrees");
+  base::require(trim_deviations > 0.0, where, "trim_deviations", trim_deviations, "> 0");
+  base::require(num_threads >= 0, where, "num_threads", num_threads, ">= 0");
 }
 
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options) {

@@ -52,11 +52,7 @@ class NearVoxels {
     const Vector3i block = voxel / edge_;
     const Vector3i low = (block.array() - 1).max(0);
     const Vector3i high = (block.array() + 1).min(counts_.array() - 1);
-    for (int k = low[2]; k <= high[2]; ++k) {
-      for (int j = low[1]; j <= high[1]; ++j) {
-        for (int i = low[0]; i <= high[0]; ++i) is_near_[at({i, j, k})] = 1;
-      }
-    }
+    for_each_in_block(low, high, [&](const Vector3i& place) { is_near_[at(place)] = 1; });
   }
   bool has(const Vector3i& voxel) const { return is_near_[at(voxel / edge_)] != 0; }
 

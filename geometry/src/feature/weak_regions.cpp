@@ -8,8 +8,7 @@
 
 #include "feature/solid_opening.hpp"
 #include "graspfit/base/bounded_integer.hpp"
-#include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "voxel/voxel_sets.hpp"
@@ -255,22 +254,13 @@ class RegionSearch {
 }  // namespace
 
 void WeakRegionOptions::validate() const {
-  const auto refuse = [](const char* field, const std::string& value, const char* range) {
-    throw base::InvalidInput(std::string("WeakRegionOptions: ") + field + " = " + value +
-                             ", must be " + range);
-  };
-  if (!(weak_thickness > 0.0) || !std::isfinite(weak_thickness)) {
-    refuse("weak_thickness", base::shortest_decimal(weak_thickness), "finite and > 0 m");
-  }
-  if (!(min_length_ratio >= 0.0) || !std::isfinite(min_length_ratio)) {
-    refuse("min_length_ratio", base::shortest_decimal(min_length_ratio), "finite and >= 0");
-  }
-  if (!(voxels_per_thickness >= 4.0 && voxels_per_thickness <= 32.0)) {
-    refuse("voxels_per_thickness", base::shortest_decimal(voxels_per_thickness), "in [4, 32]");
-  }
-  if (max_resolution < kLeastResolution || max_resolution > 512) {
-    refuse("max_resolution", std::to_string(max_resolution), "in [16, 512]");
-  }
+  const char* const where = "WeakRegionOptions";
+  base::require(weak_thickness > 0.0 && std::isfinite(weak_thickness), where, "weak_thickness",
+                weak_thickness, "finite and > 0 m");
+  base::require(min_length_ratio >= 0.0 && std::isfinite(min_length_ratio), where,
+                "min_length_ratio", min_length_ratio, "finite and >= 0");
+  base::require_between(4.0, 32.0, where, "voxels_per_thickness", voxels_per_thickness);
+  base::require_between(kLeastResolution, 512, where, "max_resolution", max_resolution);
   shape_diameter.validate();
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/dyadic_grid.hpp"
 
 namespace graspfit::geometry {
@@ -88,15 +88,10 @@ class PointsOfSum {
 }  // namespace
 
 void MinkowskiInradiusOptions::validate() const {
-  if (!(relative_gap >= 0.0) || !std::isfinite(relative_gap)) {
-    throw base::InvalidInput(
-        "MinkowskiInradiusOptions: relative_gap = " + base::shortest_decimal(relative_gap) +
-        ", must be finite and at least 0");
-  }
-  if (max_points < 1) {
-    throw base::InvalidInput("MinkowskiInradiusOptions: max_points = " +
-                             std::to_string(max_points) + ", must be at least 1");
-  }
+  base::require(relative_gap >= 0.0 && std::isfinite(relative_gap), "MinkowskiInradiusOptions",
+                "relative_gap", relative_gap, "finite and at least 0");
+  base::require(max_points >= 1, "MinkowskiInradiusOptions", "max_points", max_points,
+                "at least 1");
 }
 
 ConvexPolytope minkowski_sum(std::span<const MatrixXd> summands) {

@@ -8,6 +8,7 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/used_vertices.hpp"
 
@@ -77,9 +78,8 @@ double support_margin(const std::vector<Vector3d>& support, const Vector3d& up,
 
 void RestPoseOptions::validate() const {
   const auto require = [](const char* field, double value) {
-    if (value >= 0.0 && std::isfinite(value)) return;
-    throw base::InvalidInput(std::string("RestPoseOptions: ") + field + " = " +
-                             base::shortest_decimal(value) + ", must be finite and >= 0");
+    base::require(value >= 0.0 && std::isfinite(value), "RestPoseOptions", field, value,
+                  "finite and >= 0");
   };
   require("flatness", flatness);
   require("same_up", same_up);

@@ -6,6 +6,7 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/base/random.hpp"
 
 namespace graspfit::geometry {
@@ -67,10 +68,8 @@ class AreaSampler {
 }  // namespace
 
 void SurfaceSamplingOptions::validate() const {
-  if (count > kMostPoints) {
-    throw base::InvalidInput("SurfaceSamplingOptions: count = " + std::to_string(count) +
-                             ", must be at most " + std::to_string(kMostPoints));
-  }
+  base::require(count <= kMostPoints, "SurfaceSamplingOptions", "count", count,
+                "at most " + std::to_string(kMostPoints));
 }
 
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh,

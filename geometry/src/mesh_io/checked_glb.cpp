@@ -1,8 +1,6 @@
 #include "mesh_io/checked_glb.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -11,88 +9,26 @@
 #include <utility>
 #include <vector>
 
-#include "graspfit/base/atomic_file.hpp"
-#include "graspfit/base/errors.hpp"
 #include "graspfit/base/json_bounds.hpp"
+#include "mesh_io/gltf_buffer.hpp"
+#include "mesh_io/gltf_container.hpp"
+#include "mesh_io/text_scanner.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
 
 using Json = nlohmann::json;
+using gltf::fail;
+using gltf::kMostBufferBytes;
+using gltf::name_in_quotes;
+using gltf::numbered;
 using std::uint64_t;
 
 constexpr int kMostNodeDepth = 100;
-constexpr uint64_t kMostBufferBytes = uint64_t{1} << 30;
 constexpr uint64_t kMostVertices = 20'000'000;
 
-constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
-constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-
-[[noreturn]] void fail(const std::string& what) { throw base::IoError("not a glTF mesh: " + what); }
-
-std::string numbered(const char* what, std::size_t index) {
-  return std::string(what) + " " + std::to_string(index);
-}
-
-std::uint32_t decoded_u32(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-  }
-  return value;
-}
-
-void append_u32(std::string& out, std::uint32_t value) {
-  for (int i = 0; i < 4; ++i) out += static_cast<char>((value >> (8 * i)) & 0xFF);
-}
-
-/// JSON text and the bytes that come with it in a GLB.
-struct Container {
-  std::string_view json;
-  std::optional<std::string_view> binary;
-};
-
-Container opened(std::string_view content) {
-  if (!content.starts_with("glTF")) return {content, std::nullopt};
-  constexpr std::size_t kHeader = 12;
-  constexpr std::size_t kChunkHeader = 8;
-  if (content.size() < kHeader) fail("the file ends inside its header of 12 bytes");
-  const std::uint32_t version = decoded_u32(content, 4);
-  if (version != 2) fail("GLB version " + std::to_string(version) + ", only 2 is read");
-  const std::uint32_t length = decoded_u32(content, 8);
-  if (length < kHeader || length > content.size()) {
-    fail("it states " + std::to_string(length) + " bytes, the file has " +
-         std::to_string(content.size()));
-  }
-  Container container;
-  bool has_json = false;
-  std::string_view rest = content.substr(kHeader, length - kHeader);
-  for (std::size_t chunk = 0; !rest.empty(); ++chunk) {
-    if (rest.size() < kChunkHeader)
-      fail("it ends inside the header of " + numbered("chunk", chunk));
-    const std::uint32_t size = decoded_u32(rest, 0);
-    const std::uint32_t type = decoded_u32(rest, 4);
-    rest.remove_prefix(kChunkHeader);
-    if (size > rest.size()) {
-      fail(numbered("chunk", chunk) + " states " + std::to_string(size) + " bytes, " +
-           std::to_string(rest.size()) + " are left");
-    }
-    const std::string_view body = rest.substr(0, size);
-    rest.remove_prefix(size);
-    if (chunk == 0 && type != kJsonChunk) fail("its first chunk is not JSON");
-    if (chunk == 0) {
-      container.json = body;
-      has_json = true;
-    } else if (chunk == 1 && type == kBinaryChunk) {
-      container.binary = body;
-    }
-  }
-  if (!has_json) fail("it has no chunk of JSON");
-  return container;
-}
-
 Json parsed(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  text = without_byte_order_mark(text);
   base::require_bounded_json(text, "not a glTF mesh: its JSON");
   try {
     Json json = Json::parse(text);
@@ -154,122 +90,24 @@ const Json& member_object(const Json& parent, const char* key, const std::string
   return *found;
 }
 
-/// Whether `length` bytes from `offset` lie within `size`.
-bool fits(uint64_t offset, uint64_t length, uint64_t size) {
-  return offset <= size && length <= size - offset;
-}
-
-std::optional<std::string> base64_bytes(std::string_view text) {
-  while (text.ends_with('=')) text.remove_suffix(1);
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int num_bits = 0;
-  for (const char c : text) {
-    int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    if (c >= '0' && c <= '9') value = c - '0' + 52;
-    if (c == '+' || c == '-') value = 62;
-    if (c == '/' || c == '_') value = 63;
-    if (value < 0) return std::nullopt;
-    bits = ((bits << 6) | static_cast<std::uint32_t>(value)) & 0xFFFFFF;
-    num_bits += 6;
-    if (num_bits >= 8) {
-      num_bits -= 8;
-      bytes += static_cast<char>((bits >> num_bits) & 0xFF);
-    }
-  }
-  return bytes;
-}
-
-/// `%20` and the like as the bytes they stand for; empty if one is cut or stands for a zero byte.
-std::optional<std::string> percent_decoded(std::string_view text) {
-  const auto digit = [](char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-  };
-  std::string bytes;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char c = text[i];
-    if (c == '%') {
-      if (i + 2 >= text.size() || digit(text[i + 1]) < 0 || digit(text[i + 2]) < 0) {
-        return std::nullopt;
-      }
-      c = static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
-      i += 2;
-    }
-    if (c == '\0') return std::nullopt;
-    bytes += c;
-  }
-  return bytes;
-}
-
-/// A name for a message: short and printable.
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kMost = 60;
-  std::string result = "'";
-  for (const char c : text.substr(0, kMost)) result += c >= ' ' && c <= '~' ? c : '?';
-  return result + (text.size() > kMost ? "...'" : "'");
-}
-
-/// The bytes of a file that a buffer names, which must lie in `folder` or below.
-std::string bytes_of_uri(std::string_view uri, const std::filesystem::path& folder,
-                         const std::string& where) {
-  namespace fs = std::filesystem;
-  if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
-      fail(where + ": its data URI is not in base64");
-    }
-    const auto bytes = base64_bytes(uri.substr(comma + 1));
-    if (!bytes) fail(where + ": its data URI has a character that is not one of base64's");
-    return *bytes;
-  }
-  const auto name = percent_decoded(uri);
-  if (!name || name->empty()) fail(where + ": " + in_quotes(uri) + " is not a file's name");
-  const fs::path relative = *name;
-  const bool goes_up = std::find(relative.begin(), relative.end(), "..") != relative.end();
-  const bool has_scheme = uri.substr(0, uri.find('/')).find(':') != std::string_view::npos;
-  if (relative.is_absolute() || goes_up || has_scheme || name->find('\\') != std::string::npos) {
-    fail(where + ": " + in_quotes(uri) + " is not in the file's own folder");
-  }
-  const fs::path base = folder.empty() ? fs::path(".") : folder;
-  std::error_code error;
-  const fs::path file = fs::canonical(base / relative, error);
-  if (error) fail(where + ": " + in_quotes(uri) + ": no such file");
-  const fs::path root = fs::canonical(base, error);
-  if (error ||
-      std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end()) {
-    fail(where + ": " + in_quotes(uri) + " leads out of the file's own folder");
-  }
-  if (!fs::is_regular_file(file, error)) {
-    fail(where + ": " + in_quotes(uri) + " is not a regular file");
-  }
-  if (fs::file_size(file, error) > kMostBufferBytes || error) {
-    fail(where + ": " + in_quotes(uri) + " has more than " + std::to_string(kMostBufferBytes) +
-         " bytes");
-  }
-  return base::read_file(file);
+/// Refuses bytes that are not all within the `size` bytes of `whole`.
+void require_within(uint64_t size, const char* whole, uint64_t offset, uint64_t length,
+                    const std::string& where) {
+  if (offset <= size && length <= size - offset) return;
+  fail(where + ": " + std::to_string(length) + " bytes from " + std::to_string(offset) +
+       " are not within the " + std::to_string(size) + " of its " + whole);
 }
 
 /// Bytes of a component of an accessor.
 uint64_t component_size(uint64_t type, const std::string& where) {
-  switch (type) {
-    case 5120:
-    case 5121:
-      return 1;
-    case 5122:
-    case 5123:
-      return 2;
-    case 5125:
-    case 5126:
-      return 4;
-    default:
-      fail(where + ": unknown componentType " + std::to_string(type));
-  }
+  if (type == 5120 || type == 5121) return 1;
+  if (type == 5122 || type == 5123) return 2;
+  if (type == 5125 || type == 5126) return 4;
+  fail(where + ": unknown componentType " + std::to_string(type));
+}
+
+bool is_unsigned_integer(uint64_t component_type) {
+  return component_type == 5121 || component_type == 5123 || component_type == 5125;
 }
 
 /// Bytes of an element; columns of matrices begin at multiples of four.
@@ -282,7 +120,7 @@ uint64_t element_size(const std::string& type, uint64_t component, const std::st
   if (type == "MAT2") return matrix(2);
   if (type == "MAT3") return matrix(3);
   if (type == "MAT4") return matrix(4);
-  fail(where + ": unknown type " + in_quotes(type));
+  fail(where + ": unknown type " + name_in_quotes(type));
 }
 
 /// What of an accessor matters for its users.
@@ -296,7 +134,7 @@ struct Accessor {
 class Document {
  public:
   Document(std::string_view content, const std::filesystem::path& folder)
-      : container_(opened(content)), source_(parsed(container_.json)), folder_(folder) {}
+      : container_(gltf::opened(content)), source_(parsed(container_.json)), folder_(folder) {}
 
   std::string as_glb() {
     check_extensions();
@@ -307,17 +145,16 @@ class Document {
     add_nodes();
     add_scenes();
     target_["asset"] = {{"version", "2.0"}};
-    return packed();
+    return gltf::packed(target_.dump(), binary_);
   }
 
  private:
   void check_extensions() const {
-    const auto asset = source_.find("asset");
-    if (asset == source_.end() || !asset->is_object()) fail("it has no asset");
-    const auto version = asset->find("version");
-    if (version == asset->end() || !version->is_string()) fail("its asset has no version");
+    const Json& asset = member_object(source_, "asset", "it");
+    const auto version = asset.find("version");
+    if (version == asset.end() || !version->is_string()) fail("its asset has no version");
     const std::string text = version->get<std::string>();
-    if (!text.starts_with("2.")) fail("glTF version " + in_quotes(text) + ", only 2 is read");
+    if (!text.starts_with("2.")) fail("glTF version " + name_in_quotes(text) + ", only 2 is read");
     for (const char* key : {"extensionsRequired", "extensionsUsed"}) {
       const auto names = source_.find(key);
       if (names == source_.end() || !names->is_array()) continue;
@@ -342,7 +179,7 @@ class Document {
       std::string loaded;
       std::string_view bytes;
       if (uri != buffers[i].end()) {
-        loaded = bytes_of_uri(uri->get_ref<const std::string&>(), folder_, where);
+        loaded = gltf::buffer_bytes(uri->get_ref<const std::string&>(), folder_, where);
         bytes = loaded;
       } else if (i == 0 && container_.binary) {
         bytes = *container_.binary;
@@ -374,10 +211,7 @@ class Document {
       const uint64_t offset = *whole_member(views[i], "byteOffset", where, 0);
       const uint64_t length = required_whole(views[i], "byteLength", where);
       const auto [begin, size] = buffers_[*buffer];
-      if (!fits(offset, length, size)) {
-        fail(where + ": " + std::to_string(length) + " bytes from " + std::to_string(offset) +
-             " are not within the " + std::to_string(size) + " of its buffer");
-      }
+      require_within(size, "buffer", offset, length, where);
       const uint64_t stride = *whole_member(views[i], "byteStride", where, 0);
       if (stride != 0 && (stride < 4 || stride > 252)) {
         fail(where + ": byteStride " + std::to_string(stride) + ", must be in [4, 252]");
@@ -402,10 +236,7 @@ class Document {
     }
     // The count is at most kMostVertices here, so that the product does not overflow.
     const uint64_t bytes = count == 0 ? 0 : (count - 1) * step + size;
-    if (!fits(offset, bytes, length)) {
-      fail(where + ": " + std::to_string(bytes) + " bytes from " + std::to_string(offset) +
-           " are not within the " + std::to_string(length) + " of its bufferView");
-    }
+    require_within(length, "bufferView", offset, bytes, where);
   }
 
   static uint64_t required_index(const Json& object, const char* key, std::size_t count,
@@ -461,7 +292,7 @@ class Document {
     const Json& indices = member_object(sparse, "indices", where);
     const Json& values = member_object(sparse, "values", where);
     const uint64_t type = required_whole(indices, "componentType", where + " indices");
-    if (type != 5121 && type != 5123 && type != 5125) {
+    if (!is_unsigned_integer(type)) {
       fail(where + " indices: componentType " + std::to_string(type) + " is no unsigned integer");
     }
     const uint64_t index_size = component_size(type, where);
@@ -493,11 +324,8 @@ class Document {
       const Json& primitives = objects(meshes[i], "primitives");
       for (std::size_t k = 0; k < primitives.size(); ++k) {
         const std::string where = numbered("mesh", i) + ", " + numbered("primitive", k);
-        const auto attributes = primitives[k].find("attributes");
-        if (attributes == primitives[k].end() || !attributes->is_object()) {
-          fail(where + " has no attributes");
-        }
-        const auto position = index_member(*attributes, "POSITION", accessors_.size(), where);
+        const Json& attributes = member_object(primitives[k], "attributes", where);
+        const auto position = index_member(attributes, "POSITION", accessors_.size(), where);
         const auto indices = index_member(primitives[k], "indices", accessors_.size(), where);
         const uint64_t mode = *whole_member(primitives[k], "mode", where, 4);
         if (mode > 6) fail(where + ": unknown mode " + std::to_string(mode));
@@ -512,8 +340,7 @@ class Document {
         uint64_t num_corners = points.count;
         if (indices) {
           const Accessor& corners = accessors_[*indices];
-          const uint64_t type = corners.component_type;
-          if (corners.type != "SCALAR" || (type != 5121 && type != 5123 && type != 5125)) {
+          if (corners.type != "SCALAR" || !is_unsigned_integer(corners.component_type)) {
             fail(where + ": its indices are no unsigned integers");
           }
           num_corners = corners.count;
@@ -593,6 +420,15 @@ class Document {
     uint64_t vertices = 0;
     uint64_t corners = 0;
     std::size_t num_nodes = 0;
+
+    /// The sums stay far below overflow: what `shows` too much is refused before they grow on.
+    void add(const Size& more, const std::string& shows) {
+      vertices += more.vertices;
+      corners += more.corners;
+      if (vertices > kMostVertices || corners > kMostVertices) {
+        fail(shows + " more than " + std::to_string(kMostVertices) + " vertices or corners");
+      }
+    }
   };
 
   /// What hangs below a node, itself included.
@@ -606,14 +442,7 @@ class Document {
         fail("its nodes are nested more than " + std::to_string(kMostNodeDepth) + " deep");
       }
       ++sum.num_nodes;
-      if (node_mesh_[node]) {
-        sum.vertices += sizes_[*node_mesh_[node]].vertices;
-        sum.corners += sizes_[*node_mesh_[node]].corners;
-      }
-      // The sums stay far below overflow: they are looked at before they grow on.
-      if (sum.vertices > kMostVertices || sum.corners > kMostVertices) {
-        fail("its nodes show more than " + std::to_string(kMostVertices) + " vertices or corners");
-      }
+      if (node_mesh_[node]) sum.add(sizes_[*node_mesh_[node]], "its nodes show");
       for (const std::size_t child : children_[node]) rest.emplace_back(child, depth + 1);
     }
     return sum;
@@ -627,37 +456,11 @@ class Document {
       const std::string where = numbered("scene", i);
       const std::vector<std::size_t> roots = node_list(scenes[i], "nodes", children_.size(), where);
       Size sum;
-      for (const std::size_t root : roots) {
-        const Size size = below(root);
-        sum.vertices += size.vertices;
-        sum.corners += size.corners;
-        if (sum.vertices > kMostVertices || sum.corners > kMostVertices) {
-          fail(where + " shows more than " + std::to_string(kMostVertices) +
-               " vertices or corners");
-        }
-      }
+      for (const std::size_t root : roots) sum.add(below(root), where + " shows");
       Json& scene = target_["scenes"].emplace_back(Json::object());
       if (!roots.empty()) scene["nodes"] = roots;
     }
     if (chosen) target_["scene"] = *chosen;
-  }
-
-  std::string packed() const {
-    std::string json = target_.dump();
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::string glb = "glTF";
-    const std::size_t size = 12 + 8 + json.size() + (binary_.empty() ? 0 : 8 + binary_.size());
-    if (size > std::numeric_limits<std::uint32_t>::max()) fail("it is too large");
-    glb.reserve(size);
-    append_u32(glb, 2);
-    append_u32(glb, static_cast<std::uint32_t>(size));
-    append_u32(glb, static_cast<std::uint32_t>(json.size()));
-    append_u32(glb, kJsonChunk);
-    glb += json;
-    if (binary_.empty()) return glb;
-    append_u32(glb, static_cast<std::uint32_t>(binary_.size()));
-    append_u32(glb, kBinaryChunk);
-    return glb + binary_;
   }
 
   struct Range {
@@ -669,7 +472,7 @@ class Document {
     uint64_t stride = 0;
   };
 
-  Container container_;
+  gltf::Container container_;
   Json source_;
   const std::filesystem::path& folder_;
   Json target_ = Json::object();

@@ -1,12 +1,11 @@
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string>
 
 #include "graspfit/base/errors.hpp"
+#include "mesh_io/byte_order.hpp"
 #include "mesh_io/mesh_formats.hpp"
 #include "mesh_io/text_scanner.hpp"
 
@@ -15,47 +14,31 @@
 namespace graspfit::geometry::internal {
 namespace {
 
-constexpr bool kHostIsLittleEndian = std::endian::native == std::endian::little;
-
-// A number stored in `bytes`, in the stated byte order.
-template <typename Number>
-Number decoded(const char* bytes, bool is_little_endian) {
-  std::array<char, sizeof(Number)> raw;
-  std::memcpy(raw.data(), bytes, raw.size());
-  if (is_little_endian != kHostIsLittleEndian) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<Number>(raw);
-}
+/// A type of numbers in PLY files.
+struct PlyType {
+  std::string_view name;
+  std::string_view sized_name;
+  std::size_t size;
+  double (*value)(const char* bytes, bool is_little_endian);
+};
 
 template <typename Number>
-void append_little_endian(std::string& out, Number value) {
-  auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
-  if (!kHostIsLittleEndian) std::reverse(raw.begin(), raw.end());
-  out.append(raw.data(), raw.size());
+constexpr PlyType stored_as(std::string_view name, std::string_view sized_name) {
+  return {name, sized_name, sizeof(Number), [](const char* bytes, bool is_little_endian) {
+            return static_cast<double>(decoded<Number>(bytes, is_little_endian));
+          }};
 }
 
-enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float, Double };
-
-std::optional<PlyType> ply_type(std::string_view name) {
-  if (name == "char" || name == "int8") return PlyType::Int8;
-  if (name == "uchar" || name == "uint8") return PlyType::UInt8;
-  if (name == "short" || name == "int16") return PlyType::Int16;
-  if (name == "ushort" || name == "uint16") return PlyType::UInt16;
-  if (name == "int" || name == "int32") return PlyType::Int32;
-  if (name == "uint" || name == "uint32") return PlyType::UInt32;
-  if (name == "float" || name == "float32") return PlyType::Float;
-  if (name == "double" || name == "float64") return PlyType::Double;
-  return std::nullopt;
-}
-
-std::size_t size_of(PlyType type) {
-  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return kSizes[static_cast<std::size_t>(type)];
-}
+constexpr std::array kPlyTypes = {
+    stored_as<std::int8_t>("char", "int8"),    stored_as<std::uint8_t>("uchar", "uint8"),
+    stored_as<std::int16_t>("short", "int16"), stored_as<std::uint16_t>("ushort", "uint16"),
+    stored_as<std::int32_t>("int", "int32"),   stored_as<std::uint32_t>("uint", "uint32"),
+    stored_as<float>("float", "float32"),      stored_as<double>("double", "float64")};
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::Float;
-  std::optional<PlyType> size_type;  // Only lists have one.
+  const PlyType* type = nullptr;
+  const PlyType* size_type = nullptr;  // Only lists have one.
 };
 
 struct PlyElement {
@@ -68,6 +51,15 @@ struct PlyHeader {
   enum class Format { Text, LittleEndian, BigEndian } format = Format::Text;
   std::vector<PlyElement> elements;
 };
+
+/// The type of this name, which the line at hand gives.
+const PlyType* type_named(std::string_view name, const TextScanner& text) {
+  const auto found = std::find_if(kPlyTypes.begin(), kPlyTypes.end(), [&](const PlyType& type) {
+    return name == type.name || name == type.sized_name;
+  });
+  if (found == kPlyTypes.end()) text.fail("unknown type " + TextScanner::quoted(name));
+  return &*found;
+}
 
 PlyHeader parse_ply_header(TextScanner& text) {
   if (!text.next_line(0) || text.word() != "ply") {
@@ -104,14 +96,10 @@ PlyHeader parse_ply_header(TextScanner& text) {
       PlyProperty property;
       std::string_view type = text.word();
       if (type == "list") {
-        const std::string_view size_type = text.word();
-        property.size_type = ply_type(size_type);
-        if (!property.size_type) text.fail("unknown type " + TextScanner::quoted(size_type));
+        property.size_type = type_named(text.word(), text);
         type = text.word();
       }
-      const auto known = ply_type(type);
-      if (!known) text.fail("unknown type " + TextScanner::quoted(type));
-      property.type = *known;
+      property.type = type_named(type, text);
       property.name = text.word();
       header.elements.back().properties.push_back(property);
     } else if (keyword != "comment" && keyword != "obj_info") {
@@ -132,7 +120,7 @@ class PlyBody {
     return format_ == PlyHeader::Format::Text ? text_.next_line(0) : !bytes_.empty();
   }
 
-  std::optional<double> value(PlyType type) {
+  std::optional<double> value(const PlyType& type) {
     if (format_ == PlyHeader::Format::Text) {
       double number = 0.0;
       const std::string_view word = text_.word();
@@ -142,30 +130,10 @@ class PlyBody {
       }
       return number;
     }
-    const std::size_t size = size_of(type);
-    if (bytes_.size() < size) return std::nullopt;
-    const char* const at = bytes_.data();
-    const bool little = format_ == PlyHeader::Format::LittleEndian;
-    bytes_.remove_prefix(size);
-    switch (type) {
-      case PlyType::Int8:
-        return decoded<std::int8_t>(at, little);
-      case PlyType::UInt8:
-        return decoded<std::uint8_t>(at, little);
-      case PlyType::Int16:
-        return decoded<std::int16_t>(at, little);
-      case PlyType::UInt16:
-        return decoded<std::uint16_t>(at, little);
-      case PlyType::Int32:
-        return decoded<std::int32_t>(at, little);
-      case PlyType::UInt32:
-        return decoded<std::uint32_t>(at, little);
-      case PlyType::Float:
-        return decoded<float>(at, little);
-      case PlyType::Double:
-        break;
-    }
-    return decoded<double>(at, little);
+    if (bytes_.size() < type.size) return std::nullopt;
+    const double number = type.value(bytes_.data(), format_ == PlyHeader::Format::LittleEndian);
+    bytes_.remove_prefix(type.size);
+    return number;
   }
 
  private:
@@ -185,8 +153,7 @@ std::string truncated(const PlyElement& element, std::int64_t i) {
   return "the file ends at " + numbered(element, i) + " of " + std::to_string(element.count);
 }
 
-// Reads one element, handing every number to use(property index, position in a list, list size,
-// value).
+// Reads one element, handing every number to use(property index, value).
 template <typename Use>
 void read_element(PlyBody& body, const PlyElement& element, std::int64_t i, const Use& use) {
   if (element.properties.empty()) return;
@@ -202,20 +169,12 @@ void read_element(PlyBody& body, const PlyElement& element, std::int64_t i, cons
         throw base::IoError(numbered(element, i) + ": bad list length");
       }
     }
-    use(p, -1, size, 0.0);
     for (std::int64_t k = 0; k < static_cast<std::int64_t>(size); ++k) {
-      const auto value = body.value(property.type);
+      const auto value = body.value(*property.type);
       if (!value) throw base::IoError(truncated(element, i));
-      use(p, k, size, *value);
+      use(p, *value);
     }
   }
-}
-
-Eigen::Vector3d checked_point(const Eigen::Vector3d& point, std::size_t index) {
-  if (!point.allFinite()) {
-    throw base::IoError("vertex " + std::to_string(index) + " has a coordinate that is not finite");
-  }
-  return point;
 }
 
 /// The index of a vertex, which comes as any number.
@@ -309,13 +268,12 @@ PolygonSoup parse_ply(std::string_view content) {
       has_points = true;
       for (std::int64_t i = 0; i < element.count; ++i) {
         Eigen::Vector3d point = Eigen::Vector3d::Zero();
-        read_element(body, element, i, [&](std::size_t p, std::int64_t k, double, double value) {
-          if (k < 0) return;
+        read_element(body, element, i, [&](std::size_t p, double value) {
           for (int axis = 0; axis < 3; ++axis) {
             if (axes[axis] == p) point[axis] = value;
           }
         });
-        soup.vertices.push_back(checked_point(point, soup.vertices.size()));
+        soup.add_vertex(point);
       }
     } else if (element.name == "face" || element.name == "tristrips") {
       const bool is_face = element.name == "face";
@@ -327,8 +285,8 @@ PolygonSoup parse_ply(std::string_view content) {
       }
       for (std::int64_t i = 0; i < element.count; ++i) {
         corners.clear();
-        read_element(body, element, i, [&](std::size_t p, std::int64_t k, double, double value) {
-          if (p == list && k >= 0) corners.push_back(value);
+        read_element(body, element, i, [&](std::size_t p, double value) {
+          if (p == list) corners.push_back(value);
         });
         if (!is_face) {
           add_strips(corners, "strip list " + std::to_string(i), soup);
@@ -345,20 +303,16 @@ PolygonSoup parse_ply(std::string_view content) {
       }
     } else {
       for (std::int64_t i = 0; i < element.count; ++i) {
-        read_element(body, element, i, [](std::size_t, std::int64_t, double, double) {});
+        read_element(body, element, i, [](std::size_t, double) {});
         if (element.properties.empty()) break;
       }
     }
   }
   if (!has_points) throw base::IoError("not a mesh: there are no vertices");
   for (std::size_t face = 0; face < soup.num_polygons(); ++face) {
-    const std::size_t end =
-        face + 1 < soup.num_polygons() ? soup.polygon_begin[face + 1] : soup.corners.size();
-    for (std::size_t i = soup.polygon_begin[face]; i < end; ++i) {
-      if (static_cast<std::size_t>(soup.corners[i]) >= soup.vertices.size()) {
-        throw base::IoError("face " + std::to_string(face) + " uses vertex " +
-                            std::to_string(soup.corners[i]) + " of " +
-                            std::to_string(soup.vertices.size()));
+    for (const std::int32_t corner : soup.polygon(face)) {
+      if (static_cast<std::size_t>(corner) >= soup.vertices.size()) {
+        throw base::IoError(out_of_range(face, corner, soup.vertices.size()));
       }
     }
   }
@@ -404,7 +358,7 @@ PolygonSoup parse_stl(std::string_view content) {
         point[axis] = decoded<float>(at + 12 * corner + 4 * axis, true);
       }
       soup.corners.push_back(static_cast<std::int32_t>(soup.vertices.size()));
-      soup.vertices.push_back(checked_point(point, soup.vertices.size()));
+      soup.add_vertex(point);
     }
   }
   return soup;

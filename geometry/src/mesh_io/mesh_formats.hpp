@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 
 namespace graspfit::geometry::internal {
@@ -18,7 +20,28 @@ struct PolygonSoup {
   std::vector<std::size_t> polygon_begin;  ///< First corner of each polygon.
 
   std::size_t num_polygons() const { return polygon_begin.size(); }
+
+  /// Corners of a polygon.
+  std::span<const std::int32_t> polygon(std::size_t i) const {
+    const std::size_t end = i + 1 < num_polygons() ? polygon_begin[i + 1] : corners.size();
+    return {corners.data() + polygon_begin[i], corners.data() + end};
+  }
+
+  /// @throws IoError if the point is not finite.
+  void add_vertex(const Eigen::Vector3d& point) {
+    if (!point.allFinite()) {
+      throw base::IoError("vertex " + std::to_string(vertices.size()) +
+                          " has a coordinate that is not finite");
+    }
+    vertices.push_back(point);
+  }
 };
+
+/// What is wrong with a face whose vertex is not one of the `count` that there are.
+inline std::string out_of_range(std::size_t face, std::int64_t vertex, std::size_t count) {
+  return "face " + std::to_string(face) + " uses vertex " + std::to_string(vertex) + " of " +
+         std::to_string(count);
+}
 
 /// Readers of one format each. They throw IoError with a text that lacks only the file's name.
 ///

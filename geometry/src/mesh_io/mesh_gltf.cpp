@@ -23,12 +23,7 @@ void add(const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
   const std::size_t first = soup.vertices.size();
   for (unsigned int i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& v = mesh.mVertices[i];
-    const Eigen::Vector3d point = (X * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>();
-    if (!point.allFinite()) {
-      throw base::IoError("vertex " + std::to_string(soup.vertices.size()) +
-                          " has a coordinate that is not finite");
-    }
-    soup.vertices.push_back(point);
+    soup.add_vertex((X * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>());
   }
   // A mirrored part has its triangles the other way round.
   const bool is_mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
@@ -38,9 +33,8 @@ void add(const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
     soup.polygon_begin.push_back(soup.corners.size());
     for (unsigned int k = 0; k < face.mNumIndices; ++k) {
       if (face.mIndices[k] >= mesh.mNumVertices) {
-        throw base::IoError("face " + std::to_string(soup.num_polygons() - 1) + " uses vertex " +
-                            std::to_string(face.mIndices[k]) + " of " +
-                            std::to_string(mesh.mNumVertices));
+        throw base::IoError(
+            out_of_range(soup.num_polygons() - 1, face.mIndices[k], mesh.mNumVertices));
       }
       soup.corners.push_back(static_cast<std::int32_t>(first + face.mIndices[k]));
     }

@@ -118,12 +118,9 @@ MeshFile mesh_of(PolygonSoup soup, const std::string& format, double meters_per_
   result.mesh.vertices = std::move(soup.vertices);
   result.mesh.faces.reserve(soup.corners.size() - 2 * soup.num_polygons());
   for (std::size_t i = 0; i < soup.num_polygons(); ++i) {
-    const std::size_t begin = soup.polygon_begin[i];
-    const std::size_t end =
-        i + 1 < soup.num_polygons() ? soup.polygon_begin[i + 1] : soup.corners.size();
-    if (end - begin > 3) ++report.num_polygons_triangulated;
-    triangulate(result.mesh.vertices, {soup.corners.data() + begin, end - begin},
-                result.mesh.faces);
+    const std::span<const std::int32_t> polygon = soup.polygon(i);
+    if (polygon.size() > 3) ++report.num_polygons_triangulated;
+    triangulate(result.mesh.vertices, polygon, result.mesh.faces);
   }
   return result;
 }

@@ -18,25 +18,15 @@ Eigen::Vector3d read_point(TextScanner& text) {
   return {x, y, z};
 }
 
-std::string out_of_range(std::size_t face, std::int64_t vertex, std::size_t count) {
-  return "face " + std::to_string(face) + " uses vertex " + std::to_string(vertex) + " of " +
-         std::to_string(count);
-}
-
 // Room to reserve for a stated number of things that take at least `bytes` each: a false number
 // must not cost memory.
 std::size_t believable(std::int64_t count, std::size_t size, std::size_t bytes) {
   return std::min(static_cast<std::size_t>(count), size / bytes + 1);
 }
 
-void append(std::string& text, double value) {
+template <typename Number>
+void append(std::string& text, Number value) {
   std::array<char, 32> digits;
-  text.append(digits.data(),
-              std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-}
-
-void append(std::string& text, std::int32_t value) {
-  std::array<char, 16> digits;
   text.append(digits.data(),
               std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
 }
@@ -47,6 +37,16 @@ void append_point(std::string& text, const Eigen::Vector3d& point) {
   append(text, point[1]);
   text += ' ';
   append(text, point[2]);
+  text += '\n';
+}
+
+/// A line of the corners of a face, the first vertex having the number `first`.
+void append_face(std::string& text, char keyword, const Face& face, std::int32_t first) {
+  text += keyword;
+  for (const std::int32_t vertex : face) {
+    text += ' ';
+    append(text, vertex + first);
+  }
   text += '\n';
 }
 
@@ -168,14 +168,7 @@ std::string format_off(const TriangleMesh& mesh) {
   std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
                      std::to_string(mesh.faces.size()) + " 0\n";
   for (const Eigen::Vector3d& vertex : mesh.vertices) append_point(text, vertex);
-  for (const Face& f : mesh.faces) {
-    text += '3';
-    for (const std::int32_t vertex : f) {
-      text += ' ';
-      append(text, vertex);
-    }
-    text += '\n';
-  }
+  for (const Face& face : mesh.faces) append_face(text, '3', face, 0);
   return text;
 }
 
@@ -185,14 +178,7 @@ std::string format_obj(const TriangleMesh& mesh) {
     text += "v ";
     append_point(text, vertex);
   }
-  for (const Face& f : mesh.faces) {
-    text += 'f';
-    for (const std::int32_t vertex : f) {
-      text += ' ';
-      append(text, vertex + 1);
-    }
-    text += '\n';
-  }
+  for (const Face& face : mesh.faces) append_face(text, 'f', face, 1);
   return text;
 }
 

@@ -19,6 +19,13 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
+/// Text for a message: printable and no longer than `most`.
+inline std::string in_quotes(std::string_view text, std::size_t most) {
+  std::string result = "'";
+  for (const char c : text.substr(0, most)) result += c >= ' ' && c <= '~' ? c : '?';
+  return result + (text.size() > most ? "...'" : "'");
+}
+
 /// Words and numbers of a text, line by line, in the C locale. Errors name the line. A byte order
 /// mark in front is skipped.
 class TextScanner {
@@ -103,12 +110,9 @@ class TextScanner {
     return result.ec == std::errc() && result.ptr == end && !text.empty();
   }
 
-  /// A word for a message: short and printable.
+  /// A word for a message.
   static std::string quoted(std::string_view text) {
-    if (text.empty()) return "the end of the line";
-    std::string result = "'";
-    for (const char c : text.substr(0, 24)) result += c >= ' ' && c <= '~' ? c : '?';
-    return result + (text.size() > 24 ? "...'" : "'");
+    return text.empty() ? "the end of the line" : in_quotes(text, 24);
   }
 
  private:

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::int32_t kLeafSize = 4;
 constexpr int kNumBins = 16;
-constexpr int kMostDepth = 128;  // More than any tree is deep: the builder halves below level 48.
 
 struct Item {
   Eigen::Vector3d lower;
@@ -233,7 +232,7 @@ QuickHit quick_first_hit(const BoxTree& tree, const Eigen::Vector3d& origin,
     }
     return t_in <= t_out * (1.0 + 1e-12) ? t_in : kInfinity;
   };
-  std::array<Entry, kMostDepth> stack;
+  std::array<Entry, kMostTreeDepth> stack;
   int size = 0;
   stack[size++] = {0, enter(tree.nodes[0])};
   while (size > 0) {

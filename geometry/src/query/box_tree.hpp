@@ -9,6 +9,9 @@
 
 namespace graspfit::geometry::internal {
 
+/// More than any tree is deep: the builder halves below level 48.
+inline constexpr int kMostTreeDepth = 128;
+
 /// A binary tree of axis-aligned boxes over the faces of a mesh. Boxes are exact: the least and
 /// greatest coordinates of the vertices below.
 struct BoxTree {
@@ -29,6 +32,54 @@ struct BoxTree {
 
   explicit BoxTree(const TriangleMesh& mesh);
 };
+
+/// Calls visit(triangle) for all triangles in leaves to which enter(node) lets pass, in the order
+/// of the tree.
+template <typename Enter, typename Visit>
+void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
+  std::array<std::int32_t, kMostTreeDepth> open;
+  int size = 0;
+  open[size++] = 0;
+  while (size > 0) {
+    const std::int32_t index = open[--size];
+    const BoxTree::Node& node = tree.nodes[index];
+    if (!enter(node)) continue;
+    if (node.count == 0) {
+      open[size++] = node.first;
+      open[size++] = index + 1;
+    }
+    for (std::int32_t i = node.first; i < node.first + node.count; ++i) visit(tree.triangles[i]);
+  }
+}
+
+/// Box of a triangle. Exact.
+inline Eigen::AlignedBox3d box_of(const std::array<Eigen::Vector3d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+/// A triangle cut at the middles of its edges.
+inline std::array<std::array<Eigen::Vector3d, 3>, 4> quarters_of(
+    const std::array<Eigen::Vector3d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const Eigen::Vector3d ab = 0.5 * (a + b);
+  const Eigen::Vector3d bc = 0.5 * (b + c);
+  const Eigen::Vector3d ca = 0.5 * (c + a);
+  return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}};
+}
+
+/// Calls visit(triangle) for all triangles whose boxes meet `box`. Exact.
+template <typename Visit>
+void traverse_near(const BoxTree& tree, const Eigen::AlignedBox3d& box, const Visit& visit) {
+  traverse(
+      tree,
+      [&](const BoxTree::Node& node) {
+        return box.intersects(Eigen::AlignedBox3d(node.lower, node.upper));
+      },
+      [&](const BoxTree::Triangle& triangle) {
+        if (box.intersects(box_of(triangle.corners))) visit(triangle);
+      });
+}
 
 /// Squared distance from a point to a box; zero inside.
 inline double squared_distance(const Eigen::Vector3d& point, const BoxTree::Node& node) {

@@ -10,8 +10,7 @@
 #include <limits>
 #include <queue>
 
-#include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
@@ -55,13 +54,6 @@ Kernel::Triangle_3 to_cgal(const Corners& c) {
   return {point(c[0]), point(c[1]), point(c[2])};
 }
 
-bool boxes_overlap(const Corners& a, const Corners& b) {
-  const auto lower = [](const Corners& c) { return c[0].cwiseMin(c[1]).cwiseMin(c[2]); };
-  const auto upper = [](const Corners& c) { return c[0].cwiseMax(c[1]).cwiseMax(c[2]); };
-  return (lower(a).array() <= upper(b).array()).all() &&
-         (lower(b).array() <= upper(a).array()).all();
-}
-
 /// Whether all corners of `b` are strictly on one side of the plane of `a`, certain in doubles: a
 /// quick no for most pairs near a touch. The bound covers the rounding of every difference and
 /// product below.
@@ -85,7 +77,8 @@ bool is_clearly_beside(const Corners& a, const Corners& b) {
 /// Exact. Degenerate faces bound nothing that their neighbors do not, and CGAL's test needs proper
 /// triangles: they are left out.
 bool triangles_intersect(const Corners& a, const Corners& b) {
-  if (!boxes_overlap(a, b) || is_clearly_beside(a, b) || is_clearly_beside(b, a)) return false;
+  if (!internal::box_of(a).intersects(internal::box_of(b))) return false;
+  if (is_clearly_beside(a, b) || is_clearly_beside(b, a)) return false;
   const Kernel::Triangle_3 first = to_cgal(a);
   const Kernel::Triangle_3 second = to_cgal(b);
   return !first.is_degenerate() && !second.is_degenerate() && CGAL::do_intersect(first, second);
@@ -144,22 +137,13 @@ bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform
 Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
                                const Vector3d& point_A) {
   internal::Winding winding(point_A);
-  const BoxTree& tree = b.indexed().tree;
-  std::vector<std::int32_t> open = {0};
-  while (!open.empty()) {
-    const std::int32_t index = open.back();
-    open.pop_back();
-    const BoxTree::Node& node = tree.nodes[index];
+  const auto enter = [&](const BoxTree::Node& node) {
     const SeenBox box = seen_from(node, X_AB);
-    if (!winding.may_meet(box.lower, box.upper)) continue;
-    if (node.count == 0) {
-      open.push_back(node.first);
-      open.push_back(index + 1);
-    }
-    for (std::int32_t i = 0; i < node.count; ++i) {
-      winding.add(mapped(tree.triangles[node.first + i].corners, X_AB));
-    }
-  }
+    return winding.may_meet(box.lower, box.upper);
+  };
+  internal::traverse(b.indexed().tree, enter, [&](const BoxTree::Triangle& triangle) {
+    winding.add(mapped(triangle.corners, X_AB));
+  });
   return winding.result();
 }
 
@@ -212,16 +196,8 @@ class DeepestPoint {
             push_triangle(mapped(surface.triangles[node.first + t].corners, X_));
           }
         }
-      } else {
-        if (split_along_face(item)) continue;
-        const auto& [a, b, c] = item.corners;
-        const Vector3d ab = 0.5 * (a + b);
-        const Vector3d bc = 0.5 * (b + c);
-        const Vector3d ca = 0.5 * (c + a);
-        push_triangle({a, ab, ca});
-        push_triangle({ab, b, bc});
-        push_triangle({ca, bc, c});
-        push_triangle({ab, bc, ca});
+      } else if (!split_along_face(item)) {
+        for (const Corners& quarter : internal::quarters_of(item.corners)) push_triangle(quarter);
       }
     }
     bound = std::max(depth, open_.empty() ? 0.0 : open_.top().bound);
@@ -292,31 +268,23 @@ class DeepestPoint {
     box.extend(corners[1]).extend(corners[2]);
     box.min().array() -= slack;
     box.max().array() += slack;
-    const BoxTree& tree = solid_.indexed().tree;
-    std::vector<std::int32_t> open = {0};
-    while (!open.empty()) {
-      const std::int32_t index = open.back();
-      const BoxTree::Node& node = tree.nodes[index];
-      open.pop_back();
-      if (!overlap(node.lower, node.upper, {box.min(), box.max()})) continue;
-      if (node.count == 0) {
-        open.push_back(node.first);
-        open.push_back(index + 1);
+    bool stays = true;
+    const auto enter = [&](const BoxTree::Node& node) {
+      return stays && overlap(node.lower, node.upper, {box.min(), box.max()});
+    };
+    internal::traverse(solid_.indexed().tree, enter, [&](const BoxTree::Triangle& triangle) {
+      const Corners& face = triangle.corners;
+      const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+      bool is_above = false;
+      bool is_below = false;
+      for (const Vector3d& corner : corners) {
+        const double height = normal.dot(corner - face[0]);
+        is_above = is_above || height > slack;
+        is_below = is_below || height < -slack;
       }
-      for (std::int32_t t = 0; t < node.count; ++t) {
-        const Corners& face = tree.triangles[node.first + t].corners;
-        const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
-        bool is_above = false;
-        bool is_below = false;
-        for (const Vector3d& corner : corners) {
-          const double height = normal.dot(corner - face[0]);
-          is_above = is_above || height > slack;
-          is_below = is_below || height < -slack;
-        }
-        if (is_above && is_below) return false;
-      }
-    }
-    return true;
+      stays = stays && !(is_above && is_below);
+    });
+    return stays;
   }
 
   /// Cuts a triangle where it leaves the prism over a face of the solid on which it nearly lies:
@@ -369,14 +337,9 @@ class DeepestPoint {
 }  // namespace
 
 void PenetrationOptions::validate() const {
-  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) {
-    throw base::InvalidInput("PenetrationOptions: tolerance = " +
-                             base::shortest_decimal(tolerance) + ", must be finite and > 0 m");
-  }
-  if (!(enough >= 0.0)) {
-    throw base::InvalidInput("PenetrationOptions: enough = " + base::shortest_decimal(enough) +
-                             ", must be >= 0 m");
-  }
+  base::require(tolerance > 0.0 && std::isfinite(tolerance), "PenetrationOptions", "tolerance",
+                tolerance, "finite and > 0 m");
+  base::require(enough >= 0.0, "PenetrationOptions", "enough", enough, ">= 0 m");
 }
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
@@ -412,10 +375,8 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
 DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         double floor, const PenetrationOptions& options) {
   options.validate();
-  if (!(floor >= 0.0) || !std::isfinite(floor)) {
-    throw base::InvalidInput("depth_above: floor = " + base::shortest_decimal(floor) +
-                             ", must be finite and >= 0 m");
-  }
+  base::require(floor >= 0.0 && std::isfinite(floor), "depth_above", "floor", floor,
+                "finite and >= 0 m");
   DeepestPoint in_a(a, X_AB, options, floor);
   in_a.search(b.indexed().tree);
   DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);

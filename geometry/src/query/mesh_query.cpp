@@ -18,28 +18,6 @@ namespace {
 
 using internal::BoxTree;
 
-// More than any tree is deep: the builder halves below level 48.
-constexpr int kStackSize = 128;
-
-// Calls visit(triangle) for all triangles in leaves that enter(node) admits.
-template <typename Enter, typename Visit>
-void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
-  std::array<std::int32_t, kStackSize> stack;
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const std::int32_t index = stack[--size];
-    const BoxTree::Node& node = tree.nodes[index];
-    if (!enter(node)) continue;
-    if (node.count > 0) {
-      for (std::int32_t i = 0; i < node.count; ++i) visit(tree.triangles[node.first + i]);
-    } else {
-      stack[size++] = node.first;
-      stack[size++] = index + 1;
-    }
-  }
-}
-
 std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
   internal::DisjointSets sets(mesh.vertices.size());
   std::vector<char> is_used(mesh.vertices.size(), 0);
@@ -200,7 +178,7 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   const BoxTree& tree = indexed_->tree;
   ClosestPoint best;
   best.squared_distance = std::numeric_limits<double>::infinity();
-  std::array<Entry, kStackSize> stack;
+  std::array<Entry, internal::kMostTreeDepth> stack;
   int size = 0;
   stack[size++] = {0, 0.0};
   while (size > 0) {
@@ -245,15 +223,9 @@ Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
 
 double MeshQuery::signed_distance(const Eigen::Vector3d& point) const {
   const double distance = std::sqrt(closest_point(point).squared_distance);
-  switch (containment(point)) {
-    case Containment::Inside:
-      return -distance;
-    case Containment::OnSurface:
-      return 0.0;
-    case Containment::Outside:
-      break;
-  }
-  return distance;
+  const Containment where = containment(point);
+  if (where == Containment::OnSurface) return 0.0;
+  return where == Containment::Inside ? -distance : distance;
 }
 
 std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
@@ -261,7 +233,7 @@ std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::first_hit", indexed_->box, origin, direction);
   std::optional<RayHit> best;
   double best_t = 1.0;
-  traverse(
+  internal::traverse(
       indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
       [&](const BoxTree::Triangle& triangle) {
         const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
@@ -282,7 +254,7 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::all_hits", indexed_->box, origin, direction);
   const double from = kind == LineKind::Ray ? 0.0 : -1.0;
   std::vector<RayHit> hits;
-  traverse(
+  internal::traverse(
       indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
       [&](const BoxTree::Triangle& triangle) {
         if (const auto meeting = line.meet(triangle.corners, from)) {
@@ -297,17 +269,9 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
 
 std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) const {
   std::vector<std::int32_t> faces;
-  const auto meets = [&](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
-    return (lower.array() <= box.max().array()).all() && (upper.array() >= box.min().array()).all();
-  };
-  traverse(
-      indexed_->tree, [&](const BoxTree::Node& node) { return meets(node.lower, node.upper); },
-      [&](const BoxTree::Triangle& triangle) {
-        const auto& [a, b, c] = triangle.corners;
-        if (meets(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c))) {
-          faces.push_back(triangle.face);
-        }
-      });
+  internal::traverse_near(indexed_->tree, box, [&](const BoxTree::Triangle& triangle) {
+    faces.push_back(triangle.face);
+  });
   std::sort(faces.begin(), faces.end());
   return faces;
 }

@@ -5,8 +5,7 @@
 #include <queue>
 #include <string>
 
-#include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "query/box_tree.hpp"
 #include "query/one_sided_distance.hpp"
 
@@ -25,15 +24,9 @@ class Search {
     for (const Corners& triangle : triangles) push(triangle);
     for (int step = 0; step < max_steps && !open_.empty(); ++step) {
       if (open_.top().bound <= found_.lower + tolerance_) break;
-      const auto [a, b, c] = open_.top().corners;
+      const Corners triangle = open_.top().corners;
       open_.pop();
-      const Vector3d ab = 0.5 * (a + b);
-      const Vector3d bc = 0.5 * (b + c);
-      const Vector3d ca = 0.5 * (c + a);
-      push({a, ab, ca});
-      push({ab, b, bc});
-      push({ca, bc, c});
-      push({ab, bc, ca});
+      for (const Corners& quarter : quarters_of(triangle)) push(quarter);
     }
     found_.upper = found_.lower;
     if (!open_.empty()) found_.upper = std::max(found_.upper, open_.top().bound);
@@ -112,14 +105,9 @@ OneSidedDistance one_sided_distance(const std::vector<Corners>& triangles, const
 }  // namespace internal
 
 void HausdorffOptions::validate() const {
-  if (!(tolerance > 0.0) || !std::isfinite(tolerance)) {
-    throw base::InvalidInput("HausdorffOptions: tolerance = " + base::shortest_decimal(tolerance) +
-                             ", must be finite and > 0 m");
-  }
-  if (max_steps < 0) {
-    throw base::InvalidInput("HausdorffOptions: max_steps = " + std::to_string(max_steps) +
-                             ", must be at least 0");
-  }
+  base::require(tolerance > 0.0 && std::isfinite(tolerance), "HausdorffOptions", "tolerance",
+                tolerance, "finite and > 0 m");
+  base::require(max_steps >= 0, "HausdorffOptions", "max_steps", max_steps, "at least 0");
 }
 
 HausdorffDistance hausdorff_distance(const MeshQuery& a, const MeshQuery& b,

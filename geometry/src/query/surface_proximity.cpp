@@ -198,23 +198,19 @@ class Search {
   }
 
   void compare(const BoxTree::Node& node_a, const BoxTree::Node& node_b) {
-    const auto squared_apart = [](const Vector3d& lower_a, const Vector3d& upper_a,
-                                  const Vector3d& lower_b, const Vector3d& upper_b) {
-      return (lower_a - upper_b).cwiseMax(lower_b - upper_a).cwiseMax(0.0).squaredNorm();
+    using Box = Eigen::AlignedBox3d;
+    const auto squared_apart = [](const Box& a, const Box& b) {
+      return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).squaredNorm();
     };
     for (std::int32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
       const BoxTree::Triangle& of_b = b_.tree.triangles[static_cast<std::size_t>(t)];
       const Corners corners_b = mapped(of_b.corners);
-      const Vector3d lower = corners_b[0].cwiseMin(corners_b[1]).cwiseMin(corners_b[2]);
-      const Vector3d upper = corners_b[0].cwiseMax(corners_b[1]).cwiseMax(corners_b[2]);
-      if (squared_apart(node_a.lower, node_a.upper, lower, upper) >= squared_best_) continue;
+      const Box box_b = internal::box_of(corners_b);
+      if (squared_apart(Box(node_a.lower, node_a.upper), box_b) >= squared_best_) continue;
       for (std::int32_t s = node_a.first; s < node_a.first + node_a.count; ++s) {
         const BoxTree::Triangle& of_a = a_.tree.triangles[static_cast<std::size_t>(s)];
-        const Corners& c = of_a.corners;
-        const Vector3d lower_a = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
-        const Vector3d upper_a = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
-        if (squared_apart(lower_a, upper_a, lower, upper) < squared_best_) {
-          improve(c, of_a.face, corners_b, of_b.face);
+        if (squared_apart(internal::box_of(of_a.corners), box_b) < squared_best_) {
+          improve(of_a.corners, of_a.face, corners_b, of_b.face);
         }
       }
     }

@@ -9,6 +9,7 @@
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "shapes/implicit_surface.hpp"
 #include "shapes/shape_dimensions.hpp"
+#include "voxel/block.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -429,29 +430,24 @@ TriangleMesh table(const TableDimensions& d) {
     }
     return i;
   };
-  for (int k = 0; k < 2; ++k) {
-    for (int j = 0; j < 5; ++j) {
-      for (int i = 0; i < 5; ++i) {
-        const Eigen::Vector3i cell(i, j, k);
-        if (!is_solid(cell)) continue;
-        for (int axis = 0; axis < 3; ++axis) {
-          const Eigen::Vector3i step = Eigen::Vector3i::Unit(axis);
-          Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3);
-          Eigen::Vector3i v = Eigen::Vector3i::Unit((axis + 2) % 3);
-          for (const int side : {0, 1}) {
-            if (is_solid(cell + (2 * side - 1) * step)) continue;
-            const Eigen::Vector3i low = cell + side * step;
-            if (side == 0) std::swap(u, v);
-            const std::int32_t a = vertex(low);
-            const std::int32_t c = vertex(low + u + v);
-            mesh.faces.push_back({a, vertex(low + u), c});
-            mesh.faces.push_back({a, c, vertex(low + v)});
-            if (side == 0) std::swap(u, v);
-          }
-        }
+  internal::for_each_in_block({0, 0, 0}, {4, 4, 1}, [&](const Eigen::Vector3i& cell) {
+    if (!is_solid(cell)) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3i step = Eigen::Vector3i::Unit(axis);
+      Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3);
+      Eigen::Vector3i v = Eigen::Vector3i::Unit((axis + 2) % 3);
+      for (const int side : {0, 1}) {
+        if (is_solid(cell + (2 * side - 1) * step)) continue;
+        const Eigen::Vector3i low = cell + side * step;
+        if (side == 0) std::swap(u, v);
+        const std::int32_t a = vertex(low);
+        const std::int32_t c = vertex(low + u + v);
+        mesh.faces.push_back({a, vertex(low + u), c});
+        mesh.faces.push_back({a, c, vertex(low + v)});
+        if (side == 0) std::swap(u, v);
       }
     }
-  }
+  });
   return mesh;
 }
 

@@ -10,6 +10,8 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "mesh/disjoint_sets.hpp"
+#include "voxel/block.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -55,7 +57,8 @@ class Lattice {
     remove_ambiguities(solid);
   }
 
-  const Vector3i& count() const { return count_; }
+  /// The point with the highest coordinates.
+  Vector3i last() const { return count_ - Vector3i::Ones(); }
   std::int64_t index(const Vector3i& p) const {
     return p[0] + count_[0] * (p[1] + static_cast<std::int64_t>(count_[1]) * p[2]);
   }
@@ -79,19 +82,14 @@ class Lattice {
   // Far from the surface one value decides a block: the ball around its middle that also holds the
   // neighbors of its points is then all inside or all outside.
   void fill_block(const ImplicitSolid& solid, const Vector3i& low) {
-    const Vector3i high = (low + Vector3i::Constant(kBlock)).cwiseMin(count_);
+    const Vector3i high = (low + Vector3i::Constant(kBlock - 1)).cwiseMin(last());
     const double middle =
         solid.field(position(low) + Vector3d::Constant(0.5 * (kBlock - 1) * spacing_));
     const double reach = 0.5 * std::sqrt(3.0) * (kBlock + 1) * spacing_;
     const bool is_far = std::abs(middle) > solid.slope_bound * reach;
-    for (int z = low[2]; z < high[2]; ++z) {
-      for (int y = low[1]; y < high[1]; ++y) {
-        for (int x = low[0]; x < high[0]; ++x) {
-          const Vector3i p(x, y, z);
-          values_[index(p)] = is_far ? middle : solid.field(position(p));
-        }
-      }
-    }
+    for_each_in_block(low, high, [&](const Vector3i& p) {
+      values_[index(p)] = is_far ? middle : solid.field(position(p));
+    });
   }
 
   // Where a cell's signs alternate around a face, or leave its inside or outside in two parts, the
@@ -101,22 +99,17 @@ class Lattice {
     constexpr int kMostRounds = 8;
     for (int round = 0; round < kMostRounds; ++round) {
       bool is_clean = true;
-      for (int z = 0; z + 1 < count_[2]; ++z) {
-        for (int y = 0; y + 1 < count_[1]; ++y) {
-          for (int x = 0; x + 1 < count_[0]; ++x) {
-            const Vector3i cell(x, y, z);
-            const int mask = signs(cell);
-            if (mask == 0 || mask == 255 || is_one_sheet(mask)) continue;
-            is_clean = false;
-            std::int64_t nearest = index(cell);
-            for (int c = 0; c < 8; ++c) {
-              const std::int64_t i = index(cell + Vector3i(c & 1, c >> 1 & 1, c >> 2));
-              if (std::abs(values_[i]) < std::abs(values_[nearest])) nearest = i;
-            }
-            values_[nearest] = values_[nearest] < 0.0 ? 0.0 : -0x1p-1000;
-          }
+      for_each_in_block(Vector3i::Zero(), last() - Vector3i::Ones(), [&](const Vector3i& cell) {
+        const int mask = signs(cell);
+        if (mask == 0 || mask == 255 || is_one_sheet(mask)) return;
+        is_clean = false;
+        std::int64_t nearest = index(cell);
+        for (int c = 0; c < 8; ++c) {
+          const std::int64_t i = index(cell + Vector3i(c & 1, c >> 1 & 1, c >> 2));
+          if (std::abs(values_[i]) < std::abs(values_[nearest])) nearest = i;
         }
-      }
+        values_[nearest] = values_[nearest] < 0.0 ? 0.0 : -0x1p-1000;
+      });
       if (is_clean) return;
     }
     refuse_coarse(solid, spacing_);
@@ -161,53 +154,43 @@ struct QuadMesh {
 
 QuadMesh surface_net(const Lattice& lattice) {
   QuadMesh net;
-  const Vector3i count = lattice.count();
-  std::vector<std::int32_t> vertex_of(lattice.index(count - Vector3i::Ones()) + 1,
+  std::vector<std::int32_t> vertex_of(lattice.index(lattice.last()) + 1,
                                       -1);  // by the cell's low corner
-  for (int z = 0; z + 1 < count[2]; ++z) {
-    for (int y = 0; y + 1 < count[1]; ++y) {
-      for (int x = 0; x + 1 < count[0]; ++x) {
-        const Vector3i cell(x, y, z);
-        const int mask = lattice.signs(cell);
-        if (mask == 0 || mask == 255) continue;
-        Vector3d sum = Vector3d::Zero();
-        int crossings = 0;
-        for (int c = 0; c < 8; ++c) {
-          for (int axis = 0; axis < 3; ++axis) {
-            const int d = c | 1 << axis;
-            if (d == c || (mask >> c & 1) == (mask >> d & 1)) continue;
-            const Vector3i p = cell + Vector3i(c & 1, c >> 1 & 1, c >> 2);
-            const Vector3i q = cell + Vector3i(d & 1, d >> 1 & 1, d >> 2);
-            const double fp = lattice.value(p);
-            const double t = std::clamp(fp / (fp - lattice.value(q)), 0.0, 1.0);
-            sum += (1.0 - t) * lattice.position(p) + t * lattice.position(q);
-            ++crossings;
-          }
-        }
-        vertex_of[lattice.index(cell)] = static_cast<std::int32_t>(net.vertices.size());
-        net.vertices.push_back(sum / crossings);
+  const Vector3i last_cell = lattice.last() - Vector3i::Ones();
+  for_each_in_block(Vector3i::Zero(), last_cell, [&](const Vector3i& cell) {
+    const int mask = lattice.signs(cell);
+    if (mask == 0 || mask == 255) return;
+    Vector3d sum = Vector3d::Zero();
+    int crossings = 0;
+    for (int c = 0; c < 8; ++c) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int d = c | 1 << axis;
+        if (d == c || (mask >> c & 1) == (mask >> d & 1)) continue;
+        const Vector3i p = cell + Vector3i(c & 1, c >> 1 & 1, c >> 2);
+        const Vector3i q = cell + Vector3i(d & 1, d >> 1 & 1, d >> 2);
+        const double fp = lattice.value(p);
+        const double t = std::clamp(fp / (fp - lattice.value(q)), 0.0, 1.0);
+        sum += (1.0 - t) * lattice.position(p) + t * lattice.position(q);
+        ++crossings;
       }
     }
-  }
+    vertex_of[lattice.index(cell)] = static_cast<std::int32_t>(net.vertices.size());
+    net.vertices.push_back(sum / crossings);
+  });
   // The four cells around a crossed edge, counter-clockwise seen from the edge's high end.
-  for (int z = 1; z + 1 < count[2]; ++z) {
-    for (int y = 1; y + 1 < count[1]; ++y) {
-      for (int x = 1; x + 1 < count[0]; ++x) {
-        const Vector3i p(x, y, z);
-        for (int axis = 0; axis < 3; ++axis) {
-          const Vector3i q = p + Vector3i::Unit(axis);
-          if (lattice.is_inside(p) == lattice.is_inside(q)) continue;
-          const Vector3i u = Vector3i::Unit((axis + 1) % 3);
-          const Vector3i v = Vector3i::Unit((axis + 2) % 3);
-          std::array<std::int32_t, 4> quad = {
-              vertex_of[lattice.index(p - u - v)], vertex_of[lattice.index(p - v)],
-              vertex_of[lattice.index(p)], vertex_of[lattice.index(p - u)]};
-          if (!lattice.is_inside(p)) std::swap(quad[1], quad[3]);
-          net.quads.push_back(quad);
-        }
-      }
+  for_each_in_block(Vector3i::Ones(), last_cell, [&](const Vector3i& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3i q = p + Vector3i::Unit(axis);
+      if (lattice.is_inside(p) == lattice.is_inside(q)) continue;
+      const Vector3i u = Vector3i::Unit((axis + 1) % 3);
+      const Vector3i v = Vector3i::Unit((axis + 2) % 3);
+      std::array<std::int32_t, 4> quad = {
+          vertex_of[lattice.index(p - u - v)], vertex_of[lattice.index(p - v)],
+          vertex_of[lattice.index(p)], vertex_of[lattice.index(p - u)]};
+      if (!lattice.is_inside(p)) std::swap(quad[1], quad[3]);
+      net.quads.push_back(quad);
     }
-  }
+  });
   return net;
 }
 
@@ -236,19 +219,13 @@ Neighbors neighbors(const Polygons& polygons, std::size_t num_vertices) {
   return result;
 }
 
-bool is_one_part(const Neighbors& neighbors) {
-  const std::size_t num_vertices = neighbors.first.size() - 1;
-  std::vector<char> is_seen(num_vertices, 0);
-  std::vector<std::int32_t> reached = {0};
-  is_seen[0] = 1;
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    for (auto k = neighbors.first[reached[i]]; k < neighbors.first[reached[i] + 1]; ++k) {
-      const std::int32_t v = neighbors.list[k];
-      if (!is_seen[v]) reached.push_back(v);
-      is_seen[v] = 1;
-    }
+bool is_one_part(const QuadMesh& net) {
+  DisjointSets parts(net.vertices.size());
+  for (const auto& quad : net.quads) {
+    for (std::size_t i = 1; i < quad.size(); ++i) parts.unite(quad[0], quad[i]);
   }
-  return reached.size() == num_vertices;
+  const std::vector<std::int32_t> part_of = parts.numbered();
+  return std::all_of(part_of.begin(), part_of.end(), [](std::int32_t part) { return part == 0; });
 }
 
 class Surface {
@@ -458,7 +435,7 @@ TriangleMesh polygonize(const ImplicitSolid& solid, double edge_length) {
   // Twice as many edges as quadrilaterals: V − E + F = V − F.
   const auto euler =
       static_cast<std::int64_t>(net.vertices.size()) - static_cast<std::int64_t>(net.quads.size());
-  if (euler != 2 - 2 * solid.genus || !is_one_part(over_quads)) surface.refuse();
+  if (euler != 2 - 2 * solid.genus || !is_one_part(net)) surface.refuse();
 
   std::vector<char> is_fixed(net.vertices.size(), 0);
   for (const Vector3d& extreme : solid.extreme_points) {

@@ -45,25 +45,26 @@ NamedShape shape_of(const char* name, const char* what,
   return shape;
 }
 
+// One whose only count is its segments.
+template <class Dimensions, std::size_t n>
+NamedShape shape_of(const char* name, const char* what,
+                    const std::array<internal::DimensionField<Dimensions>, n>& fields,
+                    double segments, TriangleMesh (*build)(const Dimensions&, int)) {
+  return shape_of(name, what, fields, {{"segments", segments}},
+                  [build](const Dimensions& d, const Values& v) { return build(d, count(v[0])); });
+}
+
 std::vector<NamedShape> all_shapes() {
   // Sizes that a hand can hold.
   return {
       {{"ball", "a ball around the origin", {{"radius", 0.04}, {"subdivisions", 4}}},
        1,
        [](const Values& v) { return ball(v[0], count(v[1])); }},
-      shape_of("bottle", "a filled bottle standing on z = 0", internal::kBottleFields,
-               {{"segments", 96}},
-               [](const BottleDimensions& d, const Values& v) { return bottle(d, count(v[0])); }),
+      shape_of("bottle", "a filled bottle standing on z = 0", internal::kBottleFields, 96, bottle),
       shape_of("bowling_ball", "a bowling ball around the origin, three holes around +z",
-               internal::kBowlingBallFields, {{"segments", 220}},
-               [](const BowlingBallDimensions& d, const Values& v) {
-                 return bowling_ball(d, count(v[0]));
-               }),
+               internal::kBowlingBallFields, 220, bowling_ball),
       shape_of("bowling_pin", "a ten-pin bowling pin standing on z = 0",
-               internal::kBowlingPinFields, {{"segments", 96}},
-               [](const BowlingPinDimensions& d, const Values& v) {
-                 return bowling_pin(d, count(v[0]));
-               }),
+               internal::kBowlingPinFields, 96, bowling_pin),
       {{"box", "a box around the origin", {{"x", 0.08}, {"y", 0.06}, {"z", 0.04}}},
        3,
        [](const Values& v) {
@@ -79,16 +80,12 @@ std::vector<NamedShape> all_shapes() {
         {{"radius", 0.03}, {"height", 0.1}, {"segments", 96}}},
        2,
        [](const Values& v) { return cylinder(v[0], v[1], count(v[2])); }},
-      shape_of(
-          "flower_pot", "a hollow flower pot standing on z = 0", internal::kFlowerPotFields,
-          {{"segments", 120}},
-          [](const FlowerPotDimensions& d, const Values& v) { return flower_pot(d, count(v[0])); }),
+      shape_of("flower_pot", "a hollow flower pot standing on z = 0", internal::kFlowerPotFields,
+               120, flower_pot),
       shape_of("mug", "a hollow mug standing on z = 0, its handle towards +x", internal::kMugFields,
-               {{"segments", 150}},
-               [](const MugDimensions& d, const Values& v) { return mug(d, count(v[0])); }),
-      shape_of("octopus", "an octopus with eight arms on z = 0", internal::kOctopusFields,
-               {{"segments", 100}},
-               [](const OctopusDimensions& d, const Values& v) { return octopus(d, count(v[0])); }),
+               150, mug),
+      shape_of("octopus", "an octopus with eight arms on z = 0", internal::kOctopusFields, 100,
+               octopus),
       shape_of("table", "a table with four legs standing on z = 0", internal::kTableFields, {},
                [](const TableDimensions& d, const Values&) { return table(d); }),
       {{"torus",

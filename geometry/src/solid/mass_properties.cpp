@@ -65,16 +65,6 @@ bool has_parts_that_may_overlap(const TriangleMesh& mesh) {
   return internal::do_boxes_overlap(internal::boxes_of_parts(mesh, parts, num_sets));
 }
 
-/// Whether every edge is run through as often up as down.
-bool is_closed(const TriangleMesh& mesh) {
-  bool is_closed = true;
-  internal::for_each_edge(internal::sorted_sides(mesh), [&](auto first, auto last) {
-    const auto up = std::count_if(first, last, [](const auto& side) { return side.runs_up(); });
-    is_closed = is_closed && 2 * up == last - first;
-  });
-  return is_closed;
-}
-
 }  // namespace
 
 double signed_volume(const TriangleMesh& mesh) {
@@ -90,7 +80,7 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 MassProperties mass_properties(const TriangleMesh& mesh) {
-  const bool may_overlap = has_parts_that_may_overlap(mesh) && is_closed(mesh);
+  const bool may_overlap = has_parts_that_may_overlap(mesh) && internal::bounds_solid(mesh);
   const Moments m = moments(may_overlap ? solid_boundary(mesh) : mesh);
   if (!(m.volume > 0.0)) {
     throw base::DegenerateGeometry("mass_properties: the volume is " +

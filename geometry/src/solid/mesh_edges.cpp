@@ -31,22 +31,8 @@ void sort_bucket(std::vector<FaceSide>::iterator first, std::vector<FaceSide>::i
 std::vector<std::int32_t> parts_near(const BoxTree& tree, const std::vector<std::int32_t>& parts,
                                      const Eigen::AlignedBox3d& box) {
   std::vector<std::int32_t> near;
-  std::vector<std::int32_t> open = {0};
-  while (!open.empty()) {
-    const std::int32_t index = open.back();
-    open.pop_back();
-    const BoxTree::Node& node = tree.nodes[index];
-    if (!box.intersects(Eigen::AlignedBox3d(node.lower, node.upper))) continue;
-    if (node.count == 0) {
-      open.push_back(node.first);
-      open.push_back(index + 1);
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& [a, b, c] = tree.triangles[i].corners;
-      const Eigen::AlignedBox3d face(a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));
-      if (box.intersects(face)) near.push_back(parts[tree.triangles[i].face]);
-    }
-  }
+  traverse_near(tree, box,
+                [&](const BoxTree::Triangle& triangle) { near.push_back(parts[triangle.face]); });
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
@@ -102,6 +88,15 @@ std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
     for (auto other = first + 1; other < last; ++other) sets.unite(first->face, other->face);
   });
   return sets.numbered();
+}
+
+bool bounds_solid(const TriangleMesh& mesh) {
+  bool is_even = true;
+  for_each_edge(sorted_sides(mesh), [&](auto first, auto last) {
+    const auto up = std::count_if(first, last, [](const auto& side) { return side.runs_up(); });
+    is_even = is_even && 2 * up == last - first;
+  });
+  return is_even;
 }
 
 bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
@@ -177,21 +172,12 @@ std::vector<std::int32_t> parts_around(const BoxTree& tree, const std::vector<st
                                        const Eigen::Vector3d& point) {
   const Winding none(point);
   std::map<std::int32_t, Winding> winding_of_part;
-  std::vector<std::int32_t> open = {0};
-  while (!open.empty()) {
-    const std::int32_t index = open.back();
-    open.pop_back();
-    const BoxTree::Node& node = tree.nodes[index];
-    if (!none.may_meet(node.lower, node.upper)) continue;
-    if (node.count == 0) {
-      open.push_back(node.first);
-      open.push_back(index + 1);
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      const BoxTree::Triangle& triangle = tree.triangles[i];
-      winding_of_part.try_emplace(parts[triangle.face], point).first->second.add(triangle.corners);
-    }
-  }
+  traverse(
+      tree, [&](const BoxTree::Node& node) { return none.may_meet(node.lower, node.upper); },
+      [&](const BoxTree::Triangle& triangle) {
+        winding_of_part.try_emplace(parts[triangle.face], point)
+            .first->second.add(triangle.corners);
+      });
   std::vector<std::int32_t> inside;
   for (const auto& [part, winding] : winding_of_part) {
     if (winding.result() == Containment::Inside) inside.push_back(part);

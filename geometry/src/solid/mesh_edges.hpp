@@ -54,6 +54,9 @@ void for_each_edge(const std::vector<FaceSide>& sides, Visit visit) {
 std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
                                          const std::vector<FaceSide>& sides);
 
+/// Whether every edge is run through as often up as down.
+bool bounds_solid(const TriangleMesh& mesh);
+
 /// Exact: a repeated index, or three collinear corners.
 bool is_degenerate(const TriangleMesh& mesh, std::size_t face);
 

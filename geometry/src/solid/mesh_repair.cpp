@@ -9,6 +9,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
@@ -378,33 +379,21 @@ class Repair {
                                      advice_to_wrap("; "));
     }
     const double share = largest_hole_rel();
-    std::string text;
-    std::string advice;
-    if (share > 0.0) {
-      text = "; its largest hole spans " + rounded(share) + " of its longest extent, holes up to " +
-             base::shortest_decimal(options_.max_hole_extent_rel) + " are filled";
-      advice = advice_to_fill(share);
-    }
+    std::string advice = advice_to_fill(share);
     advice += advice_to_wrap(advice.empty() ? "" : "; ");
     throw base::InvalidInput(
-        "the mesh is not closed and could not be repaired: " + defects_of(result_.after) + text +
-        (advice.empty() ? "" : "; ") + advice);
+        "the mesh is not closed and could not be repaired: " + defects_of(result_.after) +
+        hole_text(share) + (advice.empty() ? "" : "; ") + advice);
   }
 
   void refuse_failure() const {
     if (is_misfilled()) {
-      std::string text;
-      if (largest_open_rel_ > 0.0) {
-        text = "; its largest hole spans " + rounded(largest_open_rel_) +
-               " of its longest extent, holes up to " +
-               base::shortest_decimal(options_.max_hole_extent_rel) + " are filled";
-      }
       const std::string advice = advice_to_fill(largest_open_rel_);
       throw base::InvalidInput(
           "the mesh is not closed, and filling its holes would miss the solid that "
           "its surface means by " +
-          percent(misfilled_rel_) + " of the volume" + text + (advice.empty() ? "" : "; ") +
-          advice + advice_to_wrap("; "));
+          percent(misfilled_rel_) + " of the volume" + hole_text(largest_open_rel_) +
+          (advice.empty() ? "" : "; ") + advice + advice_to_wrap("; "));
     }
     if (is_stripped()) {
       throw base::InvalidInput(percent(removed_rel_) +
@@ -442,8 +431,13 @@ class Repair {
     return "--max-hole " + base::shortest_decimal(wider.max_hole_extent_rel) + " fills it";
   }
 
-  static std::string rounded(double share) {
-    return base::shortest_decimal(std::round(1000.0 * share) / 1000.0);
+  /// What a message says of a hole that is left; nothing where there is none.
+  std::string hole_text(double share) const {
+    if (!(share > 0.0)) return "";
+    return "; its largest hole spans " +
+           base::shortest_decimal(std::round(1000.0 * share) / 1000.0) +
+           " of its longest extent, holes up to " +
+           base::shortest_decimal(options_.max_hole_extent_rel) + " are filled";
   }
 
   std::string advice_to_wrap(const char* before) const {
@@ -468,23 +462,19 @@ class Repair {
   double largest_open_rel_ = 0.0;     ///< Of the hole that the other way left.
 };
 
-void check_range(const char* field, double value, double least, double most) {
-  if (value >= least && value <= most) return;
-  throw base::InvalidInput(
-      std::string("MeshRepairOptions: ") + field + " = " + base::shortest_decimal(value) +
-      ", must be in [" + base::shortest_decimal(least) + ", " + base::shortest_decimal(most) + "]");
-}
-
 }  // namespace
 
 void MeshRepairOptions::validate() const {
-  check_range("weld_distance_rel", weld_distance_rel, 0.0, 0.01);
-  check_range("max_hole_extent_rel", max_hole_extent_rel, 0.0, 1.0);
-  check_range("max_misfilled_rel", max_misfilled_rel, 0.0, 1.0);
-  check_range("max_removed_rel", max_removed_rel, 0.0, 1.0);
+  const auto check = [](const char* field, double value, double least, double most) {
+    base::require_between(least, most, "MeshRepairOptions", field, value);
+  };
+  check("weld_distance_rel", weld_distance_rel, 0.0, 0.01);
+  check("max_hole_extent_rel", max_hole_extent_rel, 0.0, 1.0);
+  check("max_misfilled_rel", max_misfilled_rel, 0.0, 1.0);
+  check("max_removed_rel", max_removed_rel, 0.0, 1.0);
   if (!wrap) return;
-  check_range("wrap.alpha_rel", wrap->alpha_rel, 1e-3, 1.0);
-  check_range("wrap.offset_rel", wrap->offset_rel, 1e-4, 1.0);
+  check("wrap.alpha_rel", wrap->alpha_rel, 1e-3, 1.0);
+  check("wrap.offset_rel", wrap->offset_rel, 1e-4, 1.0);
 }
 
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options) {

@@ -18,11 +18,11 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
-#include "mesh/vertex_welding.hpp"
 #include "query/box_tree.hpp"
 #include "solid/crossing_faces.hpp"
 #include "solid/intersection_part.hpp"
 #include "solid/mesh_edges.hpp"
+#include "solid/mesh_operations.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -126,36 +126,26 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
   int above = 0;
   int at = 0;
   Sides sides;
-  std::vector<std::int32_t> open = {0};
-  while (!open.empty()) {
-    const std::int32_t index = open.back();
-    open.pop_back();
-    const BoxTree::Node& node = tree.nodes[index];
+  const auto enter = [&](const BoxTree::Node& node) {
     const Vector3d low = node.lower.array() - point.error;
     const Vector3d high = node.upper.array() + point.error;
     const Vector3d& p = point.near;
-    if (high[axis] < p[axis] || low[a] > p[a] || high[a] < p[a] || low[b] > p[b] ||
-        high[b] < p[b]) {
-      continue;
+    return high[axis] >= p[axis] && low[a] <= p[a] && high[a] >= p[a] && low[b] <= p[b] &&
+           high[b] >= p[b];
+  };
+  internal::traverse(tree, enter, [&](const BoxTree::Triangle& triangle) {
+    const auto& [corners, face] = triangle;
+    const int around = turn(corners[0], corners[1]);
+    if (around == 0 || turn(corners[1], corners[2]) != around ||
+        turn(corners[2], corners[0]) != around) {
+      return;
     }
-    if (node.count == 0) {
-      open.push_back(node.first);
-      open.push_back(index + 1);
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& [corners, face] = tree.triangles[i];
-      const int around = turn(corners[0], corners[1]);
-      if (around == 0 || turn(corners[1], corners[2]) != around ||
-          turn(corners[2], corners[0]) != around) {
-        continue;
-      }
-      const int side = face == own ? 0 : around * side_of_plane(corners, point);
-      if (side < 0) above += around;
-      if (side != 0) continue;
-      at += around;
-      if (sides.first_face < 0 || face < sides.first_face) sides.first_face = face;
-    }
-  }
+    const int side = face == own ? 0 : around * side_of_plane(corners, point);
+    if (side < 0) above += around;
+    if (side != 0) return;
+    at += around;
+    if (sides.first_face < 0 || face < sides.first_face) sides.first_face = face;
+  });
   sides.is_solid_above = above != 0;
   sides.is_solid_below = above + at != 0;
   return sides;
@@ -171,19 +161,11 @@ int main_axis(const Corners& corners) {
 /// Faces with area on vertices with different places, and whether they bound a solid.
 TriangleMesh welded(const TriangleMesh& mesh) {
   TriangleMesh result = mesh;
-  const std::vector<std::int32_t> target = internal::weld_equal(result.vertices);
-  for (Face& face : result.faces) {
-    for (std::int32_t& vertex : face) vertex = target[vertex];
+  internal::weld(result, 0.0);
+  if (!internal::bounds_solid(result)) {
+    throw base::InvalidInput(
+        "the mesh bounds no solid: an edge is not run through equally often in both directions");
   }
-  internal::for_each_edge(internal::sorted_sides(result), [](auto first, auto last) {
-    std::ptrdiff_t up = 0;
-    for (auto side = first; side != last; ++side) up += side->runs_up() ? 1 : -1;
-    if (up != 0) {
-      throw base::InvalidInput(
-          "the mesh bounds no solid: an edge is not run through equally often in "
-          "both directions");
-    }
-  });
   std::size_t kept = 0;
   for (std::size_t face = 0; face < result.faces.size(); ++face) {
     if (!internal::is_degenerate(result, face)) result.faces[kept++] = result.faces[face];
@@ -353,26 +335,10 @@ class Builder {
 
   /// Equal places one vertex, nothing collapsed, no vertex without a face.
   TriangleMesh cleaned() {
-    const std::vector<std::int32_t> target = internal::weld_equal(result_.vertices);
-    std::vector<std::int32_t> number(result_.vertices.size(), -1);
-    for (Face& face : result_.faces) {
-      for (std::int32_t& vertex : face) vertex = target[vertex];
-    }
-    std::erase_if(result_.faces, internal::has_repeated_vertex);
-    for (const Face& face : result_.faces) {
-      for (const std::int32_t vertex : face) number[vertex] = 0;
-    }
-    TriangleMesh mesh;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] < 0) continue;
-      number[v] = static_cast<std::int32_t>(mesh.vertices.size());
-      mesh.vertices.push_back(result_.vertices[v]);
-    }
-    mesh.faces = std::move(result_.faces);
-    for (Face& face : mesh.faces) {
-      for (std::int32_t& vertex : face) vertex = number[vertex];
-    }
-    return mesh;
+    internal::weld(result_, 0.0);
+    internal::remove_collapsed_faces(result_);
+    internal::remove_unused_vertices(result_);
+    return std::move(result_);
   }
 
   const TriangleMesh mesh_;

@@ -27,15 +27,10 @@ struct PathStep {
 
 std::vector<PathStep> path_steps() {
   std::vector<PathStep> steps;
-  for (int k = -2; k <= 2; ++k) {
-    for (int j = -2; j <= 2; ++j) {
-      for (int i = -2; i <= 2; ++i) {
-        if (std::gcd(std::gcd(i, j), k) != 1) continue;
-        const Vector3i offset(i, j, k);
-        steps.push_back({offset, static_cast<float>(offset.cast<double>().norm())});
-      }
-    }
-  }
+  for_each_in_block(Vector3i::Constant(-2), Vector3i::Constant(2), [&](const Vector3i& offset) {
+    if (std::gcd(std::gcd(offset[0], offset[1]), offset[2]) != 1) return;
+    steps.push_back({offset, static_cast<float>(offset.cast<double>().norm())});
+  });
   return steps;
 }
 
@@ -120,51 +115,43 @@ SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxe
   }
   // Every corner, edge and wall belongs to the cells that share it; counted by its highest cell.
   std::int64_t euler = 0;
-  for (int k = 1; k < size[2]; ++k) {
-    for (int j = 1; j < size[1]; ++j) {
-      for (int i = 1; i < size[0]; ++i) {
-        const auto filled = [&](int a, int b, int c) {
-          return cells[at(i - a, j - b, k - c)] != 0;
-        };
-        const bool o = filled(0, 0, 0), x = filled(1, 0, 0), y = filled(0, 1, 0),
-                   z = filled(0, 0, 1), xy = filled(1, 1, 0), yz = filled(0, 1, 1),
-                   zx = filled(1, 0, 1), xyz = filled(1, 1, 1);
-        euler += o || x || y || z || xy || yz || zx || xyz;
-        euler -= (o || x || y || xy) + (o || y || z || yz) + (o || z || x || zx);
-        euler += (o || x) + (o || y) + (o || z);
-        euler -= o;
-      }
-    }
-  }
+  const Vector3i last = size - Vector3i::Ones();
+  for_each_in_block(Vector3i::Ones(), last, [&](const Vector3i& v) {
+    const auto filled = [&](int a, int b, int c) {
+      return cells[at(v[0] - a, v[1] - b, v[2] - c)] != 0;
+    };
+    const bool o = filled(0, 0, 0), x = filled(1, 0, 0), y = filled(0, 1, 0), z = filled(0, 0, 1),
+               xy = filled(1, 1, 0), yz = filled(0, 1, 1), zx = filled(1, 0, 1),
+               xyz = filled(1, 1, 1);
+    euler += o || x || y || z || xy || yz || zx || xyz;
+    euler -= (o || x || y || xy) + (o || y || z || yz) + (o || z || x || zx);
+    euler += (o || x) + (o || y) + (o || z);
+    euler -= o;
+  });
   // Pieces touch by corners; what is between them is connected by walls only.
   const auto count_sets = [&](char value, bool by_corners) {
     std::vector<char> seen(cells.size(), 0);
     std::vector<Vector3i> stack;
     int sets = 0;
-    for (int k = 0; k < size[2]; ++k) {
-      for (int j = 0; j < size[1]; ++j) {
-        for (int i = 0; i < size[0]; ++i) {
-          if (cells[at(i, j, k)] != value || seen[at(i, j, k)]) continue;
-          ++sets;
-          seen[at(i, j, k)] = 1;
-          stack.emplace_back(i, j, k);
-          while (!stack.empty()) {
-            const Vector3i v = stack.back();
-            stack.pop_back();
-            for (int step = 0; step < 27; ++step) {
-              const Vector3i d(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
-              if (!by_corners && d.cwiseAbs().sum() != 1) continue;
-              const Vector3i w = v + d;
-              if ((w.array() < 0).any() || (w.array() >= size.array()).any()) continue;
-              const auto place = at(w[0], w[1], w[2]);
-              if (cells[place] != value || seen[place]) continue;
-              seen[place] = 1;
-              stack.push_back(w);
-            }
-          }
-        }
+    const auto take = [&](const Vector3i& v) {
+      const auto place = at(v[0], v[1], v[2]);
+      if (cells[place] != value || seen[place]) return false;
+      seen[place] = 1;
+      stack.push_back(v);
+      return true;
+    };
+    for_each_in_block(Vector3i::Zero(), last, [&](const Vector3i& start) {
+      if (!take(start)) return;
+      ++sets;
+      while (!stack.empty()) {
+        const Vector3i v = stack.back();
+        stack.pop_back();
+        for_each_in_block((v.array() - 1).max(0), (v.array() + 1).min(last.array()),
+                          [&](const Vector3i& w) {
+                            if (by_corners || (w - v).cwiseAbs().sum() == 1) take(w);
+                          });
       }
-    }
+    });
     return sets;
   };
   SetTopology result;

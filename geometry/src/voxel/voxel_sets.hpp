@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graspfit/geometry/voxel_grid.hpp"
+#include "voxel/block.hpp"
 
 namespace graspfit::geometry::internal {
 
@@ -17,14 +18,10 @@ void for_each_neighbor(const VoxelLattice& lattice, Index index, const Visit& vi
   const Eigen::Vector3i voxel = lattice.voxel(index);
   const Eigen::Vector3i low = (voxel.array() - 1).max(0);
   const Eigen::Vector3i high = (voxel.array() + 1).min(lattice.counts.array() - 1);
-  for (int k = low[2]; k <= high[2]; ++k) {
-    for (int j = low[1]; j <= high[1]; ++j) {
-      for (int i = low[0]; i <= high[0]; ++i) {
-        const Index neighbor = lattice.index({i, j, k});
-        if (neighbor != index) visit(neighbor);
-      }
-    }
-  }
+  for_each_in_block(low, high, [&](const Eigen::Vector3i& place) {
+    const Index neighbor = lattice.index(place);
+    if (neighbor != index) visit(neighbor);
+  });
 }
 
 /// Labels the 26-connected sets of voxels for which `is_member`, in order of their first voxel;

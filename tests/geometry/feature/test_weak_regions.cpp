@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
@@ -21,15 +22,11 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
+using graspfit::testing::moved;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
 
 // A drum 40 mm wide and high on whose top (z = 20 mm) a stem stands.
 TriangleMesh drum_with_stem(double diameter, double length) {

@@ -31,7 +31,7 @@ Summands random_cones(Random& random, int count, int num_edges, int dimension = 
     for (double& x : map.reshaped()) x = random.uniform(-1.0, 1.0);
     MatrixXd edges(3, num_edges);
     for (int i = 0; i < num_edges; ++i) {
-      const double angle = 2.0 * 3.14159265358979 * i / num_edges;
+      const double angle = 2.0 * std::numbers::pi * i / num_edges;
       edges.col(i) << 0.6 * std::cos(angle), 0.6 * std::sin(angle), 1.0;
     }
     cones.push_back(map * edges);

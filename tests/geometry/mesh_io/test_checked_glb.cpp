@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/mesh_io/error_of.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "mesh_io/checked_glb.hpp"
@@ -75,16 +76,7 @@ std::string chain_of_nodes(int length) {
 }
 
 std::string error_of(const fs::path& file) {
-  try {
-    read_mesh(file);
-  } catch (const IoError& error) {
-    const std::string text = error.what();
-    CHECK(text.find('\n') == std::string::npos);
-    const std::string prefix = "read_mesh: " + file.string() + ": not a glTF mesh: ";
-    CHECK(text.starts_with(prefix));
-    return text.substr(std::min(prefix.size(), text.size()));
-  }
-  return "no error";
+  return graspfit::testing::error_of(file, "not a glTF mesh: ");
 }
 
 }  // namespace

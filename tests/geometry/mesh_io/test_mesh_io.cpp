@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "geometry/mesh_io/error_of.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -13,6 +14,7 @@
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::Contains;
+using graspfit::testing::error_of;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
@@ -20,19 +22,6 @@ namespace {
 
 const char* const kTetrahedronOff =
     "OFF\n# a comment\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
-
-std::string error_of(const fs::path& file) {
-  try {
-    read_mesh(file);
-  } catch (const IoError& error) {
-    std::string text = error.what();
-    CHECK(text.find('\n') == std::string::npos);
-    const std::string prefix = "read_mesh: " + file.string() + ": ";
-    CHECK(text.starts_with(prefix));
-    return text.substr(std::min(prefix.size(), text.size()));
-  }
-  return "no error";
-}
 
 }  // namespace
 

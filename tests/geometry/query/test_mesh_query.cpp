@@ -3,6 +3,7 @@
 #include <numbers>
 #include <optional>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
@@ -11,6 +12,7 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
+using graspfit::testing::moved;
 
 namespace {
 
@@ -23,11 +25,6 @@ Eigen::Vector3d drawn(Random& random, double size) {
 
 TriangleMesh turned_inward(TriangleMesh mesh) {
   for (Face& f : mesh.faces) std::swap(f[1], f[2]);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
   return mesh;
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -8,13 +9,9 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
+using graspfit::testing::moved;
 
 namespace {
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
 
 /// Every face in four, the surface unchanged.
 TriangleMesh finer(const TriangleMesh& mesh) {

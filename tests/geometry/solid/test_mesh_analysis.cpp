@@ -2,6 +2,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/intersections.h>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -10,24 +11,9 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
-
-namespace {
-
-void turn(TriangleMesh& mesh, std::size_t face) {
-  std::swap(mesh.faces[face][1], mesh.faces[face][2]);
-}
-
-TriangleMesh inward(TriangleMesh mesh) {
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) turn(mesh, face);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
-
-}  // namespace
+using graspfit::testing::inward;
+using graspfit::testing::moved;
+using graspfit::testing::turn;
 
 TEST_CASE("Shapes are closed, manifold and outward", "[geometry][mesh_analysis]") {
   for (const TriangleMesh& mesh :

@@ -2,8 +2,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -17,22 +19,11 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
+using graspfit::testing::inward;
+using graspfit::testing::moved;
+using graspfit::testing::turn;
 
 namespace {
-
-void turn(TriangleMesh& mesh, std::size_t face) {
-  std::swap(mesh.faces[face][1], mesh.faces[face][2]);
-}
-
-TriangleMesh inward(TriangleMesh mesh) {
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) turn(mesh, face);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
 
 std::string steps_of(const RepairedMesh& repaired) {
   std::string text;
@@ -226,7 +217,7 @@ TEST_CASE("What cannot be repaired is refused in one line", "[geometry][mesh_rep
   // A Möbius strip has one side.
   TriangleMesh strip;
   for (int i = 0; i < 6; ++i) {
-    const double angle = i * 3.14159265358979 / 3.0;
+    const double angle = i * std::numbers::pi / 3.0;
     const Eigen::Vector3d radial(std::cos(angle), std::sin(angle), 0.0);
     const Eigen::Vector3d across =
         0.3 * (std::cos(angle / 2) * radial + std::sin(angle / 2) * Eigen::Vector3d::UnitZ());

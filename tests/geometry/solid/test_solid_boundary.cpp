@@ -2,6 +2,7 @@
 #include <map>
 #include <numbers>
 
+#include "geometry/changed_meshes.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -12,18 +13,10 @@
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
+using graspfit::testing::inward;
+using graspfit::testing::moved;
 
 namespace {
-
-TriangleMesh inward(TriangleMesh mesh) {
-  for (Face& face : mesh.faces) std::swap(face[1], face[2]);
-  return mesh;
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (auto& vertex : mesh.vertices) vertex += by;
-  return mesh;
-}
 
 /// How often every edge is run through upward more than downward; only what is not zero.
 std::size_t num_open_edges(const TriangleMesh& mesh) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exact/predicates.hpp"
+#include "geometry/changed_meshes.hpp"
 #include "geometry/exact_clip.hpp"
 #include "geometry/rational_clip.hpp"
 #include "geometry/traced_clip.hpp"
@@ -155,11 +156,6 @@ TriangleMesh loose_triangles(int count, const Coordinate& coordinate) {
 
 VoxelLattice unit_lattice(const Eigen::Vector3i& counts) {
   return {Eigen::Vector3d::Zero(), 1.0, counts};
-}
-
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex += by;
-  return mesh;
 }
 
 // One or two ulps beside a whole number.

@@ -9,6 +9,21 @@
 
 namespace graspfit::base {
 
+namespace internal {
+
+template <typename Value>
+std::string text_of(const Value& value) {
+  if constexpr (std::convertible_to<Value, std::string_view>) {
+    return std::string(value);
+  } else if constexpr (std::integral<Value>) {
+    return std::to_string(value);
+  } else {
+    return shortest_decimal(value);
+  }
+}
+
+}  // namespace internal
+
 /// Throws InvalidInput "<where>: <field> = <value>, must be <rule>" unless `is_met`. Write the
 /// condition so that NaN does not meet it.
 template <typename Value>
@@ -16,16 +31,17 @@ void require(bool is_met, std::string_view where, std::string_view field, const 
              std::string_view rule) {
   if (is_met) return;
   std::string message(where);
-  message.append(": ").append(field).append(" = ");
-  if constexpr (std::convertible_to<Value, std::string_view>) {
-    message.append(value);
-  } else if constexpr (std::integral<Value>) {
-    message.append(std::to_string(value));
-  } else {
-    message.append(shortest_decimal(value));
-  }
+  message.append(": ").append(field).append(" = ").append(internal::text_of(value));
   message.append(", must be ").append(rule);
   throw InvalidInput(message);
+}
+
+/// `require` that a number is in [least, most].
+template <typename Value>
+void require_between(Value least, Value most, std::string_view where, std::string_view field,
+                     Value value) {
+  require(value >= least && value <= most, where, field, value,
+          "in [" + internal::text_of(least) + ", " + internal::text_of(most) + "]");
 }
 
 }  // namespace graspfit::base

@@ -8,6 +8,10 @@
 
 namespace graspfit::geometry {
 
+namespace internal {
+struct PolytopeData;
+}
+
 /// The convex hull of points in 2 to 6 dimensions: rank, extreme points, facets, volume, and
 /// questions about other points.
 ///
@@ -75,10 +79,8 @@ class ConvexPolytope {
   ///           to the span; the distance to the polytope is at least that. −∞ without points
   double inradius(const Eigen::Ref<const Eigen::VectorXd>& point) const;
 
-  struct Impl;  ///< Defined in the source.
-
  private:
-  std::shared_ptr<const Impl> impl_;
+  std::shared_ptr<const internal::PolytopeData> data_;
 };
 
 }  // namespace graspfit::geometry

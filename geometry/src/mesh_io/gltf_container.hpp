@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace graspfit::geometry::internal::gltf {
+
+/// Throws IoError "not a glTF mesh: <what>".
+[[noreturn]] void fail(const std::string& what);
+
+/// "chunk 3".
+std::string numbered(const char* what, std::size_t index);
+
+/// A name for a message.
+std::string name_in_quotes(std::string_view name);
+
+/// JSON text and the bytes that come with it in a GLB.
+struct Container {
+  std::string_view json;
+  std::optional<std::string_view> binary;
+};
+
+/// What a glTF file (all of it JSON) or a GLB holds. @throws IoError if the GLB is no whole one.
+Container opened(std::string_view content);
+
+/// A GLB of these.
+std::string packed(std::string json, const std::string& binary);
+
+}  // namespace graspfit::geometry::internal::gltf
