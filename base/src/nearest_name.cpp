@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "graspfit/base/list_text.hpp"
+
 namespace graspfit::base {
 namespace {
 
@@ -62,6 +64,10 @@ std::optional<std::string> nearest_name(std::string_view name,
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known) {
   const std::optional<std::string> nearest = nearest_name(name, known);
   return nearest ? "; did you mean \"" + *nearest + "\"?" : "";
+}
+
+std::string known_names(std::string_view name, const std::vector<std::string>& known) {
+  return list_text(known) + did_you_mean(name, known);
 }
 
 }  // namespace graspfit::base

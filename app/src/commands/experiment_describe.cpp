@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands/experiment_commands.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/sweep/data_files.hpp"
 #include "graspfit/sweep/data_needs.hpp"
@@ -45,9 +46,7 @@ std::string value_text(const Json& value) {
                          return item.is_primitive();
                        });
   if (!is_flat) return "given";
-  std::string text;
-  for (const Json& item : value) text += (text.empty() ? "" : ", ") + value_text(item);
-  return '[' + text + ']';
+  return '[' + base::list_text(value, value_text) + ']';
 }
 
 /// What a setting is in the cells of an experiment: "axis resolution" where an axis sets it, else
@@ -104,9 +103,7 @@ std::string sources_text(const std::string& settings) {
       sources.push_back(source);
     }
   }
-  std::string text;
-  for (const std::string& source : sources) text += (text.empty() ? "" : ", ") + source;
-  return text;
+  return base::list_text(sources);
 }
 
 /// A row per axis, source of its values' data and whether they are there; and one for the settings

@@ -9,6 +9,7 @@
 #include "cli/command_line.hpp"
 #include "commands/hand_commands.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
 #include "graspfit/viewer/hand_page.hpp"
@@ -54,11 +55,8 @@ void print_table(const std::string& name, const std::vector<std::vector<std::str
 
 template <class Items>
 std::string names_of(const Items& items, const std::vector<int>& indices) {
-  std::string text;
-  for (const int i : indices) {
-    text += (text.empty() ? "" : " ") + items[static_cast<std::size_t>(i)].name;
-  }
-  return text;
+  const auto name = [&](int i) { return items[static_cast<std::size_t>(i)].name; };
+  return base::list_text(indices, name, " ");
 }
 
 template <class Items>

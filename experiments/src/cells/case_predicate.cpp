@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/units.hpp"
 
 namespace graspfit::experiments::internal {
@@ -118,12 +119,11 @@ constexpr std::array<std::pair<const char*, Reader>, 8> kReaders = {
 CasePredicate read_predicate(const sweep::SettingValue& value) {
   const sweep::SettingValue named = value.at("name");
   const std::string name = named.text();
-  std::string names;
   for (const auto& [known, read] : kReaders) {
     if (name == known) return read(value);
-    names += (names.empty() ? "" : "|") + std::string(known);
   }
-  named.fail("must be one of " + names);
+  const auto first = [](const auto& reader) { return reader.first; };
+  named.fail("must be one of " + base::list_text(kReaders, first, "|"));
 }
 
 }  // namespace graspfit::experiments::internal

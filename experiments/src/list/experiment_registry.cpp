@@ -54,15 +54,13 @@ const std::vector<Experiment>& all_experiments() {
 
 const sweep::Experiment& find_experiment(std::string_view slug) {
   std::vector<std::string> slugs;
-  std::string names;
   for (const sweep::Experiment& experiment : all_experiments()) {
     if (experiment.slug == slug) return experiment;
     slugs.push_back(experiment.slug);
-    names += (names.empty() ? "" : ", ") + experiment.slug;
   }
   const std::string name(slug);
-  throw base::InvalidInput("no experiment named " + name + "; there are " + names +
-                           base::did_you_mean(name, slugs));
+  throw base::InvalidInput("no experiment named " + name + "; there are " +
+                           base::known_names(name, slugs));
 }
 
 }  // namespace graspfit::experiments

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/option_names.hpp"
@@ -21,10 +22,7 @@ using Schema = nlohmann::ordered_json;
   std::vector<std::string> names;
   for (const sweep::Column& other : others) names.push_back(other.name);
   for (const PlanningSetting& setting : planning_setting_list()) names.push_back(setting.name.name);
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  throw sweep::SettingError(key,
-                            "is no setting; there are " + text + base::did_you_mean(key, names));
+  throw sweep::SettingError(key, "is no setting; there are " + base::known_names(key, names));
 }
 
 /// "in [0, 1]", "> 0 [mm]".
@@ -37,11 +35,7 @@ std::string range_text(const PlanningSetting& setting) {
 std::string allowed_text(const PlanningSetting& setting) {
   if (setting.range) return setting.range->text();
   if (setting.schema.contains("enum")) {
-    std::string text;
-    for (const Schema& name : setting.schema.at("enum")) {
-      text += (text.empty() ? "" : "|") + name.get<std::string>();
-    }
-    return text;
+    return base::list_text(setting.schema.at("enum").get<std::vector<std::string>>(), {}, "|");
   }
   const std::string type = setting.schema.at("type").get<std::string>();
   if (type == "boolean") return "true|false";

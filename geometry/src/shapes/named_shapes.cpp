@@ -120,12 +120,8 @@ TriangleMesh named_shape(const std::string& name, const std::vector<ShapeDimensi
   });
   const auto listed = [](const std::string& unknown, const auto& items) {
     std::vector<std::string> names;
-    std::string text;
-    for (const auto& item : items) {
-      names.push_back(item.name);
-      text += (text.empty() ? "" : ", ") + item.name;
-    }
-    return text + base::did_you_mean(unknown, names);
+    for (const auto& item : items) names.push_back(item.name);
+    return base::known_names(unknown, names);
   };
   if (shape == shapes.end()) {
     throw base::InvalidInput("there is no shape \"" + name + "\"; there are " +

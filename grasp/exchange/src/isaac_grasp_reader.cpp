@@ -5,6 +5,7 @@
 
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
@@ -75,10 +76,8 @@ class Reader {
     if (found != hand_.joints.end()) {
       return static_cast<std::size_t>(found - hand_.joints.begin());
     }
-    std::string known;
-    for (const hands::Joint& joint : hand_.joints)
-      known += (known.empty() ? "" : ", ") + joint.name;
-    value.fail("hand " + hand_.name + " has no such joint; it has " + known);
+    value.fail("hand " + hand_.name + " has no such joint; it has " +
+               base::list_text(hand_.joints, &hands::Joint::name));
   }
 
   double within_limits(const hands::Joint& joint, const YamlNode& node) const {

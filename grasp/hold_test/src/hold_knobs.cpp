@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 
 namespace graspfit::hold_test {
 namespace {
@@ -81,9 +82,8 @@ const Knob& knob_named(const std::string& name) {
   const auto found = std::find_if(knobs().begin(), knobs().end(),
                                   [&](const Knob& knob) { return name == knob.name; });
   if (found != knobs().end()) return *found;
-  std::string names;
-  for (const Knob& knob : knobs()) names += (names.empty() ? "" : ", ") + std::string(knob.name);
-  throw InvalidInput("no knob \"" + name + "\" of a hold protocol; there are " + names);
+  throw InvalidInput("no knob \"" + name + "\" of a hold protocol; there are " +
+                     base::list_text(knobs(), &Knob::name));
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& why) {
@@ -125,12 +125,11 @@ std::array<double, N> parsed_numbers(const std::string& name, const std::string&
 
 template <class Choices>
 auto parsed_choice(const std::string& name, const std::string& text, const Choices& choices) {
-  std::string names;
   for (const auto choice : choices) {
     if (text == name_of(choice)) return choice;
-    names += (names.empty() ? "" : "|") + std::string(name_of(choice));
   }
-  refuse(name, text, "is not one of " + names);
+  const auto name_of_choice = [](auto choice) { return name_of(choice); };
+  refuse(name, text, "is not one of " + base::list_text(choices, name_of_choice, "|"));
 }
 
 KnobValue value_of(double value) { return value; }

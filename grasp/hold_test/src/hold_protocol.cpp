@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 
 namespace graspfit::hold_test {
 
@@ -149,12 +150,11 @@ const std::vector<std::string>& hold_protocol_names() {
 }
 
 HoldProtocol hold_protocol(const std::string& name) {
-  std::string known;
   for (const HoldProtocol& protocol : protocols()) {
     if (protocol.name == name) return protocol;
-    known += (known.empty() ? "" : ", ") + protocol.name;
   }
-  throw base::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " + known);
+  throw base::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " +
+                           base::list_text(protocols(), &HoldProtocol::name));
 }
 
 }  // namespace graspfit::hold_test

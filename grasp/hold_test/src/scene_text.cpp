@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 
 namespace graspfit::hold_test::internal {
@@ -40,9 +41,7 @@ std::string number(double value) {
 
 template <class Values>
 std::string numbers(const Values& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : " ") + number(value);
-  return text;
+  return base::list_text(values, number, " ");
 }
 
 std::string attribute(const std::string& name, const std::string& value) {

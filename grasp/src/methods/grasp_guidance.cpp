@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "methods/guidance_list.hpp"
@@ -35,12 +36,7 @@ const PlanningMethod& PlanningMethods::at(std::string_view name) const {
 }
 
 std::string PlanningMethods::names() const {
-  std::string names;
-  for (const PlanningMethod& method : methods_) {
-    if (!names.empty()) names += '|';
-    names += method.name;
-  }
-  return names;
+  return base::list_text(methods_, &PlanningMethod::name, "|");
 }
 
 const PlanningMethods& planning_methods() {

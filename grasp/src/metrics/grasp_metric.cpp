@@ -98,13 +98,9 @@ const GraspMetric& GraspMetrics::at(std::string_view name) const {
                                   [&](const GraspMetric& metric) { return metric.name == name; });
   if (found != metrics_.end()) return *found;
   std::vector<std::string> names;
-  std::string known;
-  for (const GraspMetric& metric : metrics_) {
-    names.push_back(metric.name);
-    known.append(known.empty() ? "" : ", ").append(metric.name);
-  }
-  throw base::InvalidInput("there is no metric \"" + std::string(name) + "\"; there are " + known +
-                           base::did_you_mean(name, names));
+  for (const GraspMetric& metric : metrics_) names.push_back(metric.name);
+  throw base::InvalidInput("there is no metric \"" + std::string(name) + "\"; there are " +
+                           base::known_names(name, names));
 }
 
 GraspMetrics GraspMetrics::selected(std::span<const std::string> names) const {

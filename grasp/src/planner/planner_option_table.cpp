@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <type_traits>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/option_names.hpp"
@@ -119,11 +120,7 @@ class Assignment {
 
 }  // namespace
 
-std::string PlannerOption::choices_text() const {
-  std::string text;
-  for (const std::string& choice : choices) text += (text.empty() ? "" : "|") + choice;
-  return text;
-}
+std::string PlannerOption::choices_text() const { return base::list_text(choices, {}, "|"); }
 
 const std::vector<PlannerOption>& planner_option_table() {
   static const std::vector<PlannerOption> table = [] {

@@ -7,6 +7,7 @@
 
 #include "description/control_characters.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -37,9 +38,7 @@ class Item {
     if (!value_.is_object()) fail("is not an object {...}");
     for (const auto& [key, unused] : value_.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      std::string list;
-      for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-      fail("unknown field " + key + "; known are " + list);
+      fail("unknown field " + key + "; known are " + base::list_text(known));
     }
   }
 

@@ -6,6 +6,7 @@
 
 #include "description/description_package.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/hands/hand_io.hpp"
 
@@ -74,9 +75,7 @@ std::vector<std::string> hands_in(const fs::path& folder) {
 }
 
 std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
+  return names.empty() ? "none" : base::list_text(names);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "model/pad_outline.hpp"
@@ -25,9 +26,7 @@ using internal::sides;
 /// "a, b, c" of the names of some items.
 template <typename Items>
 std::string names_of(const Items& items) {
-  std::string text;
-  for (const auto& item : items) text += (text.empty() ? "" : ", ") + item.name;
-  return text.empty() ? "none" : text;
+  return items.empty() ? "none" : base::list_text(items, [](auto& item) { return item.name; });
 }
 
 template <typename Items>

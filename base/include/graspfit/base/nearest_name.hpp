@@ -22,4 +22,8 @@ std::optional<std::string> nearest_name(std::string_view name,
 /// `; did you mean "plan"?` for the end of a message about an unknown name; empty if none is near.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& known);
 
+/// `a, b, c; did you mean "b"?`: the names there are, for the end of a message about an unknown
+/// one.
+std::string known_names(std::string_view name, const std::vector<std::string>& known);
+
 }  // namespace graspfit::base

@@ -23,10 +23,7 @@ void ConfigNode::require_members(const std::vector<std::string>& required,
     if (is_in(required, key) || is_in(optional, key)) continue;
     std::vector<std::string> known = required;
     known.insert(known.end(), optional.begin(), optional.end());
-    std::string allowed;
-    for (const std::string& name : known) allowed += (allowed.empty() ? "" : ", ") + name;
-    node.fail("is not a member that is known here; there are " + allowed +
-              base::did_you_mean(key, known));
+    node.fail("is not a member that is known here; there are " + base::known_names(key, known));
   }
   for (const std::string& key : required) at(key);
 }

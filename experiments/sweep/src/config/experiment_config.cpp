@@ -12,6 +12,7 @@
 #include "config/config_node.hpp"
 #include "config/object_axis.hpp"
 #include "graspfit/base/json_bounds.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/sha256.hpp"
@@ -55,12 +56,8 @@ std::string plain_label(const SortedJson& value) {
 /// "there are a, b, c", and which of these labels an unknown one is near to.
 std::string labels_text(const Axis& axis, const std::string& unknown) {
   std::vector<std::string> labels;
-  std::string text;
-  for (const AxisValue& value : axis.values) {
-    labels.push_back(value.label);
-    text += (text.empty() ? "there are " : ", ") + value.label;
-  }
-  return text + base::did_you_mean(unknown, labels);
+  for (const AxisValue& value : axis.values) labels.push_back(value.label);
+  return "there are " + base::known_names(unknown, labels);
 }
 
 AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
@@ -401,12 +398,9 @@ std::string leave_out_missing_data(Draft& draft,
 void apply_object_files(const Experiment& experiment, const ConfigRequest& request, Draft& draft) {
   PlacedAxis* const placed = find_axis(draft, kObjectAxis);
   if (placed == nullptr) {
-    std::string names;
-    for (const PlacedAxis& other : draft.axes) {
-      names += (names.empty() ? "" : ", ") + other.axis.name;
-    }
-    throw base::InvalidInput("--object: " + experiment.slug + " has no axis " + kObjectAxis +
-                             "; there are " + names);
+    throw base::InvalidInput(
+        "--object: " + experiment.slug + " has no axis " + kObjectAxis + "; there are " +
+        base::list_text(draft.axes, [](auto& other) { return other.axis.name; }));
   }
   if (const PlacedAxis* const sizes = size_axis_of(draft);
       sizes != nullptr && request.object_longest) {

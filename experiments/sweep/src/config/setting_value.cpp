@@ -85,10 +85,8 @@ void SettingValue::require_members_among(const std::vector<std::string>& allowed
   if (!json_->is_object()) fail("must be an object");
   for (const auto& [member, value] : json_->items()) {
     if (std::find(allowed.begin(), allowed.end(), member) != allowed.end()) continue;
-    std::string names;
-    for (const std::string& name : allowed) names += (names.empty() ? "" : ", ") + name;
     throw SettingError(key_ + '/' + member, "is not a member that is known here; there are " +
-                                                names + base::did_you_mean(member, allowed));
+                                                base::known_names(member, allowed));
   }
 }
 

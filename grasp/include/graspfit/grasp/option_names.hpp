@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
@@ -172,12 +173,7 @@ std::optional<Enum> value_named(std::string_view name) {
 /// All names as "a|b|c", for messages.
 template <class Enum>
 std::string names_of() {
-  std::string names;
-  for (const NamedValue<Enum>& named : named_values<Enum>()) {
-    if (!names.empty()) names += '|';
-    names += named.name;
-  }
-  return names;
+  return base::list_text(named_values<Enum>(), &NamedValue<Enum>::name, "|");
 }
 
 }  // namespace graspfit::grasp
