@@ -60,13 +60,9 @@ std::string off_coupling(const grasp::GraspFile& file) {
     for (std::size_t j = 0; j < file.hand.joints.size(); ++j) {
       const hands::Joint& joint = file.hand.joints[j];
       if (!joint.coupling) continue;
-      const double follows =
-          std::clamp(joint.coupling->ratio * grasp.configuration.q[joint.coupling->leader] +
-                         joint.coupling->offset,
-                     joint.lower, joint.upper);
-      if (std::abs(grasp.configuration.q[static_cast<Eigen::Index>(j)] - follows) > 1e-9) {
-        return true;
-      }
+      const Eigen::VectorXd& q = grasp.configuration.q;
+      const double follows = hands::followed_position(joint, q);
+      if (std::abs(q[static_cast<Eigen::Index>(j)] - follows) > 1e-9) return true;
     }
     return false;
   });

@@ -97,8 +97,7 @@ class Reader {
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
       // Any place will do for a follower: all but those that a clutch lets go on are put right.
       if (std::isnan(q[static_cast<Eigen::Index>(j)])) {
-        q[static_cast<Eigen::Index>(j)] =
-            hand_.joints[j].closing_sign > 0 ? hand_.joints[j].lower : hand_.joints[j].upper;
+        q[static_cast<Eigen::Index>(j)] = hand_.joints[j].open_limit();
       }
     }
     hands::apply_couplings(hand_, q);

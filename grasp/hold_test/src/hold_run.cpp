@@ -29,9 +29,8 @@ std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::Ve
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const auto& coupling = hand.joints[j].coupling;
     if (!coupling) continue;
-    const double led = coupling->ratio * q[coupling->leader] + coupling->offset;
-    follows[j] =
-        !coupling->breakaway || std::abs(q[static_cast<Eigen::Index>(j)] - led) <= kFollowingSlack;
+    const double off = q[static_cast<Eigen::Index>(j)] - hands::led_position(*coupling, q);
+    follows[j] = !coupling->breakaway || std::abs(off) <= kFollowingSlack;
   }
   return follows;
 }

@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "fitting/target_posture.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::grasp {
 
@@ -22,12 +22,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// The independent joint behind a swing joint.
-int leader_of(const hands::HandModel& hand, int joint) {
-  while (hand.joints[joint].coupling) joint = hand.joints[joint].coupling->leader;
-  return joint;
-}
-
 /// Azimuth error of a finger toward a point around its own swing axis's origin, or around the palm
 /// center where it does not swing. Only the finger's own chain is posed.
 class AzimuthOfFinger {
@@ -35,19 +29,20 @@ class AzimuthOfFinger {
   AzimuthOfFinger(const hands::HandModel& hand, int finger)
       : hand_(hand),
         finger_(hand.fingers[finger]),
-        chain_(chain_to(hand, hand.pads[finger_.tip_pad].link)),
-        contact_C_(hands::pad_contact_point_C(hand.pads[finger_.tip_pad])) {}
+        chain_(hands::links_to(hand, hand.pads[finger_.tip_pad].link)),
+        contact_C_(hands::pad_contact_point_C(hand.pads[finger_.tip_pad])),
+        X_OL_(hand.links.size()) {}
 
-  double error(const hands::HandConfiguration& configuration, const Vector3d& point_O) const {
+  double error(const hands::HandConfiguration& configuration, const Vector3d& point_O) {
     Vector3d pivot = configuration.X_OH * hand_.palm.center_H;
-    RigidTransform X_OL = configuration.X_OH;
-    for (std::size_t i = 1; i < chain_.size(); ++i) {
-      if (finger_.swing_joint && hand_.links[chain_[i]].parent_joint == *finger_.swing_joint) {
-        pivot = X_OL * hand_.joints[*finger_.swing_joint].X_PJ.translation();
+    for (const int link : chain_) {
+      X_OL_[link] = hands::link_pose(hand_, link, X_OL_, configuration);
+      if (finger_.swing_joint && hand_.links[link].parent_joint == *finger_.swing_joint) {
+        const hands::Joint& swing = hand_.joints[*finger_.swing_joint];
+        pivot = X_OL_[swing.parent_link] * swing.X_PJ.translation();
       }
-      X_OL = link_pose(hand_, chain_[i], X_OL, configuration.q);
     }
-    const Vector3d tip = X_OL * (hand_.pads[finger_.tip_pad].X_LC * contact_C_);
+    const Vector3d tip = X_OL_[chain_.back()] * (hand_.pads[finger_.tip_pad].X_LC * contact_C_);
     const Vector3d axis = (configuration.X_OH.linear() * hand_.palm.direction_H).normalized();
     return azimuth_error(tip - pivot, point_O - pivot, axis);
   }
@@ -57,6 +52,7 @@ class AzimuthOfFinger {
   const hands::Finger& finger_;
   std::vector<int> chain_;
   Vector3d contact_C_;
+  std::vector<RigidTransform> X_OL_;  ///< Of the links of the chain.
 };
 
 /// A finger and the target that it is to look at.
@@ -136,7 +132,7 @@ std::map<int, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
     const int finger = targets.contacts[t].finger;
     if (finger == contact::kPalm) continue;
     const std::optional<int>& swing = hand.fingers[finger].swing_joint;
-    looks[swing ? leader_of(hand, *swing) : -1].push_back({finger, static_cast<int>(t)});
+    looks[swing ? hands::leader_of(hand, *swing) : -1].push_back({finger, static_cast<int>(t)});
   }
   return looks;
 }

@@ -329,9 +329,7 @@ hands::HandConfiguration FittingLoop::with_joint(int joint, double position) con
 }
 
 bool FittingLoop::is_at_closing_limit(int joint) const {
-  const hands::Joint& description = model_.joints[joint];
-  const double limit = description.closing_sign > 0 ? description.upper : description.lower;
-  return state_.configuration().q[joint] == limit;
+  return state_.configuration().q[joint] == model_.joints[joint].closed_limit();
 }
 
 /// Step 1: closes one finger, as far as the guard allows.

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "fitting/finger_crossing.hpp"
-#include "fitting/target_posture.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "scene/infinity.hpp"
 
@@ -143,9 +142,7 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
   // own center, before and after.
   const double change = std::numbers::sqrt2 * (length / voxel_size_ + std::numbers::sqrt3);
   for (const int link : moved) {
-    const int parent = model_.links[link].parent_link;
-    trial_X_OL_[link] =
-        parent < 0 ? trial_.X_OH : link_pose(model_, link, trial_X_OL_[parent], trial_.q);
+    trial_X_OL_[link] = hands::link_pose(model_, link, trial_X_OL_, trial_);
     trial_room_[link] -= length;
     const double bound = distance_[link] - change;
     if (bound > kFarEnough) {

@@ -8,6 +8,8 @@
 
 #include "fitting/finger_alignment.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/jacobian.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -36,7 +38,8 @@ constexpr double kStartClosed = 0.45;
 struct Tip {
   int pad = -1;
   Vector3d contact_C = Vector3d::Zero();
-  std::vector<int> links;  ///< Root to the pad's link.
+  std::vector<int> links;   ///< Root to the pad's link.
+  std::vector<int> joints;  ///< Between them.
   const TargetContact* target = nullptr;
 };
 
@@ -58,11 +61,10 @@ class Search {
       }
       const int pad = hand.fingers[target.finger].tip_pad;
       tips_.push_back({pad, hands::pad_contact_point_C(hand.pads[pad]),
-                       chain_to(hand, hand.pads[pad].link), &target});
-      for (const int link : tips_.back().links) {
-        const int joint = hand.links[link].parent_joint;
-        if (joint < 0) continue;
-        const int leader = leader_of(joint).first;
+                       hands::links_to(hand, hand.pads[pad].link),
+                       hands::joints_to(hand, hand.pads[pad].link), &target});
+      for (const int joint : tips_.back().joints) {
+        const int leader = hands::leader_of(hand, joint);
         if (variable_of_[leader] >= 0 || hand.joints[leader].upper <= hand.joints[leader].lower) {
           continue;
         }
@@ -102,16 +104,6 @@ class Search {
   }
 
  private:
-  /// The independent joint behind `joint`, and how far `joint` moves for each unit of it.
-  std::pair<int, double> leader_of(int joint) const {
-    double ratio = 1.0;
-    while (hand_.joints[joint].coupling) {
-      ratio *= hand_.joints[joint].coupling->ratio;
-      joint = hand_.joints[joint].coupling->leader;
-    }
-    return {joint, ratio};
-  }
-
   hands::HandConfiguration moved(const hands::HandConfiguration& from, const VectorXd& step) const {
     hands::HandConfiguration result = start_;
     result.X_OH = turned(from.X_OH, from.X_OH * hand_.palm.center_H, direction_, step[3]);
@@ -149,10 +141,7 @@ class Search {
     int row = 0;
     const Vector3d palm = at.X_OH * hand_.palm.center_H;
     for (const Tip& tip : tips_) {
-      for (const int link : tip.links) {
-        const int parent = hand_.links[link].parent_link;
-        pose_[link] = parent < 0 ? at.X_OH : link_pose(hand_, link, pose_[parent], at.q);
-      }
+      for (const int link : tip.links) pose_[link] = hands::link_pose(hand_, link, pose_, at);
       const RigidTransform X_OC = pose_[tip.links.back()] * hand_.pads[tip.pad].X_LC;
       const Vector3d point = X_OC * tip.contact_C;
       const Vector3d normal = X_OC.linear().col(2);
@@ -187,25 +176,18 @@ class Search {
 
   void add_joints(const Tip& tip, const hands::HandConfiguration& at, const Vector3d& point,
                   const Vector3d& normal, int row, MatrixXd& jacobian) const {
-    for (const int link : tip.links) {
-      const int index = hand_.links[link].parent_joint;
-      if (index < 0) continue;
-      const auto [leader, ratio] = leader_of(index);
-      const int column = variable_of_[leader];
+    for (const int index : tip.joints) {
       const hands::Joint& joint = hand_.joints[index];
+      const int column = variable_of_[hands::leader_of(hand_, index)];
       // A follower at its limit does not follow.
       const bool is_stopped =
           joint.coupling && (at.q[index] <= joint.lower || at.q[index] >= joint.upper);
       if (column < 0 || is_stopped) continue;
-      const RigidTransform X_OJ = pose_[joint.parent_link] * joint.X_PJ;
-      const Vector3d axis = X_OJ.linear() * joint.axis_J;
-      if (joint.type == hands::JointType::Prismatic) {
-        jacobian.block<3, 1>(row, column) += ratio * axis / kMissUnit;
-      } else {
-        jacobian.block<3, 1>(row, column) +=
-            ratio * axis.cross(point - X_OJ.translation()) / kMissUnit;
-        jacobian.block<3, 1>(row + 3, column) += ratio * kTiltWeight * axis.cross(normal);
-      }
+      const double ratio = joint.coupling ? joint.coupling->ratio : 1.0;
+      const hands::JointVelocity velocity =
+          hands::joint_velocity(joint, pose_[joint.parent_link] * joint.X_PJ, point);
+      jacobian.block<3, 1>(row, column) += ratio * velocity.linear / kMissUnit;
+      jacobian.block<3, 1>(row + 3, column) += ratio * kTiltWeight * velocity.angular.cross(normal);
     }
   }
 
@@ -245,28 +227,6 @@ class Search {
 
 }  // namespace
 
-RigidTransform link_pose(const hands::HandModel& hand, int link, const RigidTransform& X_OP,
-                         const VectorXd& q) {
-  const hands::Link& description = hand.links[link];
-  if (description.parent_joint < 0) return X_OP * description.X_PL_fixed;
-  const hands::Joint& joint = hand.joints[description.parent_joint];
-  RigidTransform motion = RigidTransform::Identity();
-  if (joint.type == hands::JointType::Revolute) {
-    motion.linear() =
-        Eigen::AngleAxisd(q[description.parent_joint], joint.axis_J).toRotationMatrix();
-  } else {
-    motion.translation() = q[description.parent_joint] * joint.axis_J;
-  }
-  return X_OP * joint.X_PJ * motion;
-}
-
-std::vector<int> chain_to(const hands::HandModel& hand, int link) {
-  std::vector<int> links;
-  for (int i = link; i >= 0; i = hand.links[i].parent_link) links.push_back(i);
-  std::reverse(links.begin(), links.end());
-  return links;
-}
-
 TargetPosture target_posture(const hands::HandModel& hand, const TargetContacts& targets,
                              const hands::HandConfiguration& start,
                              const std::optional<double>& palm_room) {
@@ -281,9 +241,8 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
     for (const int index : hand.fingers[target.finger].joints) {
       const hands::Joint& joint = hand.joints[index];
       if (joint.closing_sign == 0 || joint.coupling) continue;
-      const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
-      const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
-      start.q[index] = open + kStartClosed * (closed - open);
+      const double open = joint.open_limit();
+      start.q[index] = open + kStartClosed * (joint.closed_limit() - open);
     }
   }
   hands::apply_couplings(hand, start.q);

@@ -14,13 +14,6 @@
 
 namespace graspfit::grasp {
 
-/// Pose of a link's frame in that of the frame in which its parent's pose is given.
-geometry::RigidTransform link_pose(const hands::HandModel& hand, int link,
-                                   const geometry::RigidTransform& X_OP, const Eigen::VectorXd& q);
-
-/// Links from the root to `link`, that included.
-std::vector<int> chain_to(const hands::HandModel& hand, int link);
-
 /// A posture and what it leaves.
 struct TargetPosture {
   hands::HandConfiguration configuration;

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/jacobian.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -18,12 +20,16 @@ HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool 
     : hand_(hand), palm_translates_(palm_translates), palm_turns_(palm_turns) {
   constexpr double kShortestLever = 0.02;  // [m]; a shorter one would let a joint spin
   const auto num_joints = hand.joints.size();
-  entry_of_joint_.assign(num_joints, -1);
+  entry_of_joint_.assign(num_joints, 0);
   ratio_.assign(num_joints, 1.0);
   lever_.assign(num_joints, 1.0);
   const hands::HandConfiguration open = hands::open_configuration(hand);
   open_q_ = open.q;
   const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, open);
+  for (std::size_t link = 0; link < hand.links.size(); ++link) {
+    joints_above_.push_back(hands::joints_to(hand, static_cast<int>(link)));
+    std::reverse(joints_above_.back().begin(), joints_above_.back().end());
+  }
   for (std::size_t j = 0; j < num_joints; ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.type == hands::JointType::Revolute) {
@@ -44,7 +50,7 @@ HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool 
   }
   for (std::size_t j = 0; j < num_joints; ++j) {
     const hands::Joint& joint = hand.joints[j];
-    if (entry_of_joint_[j] >= 0) continue;
+    if (!joint.coupling || joint.coupling->breakaway) continue;
     entry_of_joint_[j] = entry_of_joint_[static_cast<std::size_t>(joint.coupling->leader)];
     ratio_[j] = joint.coupling->ratio;
   }
@@ -62,9 +68,21 @@ double HandMotion::share_of_follower(int j) const {
   const auto index = static_cast<std::size_t>(j);
   const hands::Joint& joint = hand_.joints[index];
   if (!joint.coupling || joint.coupling->breakaway) return 1.0;
-  const double follows =
-      joint.coupling->ratio * configuration_.q[joint.coupling->leader] + joint.coupling->offset;
+  const double follows = hands::led_position(*joint.coupling, configuration_.q);
   return follows < joint.lower || follows > joint.upper ? 0.0 : ratio_[index];
+}
+
+template <class Rate>
+void HandMotion::add_joints(int link, const Vector3d& point_O, const Rate& rate,
+                            RowVectorXd& row) const {
+  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
+    const hands::Joint& joint = hand_.joints[static_cast<std::size_t>(j)];
+    const hands::JointVelocity velocity =
+        hands::joint_velocity(joint, X_OL_[static_cast<std::size_t>(joint.child_link)], point_O);
+    const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
+    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
+    row[entry] += share_of_follower(j) * rate(velocity) / lever_[leader];
+  }
 }
 
 RowVectorXd HandMotion::row(int link, const Vector3d& point_O, const Vector3d& direction_O) const {
@@ -73,36 +91,19 @@ RowVectorXd HandMotion::row(int link, const Vector3d& point_O, const Vector3d& d
   if (palm_turns_) {
     result.segment<3>(3) = (point_O - pivot_O_).cross(direction_O).transpose() / kTurnLever;
   }
-  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
-    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
-    if (j < 0) continue;
-    const auto index = static_cast<std::size_t>(j);
-    const RigidTransform& X_OJ = X_OL_[static_cast<std::size_t>(at)];
-    const Vector3d axis_O = X_OJ.linear() * hand_.joints[index].axis_J;
-    const bool is_prismatic = hand_.joints[index].type == hands::JointType::Prismatic;
-    const double rate = is_prismatic ? axis_O.dot(direction_O)
-                                     : axis_O.cross(point_O - X_OJ.translation()).dot(direction_O);
-    const int entry = entry_of_joint_[index];
-    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
-    result[entry] += share_of_follower(j) * rate / lever_[leader];
-  }
+  add_joints(
+      link, point_O,
+      [&](const hands::JointVelocity& velocity) { return velocity.linear.dot(direction_O); },
+      result);
   return result;
 }
 
 RowVectorXd HandMotion::turn_row(int link, const Vector3d& axis) const {
   RowVectorXd result = RowVectorXd::Zero(size());
   if (palm_turns_) result.segment<3>(3) = axis.transpose() / kTurnLever;
-  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
-    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
-    if (j < 0) continue;
-    const auto index = static_cast<std::size_t>(j);
-    if (hand_.joints[index].type == hands::JointType::Prismatic) continue;
-    const Vector3d axis_O =
-        X_OL_[static_cast<std::size_t>(at)].linear() * hand_.joints[index].axis_J;
-    const int entry = entry_of_joint_[index];
-    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
-    result[entry] += share_of_follower(j) * axis_O.dot(axis) / lever_[leader];
-  }
+  add_joints(
+      link, pivot_O_,
+      [&](const hands::JointVelocity& velocity) { return velocity.angular.dot(axis); }, result);
   return result;
 }
 
@@ -125,9 +126,7 @@ void HandMotion::breakaway_rows(std::vector<RowVectorXd>& g, std::vector<double>
     if (!joint.coupling || !joint.coupling->breakaway) continue;
     const auto leader = static_cast<std::size_t>(joint.coupling->leader);
     const double sign = joint.closing_sign;
-    const double follows = std::clamp(
-        joint.coupling->ratio * configuration_.q[joint.coupling->leader] + joint.coupling->offset,
-        joint.lower, joint.upper);
+    const double follows = hands::followed_position(joint, configuration_.q);
     const double beyond = sign * (configuration_.q[static_cast<Index>(j)] - follows);
     RowVectorXd row = RowVectorXd::Zero(size());
     row[entry_of_joint_[j]] += sign / lever_[j];
@@ -139,9 +138,7 @@ void HandMotion::breakaway_rows(std::vector<RowVectorXd>& g, std::vector<double>
 
 VectorXd HandMotion::opening(int link, double step) const {
   VectorXd motion = VectorXd::Zero(size());
-  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
-    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
-    if (j < 0) continue;
+  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
     const auto index = static_cast<std::size_t>(j);
     const hands::Joint& joint = hand_.joints[index];
     const double sign = -joint.closing_sign * (ratio_[index] < 0.0 ? -1.0 : 1.0);
@@ -154,11 +151,9 @@ VectorXd HandMotion::opening(int link, double step) const {
 
 VectorXd HandMotion::straightening(int link, double step) const {
   VectorXd motion = VectorXd::Zero(size());
-  for (int at = link; at >= 0; at = hand_.links[static_cast<std::size_t>(at)].parent_link) {
-    const int j = hand_.links[static_cast<std::size_t>(at)].parent_joint;
-    if (j < 0 || hand_.joints[static_cast<std::size_t>(j)].closing_sign != 0) continue;
+  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
+    if (hand_.joints[static_cast<std::size_t>(j)].closing_sign != 0) continue;
     const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
-    if (entry < 0) continue;
     const int joint = free_joints_[static_cast<std::size_t>(entry - 6)];
     const double way = open_q_[joint] - configuration_.q[joint];
     motion[entry] = std::clamp(way * lever_[static_cast<std::size_t>(joint)], -step, step);

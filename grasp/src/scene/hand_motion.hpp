@@ -48,12 +48,18 @@ class HandMotion {
 
  private:
   double share_of_follower(int follower) const;
+  /// Adds what every joint above a link does to a row: `rate` of its `hands::JointVelocity`.
+  template <class Rate>
+  void add_joints(int link, const Eigen::Vector3d& point_O, const Rate& rate,
+                  Eigen::RowVectorXd& row) const;
 
   const hands::HandModel& hand_;
   bool palm_translates_;
   bool palm_turns_;
   std::vector<int> free_joints_;
-  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, its leader's; −1: none.
+  std::vector<std::vector<int>>
+      joints_above_;                 ///< Per link: those that move it, distal ones first.
+  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, or its leader.
   std::vector<double> ratio_;        ///< Of that entry.
   std::vector<double> lever_;        ///< Per joint [m/rad; 1 of a prismatic joint].
   Eigen::VectorXd open_q_;           ///< Of the open hand.

@@ -107,11 +107,6 @@ void look_at_masses(const HandModel& tree, Findings& findings) {
 // ---- Closing
 // --------------------------------------------------------------------------------------
 
-/// The position of a joint at the end of its closing.
-double closed_position(const Joint& joint) {
-  return joint.closing_sign > 0 ? joint.upper : joint.lower;
-}
-
 constexpr int kClosingSteps = 16;  // per range: under 10 degrees each
 
 /// Whether a joint's travel, all others open, takes the pad along where it looks or backward.
@@ -138,7 +133,7 @@ void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
     double forward = 0.0;
     double path = 0.0;
     for (int step = 1; step <= kClosingSteps; ++step) {
-      c.q[j] = from + (closed_position(joint) - from) * step / kClosingSteps;
+      c.q[j] = from + (joint.closed_limit() - from) * step / kClosingSteps;
       apply_couplings(hand, c.q);
       const RigidTransform X_OC = pad_pose(hand, finger.tip_pad, forward_kinematics(hand, c));
       const Vector3d moved = X_OC.translation() - X_last.translation();
@@ -174,7 +169,7 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
     for (std::size_t j = 0; j < hand.joints.size(); ++j) {
       if (hand.joints[j].closing_sign == 0) continue;
       double& q = c.q[static_cast<Eigen::Index>(j)];
-      q += (closed_position(hand.joints[j]) - q) * step / kClosingSteps;
+      q += (hand.joints[j].closed_limit() - q) * step / kClosingSteps;
     }
     apply_couplings(hand, c.q);
     const auto X_OL = forward_kinematics(hand, c);

@@ -34,20 +34,13 @@ void Deriver::fail(const std::string& what) const {
   throw InvalidInput(tree_.description_file + ": " + what);
 }
 
-int Deriver::leader_of(int joint) const {
-  const auto& coupling = tree_.joints[at(joint)].coupling;
-  return coupling ? coupling->leader : joint;
-}
-
 HandConfiguration Deriver::followed(const VectorXd& q) const {
   HandConfiguration configuration;
   configuration.q = q;
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     const Joint& joint = tree_.joints[j];
     if (!joint.coupling) continue;
-    configuration.q[static_cast<Eigen::Index>(j)] =
-        std::clamp(joint.coupling->ratio * q[joint.coupling->leader] + joint.coupling->offset,
-                   joint.lower, joint.upper);
+    configuration.q[static_cast<Eigen::Index>(j)] = followed_position(joint, q);
   }
   return configuration;
 }
@@ -69,9 +62,8 @@ VectorXd Deriver::closed_by(double share) const {
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     const Joint& joint = tree_.joints[j];
     if (joint.closing_sign == 0) continue;
-    const double open = joint.closing_sign > 0 ? joint.lower : joint.upper;
-    const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
-    q[static_cast<Eigen::Index>(j)] = open + share * (closed - open);
+    const double open = joint.open_limit();
+    q[static_cast<Eigen::Index>(j)] = open + share * (joint.closed_limit() - open);
   }
   return q;
 }

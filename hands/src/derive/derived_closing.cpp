@@ -53,7 +53,7 @@ void Deriver::signs() {
       const bool bends = tree_.joints[at(joint)].type == JointType::Prismatic ||
                          tree_.joints[at(last)].type == JointType::Prismatic ||
                          std::abs(axis_H(joint, X_rest).dot(axis_H(last, X_rest))) >= kParallel;
-      Role& role = role_[at(leader_of(joint))];
+      Role& role = role_[at(leader_of(tree_, joint))];
       if (bends) {
         role = Role::Bend;
       } else if (role == Role::None) {
@@ -95,7 +95,7 @@ double Deriver::side_of(const Chain& chain, int leader,
                         const std::vector<RigidTransform>& X_HL) const {
   const int last = chain.joints.back();
   for (const int joint : chain.joints) {
-    if (leader_of(joint) != leader) continue;
+    if (leader_of(tree_, joint) != leader) continue;
     const auto& coupling = tree_.joints[at(joint)].coupling;
     const double ratio = coupling && coupling->ratio < 0.0 ? -1.0 : 1.0;
     if (tree_.joints[at(joint)].type == JointType::Prismatic ||

@@ -89,7 +89,7 @@ void Deriver::complete(Chain& chain) const {
   for (const int body : chain.bodies) {
     const int joint = bodies_[at(body)].joint;
     chain.joints.push_back(joint);
-    const int leader = leader_of(joint);
+    const int leader = leader_of(tree_, joint);
     if (std::find(chain.leaders.begin(), chain.leaders.end(), leader) == chain.leaders.end()) {
       chain.leaders.push_back(leader);
     }

@@ -21,7 +21,7 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   // nothing: its leading side looks away from the palm.
   int leader = -1;
   for (std::size_t i = 0; i <= number; ++i) {
-    const int candidate = leader_of(chain.joints[i]);
+    const int candidate = leader_of(tree_, chain.joints[i]);
     if (tree_.joints[at(chain.joints[i])].closing_sign == 0) continue;
     if (role_[at(candidate)] == Role::Bend) leader = candidate;
   }

@@ -13,6 +13,7 @@
 #include "derive/pad_fit.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 #include "model/hand_bodies.hpp"
 
 /// \file
@@ -59,7 +60,6 @@ class Deriver {
   [[noreturn]] void fail(const std::string& what) const;
 
   // Kinematics
-  int leader_of(int joint) const;
   /// With followers where their leaders put them (breakaway is not counted).
   HandConfiguration followed(const VectorXd& q) const;
   std::vector<RigidTransform> poses(const VectorXd& q) const;

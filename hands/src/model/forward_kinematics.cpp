@@ -19,6 +19,16 @@ RigidTransform motion(const Joint& joint, double q) {
 
 }  // namespace
 
+RigidTransform link_pose(const HandModel& model, int link, const std::vector<RigidTransform>& X_OL,
+                         const HandConfiguration& configuration) {
+  const Link& description = model.links[link];
+  if (description.parent_link < 0) return configuration.X_OH;
+  const RigidTransform& X_OP = X_OL[description.parent_link];
+  if (description.parent_joint < 0) return X_OP * description.X_PL_fixed;
+  const Joint& joint = model.joints[description.parent_joint];
+  return X_OP * joint.X_PJ * motion(joint, configuration.q[description.parent_joint]);
+}
+
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration) {
   if (configuration.q.size() != static_cast<Eigen::Index>(model.joints.size())) {
@@ -28,18 +38,7 @@ std::vector<RigidTransform> forward_kinematics(const HandModel& model,
   }
   std::vector<RigidTransform> X_OL(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {
-    const Link& link = model.links[i];
-    if (link.parent_link < 0) {
-      X_OL[i] = configuration.X_OH;
-      continue;
-    }
-    const RigidTransform& X_OP = X_OL[static_cast<std::size_t>(link.parent_link)];
-    if (link.parent_joint < 0) {
-      X_OL[i] = X_OP * link.X_PL_fixed;
-    } else {
-      const Joint& joint = model.joints[static_cast<std::size_t>(link.parent_joint)];
-      X_OL[i] = X_OP * joint.X_PJ * motion(joint, configuration.q[link.parent_joint]);
-    }
+    X_OL[i] = link_pose(model, static_cast<int>(i), X_OL, configuration);
   }
   return X_OL;
 }

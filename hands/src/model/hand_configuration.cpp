@@ -26,13 +26,37 @@ HandConfiguration open_configuration(const HandModel& model) {
   configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
-    configuration.q[static_cast<Eigen::Index>(j)] = joint.closing_sign > 0 ? joint.lower
-                                                    : joint.closing_sign < 0
-                                                        ? joint.upper
-                                                        : std::clamp(0.0, joint.lower, joint.upper);
+    configuration.q[static_cast<Eigen::Index>(j)] =
+        joint.closing_sign != 0 ? joint.open_limit() : std::clamp(0.0, joint.lower, joint.upper);
   }
   apply_couplings(model, configuration.q);
   return configuration;
+}
+
+HandConfiguration closed_configuration(const HandModel& model, double share) {
+  // Written so that NaN fails.
+  if (!(share >= 0.0 && share <= 1.0)) {
+    throw InvalidInput("hand " + model.name + ": share of closing " + shortest_decimal(share) +
+                       " is not in 0 to 1");
+  }
+  HandConfiguration configuration = open_configuration(model);
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const Joint& joint = model.joints[j];
+    if (joint.closing_sign == 0 || joint.coupling) continue;
+    double& position = configuration.q[static_cast<Eigen::Index>(j)];
+    position = (1.0 - share) * position + share * joint.closed_limit();
+  }
+  // Followers start open: one that may break away would keep a position that is further closed.
+  apply_couplings(model, configuration.q);
+  return configuration;
+}
+
+double led_position(const Coupling& coupling, const Eigen::VectorXd& q) {
+  return coupling.ratio * q[coupling.leader] + coupling.offset;
+}
+
+double followed_position(const Joint& joint, const Eigen::VectorXd& q) {
+  return std::clamp(led_position(*joint.coupling, q), joint.lower, joint.upper);
 }
 
 void apply_couplings(const HandModel& model, Eigen::VectorXd& q) {
@@ -41,9 +65,7 @@ void apply_couplings(const HandModel& model, Eigen::VectorXd& q) {
     const Joint& joint = model.joints[j];
     if (!joint.coupling) continue;
     double& position = q[static_cast<Eigen::Index>(j)];
-    const double follows =
-        std::clamp(joint.coupling->ratio * q[joint.coupling->leader] + joint.coupling->offset,
-                   joint.lower, joint.upper);
+    const double follows = followed_position(joint, q);
     const bool has_gone_on =
         joint.coupling->breakaway && joint.closing_sign * (position - follows) > 0.0;
     position = has_gone_on ? std::clamp(position, joint.lower, joint.upper) : follows;

@@ -4,8 +4,16 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::hands {
+
+JointVelocity joint_velocity(const Joint& joint, const RigidTransform& X_OJ,
+                             const Eigen::Vector3d& point_O) {
+  const Eigen::Vector3d axis_O = X_OJ.linear() * joint.axis_J;
+  if (joint.type == JointType::Prismatic) return {axis_O, Eigen::Vector3d::Zero()};
+  return {axis_O.cross(point_O - X_OJ.translation()), axis_O};
+}
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
                                                         const HandConfiguration& configuration,
@@ -19,19 +27,10 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian =
       Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(
           6, static_cast<Eigen::Index>(model.joints.size()));
-  for (int at = link; at >= 0; at = model.links[static_cast<std::size_t>(at)].parent_link) {
-    const int index = model.links[static_cast<std::size_t>(at)].parent_joint;
-    if (index < 0) continue;
-    const Joint& joint = model.joints[static_cast<std::size_t>(index)];
-    // The axis is fixed to both sides of the joint, so that the child's pose serves.
-    const RigidTransform& X_OJ = X_OL[static_cast<std::size_t>(at)];
-    const Eigen::Vector3d axis_O = X_OJ.linear() * joint.axis_J;
-    if (joint.type == JointType::Prismatic) {
-      jacobian.col(index).head<3>() = axis_O;
-    } else {
-      jacobian.col(index).head<3>() = axis_O.cross(point_O - X_OJ.translation());
-      jacobian.col(index).tail<3>() = axis_O;
-    }
+  for (const int index : joints_to(model, link)) {
+    const Joint& joint = model.joints[index];
+    const JointVelocity velocity = joint_velocity(joint, X_OL[joint.child_link], point_O);
+    jacobian.col(index) << velocity.linear, velocity.angular;
   }
   return jacobian;
 }

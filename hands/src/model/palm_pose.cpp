@@ -11,14 +11,7 @@ using Eigen::Vector3d;
 
 /// Fingertip pads' contact points of the hand half closed, in H.
 std::vector<Vector3d> half_closed_tips_H(const HandModel& hand) {
-  HandConfiguration half = open_configuration(hand);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    const Joint& joint = hand.joints[j];
-    if (joint.closing_sign == 0 || joint.coupling) continue;
-    half.q[static_cast<Eigen::Index>(j)] = 0.5 * (joint.lower + joint.upper);
-  }
-  apply_couplings(hand, half.q);
-  const auto X_HL = forward_kinematics(hand, half);
+  const auto X_HL = forward_kinematics(hand, closed_configuration(hand, 0.5));
   std::vector<Vector3d> tips;
   for (const Finger& finger : hand.fingers) {
     tips.push_back(finger.tip_pad < 0 ? hand.palm.center_H

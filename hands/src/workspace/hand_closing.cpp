@@ -4,10 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "graspfit/base/errors.hpp"
-#include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::hands {
 
@@ -23,8 +22,7 @@ struct Group {
 std::vector<Group> closing_groups(const HandModel& model) {
   std::vector<bool> is_taken(model.joints.size(), false);
   const auto take = [&](int joint, Group& group) {
-    const Joint& own = model.joints[static_cast<std::size_t>(joint)];
-    const int moved = own.coupling ? own.coupling->leader : joint;
+    const int moved = leader_of(model, joint);
     if (model.joints[static_cast<std::size_t>(moved)].closing_sign == 0) return;
     if (is_taken[static_cast<std::size_t>(moved)]) return;
     is_taken[static_cast<std::size_t>(moved)] = true;
@@ -97,25 +95,6 @@ Closing closing_of(const HandModel& model, double share) {
 }
 
 }  // namespace
-
-HandConfiguration closed_configuration(const HandModel& model, double share) {
-  // Written so that NaN fails.
-  if (!(share >= 0.0 && share <= 1.0)) {
-    throw base::InvalidInput("hand " + model.name + ": share of closing " +
-                             base::shortest_decimal(share) + " is not in 0 to 1");
-  }
-  HandConfiguration configuration = open_configuration(model);
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    const Joint& joint = model.joints[j];
-    if (joint.closing_sign == 0 || joint.coupling) continue;
-    double& position = configuration.q[static_cast<Eigen::Index>(j)];
-    const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
-    position = (1.0 - share) * position + share * closed;
-  }
-  // Followers start open: one that may break away would keep a position that is further closed.
-  apply_couplings(model, configuration.q);
-  return configuration;
-}
 
 HandConfiguration closed_without_overlap(const HandModel& model, double share) {
   return closing_of(model, share).configuration;

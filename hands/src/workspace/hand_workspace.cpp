@@ -16,6 +16,7 @@
 #include "graspfit/base/random.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::hands {
 namespace {
@@ -43,28 +44,6 @@ constexpr double kFinestShare = 1e-5;
 constexpr int kMostRounds = 2000;
 // Steps in all joints at once, per joint.
 constexpr int kDrawnPerJoint = 4;
-
-/// Movable joints from the root to a link, in that order.
-std::vector<int> joints_to(const HandModel& model, int link) {
-  std::vector<int> joints;
-  for (; link >= 0; link = model.links[link].parent_link) {
-    if (model.links[link].parent_joint >= 0) joints.push_back(model.links[link].parent_joint);
-  }
-  std::reverse(joints.begin(), joints.end());
-  return joints;
-}
-
-/// The independent joints that set some joints, ascending.
-std::vector<int> leaders_of(const HandModel& model, const std::vector<int>& joints) {
-  std::vector<int> leaders;
-  for (const int joint : joints) {
-    const auto& coupling = model.joints[joint].coupling;
-    leaders.push_back(coupling ? coupling->leader : joint);
-  }
-  std::sort(leaders.begin(), leaders.end());
-  leaders.erase(std::unique(leaders.begin(), leaders.end()), leaders.end());
-  return leaders;
-}
 
 // The palm's center in place of a pad.
 constexpr int kPalm = -1;

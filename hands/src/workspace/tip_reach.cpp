@@ -10,6 +10,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::hands {
 namespace {
@@ -54,20 +55,8 @@ std::size_t nearest_direction(const Vector3d& normal) {
   return 6 + 4 * bit(0) + 2 * bit(1) + bit(2);
 }
 
-/// The independent joints that move a finger, ascending.
-std::vector<int> leaders_of(const HandModel& model, const Finger& finger) {
-  std::vector<int> leaders;
-  for (const int joint : finger.joints) {
-    const auto& coupling = model.joints[joint].coupling;
-    leaders.push_back(coupling ? coupling->leader : joint);
-  }
-  std::sort(leaders.begin(), leaders.end());
-  leaders.erase(std::unique(leaders.begin(), leaders.end()), leaders.end());
-  return leaders;
-}
-
 std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
-  const std::vector<int> leaders = leaders_of(model, finger);
+  const std::vector<int> leaders = leaders_of(model, finger.joints);
   int per_joint = kMostPerJoint;
   const auto grid = [&](int n) { return std::pow(n, static_cast<double>(leaders.size())); };
   while (per_joint > 2 && grid(per_joint) > kMostSamples) --per_joint;

@@ -27,17 +27,13 @@ constexpr double kEvenness = 1e-3;
 /// that were written as text, as in `hands::validate`.
 constexpr double kFollowingSlack = 1e-9;
 
-double led_position(const hands::Coupling& coupling, const VectorXd& q) {
-  return coupling.ratio * q[coupling.leader] + coupling.offset;
-}
-
 /// Per joint: a coupled one that stands where its leader puts it.
 std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
   std::vector<bool> follows(hand.joints.size(), false);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const auto& coupling = hand.joints[j].coupling;
-    follows[j] = coupling &&
-                 std::abs(q[static_cast<Index>(j)] - led_position(*coupling, q)) <= kFollowingSlack;
+    follows[j] = coupling && std::abs(q[static_cast<Index>(j)] -
+                                      hands::led_position(*coupling, q)) <= kFollowingSlack;
   }
   return follows;
 }
@@ -76,12 +72,13 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
   }
   // Put where they belong first: couplings leave a breakaway joint behind that its leader opens.
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (follows[j]) q[static_cast<Index>(j)] = led_position(*hand.joints[j].coupling, q);
+    if (follows[j]) q[static_cast<Index>(j)] = hands::led_position(*hand.joints[j].coupling, q);
   }
   hands::apply_couplings(hand, q);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     if (!follows[j]) continue;
-    const double behind = q[static_cast<Index>(j)] - led_position(*hand.joints[j].coupling, q);
+    const double behind =
+        q[static_cast<Index>(j)] - hands::led_position(*hand.joints[j].coupling, q);
     is_clamped = is_clamped || std::abs(behind) > kFollowingSlack;
   }
   return is_clamped;

@@ -12,6 +12,11 @@ namespace graspfit::hands {
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration);
 
+/// Pose of one link, given in `X_OL` that of its parent: a step of `forward_kinematics`, for those
+/// who move few links of many.
+RigidTransform link_pose(const HandModel& model, int link, const std::vector<RigidTransform>& X_OL,
+                         const HandConfiguration& configuration);
+
 /// Pose of a pad's frame, given the link poses.
 inline RigidTransform pad_pose(const HandModel& model, int pad,
                                const std::vector<RigidTransform>& X_OL) {

@@ -7,11 +7,6 @@
 
 namespace graspfit::hands {
 
-/// Every joint that closes the hand at `share` of the way from open (0) to the limit that closes it
-/// (1), neutral ones as in `open_configuration`; coupled joints follow. Fingers may pass through
-/// each other: `closed_without_overlap` stops them. @throws InvalidInput unless 0 ≤ share ≤ 1.
-HandConfiguration closed_configuration(const HandModel& model, double share);
-
 /// The hand closed around nothing, up to `share` of the way of `closed_configuration`.
 ///
 /// All fingers close together in 64 equal steps, those listed first a step ahead; a finger stops

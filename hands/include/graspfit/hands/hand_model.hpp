@@ -41,6 +41,10 @@ struct Joint {
   /// +1 if growing q closes the hand, −1 if it opens it, 0 if it does neither (spread, abduction).
   int closing_sign = 0;
   std::optional<Coupling> coupling;  ///< Empty for an independent joint (an intrinsic DOF).
+
+  /// The limits that open and close the hand; of a joint that does neither they mean nothing.
+  double open_limit() const { return closing_sign > 0 ? lower : upper; }
+  double closed_limit() const { return closing_sign > 0 ? upper : lower; }
 };
 
 /// Mass, center of mass and inertia of a link, as its description says.

@@ -8,6 +8,17 @@
 
 namespace graspfit::hands {
 
+/// Velocity of a point and angular velocity of its link in O, per unit of a joint's velocity.
+struct JointVelocity {
+  Eigen::Vector3d linear;
+  Eigen::Vector3d angular;
+};
+
+/// What one joint does to a point that it carries. `X_OJ` is the pose of the joint's frame or of
+/// its child link: the axis is fixed to both, so that they differ by rounding only.
+JointVelocity joint_velocity(const Joint& joint, const RigidTransform& X_OJ,
+                             const Eigen::Vector3d& point_O);
+
 /// Velocity of a point that is fixed to a link, per unit of every joint's velocity: 6 × joints.
 ///
 /// Column j is [linear; angular]: the velocity of the point `point_L` (given in the link's frame)
