@@ -25,7 +25,7 @@ inline hands::HandModel pad_hand(int num_fingers, double width = 0.02, double le
   for (int link = 0; link <= num_fingers; ++link) {
     hands::Link body;
     body.name = "link_" + std::to_string(link);
-    body.parent_link = link == 0 ? -1 : 0;
+    if (link > 0) body.parent_link = 0;
     hand.links.push_back(body);
     hand.pads.push_back(rectangular_pad(width, length, link, link - 1));
     if (link == 0) continue;

@@ -172,7 +172,7 @@ inline double pad_width(const hands::ContactPad& pad) {
 }
 
 /// The finger that a link belongs to; −1 for the palm and for no link.
-inline int finger_of_link(const hands::HandModel& hand, int link) {
+inline int finger_of_link(const hands::HandModel& hand, std::optional<int> link) {
   for (std::size_t i = 0; i < hand.fingers.size(); ++i) {
     const std::vector<int>& links = hand.fingers[i].links;
     if (std::find(links.begin(), links.end(), link) != links.end()) return static_cast<int>(i);

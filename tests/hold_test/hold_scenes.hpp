@@ -98,7 +98,7 @@ inline hands::HandModel closed_room(double half_width) {
     center[axis] = (wall % 2 == 0 ? -1.0 : 1.0) * (half_width + 0.005);
     hands::Link link;
     link.name = "wall_" + std::to_string(wall);
-    link.parent_link = wall == 0 ? -1 : 0;
+    if (wall > 0) link.parent_link = 0;
     link.mesh_L = geometry::transformed(geometry::box(size),
                                         hands::RigidTransform(Eigen::Translation3d(center)));
     hand.links.push_back(link);

@@ -12,8 +12,8 @@ Json links(const hands::HandModel& hand) {
   Json list = Json::array();
   for (const hands::Link& link : hand.links) {
     list.push_back({{"name", link.name},
-                    {"parent", link.parent_link},
-                    {"joint", link.parent_joint},
+                    {"parent", link.parent_link.value_or(-1)},
+                    {"joint", link.parent_joint.value_or(-1)},
                     {"X_PL", to_json(link.X_PL_fixed)},
                     {"mesh", to_json(link.mesh_L)}});
   }

@@ -62,8 +62,8 @@ std::string names_of(const Items& items, const std::vector<int>& indices) {
 }
 
 template <class Items>
-std::string name_or_dash(const Items& items, int index) {
-  return index < 0 ? "-" : items[static_cast<std::size_t>(index)].name;
+std::string name_or_dash(const Items& items, std::optional<int> index) {
+  return !index || *index < 0 ? "-" : items[static_cast<std::size_t>(*index)].name;
 }
 
 std::string coupling_text(const HandModel& hand, const hands::Joint& joint) {
@@ -80,7 +80,7 @@ std::string coupling_text(const HandModel& hand, const hands::Joint& joint) {
 void print_links(const HandModel& hand) {
   std::vector<std::vector<std::string>> rows = {{"link", "parent", "joint", "faces", "mass_kg"}};
   for (const hands::Link& link : hand.links) {
-    const bool is_fixed = link.parent_link >= 0 && link.parent_joint < 0;
+    const bool is_fixed = link.parent_link && !link.parent_joint;
     rows.push_back({link.name, name_or_dash(hand.links, link.parent_link),
                     is_fixed ? "fixed" : name_or_dash(hand.joints, link.parent_joint),
                     std::to_string(link.mesh_L.faces.size()),

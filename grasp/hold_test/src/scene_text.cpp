@@ -165,10 +165,10 @@ class Scene {
     const hands::Link& link = model().links[static_cast<std::size_t>(index)];
     RigidTransform X_PL = RigidTransform::Identity();
     std::string joint;
-    if (link.parent_joint >= 0) {
-      X_PL = model().joints[static_cast<std::size_t>(link.parent_joint)].X_PJ;
-      joint = joint_element(link.parent_joint);
-    } else if (link.parent_link >= 0) {
+    if (link.parent_joint) {
+      X_PL = model().joints[static_cast<std::size_t>(*link.parent_joint)].X_PJ;
+      joint = joint_element(*link.parent_joint);
+    } else if (link.parent_link) {
       X_PL = link.X_PL_fixed;
     }
     bodies_ +=

@@ -57,8 +57,8 @@ class AzimuthOfFinger {
 
 /// A finger and the target that it is to look at.
 struct Look {
-  int finger = -1;
-  int target = -1;
+  int finger = 0;
+  int target = 0;
   auto operator<=>(const Look&) const = default;
 };
 
@@ -124,15 +124,16 @@ Swing best_swing(const hands::HandModel& hand, const hands::HandConfiguration& c
   return {position, error_at(position)};
 }
 
-/// Fingers with targets by the independent joint that swings them, −1 for those that do not swing.
-std::map<int, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
-                                                 const TargetContacts& targets) {
-  std::map<int, std::vector<Look>> looks;
+/// Fingers with targets by the independent joint that swings them; those that do not swing first.
+std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
+                                                                const TargetContacts& targets) {
+  std::map<std::optional<int>, std::vector<Look>> looks;
   for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
     const int finger = targets.contacts[t].finger;
     if (finger == contact::kPalm) continue;
-    const std::optional<int>& swing = hand.fingers[finger].swing_joint;
-    looks[swing ? hands::leader_of(hand, *swing) : -1].push_back({finger, static_cast<int>(t)});
+    std::optional<int> leader = hand.fingers[finger].swing_joint;
+    if (leader) leader = hands::leader_of(hand, *leader);
+    looks[leader].push_back({finger, static_cast<int>(t)});
   }
   return looks;
 }
@@ -163,7 +164,7 @@ Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const TargetContacts& targets) {
   Eigen::VectorXd q = configuration.q;
   for (const auto& [leader, looks] : looks_by_leader(hand, targets)) {
-    if (leader >= 0) q[leader] = best_swing(hand, configuration, targets, leader, looks).position;
+    if (leader) q[*leader] = best_swing(hand, configuration, targets, *leader, looks).position;
   }
   hands::apply_couplings(hand, q);
   return q;
@@ -209,13 +210,13 @@ Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
   return palm_center + to_tips - to_tips.dot(axis) * axis;
 }
 
-int closing_joint(const hands::HandModel& hand, const hands::Finger& finger) {
-  int leader = -1;
+std::optional<int> closing_joint(const hands::HandModel& hand, const hands::Finger& finger) {
+  std::optional<int> leader;
   for (const int joint : finger.joints) {
     const hands::Joint& description = hand.joints[joint];
     if (description.closing_sign == 0) continue;
     if (!description.coupling) return joint;
-    if (leader < 0) leader = description.coupling->leader;
+    if (!leader) leader = description.coupling->leader;
   }
   return leader;
 }
@@ -285,12 +286,12 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
   const hands::HandConfiguration start =
       aligned_open_hand(hand, assigned, placement, hands::largest_reach(hand));
   std::map<std::vector<Look>, double> known;
-  const auto error_of = [&](int leader, std::vector<Look> looks) {
+  const auto error_of = [&](std::optional<int> leader, std::vector<Look> looks) {
     if (const auto found = known.find(looks); found != known.end()) return found->second;
     double error = 0.0;
     hands::HandConfiguration swung = start;
-    if (leader >= 0) {
-      swung.q[leader] = best_swing(hand, start, assigned, leader, looks).position;
+    if (leader) {
+      swung.q[*leader] = best_swing(hand, start, assigned, *leader, looks).position;
       hands::apply_couplings(hand, swung.q);
     }
     for (const Look& look : looks) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "graspfit/grasp/hand_fitting.hpp"
@@ -42,8 +43,8 @@ Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sid
                               const TargetContacts& targets);
 
 /// The joint that closes a finger: the first independent one that closes or, where all of them
-/// follow (a gripper's second jaw), the leader of the first; −1 if none closes.
-int closing_joint(const hands::HandModel& hand, const hands::Finger& finger);
+/// follow (a gripper's second jaw), the leader of the first; empty if none closes.
+std::optional<int> closing_joint(const hands::HandModel& hand, const hands::Finger& finger);
 
 /// The finger's independent closing joints beyond the first, proximal to distal.
 std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger);

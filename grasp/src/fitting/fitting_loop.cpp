@@ -139,11 +139,9 @@ void FittingLoop::add_part(int finger, bool has_target) {
   part.finger = finger;
   part.has_target = has_target;
   const hands::Finger& description = model_.fingers[finger];
-  part.pad = description.tip_pad;
-  part.tip_link = part.pad >= 0 ? model_.pads[part.pad].link
-                                : (description.links.empty() ? -1 : description.links.back());
-  const int proximal = closing_joint(model_, description);
-  if (proximal >= 0) part.closing.push_back(proximal);
+  if (description.tip_pad >= 0) part.pad = description.tip_pad;
+  part.tip_link = part.pad ? model_.pads[*part.pad].link : description.links.back();
+  if (const auto proximal = closing_joint(model_, description)) part.closing.push_back(*proximal);
   for (const int joint : distal_joints(model_, description)) part.closing.push_back(joint);
   for (const int joint : description.joints) {
     const hands::Joint& j = model_.joints[joint];
@@ -263,9 +261,9 @@ bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std:
                            double length) {
   if (!state_.passes_map(candidate, moved, length)) return false;
   for (const Part& part : parts_) {
-    if (part.state != Part::State::Touching || part.pad < 0) continue;
+    if (part.state != Part::State::Touching || !part.pad) continue;
     if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
-    if (!has_contact_at(part.pad, state_.trial_X_OL())) return false;
+    if (!has_contact_at(*part.pad, state_.trial_X_OL())) return false;
   }
   if (is_palm_held_ && moved.size() == state_.all_links().size() &&
       !has_contact_at(model_.palm.pad, state_.trial_X_OL())) {
@@ -284,8 +282,8 @@ bool FittingLoop::has_contact_at(int pad, const std::vector<RigidTransform>& X_O
 
 /// Section 10: the clip test is made once the tip link shares a voxel with the surface.
 bool FittingLoop::touches(const Part& part) {
-  return part.pad >= 0 && state_.distance(part.tip_link) == 0.0F &&
-         has_contact_at(part.pad, state_.X_OL());
+  return part.pad && state_.distance(part.tip_link) == 0.0F &&
+         has_contact_at(*part.pad, state_.X_OL());
 }
 
 /// Distance of the farthest point of `link` from the origin of `joint`, enlarged by what coupled
@@ -396,9 +394,9 @@ bool FittingLoop::try_closing(const Part& part, double step) {
   const Part* const stopped = stopped_part_sharing(joint);
   if (!stopped) return false;
   hands::HandConfiguration candidate = with_joint(joint, position + step / 2);
-  const Vector3d moved_by =
-      hands::pad_contact_point(model_, stopped->pad, hands::forward_kinematics(model_, candidate)) -
-      hands::pad_contact_point(model_, stopped->pad, state_.X_OL());
+  const Vector3d moved_by = hands::pad_contact_point(model_, *stopped->pad,
+                                                     hands::forward_kinematics(model_, candidate)) -
+                            hands::pad_contact_point(model_, *stopped->pad, state_.X_OL());
   candidate.X_OH.pretranslate(Vector3d(-moved_by));
   return try_move(candidate, state_.all_links(), length / 2 + moved_by.norm());
 }
@@ -410,10 +408,10 @@ const FittingLoop::Part* FittingLoop::stopped_part_sharing(int joint) const {
   for (const Part& part : parts_) {
     if (!part.is_shared || part.closing.front() != joint) continue;
     const std::vector<int>& links = model_.fingers[part.finger].links;
-    const int blocking = state_.blocking_link();
-    const bool is_in_the_way = blocking < 0
-                                   ? part.state == Part::State::Touching
-                                   : std::find(links.begin(), links.end(), blocking) != links.end();
+    const std::optional<int> blocking = state_.blocking_link();
+    const bool is_in_the_way = blocking
+                                   ? std::find(links.begin(), links.end(), *blocking) != links.end()
+                                   : part.state == Part::State::Touching;
     if (!stopped && is_in_the_way) stopped = &part;
   }
   return stopped;
@@ -421,7 +419,7 @@ const FittingLoop::Part* FittingLoop::stopped_part_sharing(int joint) const {
 
 /// Goes on to the next joint that moves less than the one that is stopped. False if there is none.
 bool FittingLoop::next_stage(Part& part) {
-  const int blocking = state_.blocking_link();
+  const std::optional<int> blocking = state_.blocking_link();
   while (++part.stage < part.closing.size()) {
     const std::vector<int>& moved = moved_links_[part.closing[part.stage]];
     if (std::find(moved.begin(), moved.end(), blocking) == moved.end()) return true;
@@ -448,7 +446,7 @@ bool FittingLoop::is_hopeless(const Part& part) const {
   if (!part.has_target || part.state == Part::State::Free || part.state == Part::State::Touching) {
     return false;
   }
-  const Vector3d tip = hands::pad_contact_point(model_, part.pad, state_.X_OL());
+  const Vector3d tip = hands::pad_contact_point(model_, *part.pad, state_.X_OL());
   // The map's value is that of voxel centers, each up to √3/2 from the points meant.
   return (object_.distance.at(tip) - std::sqrt(3.0)) * voxel_size_ > options_.give_up_distance;
 }
@@ -465,7 +463,7 @@ void FittingLoop::close_on(Part& part) {
     motion /= 2;
     // The tip may go on where only the link behind it is stopped.
     const bool is_stopped_behind =
-        is_at_limit || (state_.blocking_link() >= 0 && state_.blocking_link() != part.tip_link);
+        is_at_limit || (state_.blocking_link() && state_.blocking_link() != part.tip_link);
     if (motion < options_.closing_tolerance && is_stopped_behind && next_stage(part)) {
       motion = options_.small_step * voxel_size_;
     }
@@ -489,7 +487,7 @@ void FittingLoop::finish(FittingResult& result) {
                                   std::sqrt(object_.query.closest_point(point).squared_distance));
   };
   for (const Part& part : parts_) {
-    if (part.has_target) look_at(part.pad, part.state == Part::State::Blocked);
+    if (part.has_target) look_at(*part.pad, part.state == Part::State::Blocked);
   }
   if (has_palm_target_) look_at(model_.palm.pad, true);
   result.contact_tests_s = contact_tests_s_;

@@ -33,9 +33,9 @@ class FittingLoop {
   /// A finger that closes, while the loop runs.
   struct Part {
     enum class State { Free, Touching, Blocked, AtLimit };
-    int finger = -1;
-    int pad = -1;  ///< −1: a finger of a power grasp that has no tip pad.
-    int tip_link = -1;
+    int finger = 0;
+    std::optional<int> pad;  ///< Empty: a finger of a power grasp that has no tip pad.
+    int tip_link = 0;
     bool has_target = false;
     /// Joints that close it alone, proximal to distal; the last may be one that a clutch frees
     /// (breakaway). `stage` is the one that closes now.

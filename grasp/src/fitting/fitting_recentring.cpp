@@ -68,7 +68,7 @@ FittingLoop::Formed FittingLoop::formed() {
                      [&](const contact::Contact& candidate) { return candidate.pad == part.pad; });
     const bool has_contact = contact != contacts.end();
     const Vector3d point_O =
-        has_contact ? contact->point_O : hands::pad_contact_point(model_, part.pad, state_.X_OL());
+        has_contact ? contact->point_O : hands::pad_contact_point(model_, *part.pad, state_.X_OL());
     if (has_contact) {
       formed.miss += (*part.target_O - point_O).norm();
     } else {

@@ -155,7 +155,7 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
       return false;
     }
   }
-  blocking_link_ = -1;
+  blocking_link_.reset();
   return true;
 }
 

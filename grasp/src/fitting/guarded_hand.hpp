@@ -50,9 +50,9 @@ class GuardedHand {
   /// d_min of a link [voxels]: its value or, well away from the object, a lower bound.
   float distance(int link) const { return distance_[link]; }
   float smallest_distance() const;
-  /// The link that the last refused motion was refused for; −1 if none.
-  int blocking_link() const { return blocking_link_; }
-  void forget_blocking() { blocking_link_ = -1; }
+  /// The link that the last refused motion was refused for, if there is one.
+  std::optional<int> blocking_link() const { return blocking_link_; }
+  void forget_blocking() { blocking_link_.reset(); }
 
  private:
   /// How deep a link was in the object at a pose.
@@ -95,7 +95,7 @@ class GuardedHand {
   std::vector<float> distance_, trial_distance_;
   /// Distance to the surroundings, a lower bound [m]; kept current by the motions.
   std::vector<double> room_, trial_room_;
-  int blocking_link_ = -1;
+  std::optional<int> blocking_link_;
 };
 
 }  // namespace graspfit::grasp

@@ -36,7 +36,7 @@ constexpr double kStartClosed = 0.45;
 
 /// One fingertip with a target.
 struct Tip {
-  int pad = -1;
+  int pad = 0;
   Vector3d contact_C = Vector3d::Zero();
   std::vector<int> links;   ///< Root to the pad's link.
   std::vector<int> joints;  ///< Between them.
@@ -52,7 +52,7 @@ class Search {
         direction_((start.X_OH.linear() * hand.palm.direction_H).normalized()),
         centroid_(targets.centroid()),
         palm_room_(palm_room),
-        variable_of_(hand.joints.size(), -1),
+        variable_of_(hand.joints.size()),
         start_(start) {
     for (const TargetContact& target : targets.contacts) {
       if (target.finger == contact::kPalm) {
@@ -65,7 +65,7 @@ class Search {
                        hands::joints_to(hand, hand.pads[pad].link), &target});
       for (const int joint : tips_.back().joints) {
         const int leader = hands::leader_of(hand, joint);
-        if (variable_of_[leader] >= 0 || hand.joints[leader].upper <= hand.joints[leader].lower) {
+        if (variable_of_[leader] || hand.joints[leader].upper <= hand.joints[leader].lower) {
           continue;
         }
         variable_of_[leader] = 4 + static_cast<int>(joints_.size());
@@ -109,7 +109,7 @@ class Search {
     result.X_OH = turned(from.X_OH, from.X_OH * hand_.palm.center_H, direction_, step[3]);
     result.X_OH.pretranslate(Vector3d(step.head<3>() * kMissUnit));
     for (const int joint : joints_) {
-      result.q[joint] = std::clamp(from.q[joint] + step[variable_of_[joint]],
+      result.q[joint] = std::clamp(from.q[joint] + step[*variable_of_[joint]],
                                    hand_.joints[joint].lower, hand_.joints[joint].upper);
     }
     hands::apply_couplings(hand_, result.q);
@@ -122,7 +122,7 @@ class Search {
     MatrixXd normal = jacobian.transpose() * jacobian;
     VectorXd gradient = jacobian.transpose() * residual;
     for (const int joint : joints_) {
-      const int i = variable_of_[joint];
+      const int i = *variable_of_[joint];
       const bool is_held = (at.q[joint] <= hand_.joints[joint].lower && gradient[i] > 0.0) ||
                            (at.q[joint] >= hand_.joints[joint].upper && gradient[i] < 0.0);
       if (!is_held) continue;
@@ -169,7 +169,7 @@ class Search {
     for (const int joint : joints_) {
       const double range = hand_.joints[joint].upper - hand_.joints[joint].lower;
       residual[row] = kRestWeight * (at.q[joint] - start_.q[joint]) / range;
-      if (jacobian) (*jacobian)(row, variable_of_[joint]) = kRestWeight / range;
+      if (jacobian) (*jacobian)(row, *variable_of_[joint]) = kRestWeight / range;
       ++row;
     }
   }
@@ -178,16 +178,17 @@ class Search {
                   const Vector3d& normal, int row, MatrixXd& jacobian) const {
     for (const int index : tip.joints) {
       const hands::Joint& joint = hand_.joints[index];
-      const int column = variable_of_[hands::leader_of(hand_, index)];
+      const std::optional<int> column = variable_of_[hands::leader_of(hand_, index)];
       // A follower at its limit does not follow.
       const bool is_stopped =
           joint.coupling && (at.q[index] <= joint.lower || at.q[index] >= joint.upper);
-      if (column < 0 || is_stopped) continue;
+      if (!column || is_stopped) continue;
       const double ratio = joint.coupling ? joint.coupling->ratio : 1.0;
       const hands::JointVelocity velocity =
           hands::joint_velocity(joint, pose_[joint.parent_link] * joint.X_PJ, point);
-      jacobian.block<3, 1>(row, column) += ratio * velocity.linear / kMissUnit;
-      jacobian.block<3, 1>(row + 3, column) += ratio * kTiltWeight * velocity.angular.cross(normal);
+      jacobian.block<3, 1>(row, *column) += ratio * velocity.linear / kMissUnit;
+      jacobian.block<3, 1>(row + 3, *column) +=
+          ratio * kTiltWeight * velocity.angular.cross(normal);
     }
   }
 
@@ -218,8 +219,8 @@ class Search {
   const std::optional<double> palm_room_;
   std::vector<Tip> tips_;
   const TargetContact* palm_target_ = nullptr;
-  std::vector<int> joints_;       ///< Independent joints that move a tip.
-  std::vector<int> variable_of_;  ///< Per joint; −1 if it is none.
+  std::vector<int> joints_;                      ///< Independent joints that move a tip.
+  std::vector<std::optional<int>> variable_of_;  ///< Per joint; empty if it is none.
   hands::HandConfiguration start_;
   int num_residuals_ = 0;
   std::vector<RigidTransform> pose_;

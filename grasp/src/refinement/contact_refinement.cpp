@@ -60,8 +60,8 @@ constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm
 
 /// A pad that must touch.
 struct Claim {
-  int pad = -1;
-  int link = -1;
+  int pad = 0;
+  int link = 0;
   const TargetContact* target = nullptr;
   double gap = 0.0;
   Vector3d point_O = Vector3d::Zero();   ///< On the pad, nearest to the object.
@@ -420,8 +420,8 @@ class Refinement {
     }
     for (const NearPoints& near : near_) {
       RowVectorXd row = motion_.row(near.link, near.point_O, near.normal_O);
-      if (near.other_link >= 0) {
-        row -= motion_.row(near.other_link, near.point_on_other_O, near.normal_O);
+      if (near.other_link) {
+        row -= motion_.row(*near.other_link, near.point_on_other_O, near.normal_O);
       }
       // What even the longest step leaves clear needs no row.
       if (near.distance - trust * row.cwiseAbs().sum() > room) continue;

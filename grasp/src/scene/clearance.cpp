@@ -81,7 +81,7 @@ std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
       if (surely_beyond(known, X, piece.center_L, piece.radius, enough)) continue;
       const auto found = nearest(known, object_.query, piece.surface_L, X, enough);
       if (!found) continue;
-      near.push_back({found->distance, static_cast<int>(link), -1, found->point_on_b_A,
+      near.push_back({found->distance, static_cast<int>(link), std::nullopt, found->point_on_b_A,
                       found->point_on_a_A,
                       (found->point_on_b_A - found->point_on_a_A).normalized()});
     }
@@ -92,7 +92,7 @@ std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
       const SurroundingsDistance found =
           surroundings_.distance(hand_.collision(), static_cast<int>(link), X_OL[link], enough);
       if (found.distance > enough) continue;
-      near.push_back({found.distance, static_cast<int>(link), -1, found.point_on_link_O,
+      near.push_back({found.distance, static_cast<int>(link), std::nullopt, found.point_on_link_O,
                       found.point_on_link_O - found.distance * found.normal_O, found.normal_O});
     }
   }

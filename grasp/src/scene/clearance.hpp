@@ -17,8 +17,8 @@ using LinkPoses = std::vector<hands::RigidTransform>;
 /// Two bodies near each other: a link, and the object, the surroundings or another link.
 struct NearPoints {
   double distance = 0.0;  ///< [m]
-  int link = -1;
-  int other_link = -1;               ///< −1: the object or the surroundings.
+  int link = 0;
+  std::optional<int> other_link;     ///< Empty: the object or the surroundings.
   Eigen::Vector3d point_O;           ///< On the link.
   Eigen::Vector3d point_on_other_O;  ///< On the other link; else meaningless.
   Eigen::Vector3d normal_O;          ///< Unit, from the other body to the link.

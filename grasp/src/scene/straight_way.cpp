@@ -19,11 +19,11 @@ constexpr double kTouching = 1e-8;
 /// at one of the ends, for the distance is convex.
 double offset_of(const hands::HandModel& hand, const hands::Link& link, const Eigen::VectorXd& from,
                  const Eigen::VectorXd& to) {
-  if (link.parent_joint < 0) return link.X_PL_fixed.translation().norm();
-  const hands::Joint& joint = hand.joints[static_cast<std::size_t>(link.parent_joint)];
+  if (!link.parent_joint) return link.X_PL_fixed.translation().norm();
+  const hands::Joint& joint = hand.joints[static_cast<std::size_t>(*link.parent_joint)];
   if (joint.type == hands::JointType::Revolute) return joint.X_PJ.translation().norm();
   const auto at = [&](const Eigen::VectorXd& q) {
-    return (joint.X_PJ * (q[link.parent_joint] * joint.axis_J)).norm();
+    return (joint.X_PJ * (q[*link.parent_joint] * joint.axis_J)).norm();
   };
   return std::max(at(from), at(to));
 }
@@ -40,9 +40,8 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
   const double palm_path = (to.X_OH.translation() - from.X_OH.translation()).norm();
   const double palm_turn = turn_between(from.X_OH, to.X_OH);
   for (const hands::Link& link : hand.links) {
-    const Vector3d axis = link.parent_joint < 0
-                              ? Vector3d::Zero()
-                              : hand.joints[static_cast<std::size_t>(link.parent_joint)].axis_J;
+    Vector3d axis = Vector3d::Zero();
+    if (link.parent_joint) axis = hand.joints[static_cast<std::size_t>(*link.parent_joint)].axis_J;
     double radius = 0.0;
     double lever = 0.0;
     for (const Vector3d& vertex : link.mesh_L.vertices) {
@@ -51,14 +50,14 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
     }
     radii_.push_back(radius);
     levers_.push_back(lever);
-    offsets_.push_back(link.parent_link < 0 ? 0.0 : offset_of(hand, link, from.q, to.q));
+    offsets_.push_back(link.parent_link ? offset_of(hand, link, from.q, to.q) : 0.0);
   }
   for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
     int root = link;
     double reach = radii_[static_cast<std::size_t>(link)];
-    while (hand.links[static_cast<std::size_t>(root)].parent_link >= 0) {
+    while (const auto parent = hand.links[static_cast<std::size_t>(root)].parent_link) {
       reach += offsets_[static_cast<std::size_t>(root)];
-      root = hand.links[static_cast<std::size_t>(root)].parent_link;
+      root = *parent;
     }
     speeds_.push_back(palm_path + palm_turn * reach + speed_in(link, root));
   }
@@ -69,14 +68,13 @@ double StraightWay::speed_in(int link, int ancestor) const {
   double reach = radii_[static_cast<std::size_t>(link)];  // from the frame of the link `at`
   for (int at = link; at != ancestor;) {
     const auto index = static_cast<std::size_t>(at);
-    const int joint = hand_.links[index].parent_joint;
-    if (joint >= 0) {
+    if (const auto joint = hand_.links[index].parent_joint) {
       const bool is_revolute =
-          hand_.joints[static_cast<std::size_t>(joint)].type == hands::JointType::Revolute;
-      speed += motion_[joint] * (!is_revolute ? 1.0 : at == link ? levers_[index] : reach);
+          hand_.joints[static_cast<std::size_t>(*joint)].type == hands::JointType::Revolute;
+      speed += motion_[*joint] * (!is_revolute ? 1.0 : at == link ? levers_[index] : reach);
     }
     reach += offsets_[index];
-    at = hand_.links[index].parent_link;
+    at = *hand_.links[index].parent_link;
   }
   return speed;
 }
@@ -87,7 +85,7 @@ double StraightWay::relative_speed(int link_a, int link_b) const {
   int b = link_b;
   while (a != b) {
     int& later = a > b ? a : b;
-    later = hand_.links[static_cast<std::size_t>(later)].parent_link;
+    later = *hand_.links[static_cast<std::size_t>(later)].parent_link;
   }
   return speed_in(link_a, a) + speed_in(link_b, a);
 }

@@ -12,7 +12,7 @@ constexpr int kDrawsPerSeed = 100;
 std::vector<Place> places_of(const std::vector<geometry::SurfaceSample>& samples) {
   std::vector<Place> places;
   for (const geometry::SurfaceSample& sample : samples) {
-    places.push_back({sample.point, -sample.normal, kNoPatch});
+    places.push_back({sample.point, -sample.normal, std::nullopt});
   }
   return places;
 }

@@ -74,7 +74,7 @@ void thin(std::vector<Place>& pool, const ObjectModel& object, double spacing) {
     pool[i].inward_normal_O.cwiseAbs().maxCoeff(&axis);
     const int side = 2 * static_cast<int>(axis) + (pool[i].inward_normal_O[axis] > 0.0 ? 1 : 0);
     const auto [entry, is_new] = best.try_emplace({cell[0], cell[1], cell[2], side}, i);
-    const auto score = [&](std::size_t place) { return object.scores.scores[pool[place].patch]; };
+    const auto score = [&](std::size_t place) { return object.scores.scores[*pool[place].patch]; };
     if (!is_new && score(i) > score(entry->second)) entry->second = i;
   }
   std::vector<std::size_t> kept;
@@ -140,8 +140,8 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
   options.validate();
   check_parts(distances, parts, options);
   if (!parts.palm) return;
-  room_ = std::vector<std::atomic<signed char>>(pool_.size());
-  for (auto& known : room_) known = -1;
+  room_ = std::vector<std::atomic<Room>>(pool_.size());
+  for (auto& known : room_) known = Room::Unknown;
   palm_axes_.emplace(*distances.palm);
   for (const auto& tip : distances.palm->tips) {
     reachable_turns_.emplace_back();
@@ -253,8 +253,8 @@ double TargetRules::rank(Places places, std::optional<double> palm_misfit) const
 }
 
 bool TargetRules::has_room(std::int32_t palm) const {
-  const signed char known = room_[palm].load(std::memory_order_relaxed);
-  if (known >= 0) return known == 1;
+  const Room known = room_[palm].load(std::memory_order_relaxed);
+  if (known != Room::Unknown) return known == Room::Free;
   const Place& place = pool_[palm];
   const double squared_radius = distances_.palm->pad_radius * distances_.palm->pad_radius;
   const bool is_free = std::none_of(
@@ -265,7 +265,7 @@ bool TargetRules::has_room(std::int32_t palm) const {
                offset.squaredNorm() - height * height < squared_radius;
       });
   // Whichever thread finds it finds the same.
-  room_[palm].store(is_free ? 1 : 0, std::memory_order_relaxed);
+  room_[palm].store(is_free ? Room::Free : Room::Taken, std::memory_order_relaxed);
   return is_free;
 }
 
@@ -357,11 +357,10 @@ TargetContacts TargetRules::as_targets(Places places, std::optional<double> palm
   targets.rank = rank(places, palm_misfit);
   for (const std::int32_t index : places) {
     const Place& place = pool_[index];
-    const double score = place.patch == kNoPatch
-                             ? contact_score_at(object_, place.point_O).value_or(0.0)
-                             : object_.scores.scores[place.patch];
+    const double score = place.patch ? object_.scores.scores[*place.patch]
+                                     : contact_score_at(object_, place.point_O).value_or(0.0);
     targets.contacts.push_back(
-        {place.point_O, -place.inward_normal_O, place.patch, score, kUnassigned});
+        {place.point_O, -place.inward_normal_O, place.patch.value_or(-1), score, kUnassigned});
   }
   if (has_palm()) targets.contacts.back().finger = contact::kPalm;
   return targets;

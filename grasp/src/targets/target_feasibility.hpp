@@ -14,14 +14,11 @@
 
 namespace graspfit::grasp::internal {
 
-/// Stands for the patch of a place that is none.
-inline constexpr std::int32_t kNoPatch = -1;
-
 /// A place that may become a target.
 struct Place {
   Eigen::Vector3d point_O;
   Eigen::Vector3d inward_normal_O;
-  std::int32_t patch;  ///< Or kNoPatch.
+  std::optional<std::int32_t> patch;  ///< Empty: not a patch's.
 };
 
 /// One way to give targets to fingers: position in `RequestedParts::fingers` by target, the seed's
@@ -105,9 +102,9 @@ class TargetRules {
   const TargetOptions options_;
   const contact::StablePairTest stable_pairs_;
   std::vector<Place> pool_;
-  /// Per place: whether there is room for the palm, or −1 while unknown.
-  mutable std::vector<std::atomic<signed char>> room_;
-  std::vector<Eigen::Matrix3d> turns_H_;  ///< About the palm's direction.
+  enum class Room : signed char { Unknown, Free, Taken };
+  mutable std::vector<std::atomic<Room>> room_;  ///< Per place: for the palm.
+  std::vector<Eigen::Matrix3d> turns_H_;         ///< About the palm's direction.
   std::optional<PalmAxes> palm_axes_;
   std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.
 };

@@ -21,12 +21,13 @@ std::string advice(const Joint& follower, const Joint& leader, double ratio) {
 std::vector<std::pair<int, int>> free_end_pairs(const JointTree& joints) {
   std::vector<std::pair<int, int>> pairs;
   for (int j = 0; j < joints.num_joints(); ++j) {
-    const int before = joints.above(j);
-    if (before < 0 || !joints.next(j).empty() || !joints.is_free(j) || !joints.is_free(before) ||
-        !joints.is_revolute(j) || !joints.is_revolute(before) || !joints.are_parallel(j, before)) {
+    const std::optional<int> before = joints.above(j);
+    if (!before || !joints.next(j).empty() || !joints.is_free(j) || !joints.is_free(*before) ||
+        !joints.is_revolute(j) || !joints.is_revolute(*before) ||
+        !joints.are_parallel(j, *before)) {
       continue;
     }
-    pairs.emplace_back(before, j);
+    pairs.emplace_back(*before, j);
   }
   return pairs;
 }
@@ -107,7 +108,7 @@ bool slide_like_jaws(const JointTree& joints, int a, int b) {
 /// Independent joints on the palm that look like one drive. Whether there are any.
 bool look_for_twins(const JointTree& joints, Findings& findings) {
   bool is_any = false;
-  const std::vector<int> on_root = joints.next(-1);
+  const std::vector<int> on_root = joints.next(std::nullopt);
   for (std::size_t i = 0; i < on_root.size(); ++i) {
     for (std::size_t k = i + 1; k < on_root.size(); ++k) {
       const int a = on_root[i];

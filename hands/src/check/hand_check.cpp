@@ -36,8 +36,10 @@ using internal::rounded;
 /// `has_geometry`: links whose description names a shape, whether or not it could be read.
 void look_for_missing_meshes(const JointTree& joints, const std::set<std::string>& has_geometry,
                              Findings& findings) {
-  // Links that move as one: -1 (the root) first.
-  for (int body = -1; body < joints.num_joints(); ++body) {
+  // Links that move as one: those of the root first.
+  std::vector<std::optional<int>> bodies = {std::nullopt};
+  for (int j = 0; j < joints.num_joints(); ++j) bodies.emplace_back(j);
+  for (const std::optional<int>& body : bodies) {
     bool has_mesh = false;
     std::vector<std::string> names;
     for (std::size_t l = 0; l < joints.tree().links.size(); ++l) {
@@ -47,7 +49,7 @@ void look_for_missing_meshes(const JointTree& joints, const std::set<std::string
     }
     if (has_mesh) continue;
     const std::string item = "link " + names[0];
-    if (body == -1) {
+    if (!body) {
       findings.suspicious(item, "the palm has no mesh: nothing collides with it or touches it");
     } else if (joints.next(body).empty()) {
       findings.suspicious(item, "has no mesh, and the hand ends there: nothing to touch with");
@@ -201,10 +203,10 @@ void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
   constexpr double kStillOpen = 0.1;  // of the way
   const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
   for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
-    if (stop.finger < 0 || stop.share >= kStillOpen) continue;
+    if (!stop.finger || stop.share >= kStillOpen) continue;
     const std::string a = name(stop.link_a);
     const std::string b = name(stop.link_b);
-    findings.suspicious("finger " + hand.fingers[static_cast<std::size_t>(stop.finger)].name,
+    findings.suspicious("finger " + hand.fingers[static_cast<std::size_t>(*stop.finger)].name,
                         "closing leaves it open: after " + rounded(100.0 * stop.share) +
                             " % of its way link " + a + " meets link " + b +
                             "; if that is how they are built, exclude the pair from collision in "
@@ -244,8 +246,8 @@ void look_for_overlaps(const HandModel& hand, Findings& findings) {
       HandCollision(hand).against_self(forward_kinematics(hand, open_configuration(hand)));
   if (!overlap.intersects) return;
   const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
-  findings.suspicious("link " + name(overlap.link_a),
-                      "overlaps link " + name(overlap.link_b) + " by " +
+  findings.suspicious("link " + name(*overlap.link_a),
+                      "overlaps link " + name(*overlap.link_b) + " by " +
                           rounded(overlap.depth * 1e3) +
                           " mm in the open configuration; exclude the pair from collision in the "
                           "sidecar if that is how they are built");

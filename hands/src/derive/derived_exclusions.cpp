@@ -55,11 +55,11 @@ HandConfiguration random_configuration(const HandModel& model, std::size_t sampl
   return configuration;
 }
 
-/// The nearest body above that has a surface, −1 if none.
-int body_above(const std::vector<Body>& bodies, int body) {
-  int at = bodies[static_cast<std::size_t>(body)].parent;
-  while (at >= 0 && bodies[static_cast<std::size_t>(at)].mesh.faces.empty()) {
-    at = bodies[static_cast<std::size_t>(at)].parent;
+/// The nearest body above that has a surface, if any has.
+std::optional<int> body_above(const std::vector<Body>& bodies, int body) {
+  std::optional<int> at = bodies[static_cast<std::size_t>(body)].parent;
+  while (at && bodies[static_cast<std::size_t>(*at)].mesh.faces.empty()) {
+    at = bodies[static_cast<std::size_t>(*at)].parent;
   }
   return at;
 }

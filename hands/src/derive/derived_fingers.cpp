@@ -14,7 +14,7 @@ constexpr double kTipShare = 0.2;  // of a link's length: what counts as its tip
 }  // namespace
 
 Vector3d Deriver::tip_of(const Body& body) const {
-  const bool is_slide = tree_.joints[at(body.joint)].type == JointType::Prismatic;
+  const bool is_slide = tree_.joints[at(*body.joint)].type == JointType::Prismatic;
   Vector3d far = Vector3d::Zero();
   for (const Vector3d& v : body.mesh.vertices) {
     if (v.squaredNorm() > far.squaredNorm()) far = v;
@@ -41,12 +41,12 @@ void Deriver::chains() {
     std::vector<bool> has_end_below(bodies_.size(), false);
     for (std::size_t b = bodies_.size(); b-- > 1;) {
       is_end[b] = !has_end_below[b] && !bodies_[b].mesh.faces.empty();
-      if (is_end[b] || has_end_below[b]) has_end_below[at(bodies_[b].parent)] = true;
+      if (is_end[b] || has_end_below[b]) has_end_below[at(*bodies_[b].parent)] = true;
     }
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       if (!is_end[b]) continue;
       Chain chain;
-      for (int up = static_cast<int>(b); up > 0; up = bodies_[at(up)].parent) {
+      for (int up = static_cast<int>(b); up > 0; up = *bodies_[at(up)].parent) {
         chain.bodies.insert(chain.bodies.begin(), up);
       }
       chains_.push_back(std::move(chain));
@@ -87,7 +87,7 @@ void Deriver::complete(Chain& chain) const {
   chain.joints.clear();
   chain.leaders.clear();
   for (const int body : chain.bodies) {
-    const int joint = bodies_[at(body)].joint;
+    const int joint = *bodies_[at(body)].joint;
     chain.joints.push_back(joint);
     const int leader = leader_of(tree_, joint);
     if (std::find(chain.leaders.begin(), chain.leaders.end(), leader) == chain.leaders.end()) {
@@ -174,8 +174,8 @@ std::string Deriver::name_of_body(int body) const {
   return tree_.links[at(b.links.front())].name;
 }
 
-int Deriver::thumb() const {
-  if (chains_.size() < 3) return -1;
+std::optional<int> Deriver::thumb() const {
+  if (chains_.size() < 3) return std::nullopt;
   const auto open = poses(closed_by(0.0));
   const auto closed = poses(closed_by(0.5));
   std::vector<Vector3d> way;
@@ -184,7 +184,7 @@ int Deriver::thumb() const {
     w -= w.dot(palm_direction_) * palm_direction_;
     way.push_back(w.norm() > 0.0 ? Vector3d(w.normalized()) : w);
   }
-  int least = -1;
+  std::optional<int> least;
   double agreement = 0.0;
   double second = 0.0;
   for (std::size_t f = 0; f < way.size(); ++f) {
@@ -192,7 +192,7 @@ int Deriver::thumb() const {
     for (std::size_t g = 0; g < way.size(); ++g) {
       if (g != f) sum += way[f].dot(way[g]) / static_cast<double>(way.size() - 1);
     }
-    if (least == -1 || sum < agreement) {
+    if (!least || sum < agreement) {
       second = agreement;
       agreement = sum;
       least = static_cast<int>(f);
@@ -203,7 +203,7 @@ int Deriver::thumb() const {
     }
   }
   constexpr double kClear = 0.2;  // difference of mean cosines
-  return second - agreement >= kClear ? least : -1;
+  return second - agreement >= kClear ? least : std::nullopt;
 }
 
 std::vector<std::string> Deriver::names() const {
@@ -237,7 +237,7 @@ std::vector<std::string> Deriver::names() const {
 
 std::vector<SidecarFinger> Deriver::fingers() {
   std::vector<SidecarFinger> result;
-  const int its_thumb = thumb();
+  const std::optional<int> its_thumb = thumb();
   const std::vector<std::string> its_names = names();
   const auto X_rest = poses(rest());
   for (std::size_t f = 0; f < chains_.size(); ++f) {

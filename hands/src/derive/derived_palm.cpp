@@ -19,13 +19,13 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   if (body.mesh.faces.empty()) return std::nullopt;
   // The nearest closing joint above says what drives it. What only an opposing joint moves faces
   // nothing: its leading side looks away from the palm.
-  int leader = -1;
+  std::optional<int> leader;
   for (std::size_t i = 0; i <= number; ++i) {
     const int candidate = leader_of(tree_, chain.joints[i]);
     if (tree_.joints[at(chain.joints[i])].closing_sign == 0) continue;
     if (role_[at(candidate)] == Role::Bend) leader = candidate;
   }
-  if (leader < 0) return std::nullopt;
+  if (!leader) return std::nullopt;
   const auto X_HL = poses(q);
   const RigidTransform& X_HB = pose_of_body(X_HL, chain.bodies[number]);
   // From its joint to the next one, of the last body to its tip.
@@ -42,8 +42,8 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
       folded(tree_, point_jacobian(tree_, followed(q), body.links.front(), end_B));
   const std::vector<int> independent = independent_joints(tree_);
   const auto column =
-      std::find(independent.begin(), independent.end(), leader) - independent.begin();
-  const int sign = tree_.joints[at(leader)].closing_sign;
+      std::find(independent.begin(), independent.end(), *leader) - independent.begin();
+  const int sign = tree_.joints[at(*leader)].closing_sign;
   const Vector3d velocity = sign * jacobian.col(column).head<3>();
   const Vector3d turning = sign * jacobian.col(column).tail<3>();
   const Vector3d along = X_HB.linear() * (end_B - start_B);
@@ -194,7 +194,7 @@ void Deriver::fore_joints() {
       if (role_[at(leader)] == Role::Other && sign_[at(leader)] == 0) open.push_back(leader);
     }
     while (!open.empty()) {
-      int best = -1;
+      std::optional<int> best;
       double farthest = 0.0;
       for (const int leader : open) {
         const double forward = forward_of(chain, leader);
@@ -202,10 +202,10 @@ void Deriver::fore_joints() {
         farthest = forward;
         best = leader;
       }
-      if (best < 0) break;
-      sign_[at(best)] = farthest > 0.0 ? 1 : -1;
-      tree_.joints[at(best)].closing_sign = sign_[at(best)];
-      std::erase(open, best);
+      if (!best) break;
+      sign_[at(*best)] = farthest > 0.0 ? 1 : -1;
+      tree_.joints[at(*best)].closing_sign = sign_[at(*best)];
+      std::erase(open, *best);
     }
   }
 }

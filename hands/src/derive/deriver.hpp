@@ -126,7 +126,7 @@ class Deriver {
   // Names and thumb
   /// The finger whose tip, when closing, goes against the others'; none if no one does so clearly,
   /// or if there are only two.
-  int thumb() const;
+  std::optional<int> thumb() const;
   /// What the names of a finger's links begin with, up to a separator; finger_1, … where that does
   /// not tell the fingers apart.
   std::vector<std::string> names() const;

@@ -134,7 +134,7 @@ RayGrid cast(const MeshQuery& link, const std::vector<MeshQuery>& others,
 /// to `center`.
 std::vector<bool> facing_part(const RayGrid& grid, const std::optional<Vector2d>& center) {
   const std::size_t count = grid.samples.size();
-  std::vector<int> part(count, -1);
+  std::vector<std::optional<std::size_t>> part(count);
   std::vector<std::size_t> size;
   std::vector<double> distance;
   const auto faces = [&](std::size_t i) {
@@ -142,8 +142,8 @@ std::vector<bool> facing_part(const RayGrid& grid, const std::optional<Vector2d>
   };
   for (int y0 = 0; y0 < grid.ny; ++y0) {
     for (int x0 = 0; x0 < grid.nx; ++x0) {
-      if (part[grid.index(x0, y0)] != -1 || !faces(grid.index(x0, y0))) continue;
-      const int own = static_cast<int>(size.size());
+      if (part[grid.index(x0, y0)] || !faces(grid.index(x0, y0))) continue;
+      const std::size_t own = size.size();
       size.push_back(0);
       distance.push_back(std::numeric_limits<double>::infinity());
       std::vector<std::pair<int, int>> open{{x0, y0}};
@@ -162,7 +162,7 @@ std::vector<bool> facing_part(const RayGrid& grid, const std::optional<Vector2d>
           const int ny = y + dy;
           if (nx < 0 || ny < 0 || nx >= grid.nx || ny >= grid.ny) continue;
           const std::size_t there = grid.index(nx, ny);
-          if (part[there] != -1 || !faces(there)) continue;
+          if (part[there] || !faces(there)) continue;
           const double rise =
               std::abs(grid.samples[there].point.z() - grid.samples[here].point.z());
           if (rise > grid.step * std::tan(kMaxStep)) continue;
@@ -172,23 +172,21 @@ std::vector<bool> facing_part(const RayGrid& grid, const std::optional<Vector2d>
       }
     }
   }
-  int best = -1;
-  for (int p = 0; p < static_cast<int>(size.size()); ++p) {
+  std::optional<std::size_t> best;
+  for (std::size_t p = 0; p < size.size(); ++p) {
     // Specks that happen to lie nearest are no part.
     const std::size_t largest = *std::max_element(size.begin(), size.end());
-    if (10 * size[static_cast<std::size_t>(p)] < largest) continue;
-    if (best == -1) {
+    if (10 * size[p] < largest) continue;
+    if (!best) {
       best = p;
       continue;
     }
-    const auto a = static_cast<std::size_t>(p);
-    const auto b = static_cast<std::size_t>(best);
-    const bool is_nearer = center && distance[a] < distance[b] - grid.step;
-    const bool is_farther = center && distance[a] > distance[b] + grid.step;
-    if (is_nearer || (!is_farther && size[a] > size[b])) best = p;
+    const bool is_nearer = center && distance[p] < distance[*best] - grid.step;
+    const bool is_farther = center && distance[p] > distance[*best] + grid.step;
+    if (is_nearer || (!is_farther && size[p] > size[*best])) best = p;
   }
   std::vector<bool> cells(count, false);
-  for (std::size_t i = 0; i < count; ++i) cells[i] = best != -1 && part[i] == best;
+  for (std::size_t i = 0; i < count; ++i) cells[i] = best && part[i] == best;
   return cells;
 }
 

@@ -153,8 +153,8 @@ class SidecarResolver {
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       const Link& own = model_.links[i];
       const int index = static_cast<int>(i);
-      body[i] = own.parent_link >= 0 && own.parent_joint == -1
-                    ? body[static_cast<std::size_t>(own.parent_link)]
+      body[i] = own.parent_link && !own.parent_joint
+                    ? body[static_cast<std::size_t>(*own.parent_link)]
                     : index;
       if (own.mesh_L.faces.empty()) continue;
       std::vector<int>& before = solid_links[body[i]];

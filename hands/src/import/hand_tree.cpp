@@ -90,7 +90,7 @@ class TreeBuilder {
     return roots.empty() ? "" : roots[0];
   }
 
-  void add(const std::string& name, int parent, const DescribedJoint* above) {
+  void add(const std::string& name, std::optional<int> parent, const DescribedJoint* above) {
     const int index = static_cast<int>(model_.links.size());
     added_.insert(name);
     Link link;
@@ -105,7 +105,7 @@ class TreeBuilder {
       joint.name = above->name;
       joint.type = above->type == DescribedJoint::Type::Prismatic ? JointType::Prismatic
                                                                   : JointType::Revolute;
-      joint.parent_link = parent;
+      joint.parent_link = *parent;
       joint.child_link = index;
       joint.X_PJ = above->X_PJ;
       joint.axis_J = above->axis;
@@ -120,7 +120,7 @@ class TreeBuilder {
   void add_tree(const std::string& root) {
     struct Next {
       std::string name;
-      int parent = -1;
+      std::optional<int> parent;
       const DescribedJoint* above = nullptr;
     };
     std::vector<Next> waiting{{.name = root}};

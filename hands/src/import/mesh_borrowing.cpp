@@ -12,6 +12,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "import/hand_tree.hpp"
 #include "import/urdf.hpp"
+#include "model/joint_tree.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -41,44 +42,22 @@ bool are_parallel(const AxisLine& a, const AxisLine& b) {
 }
 
 /// A tree, how its joints branch, and the positions at which it is compared.
-struct Skeleton {
+struct Skeleton : JointTree {
   explicit Skeleton(const HandModel& tree)
-      : model(tree),
-        q(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree.joints.size()))),
-        above(tree.links.size(), -1) {
-    for (std::size_t i = 1; i < model.links.size(); ++i) {
-      const Link& link = model.links[i];
-      above[i] = link.parent_joint >= 0 ? link.parent_joint
-                                        : above[static_cast<std::size_t>(link.parent_link)];
-    }
-  }
-
-  /// The joints next after `joint`, −1 for the root.
-  std::vector<int> next(int joint) const {
-    std::vector<int> result;
-    for (std::size_t j = 0; j < model.joints.size(); ++j) {
-      const auto parent = static_cast<std::size_t>(model.joints[j].parent_link);
-      if (above[parent] == joint) result.push_back(static_cast<int>(j));
-    }
-    return result;
-  }
-
-  const Joint& joint(int index) const { return model.joints[static_cast<std::size_t>(index)]; }
+      : JointTree(tree), q(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree.joints.size()))) {}
 
   std::vector<RigidTransform> poses() const {
-    return forward_kinematics(model, {.X_OH = RigidTransform::Identity(), .q = q});
+    return forward_kinematics(tree(), {.X_OH = RigidTransform::Identity(), .q = q});
   }
 
   /// A joint's axis in the root link's frame.
-  AxisLine axis(int index) const {
+  AxisLine axis_line(int index) const {
     const RigidTransform X_HJ =
         poses()[static_cast<std::size_t>(joint(index).parent_link)] * joint(index).X_PJ;
     return {X_HJ.translation(), X_HJ.linear() * joint(index).axis_J};
   }
 
-  const HandModel& model;
   Eigen::VectorXd q;
-  std::vector<int> above;  ///< Per link: the joint that moves it; −1 if none does.
 };
 
 /// Finds the joint of `theirs` for every joint of `ours`, and the positions of theirs at which both
@@ -86,22 +65,22 @@ struct Skeleton {
 class JointMatcher {
  public:
   JointMatcher(const Skeleton& ours, Skeleton& theirs)
-      : ours_(ours), theirs_(theirs), match_(ours.model.joints.size(), -1) {}
+      : ours_(ours), theirs_(theirs), match_(ours.tree().joints.size()) {}
 
   /// Empty if they match, or else why not.
   std::optional<std::string> find() {
-    if (ours_.model.joints.size() != theirs_.model.joints.size()) {
-      return "it has " + std::to_string(theirs_.model.joints.size()) + " joints, not " +
-             std::to_string(ours_.model.joints.size());
+    if (ours_.tree().joints.size() != theirs_.tree().joints.size()) {
+      return "it has " + std::to_string(theirs_.tree().joints.size()) + " joints, not " +
+             std::to_string(ours_.tree().joints.size());
     }
-    if (match_after(-1, -1)) return std::nullopt;
+    if (match_after(std::nullopt, std::nullopt)) return std::nullopt;
     return "no joint of it stands where " + unmatched_ + " does";
   }
 
-  const std::vector<int>& match() const { return match_; }
+  const std::vector<std::optional<int>>& match() const { return match_; }
 
  private:
-  bool match_after(int our_joint, int their_joint) {
+  bool match_after(std::optional<int> our_joint, std::optional<int> their_joint) {
     const std::vector<int> ours = ours_.next(our_joint);
     const std::vector<int> theirs = theirs_.next(their_joint);
     if (ours.size() != theirs.size()) {
@@ -138,8 +117,8 @@ class JointMatcher {
 
   bool stand_alike(int a, int b) const {
     if (ours_.joint(a).type != theirs_.joint(b).type) return false;
-    const AxisLine ours = ours_.axis(a);
-    const AxisLine theirs = theirs_.axis(b);
+    const AxisLine ours = ours_.axis_line(a);
+    const AxisLine theirs = theirs_.axis_line(b);
     // Where a sliding joint's axis lies says nothing.
     return are_parallel(ours, theirs) && (ours_.joint(a).type == JointType::Prismatic ||
                                           distance(ours, theirs.point) < kSamePlace);
@@ -151,9 +130,9 @@ class JointMatcher {
     const std::vector<int> theirs = theirs_.next(b);
     if (ours.empty()) return {position_by_limits(a, b)};
     std::vector<double> positions = {0.0};
-    const AxisLine target = ours_.axis(ours[0]);
+    const AxisLine target = ours_.axis_line(ours[0]);
     for (const int next : theirs) {
-      const std::vector<double> more = positions_that_align(b, target, theirs_.axis(next));
+      const std::vector<double> more = positions_that_align(b, target, theirs_.axis_line(next));
       positions.insert(positions.end(), more.begin(), more.end());
     }
     return positions;
@@ -164,13 +143,13 @@ class JointMatcher {
     const Joint& theirs = theirs_.joint(b);
     const double width = ours.upper - ours.lower;
     if (std::abs(width - (theirs.upper - theirs.lower)) > kSameWidth) return 0.0;
-    const bool is_same_way = ours_.axis(a).direction.dot(theirs_.axis(b).direction) > 0.0;
+    const bool is_same_way = ours_.axis_line(a).direction.dot(theirs_.axis_line(b).direction) > 0.0;
     return is_same_way ? theirs.lower - ours.lower : theirs.upper + ours.lower;
   }
 
   /// Positions of joint b that bring the line `from`, which it moves, onto `to`, if any do.
   std::vector<double> positions_that_align(int b, const AxisLine& to, const AxisLine& from) const {
-    const AxisLine axis = theirs_.axis(b);
+    const AxisLine axis = theirs_.axis_line(b);
     const double at = theirs_.q[b];
     const Vector3d& z = axis.direction;
     if (theirs_.joint(b).type == JointType::Prismatic) {
@@ -198,8 +177,8 @@ class JointMatcher {
 
   const Skeleton& ours_;
   Skeleton& theirs_;
-  std::vector<int> match_;  ///< Per joint of ours; −1 where none was found.
-  std::string unmatched_;   ///< The joint of ours at which the last attempt ended.
+  std::vector<std::optional<int>> match_;  ///< Per joint of ours; empty where none was found.
+  std::string unmatched_;                  ///< The joint of ours at which the last attempt ended.
 };
 
 LinkInertia moved(const LinkInertia& inertia, const RigidTransform& X) {
@@ -255,14 +234,16 @@ void borrow(const fs::path& file, RobotDescription& description, Findings& findi
   for (DescribedLink& link : description.links) {
     if (!link.visual.empty() || !link.collision.empty()) continue;
     const auto l = static_cast<std::size_t>(our_tree.link_index(link.name));
-    const int body =
-        ours.above[l] < 0 ? -1 : matcher.match()[static_cast<std::size_t>(ours.above[l])];
+    std::optional<int> body;
+    if (const auto above = ours.above_link(l)) {
+      body = matcher.match()[static_cast<std::size_t>(*above)];
+    }
     std::vector<const DescribedLink*> with_inertia;
     RigidTransform X_with_inertia = RigidTransform::Identity();
     std::string names;
     for (const DescribedLink& source : urdf.links) {
       const auto u = static_cast<std::size_t>(their_tree.link_index(source.name));
-      if (theirs.above[u] != body) continue;
+      if (theirs.above_link(u) != body) continue;
       const RigidTransform X_LU = X_HL[l].inverse() * X_HU[u];
       for (DescribedGeometry part : source.collision.empty() ? source.visual : source.collision) {
         part.X_LG = X_LU * part.X_LG;

@@ -126,14 +126,14 @@ std::string urdf_text(const HandModel& model) {
   std::string text =
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<robot name=\"" + escaped(model.name) + "\">\n";
   for (const Link& link : model.links) {
-    if (link.parent_joint >= 0) {
-      text += joint_text(model, model.joints[static_cast<std::size_t>(link.parent_joint)]);
-    } else if (link.parent_link >= 0) {
+    if (link.parent_joint) {
+      text += joint_text(model, model.joints[static_cast<std::size_t>(*link.parent_joint)]);
+    } else if (link.parent_link) {
       // A model does not keep the names of fixed joints.
       std::string name = link.name + "_fixed";
       while (!joint_names.insert(name).second) name += '_';
       text +=
-          joint_head(name, "fixed", model.links[static_cast<std::size_t>(link.parent_link)].name,
+          joint_head(name, "fixed", model.links[static_cast<std::size_t>(*link.parent_link)].name,
                      link.name, link.X_PL_fixed) +
           "  </joint>\n";
     }

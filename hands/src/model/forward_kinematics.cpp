@@ -22,11 +22,11 @@ RigidTransform motion(const Joint& joint, double q) {
 RigidTransform link_pose(const HandModel& model, int link, const std::vector<RigidTransform>& X_OL,
                          const HandConfiguration& configuration) {
   const Link& description = model.links[link];
-  if (description.parent_link < 0) return configuration.X_OH;
-  const RigidTransform& X_OP = X_OL[description.parent_link];
-  if (description.parent_joint < 0) return X_OP * description.X_PL_fixed;
-  const Joint& joint = model.joints[description.parent_joint];
-  return X_OP * joint.X_PJ * motion(joint, configuration.q[description.parent_joint]);
+  if (!description.parent_link) return configuration.X_OH;
+  const RigidTransform& X_OP = X_OL[*description.parent_link];
+  if (!description.parent_joint) return X_OP * description.X_PL_fixed;
+  const Joint& joint = model.joints[*description.parent_joint];
+  return X_OP * joint.X_PJ * motion(joint, configuration.q[*description.parent_joint]);
 }
 
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
@@ -58,10 +58,10 @@ std::vector<int> links_moved_by(const HandModel& model, int joint) {
   std::vector<bool> moves(model.links.size(), false);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
-    if (link.parent_link < 0) continue;
-    moves[i] = moves[static_cast<std::size_t>(link.parent_link)];
-    if (link.parent_joint >= 0) {
-      const Joint& own = model.joints[static_cast<std::size_t>(link.parent_joint)];
+    if (!link.parent_link) continue;
+    moves[i] = moves[static_cast<std::size_t>(*link.parent_link)];
+    if (link.parent_joint) {
+      const Joint& own = model.joints[static_cast<std::size_t>(*link.parent_joint)];
       moves[i] = moves[i] || link.parent_joint == joint ||
                  (own.coupling && own.coupling->leader == joint && own.coupling->ratio != 0.0);
     }

@@ -4,19 +4,19 @@ namespace graspfit::hands::internal {
 
 std::vector<Body> bodies_of(const HandModel& tree) {
   std::vector<Body> bodies;
-  std::vector<int> body_of(tree.links.size(), -1);
+  std::vector<int> body_of(tree.links.size());
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Link& link = tree.links[i];
-    const int above =
-        link.parent_link < 0 ? -1 : body_of[static_cast<std::size_t>(link.parent_link)];
-    if (above >= 0 && link.parent_joint < 0) {
-      body_of[i] = above;
+    std::optional<int> above;
+    if (link.parent_link) above = body_of[static_cast<std::size_t>(*link.parent_link)];
+    if (above && !link.parent_joint) {
+      body_of[i] = *above;
     } else {
       body_of[i] = static_cast<int>(bodies.size());
       Body& body = bodies.emplace_back();
       body.joint = link.parent_joint;
       body.parent = above;
-      if (above >= 0) bodies[static_cast<std::size_t>(above)].children.push_back(body_of[i]);
+      if (above) bodies[static_cast<std::size_t>(*above)].children.push_back(body_of[i]);
     }
     bodies[static_cast<std::size_t>(body_of[i])].links.push_back(static_cast<int>(i));
   }
@@ -33,7 +33,7 @@ std::vector<Body> bodies_of(const HandModel& tree) {
 }
 
 std::vector<int> body_of_links(const std::vector<Body>& bodies, std::size_t num_links) {
-  std::vector<int> body_of(num_links, -1);
+  std::vector<int> body_of(num_links);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const int link : bodies[b].links)
       body_of[static_cast<std::size_t>(link)] = static_cast<int>(b);
@@ -46,7 +46,7 @@ std::vector<RigidTransform> poses_in_body(const HandModel& tree, const Body& bod
   for (const int link : body.links) {
     RigidTransform X = RigidTransform::Identity();
     for (int at = link; at != body.links.front();
-         at = tree.links[static_cast<std::size_t>(at)].parent_link) {
+         at = *tree.links[static_cast<std::size_t>(at)].parent_link) {
       X = tree.links[static_cast<std::size_t>(at)].X_PL_fixed * X;
     }
     X_BL.push_back(X);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "graspfit/hands/hand_model.hpp"
@@ -8,9 +9,9 @@ namespace graspfit::hands::internal {
 
 /// Links that fixed joints join: what moves as one.
 struct Body {
-  std::vector<int> links;  ///< Ascending; the first is the one that hangs on `joint`.
-  int joint = -1;          ///< The movable joint above it; −1 for the root.
-  int parent = -1;         ///< Body that the joint hangs on; −1 for the root.
+  std::vector<int> links;     ///< Ascending; the first is the one that hangs on `joint`.
+  std::optional<int> joint;   ///< The movable joint above it; empty for the root.
+  std::optional<int> parent;  ///< Body that the joint hangs on; empty for the root.
   std::vector<int> children;
   TriangleMesh mesh;  ///< All its links' surfaces, in the frame of its first link.
 };

@@ -144,18 +144,17 @@ class Checker {
       const std::string what = "link " + link.name;
       inertia(link);
       if (i == 0) {
-        require(link.parent_link == -1 && link.parent_joint == -1,
-                what + ": the root has a parent");
+        require(!link.parent_link && !link.parent_joint, what + ": the root has a parent");
         continue;
       }
-      require(link.parent_link >= 0 && link.parent_link < static_cast<int>(i),
-              what + ": its parent link " + std::to_string(link.parent_link) +
-                  " does not come before it");
+      const int parent = link.parent_link.value_or(-1);
+      require(parent >= 0 && parent < static_cast<int>(i),
+              what + ": its parent link " + std::to_string(parent) + " does not come before it");
       require_pose(link.X_PL_fixed, what + ": fixed pose");
-      if (link.parent_joint == -1) continue;
-      require_index(link.parent_joint, model_.joints.size(), what + ": parent joint");
-      const Joint& joint = model_.joints[static_cast<std::size_t>(link.parent_joint)];
-      require(joint.child_link == static_cast<int>(i) && joint.parent_link == link.parent_link,
+      if (!link.parent_joint) continue;
+      require_index(*link.parent_joint, model_.joints.size(), what + ": parent joint");
+      const Joint& joint = model_.joints[static_cast<std::size_t>(*link.parent_joint)];
+      require(joint.child_link == static_cast<int>(i) && joint.parent_link == parent,
               what + ": joint " + joint.name + " joins other links");
     }
   }
@@ -515,10 +514,9 @@ double largest_reach(const HandModel& model) {
     if (i == 0) {
       bound.distance = model.palm.center_H.norm();
     } else {
-      const Bound& parent = bounds[static_cast<std::size_t>(link.parent_link)];
-      const Joint* joint = link.parent_joint < 0
-                               ? nullptr
-                               : &model.joints[static_cast<std::size_t>(link.parent_joint)];
+      const Bound& parent = bounds[static_cast<std::size_t>(*link.parent_link)];
+      const Joint* joint =
+          link.parent_joint ? &model.joints[static_cast<std::size_t>(*link.parent_joint)] : nullptr;
       const RigidTransform& X_PL = joint ? joint->X_PJ : link.X_PL_fixed;
       bound.is_fixed = parent.is_fixed && joint == nullptr;
       bound.X_HL = parent.X_HL * X_PL;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -14,11 +15,11 @@ using Eigen::Vector3d;
 /// How the joints of a tree follow each other, whatever links fixed joints join.
 class JointTree {
  public:
-  explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size(), -1) {
+  explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size()) {
     for (std::size_t i = 1; i < tree_.links.size(); ++i) {
       const Link& link = tree_.links[i];
-      above_[i] = link.parent_joint >= 0 ? link.parent_joint
-                                         : above_[static_cast<std::size_t>(link.parent_link)];
+      above_[i] = link.parent_joint ? link.parent_joint
+                                    : above_[static_cast<std::size_t>(*link.parent_link)];
     }
     const HandConfiguration zero{
         .X_OH = RigidTransform::Identity(),
@@ -30,12 +31,14 @@ class JointTree {
   const Joint& joint(int j) const { return tree_.joints[static_cast<std::size_t>(j)]; }
   int num_joints() const { return static_cast<int>(tree_.joints.size()); }
 
-  /// The joint that moves a link; −1 for what the root carries.
-  int above_link(std::size_t link) const { return above_[link]; }
-  /// The joint before a joint; −1 if there is none.
-  int above(int j) const { return above_[static_cast<std::size_t>(joint(j).parent_link)]; }
-  /// The joints next after a joint; −1: those on the root.
-  std::vector<int> next(int j) const {
+  /// The joint that moves a link; empty for what the root carries.
+  std::optional<int> above_link(std::size_t link) const { return above_[link]; }
+  /// The joint before a joint, if there is one.
+  std::optional<int> above(int j) const {
+    return above_[static_cast<std::size_t>(joint(j).parent_link)];
+  }
+  /// The joints next after a joint; of none: those on the root.
+  std::vector<int> next(std::optional<int> j) const {
     std::vector<int> result;
     for (int k = 0; k < num_joints(); ++k) {
       if (above(k) == j) result.push_back(k);
@@ -67,7 +70,7 @@ class JointTree {
   }
 
   const HandModel& tree_;
-  std::vector<int> above_;
+  std::vector<std::optional<int>> above_;
   std::vector<RigidTransform> X_HL_;
 };
 

@@ -6,7 +6,7 @@ namespace graspfit::hands {
 
 std::vector<int> links_to(const HandModel& model, int link) {
   std::vector<int> links;
-  for (; link >= 0; link = model.links[link].parent_link) links.push_back(link);
+  for (std::optional<int> at = link; at; at = model.links[*at].parent_link) links.push_back(*at);
   std::reverse(links.begin(), links.end());
   return links;
 }
@@ -14,7 +14,7 @@ std::vector<int> links_to(const HandModel& model, int link) {
 std::vector<int> joints_to(const HandModel& model, int link) {
   std::vector<int> joints;
   for (const int at : links_to(model, link)) {
-    if (model.links[at].parent_joint >= 0) joints.push_back(model.links[at].parent_joint);
+    if (const auto joint = model.links[at].parent_joint) joints.push_back(*joint);
   }
   return joints;
 }

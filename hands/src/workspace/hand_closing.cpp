@@ -14,7 +14,7 @@ namespace {
 
 /// Independent joints that close together and stop together.
 struct Group {
-  int finger = -1;  ///< −1: of no finger.
+  std::optional<int> finger;  ///< Empty: of none.
   std::vector<int> joints;
 };
 
@@ -48,7 +48,7 @@ HandModel without_open_overlaps(HandModel model) {
   while (true) {
     const HandCollision::Result found = HandCollision(model).against_self(X_HL);
     if (!found.intersects) return model;
-    model.exclusions.push_back({found.link_a, found.link_b});
+    model.exclusions.push_back({*found.link_a, *found.link_b});
   }
 }
 
@@ -88,7 +88,7 @@ Closing closing_of(const HandModel& model, double share) {
       steps[g] = step - 1;
       has_stopped[g] = true;
       stops.push_back(
-          {groups[g].finger, static_cast<double>(step - 1) / kSteps, found.link_a, found.link_b});
+          {groups[g].finger, static_cast<double>(step - 1) / kSteps, *found.link_a, *found.link_b});
     }
   }
   return {configuration(), std::move(stops)};

@@ -28,7 +28,7 @@ bool may_meet(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B
 }
 
 void take_deeper(HandCollision::Result& result, const geometry::Penetration& found, int link_a,
-                 int link_b) {
+                 std::optional<int> link_b) {
   if (!found.intersects) return;
   if (!result.intersects || found.depth > result.depth) {
     result.depth = found.depth;
@@ -78,7 +78,7 @@ HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& o
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (!links_[i] || !may_meet(object.box(), boxes_[i], X_OL[i])) continue;
     take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), static_cast<int>(i),
-                -1);
+                std::nullopt);
   }
   return result;
 }

@@ -45,10 +45,7 @@ constexpr int kMostRounds = 2000;
 // Steps in all joints at once, per joint.
 constexpr int kDrawnPerJoint = 4;
 
-// The palm's center in place of a pad.
-constexpr int kPalm = -1;
-
-/// A tip pad's contact point and outward normal, in H.
+/// A tip pad's contact point and outward normal, in H; of no pad, the palm's center and direction.
 struct Tip {
   Vector3d point;
   Vector3d normal;
@@ -79,28 +76,28 @@ class Hand {
     apply_couplings(model_, configuration.q);
     return forward_kinematics(model_, configuration);
   }
-  Tip tip(int pad, const std::vector<RigidTransform>& X_HL) const {
-    if (pad == kPalm) return {model_.palm.center_H, model_.palm.direction_H};
-    const RigidTransform X_HC = pad_pose(model_, pad, X_HL);
-    return {X_HC * contact_points_C_[static_cast<std::size_t>(pad)], X_HC.linear().col(2)};
+  Tip tip(std::optional<int> pad, const std::vector<RigidTransform>& X_HL) const {
+    if (!pad) return {model_.palm.center_H, model_.palm.direction_H};
+    const RigidTransform X_HC = pad_pose(model_, *pad, X_HL);
+    return {X_HC * contact_points_C_[static_cast<std::size_t>(*pad)], X_HC.linear().col(2)};
   }
 
-  int link_of(int pad) const { return pad == kPalm ? 0 : model_.pads[pad].link; }
+  int link_of(std::optional<int> pad) const { return pad ? model_.pads[*pad].link : 0; }
 
   /// Most that a tip moves per unit of the independent joint `leader` if the joints in `standing`
   /// do not move: the sum, over the joints that follow it, of the tip's largest distance from them.
-  double speed(int pad, int leader, const std::vector<int>& standing) const {
-    if (pad == kPalm) return 0.0;
+  double speed(std::optional<int> pad, int leader, const std::vector<int>& standing) const {
+    if (!pad) return 0.0;
     double reach =
-        (model_.pads[pad].X_LC * contact_points_C_[static_cast<std::size_t>(pad)]).norm();
+        (model_.pads[*pad].X_LC * contact_points_C_[static_cast<std::size_t>(*pad)]).norm();
     double total = 0.0;
-    int link = link_of(pad);
-    for (; model_.links[link].parent_link >= 0; link = model_.links[link].parent_link) {
-      const int index = model_.links[link].parent_joint;
-      if (index < 0) {
-        reach += model_.links[link].X_PL_fixed.translation().norm();
+    for (const Link* link = &model_.links[link_of(pad)]; link->parent_link;
+         link = &model_.links[*link->parent_link]) {
+      if (!link->parent_joint) {
+        reach += link->X_PL_fixed.translation().norm();
         continue;
       }
+      const int index = *link->parent_joint;
       const Joint& joint = model_.joints[index];
       const bool stands = std::find(standing.begin(), standing.end(), index) != standing.end();
       double share = index == leader ? 1.0 : 0.0;
@@ -271,7 +268,8 @@ class BestStarts {
 /// Two tips that move one against the other.
 class TipPair {
  public:
-  TipPair(const Hand& hand, int pad_a, int pad_b, const WorkspaceOptions& options)
+  TipPair(const Hand& hand, std::optional<int> pad_a, std::optional<int> pad_b,
+          const WorkspaceOptions& options)
       : hand_(hand),
         pad_a_(pad_a),
         pad_b_(pad_b),
@@ -437,14 +435,14 @@ class TipPair {
       const Joint& limits = hand_.model().joints[joint];
       const double range = limits.upper - limits.lower;
       const double off = per_joint_ > 0 ? 0.5 * range / (per_joint_ - 1) : range;
-      for (const int pad : {pad_a_, pad_b_}) sum += off * hand_.speed(pad, joint, joints_.carrying);
+      for (const auto& pad : {pad_a_, pad_b_})
+        sum += off * hand_.speed(pad, joint, joints_.carrying);
     }
     return sum;
   }
 
   const Hand& hand_;
-  const int pad_a_;
-  const int pad_b_;
+  const std::optional<int> pad_a_, pad_b_;  ///< Empty: the palm's center.
   const WorkspaceOptions& options_;
   const PairJoints joints_;
   const int per_joint_;  ///< 0: random configurations instead of a grid.
@@ -474,8 +472,8 @@ std::string workspace_key(const HandModel& model, const WorkspaceOptions& option
   key.number(options.facing_angle);
   append(key, static_cast<int>(model.links.size()));
   for (const Link& link : model.links) {
-    append(key, link.parent_link);
-    append(key, link.parent_joint);
+    append(key, link.parent_link.value_or(-1));
+    append(key, link.parent_joint.value_or(-1));
     append(key, link.X_PL_fixed);
     key.list(link.mesh_L.vertices);
     key.list(link.mesh_L.faces);
@@ -588,7 +586,7 @@ std::vector<DistanceRange> palm_distances(const HandModel& model, const Workspac
   for (const Finger& finger : model.fingers) {
     ranges.push_back(finger.tip_pad < 0
                          ? DistanceRange{}
-                         : TipPair(hand, kPalm, finger.tip_pad, options).distances());
+                         : TipPair(hand, std::nullopt, finger.tip_pad, options).distances());
   }
   return ranges;
 }

@@ -175,13 +175,13 @@ std::vector<std::string> broken_guarantees(const Scene& scene, const TargetConta
   const double deepest = deepest_in_full_voxels(scene, X_OL);
   const auto penetration = scene.collision.against_object(scene.object.query, X_OL);
   if (penetration.depth > scene.voxel_size()) {
-    report(hand.links[penetration.link_a].name, " cuts ", penetration.depth / scene.voxel_size(),
+    report(hand.links[*penetration.link_a].name, " cuts ", penetration.depth / scene.voxel_size(),
            " voxel edges into the object");
   }
   if (options.guard == grasp::PenetrationGuard::Meshes) {
     // Nothing of the hand is in the object, so nothing is in a full voxel.
     if (penetration.intersects) {
-      report(hand.links[penetration.link_a].name, " cuts ", penetration.depth,
+      report(hand.links[*penetration.link_a].name, " cuts ", penetration.depth,
              " m into the object");
     }
     if (deepest > 0.0) report("a link reaches ", deepest, " voxels into full ones");

@@ -89,7 +89,7 @@ TEST_CASE("A small description is read as it is written", "[hands][hand_io]") {
   CHECK(hand.links[0].name == "base");
   CHECK(hand.links[1].name == "left");
   CHECK(hand.links[2].name == "left_tip");
-  CHECK(hand.links[2].parent_joint == -1);
+  CHECK_FALSE(hand.links[2].parent_joint);
   CHECK(hand.links[2].X_PL_fixed.translation() == Vector3d(0, 0, 0.1));
   REQUIRE(hand.joints.size() == 2);
   const hands::Joint& slide = hand.joints[0];

@@ -84,8 +84,8 @@ void check_tree(const HandModel& hand, const KdlHand& kdl) {
   for (const hands::Link& link : hand.links) {
     CAPTURE(link.name);
     REQUIRE(missing.erase(link.name) == 1);
-    if (link.parent_link >= 0) {
-      CHECK(hand.links[static_cast<std::size_t>(link.parent_link)].name == parents[link.name]);
+    if (link.parent_link) {
+      CHECK(hand.links[static_cast<std::size_t>(*link.parent_link)].name == parents[link.name]);
     }
   }
   // What is left out does not hang on the palm.

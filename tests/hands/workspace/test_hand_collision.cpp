@@ -67,8 +67,8 @@ TEST_CASE("Fingers closed on nothing meet each other, and both links are named",
   CHECK(found.intersects);
   CHECK(found.depth > 0.0);
   CHECK(found.depth <= found.depth_bound);
-  REQUIRE(found.link_a >= 0);
-  REQUIRE(found.link_b >= 0);
+  REQUIRE(found.link_a);
+  REQUIRE(found.link_b);
   CHECK(found.link_a < found.link_b);
   CHECK(found.link_a == barrett().link_index("finger_1_distal_link"));
   CHECK(found.link_b == barrett().link_index("finger_2_distal_link"));
@@ -115,7 +115,7 @@ TEST_CASE("A ball is hit exactly when it reaches the palm, and the depth is how 
     CHECK(found.depth == Approx(std::max(-height, 0.0)).margin(2e-5));
     if (found.intersects) {
       CHECK(found.link_a == 0);
-      CHECK(found.link_b == -1);
+      CHECK_FALSE(found.link_b);
     }
   }
 }

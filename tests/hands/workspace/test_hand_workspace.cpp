@@ -65,7 +65,7 @@ void add_finger(HandModel& hand, int num_links, const RigidTransform& X_LC) {
   for (int link = static_cast<int>(hand.links.size()) - num_links;
        link < static_cast<int>(hand.links.size()); ++link) {
     finger.links.push_back(link);
-    finger.joints.push_back(hand.links[link].parent_joint);
+    finger.joints.push_back(*hand.links[link].parent_joint);
   }
   hands::ContactPad& pad = hand.pads.emplace_back();
   pad.name = "pad " + std::to_string(index);
@@ -206,8 +206,8 @@ TEST_CASE("Joints that carry both tips count for nothing, except through what fo
     add_link(result, 0, at({0.01, 0.02, 0.03}), -1.0, 1.0);
     for (std::size_t i = 1; i < hand.links.size(); ++i) {
       hands::Link link = hand.links[i];
-      hands::Joint joint = hand.joints[link.parent_joint];
-      ++link.parent_link, ++link.parent_joint, ++joint.parent_link, ++joint.child_link;
+      hands::Joint joint = hand.joints[*link.parent_joint];
+      ++*link.parent_link, ++*link.parent_joint, ++joint.parent_link, ++joint.child_link;
       link.name += "'", joint.name += "'";
       result.links.push_back(link), result.joints.push_back(joint);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "graspfit/hands/hand_configuration.hpp"
@@ -21,10 +22,10 @@ HandConfiguration closed_without_overlap(const HandModel& model, double share);
 
 /// A finger that `closed_without_overlap` stopped on its way.
 struct ClosingStop {
-  int finger = -1;     ///< Of the hand; −1: a joint of no finger.
-  double share = 0.0;  ///< Of the way that was asked for, where it stands: in [0, 1).
-  int link_a = -1;     ///< With link_b: the links that would touch with its next step; of several
-  int link_b = -1;     ///< pairs the one that would overlap deepest.
+  std::optional<int> finger;  ///< Of the hand; empty: a joint of no finger.
+  double share = 0.0;         ///< Of the way that was asked for, where it stands: in [0, 1).
+  int link_a = 0;  ///< With link_b: the links that would touch with its next step; of several
+  int link_b = 0;  ///< pairs the one that would overlap deepest.
 };
 
 /// What stops fingers on the way of `closed_without_overlap`, in the order in which they stop.

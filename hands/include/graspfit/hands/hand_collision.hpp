@@ -24,11 +24,11 @@ class HandCollision {
 
   /// A deepest overlap and where it is. Of pairs equally deep, the first by link_a, then link_b.
   struct Result {
-    bool intersects = false;   ///< Exact on the true meshes (see geometry::do_intersect).
-    double depth = 0.0;        ///< Largest depth over all pairs [m]; a lower bound.
-    double depth_bound = 0.0;  ///< The true depth is at most this [m].
-    int link_a = -1;           ///< Link of the deepest overlap.
-    int link_b = -1;           ///< The other link for self-collision; −1 against the object.
+    bool intersects = false;    ///< Exact on the true meshes (see geometry::do_intersect).
+    double depth = 0.0;         ///< Largest depth over all pairs [m]; a lower bound.
+    double depth_bound = 0.0;   ///< The true depth is at most this [m].
+    std::optional<int> link_a;  ///< Link of the deepest overlap; empty without one.
+    std::optional<int> link_b;  ///< The other link for self-collision; empty against the object.
   };
 
   /// Whether one link and the object share a point. Exact, as `geometry::do_intersect`; much

@@ -57,8 +57,9 @@ struct LinkInertia {
 /// A rigid link. Links joined by fixed joints in the file are links of their own here.
 struct Link {
   std::string name;
-  int parent_link = -1;   ///< −1 for the root.
-  int parent_joint = -1;  ///< Movable joint to the parent; −1 for the root or a fixed connection.
+  std::optional<int> parent_link;   ///< Empty for the root.
+  std::optional<int> parent_joint;  ///< Movable joint to the parent; empty for the root or a fixed
+                                    ///< connection.
   RigidTransform X_PL_fixed =
       RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
   TriangleMesh mesh_L;             ///< Closed surface in the link's frame [m]; may have no faces.
