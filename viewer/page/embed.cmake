@@ -1,6 +1,6 @@
 # Writes OUTPUT, a C++ source that holds PAGE_DIR's files as string literals.
 set(content "// Written by viewer/page/embed.cmake from viewer/page/; edit those.\n")
-string(APPEND content "#include \"page_template.hpp\"\n\nnamespace graspfit::viewer {\n")
+string(APPEND content "#include \"page_template.hpp\"\n\nnamespace graspfit::viewer::internal {\n")
 foreach(file IN ITEMS page.html page.css stage.js grasps.js hand.js player.js replay.js motion.js)
   file(READ ${PAGE_DIR}/${file} text)
   string(REPLACE "." ";" words ${file})
@@ -14,5 +14,5 @@ foreach(file IN ITEMS page.html page.css stage.js grasps.js hand.js player.js re
   string(APPEND content
     "\nconst std::string_view ${name} = R\"graspfit_page(${text})graspfit_page\";\n")
 endforeach()
-string(APPEND content "\n}  // namespace graspfit::viewer\n")
+string(APPEND content "\n}  // namespace graspfit::viewer::internal\n")
 file(WRITE ${OUTPUT} "${content}")

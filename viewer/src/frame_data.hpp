@@ -4,7 +4,7 @@
 
 #include "graspfit/geometry/rigid_transform.hpp"
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 
 // A pose in a list of frames: x, y, z and the unit quaternion w, x, y, z.
 inline void append_pose(const geometry::RigidTransform& X, std::vector<float>& numbers) {
@@ -15,4 +15,4 @@ inline void append_pose(const geometry::RigidTransform& X, std::vector<float>& n
   }
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 namespace {
 
 Json links(const hands::HandModel& hand) {
@@ -103,4 +103,4 @@ Json hand_data(const hands::HandModel& hand, double clip_thickness) {
             {"direction", to_json(hand.palm.direction_H)}}}};
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

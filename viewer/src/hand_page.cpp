@@ -12,6 +12,9 @@
 namespace graspfit::viewer {
 namespace {
 
+using internal::Json;
+using internal::to_json;
+
 void validate(const HandScene& scene) {
   const auto refuse = [](const std::string& what) {
     throw base::InvalidInput("hand_scene_json: " + what);
@@ -99,7 +102,7 @@ Json views(const hands::HandModel& hand) {
 Json plates(const hands::HandModel& hand) {
   constexpr double kPlate = 2e-4;  // [m]; enough to be seen in front of the link's own surface
   Json list = Json::array();
-  for (const hands::ContactPad& pad : hand.pads) list.push_back(clip_volume(pad, kPlate));
+  for (const hands::ContactPad& pad : hand.pads) list.push_back(internal::clip_volume(pad, kPlate));
   return list;
 }
 
@@ -108,15 +111,16 @@ Json plates(const hands::HandModel& hand) {
 std::string hand_scene_json(const HandScene& scene) {
   validate(scene);
   const Json data = {{"description", scene.description},
-                     {"hand", hand_data(scene.hand, scene.clip_thickness)},
+                     {"hand", internal::hand_data(scene.hand, scene.clip_thickness)},
                      {"plates", plates(scene.hand)},
                      {"poses", poses(scene)},
                      {"views", views(scene.hand)}};
-  return script_text(data);
+  return internal::script_text(data);
 }
 
 std::string hand_page_html(const HandScene& scene) {
-  return filled_page({scene.hand.name, std::string(kHandJs), hand_scene_json(scene)});
+  return internal::filled_page(
+      {scene.hand.name, std::string(internal::kHandJs), hand_scene_json(scene)});
 }
 
 void write_hand_page(const std::filesystem::path& file, const HandScene& scene) {

@@ -17,6 +17,10 @@ namespace graspfit::viewer {
 namespace {
 
 using geometry::RigidTransform;
+using internal::append_pose;
+using internal::base64_of;
+using internal::Json;
+using internal::to_json;
 
 void validate(const MotionInput& input) {
   const auto refuse = [](const std::string& what) {
@@ -131,7 +135,7 @@ std::string motion_scene_json(const MotionInput& input) {
     unmoved.push_back({{"object", object.object}, {"reason", object.reason}});
   }
   const Json data = {{"title", file.title},
-                     {"hand", hand_data(input.scene.hand(), 0.0)},
+                     {"hand", internal::hand_data(input.scene.hand(), 0.0)},
                      {"objects", objects},
                      {"frame_time", input.frame_step / input.largest_speed},
                      {"num_frames", frames.count()},
@@ -141,11 +145,12 @@ std::string motion_scene_json(const MotionInput& input) {
                      {"proven_clearance", file.clearance},
                      {"moves", moves},
                      {"unmoved", unmoved}};
-  return script_text(data);
+  return internal::script_text(data);
 }
 
 std::string motion_page_html(const MotionInput& input) {
-  return filled_page({input.file.title, script_of_player(kMotionJs), motion_scene_json(input)});
+  return internal::filled_page({input.file.title, internal::script_of_player(internal::kMotionJs),
+                                motion_scene_json(input)});
 }
 
 void write_motion_page(const std::filesystem::path& file, const MotionInput& input) {

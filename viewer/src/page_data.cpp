@@ -9,7 +9,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "hand_data.hpp"
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 namespace {
 
 using base::InvalidInput;
@@ -248,4 +248,4 @@ std::string page_data(const PageInput& input) {
   return script_text(data);
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

@@ -4,7 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 namespace {
 
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -80,4 +80,4 @@ std::string script_text(const Json& data) {
   return escaped;
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

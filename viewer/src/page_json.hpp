@@ -9,7 +9,7 @@
 #include "graspfit/geometry/rigid_transform.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 
 using Json = nlohmann::ordered_json;
 
@@ -27,4 +27,4 @@ Json to_json(const geometry::TriangleMesh& mesh);
 // The text of `data` without any "<", so that it can stand in a script element; JSON all the same.
 std::string script_text(const Json& data);
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

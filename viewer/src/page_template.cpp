@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <utility>
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 namespace {
 
 std::string escaped_for_html(std::string_view text) {
@@ -67,4 +67,4 @@ std::string filled_page(const PageParts& parts) {
                             {"{{data}}", parts.data}});
 }
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace graspfit::viewer {
+namespace graspfit::viewer::internal {
 
 // The files of viewer/page/, compiled in by viewer/page/embed.cmake: the frame of a page with the
 // places {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and what goes there.
@@ -29,4 +29,4 @@ std::string script_of_player(std::string_view script);
 // The text of a page, with everything in it.
 std::string filled_page(const PageParts& parts);
 
-}  // namespace graspfit::viewer
+}  // namespace graspfit::viewer::internal

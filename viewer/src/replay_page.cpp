@@ -20,6 +20,10 @@ namespace {
 using geometry::RigidTransform;
 using geometry::TriangleMesh;
 using hold_test::HoldFrame;
+using internal::append_pose;
+using internal::base64_of;
+using internal::Json;
+using internal::to_json;
 
 void validate(const ReplayInput& input) {
   const auto refuse = [](const std::string& what) {
@@ -176,7 +180,7 @@ std::string replay_scene_json(const ReplayInput& input) {
   Json data = {{"title", input.title},
                {"object", to_json(input.object_O)},
                {"center_of_mass", to_json(input.object.center_of_mass_O)},
-               {"hand", hand_data(input.hand.model, 0.0)},
+               {"hand", internal::hand_data(input.hand.model, 0.0)},
                {"pieces",
                 {{"object", pieces_json(input.object.shape)},
                  {"num_object", input.object.shape.pieces.size()},
@@ -189,11 +193,12 @@ std::string replay_scene_json(const ReplayInput& input) {
                {"shown", telling_direction(input.verdict, input.protocol)},
                {"directions", directions}};
   if (!input.note.empty()) data["note"] = input.note;
-  return script_text(data);
+  return internal::script_text(data);
 }
 
 std::string replay_page_html(const ReplayInput& input) {
-  return filled_page({input.title, script_of_player(kReplayJs), replay_scene_json(input)});
+  return internal::filled_page(
+      {input.title, internal::script_of_player(internal::kReplayJs), replay_scene_json(input)});
 }
 
 void write_replay_page(const std::filesystem::path& file, const ReplayInput& input) {

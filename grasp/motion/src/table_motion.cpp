@@ -285,7 +285,7 @@ double TableScene::height_of_link(int link, const RigidTransform& X_WL, double e
 }
 
 double TableScene::height_of_object(int object, const RigidTransform& X_WO) const {
-  double lowest = grasp::kInfinity;
+  double lowest = grasp::internal::kInfinity;
   for (const Vector3d& corner : hull_O(object).vertices) {
     lowest = std::min(lowest, (X_WO * corner).z());
   }
@@ -338,7 +338,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
                              const MotionStretch& stretch, double share) {
   const Posed at = posed(scene, stretch, share);
   const bool carries = is_carrying(stretch.phase);
-  MotionClearance nearest{grasp::kInfinity, grasp::kInfinity};
+  MotionClearance nearest{grasp::internal::kInfinity, grasp::internal::kInfinity};
   const std::vector<int> links = solid_links(scene);
   for (const int link : links) {
     const RigidTransform& X_WL = at.X_WL[static_cast<std::size_t>(link)];

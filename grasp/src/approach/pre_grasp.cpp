@@ -165,7 +165,7 @@ class PreGraspSearch {
 
   /// Distance of the nearest link, where none is in the object.
   double nearest_distance(const std::vector<RigidTransform>& X_OL) const {
-    double nearest = kInfinity;
+    double nearest = internal::kInfinity;
     for (const GuardedLink& guarded : links_) {
       const RigidTransform& X = X_OL[static_cast<std::size_t>(guarded.link)];
       nearest = std::min(nearest, surroundings_distance(guarded.link, X, nearest));

@@ -13,7 +13,7 @@
 /// hand and of its swinging joints that brings it there. Steps 3 and 4 of the paper's loop and its
 /// initial configuration share these.
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// Signed angle [rad] that turns `from` toward `to` about the unit `axis`, both seen along it, in
 /// (−π, π]; zero where one of them is parallel to the axis.
@@ -63,4 +63,4 @@ hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const PalmPlacement& placement, double distance);
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -9,7 +9,7 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 using geometry::RigidTransform;
 using hands::HandConfiguration;
@@ -144,4 +144,4 @@ HandConfiguration fitting_goal(const FittingHand& hand, const TargetContacts& ta
   return with_fingers_apart(hand, targets, posture.configuration);
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -10,7 +10,7 @@
 /// Fingers that stand in each other's way: which links meet, and where fingers without targets had
 /// better be.
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// Whether the solids of two links share a point. Exact; false for a link without a solid.
 bool do_links_meet(const FittingHand& hand, int link_a, int link_b,
@@ -37,4 +37,4 @@ hands::HandConfiguration with_fingers_apart(const FittingHand& hand, const Targe
 hands::HandConfiguration fitting_goal(const FittingHand& hand, const TargetContacts& targets,
                                       const TargetPosture& posture, const FittingOptions& options);
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -11,7 +11,7 @@
 #include "graspfit/contact/contact_estimation.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 using Eigen::Vector3d;
 using geometry::RigidTransform;
@@ -498,4 +498,4 @@ void FittingLoop::finish(FittingResult& result) {
                                  : FittingStop::MissedContact;
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

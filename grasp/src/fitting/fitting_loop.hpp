@@ -7,7 +7,7 @@
 #include "fitting/target_posture.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// One run of the adjustment loop (sections 7 to 9).
 class FittingLoop {
@@ -116,4 +116,4 @@ class FittingLoop {
   double contact_tests_s_ = 0.0;
 };
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -7,7 +7,7 @@
 #include "fitting/fitting_loop.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 using Eigen::Vector3d;
 
@@ -110,4 +110,4 @@ bool FittingLoop::try_shift(const Vector3d& shift, double opening) {
   return true;
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

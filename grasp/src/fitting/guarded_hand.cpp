@@ -11,7 +11,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "scene/infinity.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 namespace {
 
 using geometry::RigidTransform;
@@ -227,4 +227,4 @@ float GuardedHand::smallest_distance() const {
   return *std::min_element(distance_.begin(), distance_.end());
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

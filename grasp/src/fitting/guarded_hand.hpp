@@ -8,7 +8,7 @@
 
 #include "graspfit/grasp/hand_fitting.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// A hand in motion among an object and its surroundings: which motions the guard of section 9 lets
 /// through, and how long the next one may be.
@@ -98,4 +98,4 @@ class GuardedHand {
   std::optional<int> blocking_link_;
 };
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -41,7 +41,7 @@ template <class Make, class Run>
 FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
   std::vector<int> watched;
   for (FittingResult spent;;) {
-    FittingLoop loop = make();
+    internal::FittingLoop loop = make();
     for (const int link : watched) loop.guard_depth(link);
     FittingResult result = run(loop);
     result.contact_tests_s += spent.contact_tests_s;
@@ -104,8 +104,8 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
     requested.fingers.push_back(finger);
   }
   return fitted(
-      options.guard, [&] { return FittingLoop(scene, style, requested, options); },
-      [&](FittingLoop& loop) { return loop.fit(targets, placement, goal); });
+      options.guard, [&] { return internal::FittingLoop(scene, style, requested, options); },
+      [&](internal::FittingLoop& loop) { return loop.fit(targets, placement, goal); });
 }
 
 FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
@@ -135,8 +135,8 @@ FittingResult close_hand(const GraspScene& scene, GraspStyle style, const Reques
                        " steps, must be >= 0");
   }
   return fitted(
-      options.guard, [&] { return FittingLoop(scene, style, requested, options); },
-      [&](FittingLoop& loop) { return loop.close(start, retreat); });
+      options.guard, [&] { return internal::FittingLoop(scene, style, requested, options); },
+      [&](internal::FittingLoop& loop) { return loop.close(start, retreat); });
 }
 
 }  // namespace graspfit::grasp

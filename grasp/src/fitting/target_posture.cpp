@@ -11,7 +11,7 @@
 #include "graspfit/hands/jacobian.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 namespace {
 
 using Eigen::Matrix3Xd;
@@ -300,4 +300,4 @@ double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
          kPairWeight * sum / static_cast<double>(targets.contacts.size() - 1);
 }
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

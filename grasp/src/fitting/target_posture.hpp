@@ -12,7 +12,7 @@
 /// The posture at which the paper's five steps would rest were there no object: fingertips (and
 /// palm) at their targets as nearly as the hand can. Steps 2 to 5 move the hand toward it.
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// A posture and what it leaves.
 struct TargetPosture {
@@ -51,4 +51,4 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
 double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
                     const TargetPosture& posture);
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

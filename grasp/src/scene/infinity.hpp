@@ -2,9 +2,9 @@
 
 #include <limits>
 
-namespace graspfit::grasp {
+namespace graspfit::grasp::internal {
 
 /// Where a search for the nearest starts, and the distance to what is not there.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-}  // namespace graspfit::grasp
+}  // namespace graspfit::grasp::internal

@@ -74,7 +74,7 @@ SurroundingsCollision::SurroundingsCollision(const hands::HandModel& hand,
 SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
                                                                        const RigidTransform& X_OL,
                                                                        double enough) const {
-  Lowest lowest{kInfinity, Vector3d::Zero()};
+  Lowest lowest{internal::kInfinity, Vector3d::Zero()};
   if (!surroundings_.table_z_O) return lowest;
   const auto& corners = corners_L_.at(static_cast<std::size_t>(link));
   if (corners.empty()) return lowest;
@@ -84,7 +84,8 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
                             X_OL.linear().row(2).cwiseAbs().dot(0.5 * box.sizes().transpose()) -
                             table;
   if (box_height > enough + internal::kBoxSlack) return lowest;
-  double least_z = kInfinity;  // compared with the table itself: differences can round to zero
+  double least_z =
+      internal::kInfinity;  // compared with the table itself: differences can round to zero
   for (const Vector3d& corner : corners) {
     const Vector3d corner_O = X_OL * corner;
     if (corner_O.z() >= least_z) continue;
@@ -106,7 +107,7 @@ bool SurroundingsCollision::touches(const hands::HandCollision& collision, int l
 SurroundingsDistance SurroundingsCollision::distance(const hands::HandCollision& collision,
                                                      int link, const RigidTransform& X_OL,
                                                      double enough) const {
-  SurroundingsDistance nearest{kInfinity, Vector3d::Zero(), Vector3d::UnitZ()};
+  SurroundingsDistance nearest{internal::kInfinity, Vector3d::Zero(), Vector3d::UnitZ()};
   const Lowest lowest = lowest_over_table(link, X_OL, enough);
   if (lowest.height <= enough) nearest = {lowest.height, lowest.corner_O, Vector3d::UnitZ()};
   const auto& solid = collision.link_solid(link);

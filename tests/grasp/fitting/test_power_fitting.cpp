@@ -239,7 +239,8 @@ TEST_CASE("Pads that must lean tell by how much", "[grasp][power_fitting]") {
     const double c = std::cos(lean), s = std::sin(lean);
     const TargetContacts targets = scene.assigned(
         targets_at({{0.02, 0, 0}, {-0.02, 0, 0}}, {{c, 0, s}, {-c, 0, s}}), placement);
-    const grasp::TargetPosture posture = grasp::posture_for(scene.hand, targets, placement);
+    const grasp::internal::TargetPosture posture =
+        grasp::internal::posture_for(scene.hand, targets, placement);
     CHECK(posture.largest_tilt + posture.largest_miss / 0.015 == Approx(lean).margin(0.02));
   }
 }

@@ -55,9 +55,10 @@ TEST_CASE("Jaws always look at each other, so that nothing adds to how far they 
       targets.contacts[side].outward_normal_O = Vector3d(sign * std::cos(lean), 0, std::sin(lean));
     }
     const auto assigned = grasp::assign_fingers(hand, targets, parts, placement);
-    const grasp::TargetPosture posture = grasp::posture_for(hand, assigned, placement);
+    const grasp::internal::TargetPosture posture =
+        grasp::internal::posture_for(hand, assigned, placement);
     // Pads of a gripper look at each other: no pair's angle is left.
-    CHECK(grasp::reach_misfit(hand, assigned, posture) ==
+    CHECK(grasp::internal::reach_misfit(hand, assigned, posture) ==
           Approx(posture.largest_tilt + posture.largest_miss / 0.015).margin(1e-6));
   }
 }
