@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/grasp/finger_assignment.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/hands/hand_collision.hpp"

@@ -10,6 +10,7 @@
 
 #include "grasp/target_oracle.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/random_targets.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "support/catch.hpp"
 

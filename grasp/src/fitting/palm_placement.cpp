@@ -1,10 +1,9 @@
+#include "graspfit/grasp/palm_placement.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "graspfit/base/errors.hpp"
-#include "graspfit/grasp/hand_fitting.hpp"
 
 namespace graspfit::grasp {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/palm_placement.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 

@@ -7,6 +7,8 @@
 
 #include "graspfit/contact/grasp_balance.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/grasp/random_targets.hpp"
+#include "graspfit/grasp/ranked_targets.hpp"
 #include "methods/guidance_list.hpp"
 #include "methods/target_sides.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "fitting/finger_crossing.hpp"
 #include "fitting/target_posture.hpp"
+#include "graspfit/grasp/finger_assignment.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {

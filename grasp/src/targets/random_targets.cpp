@@ -1,3 +1,5 @@
+#include "graspfit/grasp/random_targets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "graspfit/grasp/target_contacts.hpp"
 #include "targets/target_feasibility.hpp"
 
 namespace graspfit::grasp {

@@ -1,3 +1,5 @@
+#include "graspfit/grasp/ranked_targets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
-#include "graspfit/grasp/target_contacts.hpp"
 #include "targets/target_feasibility.hpp"
 
 namespace graspfit::grasp {

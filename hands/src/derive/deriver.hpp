@@ -18,8 +18,8 @@
 
 /// \file
 /// How what a hand's sidecar does not say is derived from its tree and meshes: fingers
-/// (derived_fingers.cpp), which way joints close them (derived_closing.cpp), where the palm is and
-/// looks (derived_palm.cpp), and pads (derived_pads.cpp).
+/// (deriver_fingers.cpp), which way joints close them (deriver_closing.cpp), where the palm is and
+/// looks (deriver_palm.cpp), and pads (deriver_pads.cpp).
 
 namespace graspfit::hands::internal {
 

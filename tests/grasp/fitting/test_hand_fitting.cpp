@@ -18,6 +18,7 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
+#include "graspfit/grasp/random_targets.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_library.hpp"

@@ -11,6 +11,7 @@
 #include "grasp/target_oracle.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/palm_placement.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "fitting/target_posture.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/finger_assignment.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/hands/hand_library.hpp"

@@ -6,6 +6,7 @@
 #include "grasp/target_scenes.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/ranked_targets.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 

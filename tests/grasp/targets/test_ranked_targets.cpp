@@ -13,6 +13,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/ranked_targets.hpp"
 #include "support/catch.hpp"
 
 namespace {

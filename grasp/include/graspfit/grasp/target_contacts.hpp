@@ -2,12 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "graspfit/base/random.hpp"
 #include "graspfit/contact/contact.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/grasp/object_model.hpp"
@@ -149,91 +147,6 @@ struct PartDistances {
 PartDistances part_distances(const hands::HandModel& hand);
 /// Only what `parts` need: nothing of the palm where it is not among them.
 PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts);
-
-/// Picks targets by the paper's randomized greedy search (section 6): a random seed above the
-/// threshold; a second contact in tip distance and in both cones; further contacts with edges close
-/// to the first and a centroid close to the center of mass; each drawn at random from the
-/// best-ranked feasible candidates; a new seed where one has none.
-///
-/// Fingers' targets come first, the seed's first of all. Distances are checked finger by finger:
-/// for every set returned, at least one way to give the seed to the first finger and the other
-/// targets to the others has every two of them within those fingers' own range (`assign_fingers`
-/// chooses one way).
-///
-/// A target for the palm, if `parts` has it, comes last and is the only one assigned here (finger
-/// kPalm). With n its outward normal, the palm there looks along −n. It is chosen so that
-///  - no other surface stands in the palm's way: within the pad's radius around n, none is higher
-///    than a voxel over the target's plane;
-///  - every finger's target is in front of the palm: (V − palm) · n < 0;
-///  - some turn of the hand about n and some assignment that suits the fingers' own ranges has
-///  every
-///    finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of a place
-///    that the finger's tip gets to with its pad looking into the surface, roughly
-///    (`hands::TipReach`; turns are sampled, 5° apart).
-/// It need not form a stable pair. Its rank is the distance of the whole set's centroid from the
-/// center of mass, plus the mean distance from the tips' reach, both over the normalizing radius.
-///
-/// @throws InvalidInput for fewer than two fingers, more than six parts, a finger that the hand
-/// does not have, without a tip pad or named twice; for the palm of a hand without a palm pad; and
-/// for five or more fingers with `PairRule::AllPairs` and theta_max ≤ 45°, which no object has.
-class TargetSelector {
- public:
-  /// Object, distances and the measure's hand are referred to, not copied: they have to outlive the
-  /// selector. `ideal` is what `ideal_m_bias` prefers sets by.
-  TargetSelector(const ObjectModel& object, const PartDistances& distances,
-                 const RequestedParts& parts, const TargetOptions& options,
-                 const IdealMeasure& ideal = {});
-  ~TargetSelector();
-  TargetSelector(TargetSelector&&) noexcept;
-
-  /// One set; the same random numbers give the same one. Several threads may ask at once, each with
-  /// its own random numbers.
-  TargetSelection select(base::Random& random) const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
-/// All feasible target sets, best first (`TargetSearch::Ranked`) [R]: complete, so that an end
-/// without any set proves that the pool has none within the unrelaxed limits, and `failure` says at
-/// which stage.
-///
-/// A set is a seed and a set of further targets; it is feasible if the greedy search could choose
-/// it in some order, the limits not relaxed. Its rank is the least over those orders of
-///
-///     mean of | |ViVj| − |V1V2| | / |V1V2| over all edges but the first
-///   + distance of the centroid of all targets from the center of mass / normalizing radius
-///   + angle_weight · mean over the pairs that must be stable of their angle / theta_max
-///   + mean distance from the tips' reach / normalizing radius (palm),
-///
-/// the terms that the greedy search ranks its candidates by. Sets come by ascending rank, each
-/// once in its best order; equal ranks by ascending patches in that order. Two targets come twice,
-/// with either as the seed.
-///
-/// Search: depth first through the stable pairs, cut off by a growing limit on the rank, keeping
-/// the best few thousand sets of each round. Memory: 4 bytes per stable pair of the pool, and the
-/// kept sets. Cost: at 30 voxels (3000 places) well under a second to the first set for two and
-/// three targets, seconds to prove that there is none; for more, see `pool_spacing`.
-class RankedTargets {
- public:
-  /// Object and distances are referred to, not copied: they have to outlive the search.
-  /// @throws InvalidInput as `TargetSelector`, and for a pool of more than 16384 places.
-  RankedTargets(const ObjectModel& object, const PartDistances& distances,
-                const RequestedParts& parts, const TargetOptions& options);
-  ~RankedTargets();
-  RankedTargets(RankedTargets&&) noexcept;
-
-  /// The next best set; empty when there are no more.
-  std::optional<TargetContacts> next();
-
-  /// Why there was none, after `next` gave none the first time.
-  TargetFailure failure() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
 
 /// The contacts that targets stand for: at their points, of their fingers. Targets that are not
 /// assigned are those of `fingers` in order.

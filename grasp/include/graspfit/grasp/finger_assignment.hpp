@@ -1,0 +1,15 @@
+#pragma once
+
+#include "graspfit/grasp/palm_placement.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+namespace graspfit::grasp {
+
+/// Assigns targets to fingers (A21, A22): the seed to the first of them, the others by the
+/// permutation with the least angular error around the palm axis. A target of the palm stays it.
+/// @throws InvalidInput unless there is one target for every part, the palm's (if any) last.
+TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
+                              const RequestedParts& parts, const PalmPlacement& placement);
+
+}  // namespace graspfit::grasp

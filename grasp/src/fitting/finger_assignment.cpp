@@ -1,0 +1,75 @@
+#include "graspfit/grasp/finger_assignment.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fitting/finger_alignment.hpp"
+#include "fitting/finger_swing.hpp"
+#include "graspfit/base/errors.hpp"
+
+namespace graspfit::grasp {
+
+TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
+                              const RequestedParts& parts, const PalmPlacement& placement) {
+  if (parts.size() != static_cast<int>(targets.contacts.size())) {
+    throw base::InvalidInput("assign_fingers: " + std::to_string(parts.size()) + " parts for " +
+                             std::to_string(targets.contacts.size()) + " targets");
+  }
+  if (parts.palm != (targets.contacts.back().finger == contact::kPalm)) {
+    throw base::InvalidInput(
+        "assign_fingers: the palm's target must be there exactly if the palm is asked for, and be "
+        "the last one");
+  }
+  TargetContacts assigned = targets;
+  std::vector<int> order = parts.fingers;
+  std::sort(order.begin() + 1, order.end());
+  const auto assign = [&] {
+    for (std::size_t t = 0; t < order.size(); ++t) assigned.contacts[t].finger = order[t];
+  };
+  assign();
+  // Where the hand stands depends on the seed and on which fingers there are, not on who serves
+  // what; and a finger's error on its own group's targets alone.
+  const hands::HandConfiguration start =
+      internal::aligned_open_hand(hand, assigned, placement, hands::largest_reach(hand));
+  std::map<std::vector<internal::Look>, double> known;
+  const auto error_of = [&](std::optional<int> leader, std::vector<internal::Look> looks) {
+    if (const auto found = known.find(looks); found != known.end()) return found->second;
+    double error = 0.0;
+    hands::HandConfiguration swung = start;
+    if (leader) {
+      swung.q[*leader] = internal::best_swing(hand, start, assigned, *leader, looks).position;
+      hands::apply_couplings(hand, swung.q);
+    }
+    for (const internal::Look& look : looks) {
+      if (look.target == 0) continue;  // the hand was turned to the seed
+      const double e = internal::AzimuthOfFinger(hand, look.finger)
+                           .error(swung, assigned.contacts[look.target].point_O);
+      error += e * e;
+    }
+    known[std::move(looks)] = error;
+    return error;
+  };
+  std::vector<int> best = order;
+  double best_error = std::numeric_limits<double>::infinity();
+  do {
+    assign();
+    double error = 0.0;
+    for (const auto& [leader, looks] : internal::looks_by_leader(hand, assigned)) {
+      error += error_of(leader, looks);
+    }
+    if (error < best_error) {
+      best_error = error;
+      best = order;
+    }
+  } while (std::next_permutation(order.begin() + 1, order.end()));
+  order = best;
+  assign();
+  return assigned;
+}
+
+}  // namespace graspfit::grasp
