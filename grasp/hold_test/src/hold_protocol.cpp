@@ -1,6 +1,7 @@
 #include "graspfit/hold_test/hold_protocol.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace graspfit::hold_test {
 
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 HoldProtocol dexgraspbench() {
   HoldProtocol protocol;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,7 +49,7 @@ inline constexpr double kIdealArea = 0.3;
 struct TargetOptions {
   double score_threshold = 0.6;  ///< Every target's score must exceed it, in [0, 1) [P].
   double theta_max =
-      0.78539816339744831;              ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
+      std::numbers::pi / 4;             ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
   PairRule pair_rule = PairRule::Seed;  ///< A17.
   double edge_tolerance_rel = 0.25;  ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 (A19) [R].
   double centroid_limit_rel =

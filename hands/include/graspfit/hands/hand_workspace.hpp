@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "graspfit/base/content_cache.hpp"
@@ -57,7 +58,7 @@ struct WorkspaceOptions {
   /// Between a pad's normal and the line to the other pad [rad], in (0, π/2): by default the
   /// paper's friction cone of 45° (`grasp::TargetOptions::theta_max`), the planner's own condition
   /// for two targets.
-  double facing_angle = 0.78539816339744831;
+  double facing_angle = std::numbers::pi / 4;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 

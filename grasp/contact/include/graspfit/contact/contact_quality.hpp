@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,7 +40,7 @@ struct QualityOptions {
   double w2 = 1.0;     ///< Exponent of M2, ≥ 0 [P].
   double w3 = 0.5;     ///< Exponent of M3, ≥ 0 [P].
   double theta_max =
-      0.78539816339744831;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
+      std::numbers::pi / 4;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
   MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
   Regularity regularity = Regularity::Combined;   ///< [R] A13.
   HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
