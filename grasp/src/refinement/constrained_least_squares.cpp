@@ -7,7 +7,22 @@
 namespace graspfit::grasp::internal {
 
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+
+namespace {
+
+MatrixXd matrix(const std::vector<RowVectorXd>& rows) {
+  MatrixXd result(static_cast<Eigen::Index>(rows.size()), rows.front().size());
+  for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = rows[i];
+  return result;
+}
+
+VectorXd vector(const std::vector<double>& values) {
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+}  // namespace
 
 VectorXd constrained_least_squares(const MatrixXd& a, const VectorXd& b, const MatrixXd& g,
                                    const VectorXd& h) {
@@ -31,6 +46,24 @@ VectorXd constrained_least_squares(const MatrixXd& a, const VectorXd& b, const M
     if (residual[n] != 0.0) z = -farthest * residual.head(n) / residual[n];
   }
   return r.solve(VectorXd(free_part + z));
+}
+
+void ConstrainedRows::want(const RowVectorXd& row, double value, double weight) {
+  rows_.push_back(weight * row);
+  values_.push_back(weight * value);
+}
+
+void ConstrainedRows::require(const RowVectorXd& row, double least) {
+  limits_.push_back(row);
+  least_.push_back(least);
+}
+
+VectorXd ConstrainedRows::solve(double slack) const {
+  const MatrixXd a = matrix(rows_), g = matrix(limits_);
+  const VectorXd b = vector(values_), h = vector(least_);
+  const VectorXd x = constrained_least_squares(a, b, g, h);
+  if (((g * x - h).array() >= -slack).all()) return x;
+  return constrained_least_squares(a, b, g, h.cwiseMin(0.0));
 }
 
 }  // namespace graspfit::grasp::internal

@@ -16,7 +16,6 @@ namespace graspfit::grasp {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -67,41 +66,6 @@ struct Claim {
   Vector3d point_O = Vector3d::Zero();   ///< On the pad, nearest to the object.
   Vector3d normal_O = Vector3d::Zero();  ///< Unit, from the object to it.
   geometry::ProximitySeed seed;
-};
-
-/// The rows of one least squares problem.
-class Rows {
- public:
-  void want(const RowVectorXd& row, double value, double weight) {
-    rows_.push_back(weight * row);
-    values_.push_back(weight * value);
-  }
-  void require(const RowVectorXd& row, double least) {
-    limits_.push_back(row);
-    least_.push_back(least);
-  }
-  /// Limits that cannot all be met at once ask for no more than that nothing gets worse.
-  VectorXd solve() const {
-    const MatrixXd a = matrix(rows_), g = matrix(limits_);
-    const VectorXd b = vector(values_), h = vector(least_);
-    const VectorXd x = internal::constrained_least_squares(a, b, g, h);
-    if (((g * x - h).array() >= -kShortestStep).all()) return x;
-    return internal::constrained_least_squares(a, b, g, h.cwiseMin(0.0));
-  }
-  std::vector<RowVectorXd>& limits() { return limits_; }
-  std::vector<double>& least() { return least_; }
-
- private:
-  static MatrixXd matrix(const std::vector<RowVectorXd>& rows) {
-    MatrixXd result(static_cast<Index>(rows.size()), rows.front().size());
-    for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Index>(i)) = rows[i];
-    return result;
-  }
-  static VectorXd vector(const std::vector<double>& values) {
-    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
-  }
-  std::vector<RowVectorXd> rows_, limits_;
-  std::vector<double> values_, least_;
 };
 
 /// One refinement.
@@ -409,7 +373,7 @@ class Refinement {
     for (const Claim& claim : claims_) pivot += claim.point_O / static_cast<double>(claims_.size());
     motion_.set(configuration_, X_OL_, pivot);
     const double room = std::clamp(kRoomPerGap * largest_gap(), options_.least_distance, kMostRoom);
-    Rows rows;
+    internal::ConstrainedRows rows;
     for (Index i = 0; i < motion_.size(); ++i) {
       rows.want(RowVectorXd::Unit(motion_.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
     }
@@ -430,11 +394,11 @@ class Refinement {
       if (near.distance < room) rows.want(row, room - near.distance, kRoomWeight);
     }
     add_limits(trust, rows);
-    return rows.solve();
+    return rows.solve(kShortestStep);
   }
 
   /// The weak wishes: the pad's middle to the target, its normal against the surface's.
-  void draw_to_target(const Claim& claim, double trust, Rows& rows) const {
+  void draw_to_target(const Claim& claim, double trust, internal::ConstrainedRows& rows) const {
     const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
     Vector3d way = claim.target->point_O - middle;
     if (way.norm() > trust) way *= trust / way.norm();
@@ -448,14 +412,13 @@ class Refinement {
     }
   }
 
-  void add_limits(double trust, Rows& rows) const {
-    VectorXd lower, upper;
-    motion_.bounds(trust, lower, upper);
+  void add_limits(double trust, internal::ConstrainedRows& rows) const {
+    const auto [lower, upper] = motion_.bounds(trust);
     for (Index i = 0; i < motion_.size(); ++i) {
       rows.require(RowVectorXd::Unit(motion_.size(), i), lower[i]);
       rows.require(-RowVectorXd::Unit(motion_.size(), i), -upper[i]);
     }
-    motion_.breakaway_rows(rows.limits(), rows.least());
+    for (const auto& [row, least] : motion_.breakaway_rows()) rows.require(row, least);
     const Vector3d shifted = shift(configuration_);
     if (shifted.norm() > 0.5 * options_.largest_shift && shifted.norm() > 0.0) {
       rows.require(

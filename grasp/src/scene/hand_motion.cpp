@@ -107,20 +107,21 @@ RowVectorXd HandMotion::turn_row(int link, const Vector3d& axis) const {
   return result;
 }
 
-void HandMotion::bounds(double trust, VectorXd& lower, VectorXd& upper) const {
-  lower = VectorXd::Constant(size(), -trust);
-  upper = VectorXd::Constant(size(), trust);
+HandMotion::Bounds HandMotion::bounds(double trust) const {
+  Bounds bounds{VectorXd::Constant(size(), -trust), VectorXd::Constant(size(), trust)};
   for (std::size_t k = 0; k < free_joints_.size(); ++k) {
     const auto j = static_cast<std::size_t>(free_joints_[k]);
     const hands::Joint& joint = hand_.joints[j];
     const double q = configuration_.q[free_joints_[k]];
     const auto entry = static_cast<Index>(6 + k);
-    lower[entry] = std::max(-trust, std::min(0.0, (joint.lower - q) * lever_[j]));
-    upper[entry] = std::min(trust, std::max(0.0, (joint.upper - q) * lever_[j]));
+    bounds.lower[entry] = std::max(-trust, std::min(0.0, (joint.lower - q) * lever_[j]));
+    bounds.upper[entry] = std::min(trust, std::max(0.0, (joint.upper - q) * lever_[j]));
   }
+  return bounds;
 }
 
-void HandMotion::breakaway_rows(std::vector<RowVectorXd>& g, std::vector<double>& h) const {
+std::vector<HandMotion::Limit> HandMotion::breakaway_rows() const {
+  std::vector<Limit> limits;
   for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
     const hands::Joint& joint = hand_.joints[j];
     if (!joint.coupling || !joint.coupling->breakaway) continue;
@@ -131,9 +132,9 @@ void HandMotion::breakaway_rows(std::vector<RowVectorXd>& g, std::vector<double>
     RowVectorXd row = RowVectorXd::Zero(size());
     row[entry_of_joint_[j]] += sign / lever_[j];
     row[entry_of_joint_[leader]] -= sign * joint.coupling->ratio * ratio_[leader] / lever_[leader];
-    g.push_back(row * lever_[j]);
-    h.push_back(-std::max(0.0, beyond) * lever_[j]);
+    limits.push_back({row * lever_[j], -std::max(0.0, beyond) * lever_[j]});
   }
+  return limits;
 }
 
 VectorXd HandMotion::opening(int link, double step) const {
@@ -144,8 +145,7 @@ VectorXd HandMotion::opening(int link, double step) const {
     const double sign = -joint.closing_sign * (ratio_[index] < 0.0 ? -1.0 : 1.0);
     if (sign != 0.0) motion[entry_of_joint_[index]] = sign * step;
   }
-  VectorXd lower, upper;
-  bounds(step, lower, upper);
+  const auto [lower, upper] = bounds(step);
   return motion.cwiseMax(lower).cwiseMin(upper);
 }
 

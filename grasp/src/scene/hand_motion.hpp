@@ -30,11 +30,18 @@ class HandMotion {
   Eigen::RowVectorXd turn_row(int link, const Eigen::Vector3d& axis_O) const;
 
   /// Least and greatest value of every entry: joint limits, and `trust` [m] each way.
-  void bounds(double trust, Eigen::VectorXd& lower, Eigen::VectorXd& upper) const;
+  struct Bounds {
+    Eigen::VectorXd lower, upper;
+  };
+  Bounds bounds(double trust) const;
 
-  /// Rows g and right sides h with g · motion ≥ h ≤ 0: breakaway joints stay at least as closed as
-  /// their couplings ask.
-  void breakaway_rows(std::vector<Eigen::RowVectorXd>& g, std::vector<double>& h) const;
+  /// A limit: row · motion ≥ least ≤ 0.
+  struct Limit {
+    Eigen::RowVectorXd row;
+    double least;
+  };
+  /// Breakaway joints stay at least as closed as their couplings ask.
+  std::vector<Limit> breakaway_rows() const;
 
   /// The motion that opens the joints between a link and the palm, each by `step` [m] at its end.
   Eigen::VectorXd opening(int link, double step) const;

@@ -1,0 +1,435 @@
+#include "workspace/tip_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
+
+namespace graspfit::hands::internal {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Configurations tried for collisions are this far apart in distance [m].
+constexpr double kDiameterStep = 1e-3;
+constexpr double kFarthest = 1e4;  // [m]; a bin for every step up to it is as many as are kept
+// Contact points nearer than this have no line between them [m]; rounding is a millionth of it.
+constexpr double kSamePoint = 1e-9;
+// Most grid points of one finger; each costs forward kinematics.
+constexpr double kMostPoses = 1 << 14;
+// Grid points moved on from each end of a range.
+constexpr std::size_t kStarts = 4;
+// Between two of them where they are bins of distance.
+constexpr std::ptrdiff_t kBinsBetweenStarts = 4;
+// Moving on ends at this share of a grid step; what is left is of second order in it.
+constexpr double kFinestShare = 1e-5;
+constexpr int kMostRounds = 2000;
+// Steps in all joints at once, per joint.
+constexpr int kDrawnPerJoint = 4;
+
+/// Positions of some independent joints: a grid, or, with `per_joint` 0, `count` random ones.
+class Samples {
+ public:
+  Samples(const HandModel& model, std::vector<int> joints, int per_joint, std::int64_t count)
+      : model_(model), joints_(std::move(joints)), per_joint_(per_joint), size_(count) {
+    if (joints_.empty()) size_ = 1;
+    if (per_joint_ > 0) {
+      size_ = 1;
+      for (std::size_t i = 0; i < joints_.size(); ++i) size_ *= per_joint_;
+    }
+  }
+
+  std::int64_t size() const { return size_; }
+
+  void set(std::int64_t sample, VectorXd& q) const {
+    auto random = base::Random::stream(0, static_cast<std::uint64_t>(sample));
+    for (const int joint : joints_) {
+      double share = 0.0;
+      if (per_joint_ > 0) {
+        share = static_cast<double>(sample % per_joint_) / (per_joint_ - 1);
+        sample /= per_joint_;
+      } else {
+        share = random.uniform();
+      }
+      const Joint& limits = model_.joints[joint];
+      q[joint] = limits.lower + share * (limits.upper - limits.lower);
+    }
+  }
+
+ private:
+  const HandModel& model_;
+  std::vector<int> joints_;
+  int per_joint_;
+  std::int64_t size_;
+};
+
+/// Improves positions of `joints` as long as that makes their value grow, by steps in one joint at
+/// a time, then by `num_drawn` steps in all at once (along a border of what is allowed one joint
+/// alone may be stuck), larger steps first. `value(q, best)` is empty where q is not allowed or not
+/// better. Deterministic; ends near a local best.
+template <class Value>
+double move_on(const HandModel& model, const std::vector<int>& joints, double first_share,
+               int num_drawn, double best, VectorXd& q, const Value& value) {
+  base::Random random(0);
+  const auto takes = [&](const VectorXd& trial) {
+    if (trial == q) return false;
+    const std::optional<double> found = value(trial, best);
+    if (!found) return false;
+    best = *found;
+    q = trial;
+    return true;
+  };
+  const auto move = [&](VectorXd& trial, int joint, double share) {
+    const Joint& limits = model.joints[joint];
+    trial[joint] = std::clamp(trial[joint] + share * (limits.upper - limits.lower), limits.lower,
+                              limits.upper);
+  };
+  int rounds = 0;
+  for (double share = first_share; share > first_share * kFinestShare && rounds < kMostRounds;
+       ++rounds) {
+    bool is_better = false;
+    for (const int joint : joints) {
+      for (const double sign : {1.0, -1.0}) {
+        VectorXd trial = q;
+        move(trial, joint, sign * share);
+        if (!takes(trial)) continue;
+        is_better = true;
+        break;
+      }
+    }
+    for (int i = 0; i < num_drawn && !is_better; ++i) {
+      VectorXd trial = q;
+      for (const int joint : joints) move(trial, joint, share * random.uniform(-1.0, 1.0));
+      is_better = takes(trial);
+    }
+    if (!is_better) share /= 2;
+  }
+  return best;
+}
+
+/// The independent joints that move one tip against another: those of both, of the one and of the
+/// other; and what carries both alike.
+struct PairJoints {
+  std::vector<int> shared, only_a, only_b, all;
+  std::vector<int> carrying;  ///< Joints, coupled ones too, from the root to where the ways part.
+};
+
+PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b) {
+  PairJoints result;
+  std::vector<int> to_a = joints_to(model, link_a);
+  std::vector<int> to_b = joints_to(model, link_b);
+  const auto parting = std::mismatch(to_a.begin(), to_a.end(), to_b.begin(), to_b.end());
+  result.carrying.assign(to_a.begin(), parting.first);
+  to_a.erase(to_a.begin(), parting.first);
+  to_b.erase(to_b.begin(), parting.second);
+  const std::vector<int> a = leaders_of(model, to_a);
+  const std::vector<int> b = leaders_of(model, to_b);
+  const std::vector<int> carriers = leaders_of(model, result.carrying);
+  const auto has = [](const std::vector<int>& list, int joint) {
+    return std::binary_search(list.begin(), list.end(), joint);
+  };
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result.all));
+  for (const int joint : result.all) {
+    // One that also sets a joint before the parting has to have one position for both.
+    const bool is_shared = (has(a, joint) && has(b, joint)) || has(carriers, joint);
+    (is_shared ? result.shared : has(a, joint) ? result.only_a : result.only_b).push_back(joint);
+  }
+  return result;
+}
+
+/// Samples per joint of the finest grid that the options and kMostPoses allow; 0 if not even 2 fit.
+int grid_of(const PairJoints& joints, const WorkspaceOptions& options) {
+  const auto fits = [&](int n) {
+    const auto grid = [n](std::size_t size) { return std::pow(n, static_cast<double>(size)); };
+    const std::size_t of_one =
+        joints.shared.size() + std::max(joints.only_a.size(), joints.only_b.size());
+    return grid(joints.all.size()) <= static_cast<double>(options.max_configurations) &&
+           grid(of_one) <= kMostPoses;
+  };
+  int n = options.samples_per_joint;
+  while (n > 2 && !fits(n)) --n;
+  return fits(n) ? n : 0;
+}
+
+/// A configuration of the grid and what it is worth.
+struct Start {
+  double value = -kInfinity;
+  VectorXd q;
+};
+
+/// The few best of many starts, first ones first where they are equal.
+class BestStarts {
+ public:
+  bool takes(double value) const {
+    return starts_.size() < kStarts || value > starts_.back().value;
+  }
+  void add(double value, const VectorXd& q) {
+    const auto place = std::find_if(starts_.begin(), starts_.end(),
+                                    [&](const Start& start) { return value > start.value; });
+    starts_.insert(place, {value, q});
+    if (starts_.size() > kStarts) starts_.pop_back();
+  }
+  const std::vector<Start>& list() const { return starts_; }
+
+ private:
+  std::vector<Start> starts_;
+};
+
+/// Two tips that move one against the other.
+class TipPair {
+ public:
+  TipPair(const SampledHand& hand, std::optional<int> pad_a, std::optional<int> pad_b,
+          const WorkspaceOptions& options)
+      : hand_(hand),
+        pad_a_(pad_a),
+        pad_b_(pad_b),
+        options_(options),
+        joints_(joints_of_pair(hand.model(), hand.link_of(pad_a), hand.link_of(pad_b))),
+        per_joint_(grid_of(joints_, options)) {}
+
+  DistanceRange distances() const {
+    DistanceRange range{kInfinity, 0.0, error()};
+    BestStarts nearest, farthest;
+    for_each_row(
+        [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
+          std::size_t near = 0, far = 0;
+          double least = kInfinity, most = -1.0;
+          for (std::size_t i = 0; i < all_b.size(); ++i) {
+            const double squared = (a.point - all_b[i].point).squaredNorm();
+            if (squared < least) least = squared, near = i;
+            if (squared > most) most = squared, far = i;
+          }
+          const auto offer = [&](BestStarts& starts, double value, std::size_t sample_b) {
+            if (!starts.takes(value)) return;
+            samples_b.set(static_cast<std::int64_t>(sample_b), q);
+            starts.add(value, q);
+          };
+          offer(nearest, -std::sqrt(least), near);
+          offer(farthest, std::sqrt(most), far);
+        });
+    range.smallest = -best_of(nearest, -1.0);
+    range.largest = best_of(farthest, 1.0);
+    return range;
+  }
+
+  /// Range of the distances at which the pads face each other; `is_clear(q)` is asked of as few
+  /// configurations as may be.
+  DistanceRange facing_distances(const IsClear& is_clear) const {
+    // Of each millimeter of distance, the configuration whose pads face each other best.
+    std::vector<Start> bins;
+    for_each_row(
+        [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
+          for (std::size_t i = 0; i < all_b.size(); ++i) {
+            const double distance = (all_b[i].point - a.point).norm();
+            const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
+            if (!facing) continue;
+            // Written so that NaN fails.
+            if (!(distance < kFarthest)) {
+              throw base::InvalidInput("hand " + hand_.model().name + ": tips come " +
+                                       base::shortest_decimal(distance) +
+                                       " m apart; the limits of its slides are in another unit");
+            }
+            const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
+            if (bin >= bins.size()) bins.resize(bin + 1);
+            if (!(*facing > bins[bin].value)) continue;
+            samples_b.set(static_cast<std::int64_t>(i), q);
+            bins[bin] = {*facing, q};
+          }
+        });
+    const auto end = [&](auto begin, auto finish, double sign) -> std::optional<double> {
+      std::optional<double> best;
+      std::size_t num_starts = 0;
+      for (auto bin = begin; bin < finish && num_starts < kStarts; ++bin) {
+        if (bin->q.size() == 0 || !is_clear(bin->q)) continue;
+        ++num_starts;
+        const auto value = [&](const VectorXd& trial, double to_beat) -> std::optional<double> {
+          const auto [a, b] = tips_at(trial);
+          const double distance = (b.point - a.point).norm();
+          if (!(sign * distance > to_beat) || !facing_cosine(a, b, distance) || !is_clear(trial)) {
+            return std::nullopt;
+          }
+          return sign * distance;
+        };
+        const double found = moved_on(bin->q, kDrawnPerJoint, sign * distance_at(bin->q), value);
+        best = std::max(best.value_or(-kInfinity), found);
+        bin += std::min<std::ptrdiff_t>(kBinsBetweenStarts, finish - bin - 1);
+      }
+      return best;
+    };
+    const std::optional<double> nearest = end(bins.begin(), bins.end(), -1.0);
+    if (!nearest) return {0.0, 0.0, kInfinity};
+    return {-*nearest, *end(bins.rbegin(), bins.rend(), 1.0), kInfinity};
+  }
+
+ private:
+  struct TwoTips {
+    Tip a, b;
+  };
+  TwoTips tips_at(const VectorXd& q) const {
+    const std::vector<RigidTransform> X_HL = hand_.poses(q);
+    return {hand_.tip(pad_a_, X_HL), hand_.tip(pad_b_, X_HL)};
+  }
+  double distance_at(const VectorXd& q) const {
+    const auto [a, b] = tips_at(q);
+    return (a.point - b.point).norm();
+  }
+
+  /// Cosine of the larger of the angles between the pads' normals and the line between them; empty
+  /// where it is beyond the facing angle. Points in one place face each other along some line if
+  /// their normals are opposite within twice that angle.
+  std::optional<double> facing_cosine(const Tip& a, const Tip& b, double distance) const {
+    const double least = std::cos(options_.facing_angle);
+    if (distance < kSamePoint) {
+      const double half = std::sqrt(std::max(0.0, 0.5 * (1.0 - a.normal.dot(b.normal))));
+      return half >= least ? std::optional<double>(half) : std::nullopt;
+    }
+    const Vector3d along = (b.point - a.point) / distance;
+    const double cosine = std::min(a.normal.dot(along), -b.normal.dot(along));
+    return cosine >= least ? std::optional<double>(cosine) : std::nullopt;
+  }
+
+  Samples samples_of(const std::vector<int>& joints) const {
+    const double most = std::cbrt(static_cast<double>(options_.max_configurations));
+    return {hand_.model(), joints, per_joint_, static_cast<std::int64_t>(most)};
+  }
+
+  /// Calls `visit(q, tip of a, all tips of b, the samples of b)` for every position of the joints
+  /// that move a; q holds it, and may be changed in the joints of b alone.
+  template <class Visit>
+  void for_each_row(const Visit& visit) const {
+    const Samples shared = samples_of(joints_.shared);
+    const Samples only_a = samples_of(joints_.only_a);
+    const Samples only_b = samples_of(joints_.only_b);
+    VectorXd q = hand_.open();
+    std::vector<Tip> all_b(static_cast<std::size_t>(only_b.size()));
+    for (std::int64_t s = 0; s < shared.size(); ++s) {
+      shared.set(s, q);
+      for (std::int64_t i = 0; i < only_b.size(); ++i) {
+        only_b.set(i, q);
+        all_b[static_cast<std::size_t>(i)] = hand_.tip(pad_b_, hand_.poses(q));
+      }
+      for (std::int64_t i = 0; i < only_a.size(); ++i) {
+        only_a.set(i, q);
+        visit(q, hand_.tip(pad_a_, hand_.poses(q)), all_b, only_b);
+      }
+    }
+  }
+
+  template <class Value>
+  double moved_on(VectorXd q, int drawn_per_joint, double best, const Value& value) const {
+    const double step = per_joint_ > 0 ? 1.0 / (per_joint_ - 1) : 0.5;
+    const int num_drawn = drawn_per_joint * static_cast<int>(joints_.all.size());
+    return move_on(hand_.model(), joints_.all, step, num_drawn, best, q, value);
+  }
+
+  /// The best of some starts, moved on where the grid had to be coarser than asked for.
+  double best_of(const BestStarts& starts, double sign) const {
+    double best = starts.list().front().value;
+    if (per_joint_ == options_.samples_per_joint) return best;
+    for (const Start& start : starts.list()) {
+      const auto value = [&](const VectorXd& trial, double to_beat) -> std::optional<double> {
+        const double found = sign * distance_at(trial);
+        return found > to_beat ? std::optional<double>(found) : std::nullopt;
+      };
+      best = std::max(best, moved_on(start.q, 0, start.value, value));
+    }
+    return best;
+  }
+
+  /// Every configuration is within half a step of a grid point in each joint (a whole range of a
+  /// random one).
+  double error() const {
+    double sum = 0.0;
+    for (const int joint : joints_.all) {
+      const Joint& limits = hand_.model().joints[joint];
+      const double range = limits.upper - limits.lower;
+      const double off = per_joint_ > 0 ? 0.5 * range / (per_joint_ - 1) : range;
+      for (const auto& pad : {pad_a_, pad_b_})
+        sum += off * hand_.speed(pad, joint, joints_.carrying);
+    }
+    return sum;
+  }
+
+  const SampledHand& hand_;
+  const std::optional<int> pad_a_, pad_b_;  ///< Empty: the palm's center.
+  const WorkspaceOptions& options_;
+  const PairJoints joints_;
+  const int per_joint_;  ///< 0: random configurations instead of a grid.
+};
+
+}  // namespace
+
+SampledHand::SampledHand(const HandModel& model)
+    : model_(model), open_(open_configuration(model).q) {
+  for (const ContactPad& pad : model.pads) {
+    contact_points_C_.push_back(pad_contact_point_C(pad));
+  }
+  // Where a breakaway joint keeps nothing but what its coupling asks for.
+  for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
+    const Joint& description = model.joints[joint];
+    if (!description.coupling) continue;
+    open_[static_cast<Eigen::Index>(joint)] =
+        description.closing_sign < 0 ? description.upper : description.lower;
+  }
+}
+
+std::vector<RigidTransform> SampledHand::poses(const VectorXd& q) const {
+  HandConfiguration configuration{RigidTransform::Identity(), q};
+  apply_couplings(model_, configuration.q);
+  return forward_kinematics(model_, configuration);
+}
+
+Tip SampledHand::tip(std::optional<int> pad, const std::vector<RigidTransform>& X_HL) const {
+  if (!pad) return {model_.palm.center_H, model_.palm.direction_H};
+  const RigidTransform X_HC = pad_pose(model_, *pad, X_HL);
+  return {X_HC * contact_points_C_[static_cast<std::size_t>(*pad)], X_HC.linear().col(2)};
+}
+
+double SampledHand::speed(std::optional<int> pad, int leader,
+                          const std::vector<int>& standing) const {
+  if (!pad) return 0.0;
+  double reach =
+      (model_.pads[*pad].X_LC * contact_points_C_[static_cast<std::size_t>(*pad)]).norm();
+  double total = 0.0;
+  for (const Link* link = &model_.links[link_of(pad)]; link->parent_link;
+       link = &model_.links[*link->parent_link]) {
+    if (!link->parent_joint) {
+      reach += link->X_PL_fixed.translation().norm();
+      continue;
+    }
+    const int index = *link->parent_joint;
+    const Joint& joint = model_.joints[index];
+    const bool stands = std::find(standing.begin(), standing.end(), index) != standing.end();
+    double share = index == leader ? 1.0 : 0.0;
+    if (joint.coupling && joint.coupling->leader == leader) share = std::abs(joint.coupling->ratio);
+    const bool is_prismatic = joint.type == JointType::Prismatic;
+    if (!stands) total += share * (is_prismatic ? 1.0 : reach);
+    if (is_prismatic) reach += std::max(std::abs(joint.lower), std::abs(joint.upper));
+    reach += joint.X_PJ.translation().norm();
+  }
+  return total;
+}
+
+DistanceRange tip_distance_range(const SampledHand& hand, std::optional<int> pad_a,
+                                 std::optional<int> pad_b, const WorkspaceOptions& options) {
+  return TipPair(hand, pad_a, pad_b, options).distances();
+}
+
+DistanceRange facing_distance_range(const SampledHand& hand, int pad_a, int pad_b,
+                                    const WorkspaceOptions& options, const IsClear& is_clear) {
+  return TipPair(hand, pad_a, pad_b, options).facing_distances(is_clear);
+}
+
+}  // namespace graspfit::hands::internal

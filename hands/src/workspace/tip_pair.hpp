@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/hand_workspace.hpp"
+
+/// \file
+/// Two tips of a hand, or one and the palm: how far apart they get over all joint positions.
+
+namespace graspfit::hands::internal {
+
+/// A tip pad's contact point and outward normal, in H; of no pad, the palm's center and direction.
+struct Tip {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+};
+
+/// The hand with its fingers open, and what its tips do when independent joints move.
+class SampledHand {
+ public:
+  explicit SampledHand(const HandModel& model);
+
+  const HandModel& model() const { return model_; }
+  /// Positions to start from: set independent joints alone.
+  const Eigen::VectorXd& open() const { return open_; }
+
+  std::vector<RigidTransform> poses(const Eigen::VectorXd& q) const;
+  Tip tip(std::optional<int> pad, const std::vector<RigidTransform>& X_HL) const;
+
+  int link_of(std::optional<int> pad) const { return pad ? model_.pads[*pad].link : 0; }
+
+  /// Most that a tip moves per unit of the independent joint `leader` if the joints in `standing`
+  /// do not move: the sum, over the joints that follow it, of the tip's largest distance from them.
+  double speed(std::optional<int> pad, int leader, const std::vector<int>& standing) const;
+
+ private:
+  const HandModel& model_;
+  Eigen::VectorXd open_;
+  std::vector<Eigen::Vector3d>
+      contact_points_C_;  ///< Of every pad: its surface over the frame's origin.
+};
+
+/// Range of the distances of two tips; no pad stands for the palm's center.
+DistanceRange tip_distance_range(const SampledHand& hand, std::optional<int> pad_a,
+                                 std::optional<int> pad_b, const WorkspaceOptions& options);
+
+using IsClear = std::function<bool(const Eigen::VectorXd& q)>;
+
+/// Range of the distances at which two pads face each other; `is_clear` is asked of as few
+/// configurations as may be.
+DistanceRange facing_distance_range(const SampledHand& hand, int pad_a, int pad_b,
+                                    const WorkspaceOptions& options, const IsClear& is_clear);
+
+}  // namespace graspfit::hands::internal
