@@ -6,6 +6,7 @@
 
 #include "fitting/finger_swing.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -64,35 +65,17 @@ Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
   return palm_center + to_tips - to_tips.dot(axis) * axis;
 }
 
-std::optional<int> closing_joint(const hands::HandModel& hand, const hands::Finger& finger) {
-  std::optional<int> leader;
-  for (const int joint : finger.joints) {
-    const hands::Joint& description = hand.joints[joint];
-    if (description.closing_sign == 0) continue;
-    if (!description.coupling) return joint;
-    if (!leader) leader = description.coupling->leader;
+std::vector<int> closing_joints(const hands::HandModel& hand, const hands::Finger& finger) {
+  std::vector<int> alone, following, freed;
+  for (const int index : finger.joints) {
+    const hands::Joint& joint = hand.joints[index];
+    if (joint.closing_sign == 0) continue;
+    (joint.coupling ? following : alone).push_back(index);
+    if (joint.coupling && joint.coupling->breakaway) freed.push_back(index);
   }
-  return leader;
-}
-
-std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger) {
-  std::vector<int> joints;
-  for (const int joint : finger.joints) {
-    const hands::Joint& description = hand.joints[joint];
-    const bool closes_alone = description.closing_sign != 0 && !description.coupling;
-    if (closes_alone && joint != closing_joint(hand, finger)) joints.push_back(joint);
-  }
-  return joints;
-}
-
-double distal_change(const hands::HandModel& hand, const std::vector<RigidTransform>& X_OL,
-                     int joint, const TargetContact& target) {
-  const hands::Joint& description = hand.joints[joint];
-  const Vector3d pad_normal =
-      hands::pad_pose(hand, hand.fingers[target.finger].tip_pad, X_OL).linear() * Vector3d::UnitZ();
-  const Vector3d axis =
-      X_OL[description.parent_link].linear() * (description.X_PJ.linear() * description.axis_J);
-  return azimuth_error(pad_normal, -target.outward_normal_O, axis.normalized());
+  if (alone.empty() && !following.empty()) alone = {hands::leader_of(hand, following.front())};
+  alone.insert(alone.end(), freed.begin(), freed.end());
+  return alone;
 }
 
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,

@@ -28,18 +28,10 @@ Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sid
                               const std::vector<geometry::RigidTransform>& X_OL,
                               const TargetContacts& targets);
 
-/// The joint that closes a finger: the first independent one that closes or, where all of them
-/// follow (a gripper's second jaw), the leader of the first; empty if none closes.
-std::optional<int> closing_joint(const hands::HandModel& hand, const hands::Finger& finger);
-
-/// The finger's independent closing joints beyond the first, proximal to distal.
-std::vector<int> distal_joints(const hands::HandModel& hand, const hands::Finger& finger);
-
-/// By how much a distal joint of the target's finger would have to turn for the reversed normal of
-/// the fingertip to agree with the target's, seen along the joint's axis [rad] (section 8, step 5).
-double distal_change(const hands::HandModel& hand,
-                     const std::vector<geometry::RigidTransform>& X_OL, int joint,
-                     const TargetContact& target);
+/// The joints that close a finger one after the other, proximal to distal: its independent closing
+/// ones or, where all follow (a gripper's second jaw), the leader of the first; then those that a
+/// clutch frees (breakaway).
+std::vector<int> closing_joints(const hands::HandModel& hand, const hands::Finger& finger);
 
 /// The hand open, its palm looking along `placement`, its turning point `distance` before the
 /// targets' centroid (its palm center before the palm's target, where there is one), the seed's

@@ -42,7 +42,7 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
     double error = 0.0;
     hands::HandConfiguration swung = start;
     if (leader) {
-      swung.q[*leader] = internal::best_swing(hand, start, assigned, *leader, looks).position;
+      swung.q[*leader] = internal::best_swing(hand, start, assigned, *leader, looks);
       hands::apply_couplings(hand, swung.q);
     }
     for (const internal::Look& look : looks) {

@@ -40,8 +40,8 @@ double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
   return azimuth_error(tip - pivot, point_O - pivot, axis);
 }
 
-Swing best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
-                 const TargetContacts& targets, int leader, const std::vector<Look>& looks) {
+double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
+                  const TargetContacts& targets, int leader, const std::vector<Look>& looks) {
   constexpr int kCoarse = 18;
   constexpr int kRefine = 20;  // the range shrinks by 0.618 each
   constexpr double kGolden = 0.61803398874989485;
@@ -90,8 +90,7 @@ Swing best_swing(const hands::HandModel& hand, const hands::HandConfiguration& c
       f2 = error_at(x2);
     }
   }
-  const double position = 0.5 * (a + b);
-  return {position, error_at(position)};
+  return 0.5 * (a + b);
 }
 
 std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
@@ -112,7 +111,7 @@ Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const TargetContacts& targets) {
   Eigen::VectorXd q = configuration.q;
   for (const auto& [leader, looks] : looks_by_leader(hand, targets)) {
-    if (leader) q[*leader] = best_swing(hand, configuration, targets, *leader, looks).position;
+    if (leader) q[*leader] = best_swing(hand, configuration, targets, *leader, looks);
   }
   hands::apply_couplings(hand, q);
   return q;

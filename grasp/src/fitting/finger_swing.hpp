@@ -44,16 +44,10 @@ struct Look {
   auto operator<=>(const Look&) const = default;
 };
 
-/// Where a swing joint stands best for all fingers that hang on it.
-struct Swing {
-  double position = 0.0;
-  double squared_error = 0.0;
-};
-
 /// The position of `leader` with the least sum of squared errors (A26): samples of its range, the
 /// best one refined by golden section; the error has one minimum per turn of a finger.
-Swing best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
-                 const TargetContacts& targets, int leader, const std::vector<Look>& looks);
+double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
+                  const TargetContacts& targets, int leader, const std::vector<Look>& looks);
 
 /// Fingers with targets by the independent joint that swings them; those that do not swing first.
 std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,

@@ -141,12 +141,7 @@ void FittingLoop::add_part(int finger, bool has_target) {
   const hands::Finger& description = model_.fingers[finger];
   if (description.tip_pad >= 0) part.pad = description.tip_pad;
   part.tip_link = part.pad ? model_.pads[*part.pad].link : description.links.back();
-  if (const auto proximal = closing_joint(model_, description)) part.closing.push_back(*proximal);
-  for (const int joint : distal_joints(model_, description)) part.closing.push_back(joint);
-  for (const int joint : description.joints) {
-    const hands::Joint& j = model_.joints[joint];
-    if (j.closing_sign != 0 && j.coupling && j.coupling->breakaway) part.closing.push_back(joint);
-  }
+  part.closing = closing_joints(model_, description);
   parts_.push_back(part);
 }
 

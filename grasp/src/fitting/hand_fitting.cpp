@@ -2,21 +2,18 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "fitting/fitting_loop.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 
 namespace graspfit::grasp {
 namespace {
 
 using base::InvalidInput;
 using base::shortest_decimal;
-
-void require(bool holds, const std::string& field, const std::string& value,
-             const std::string& range) {
-  if (!holds) throw InvalidInput("FittingOptions: " + field + " = " + value + ", must be " + range);
-}
 
 /// The palm's target has to be the last of several, and the palm needs a pad to touch with.
 void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t num_targets) {
@@ -57,24 +54,26 @@ FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
 }  // namespace
 
 void FittingOptions::validate() const {
-  const auto finite_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
-  require(clearance >= 0.0 && std::isfinite(clearance), "clearance", shortest_decimal(clearance),
-          "finite and >= 0 m");
-  require(large_step_at >= 1.0 && std::isfinite(large_step_at), "large_step_at",
-          shortest_decimal(large_step_at), "finite and >= 1 voxel");
-  require(finite_positive(large_step_limit), "large_step_limit", shortest_decimal(large_step_limit),
-          "finite and > 0 voxels");
-  require(small_step > 0.0 && small_step <= 1.0, "small_step", shortest_decimal(small_step),
-          "in (0, 1] voxels");
-  require(max_halvings >= 0 && max_halvings <= 30, "max_halvings", std::to_string(max_halvings),
-          "in [0, 30]");
-  require(max_iterations >= 1, "max_iterations", std::to_string(max_iterations), ">= 1");
-  require(finite_positive(closing_tolerance), "closing_tolerance",
-          shortest_decimal(closing_tolerance), "finite and > 0 m");
-  require(give_up_distance >= 0.0 && std::isfinite(give_up_distance), "give_up_distance",
-          shortest_decimal(give_up_distance), "finite and >= 0 m");
-  require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing",
-          shortest_decimal(sample_spacing), "in [0.05, 0.85] voxels");
+  const auto require = [](bool is_met, std::string_view field, auto value, std::string_view rule) {
+    base::require(is_met, "FittingOptions", field, value, rule);
+  };
+  const auto require_finite = [&](bool is_met, std::string_view field, double value,
+                                  std::string_view rule) {
+    require(is_met && std::isfinite(value), field, value, rule);
+  };
+  require_finite(clearance >= 0.0, "clearance", clearance, "finite and >= 0 m");
+  require_finite(large_step_at >= 1.0, "large_step_at", large_step_at, "finite and >= 1 voxel");
+  require_finite(large_step_limit > 0.0, "large_step_limit", large_step_limit,
+                 "finite and > 0 voxels");
+  require(small_step > 0.0 && small_step <= 1.0, "small_step", small_step, "in (0, 1] voxels");
+  require(max_halvings >= 0 && max_halvings <= 30, "max_halvings", max_halvings, "in [0, 30]");
+  require(max_iterations >= 1, "max_iterations", max_iterations, ">= 1");
+  require_finite(closing_tolerance > 0.0, "closing_tolerance", closing_tolerance,
+                 "finite and > 0 m");
+  require_finite(give_up_distance >= 0.0, "give_up_distance", give_up_distance,
+                 "finite and >= 0 m");
+  require(sample_spacing >= 0.05 && sample_spacing <= 0.85, "sample_spacing", sample_spacing,
+          "in [0.05, 0.85] voxels");
 }
 
 FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetContacts& targets,

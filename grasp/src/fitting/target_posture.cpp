@@ -228,12 +228,6 @@ class Search {
 
 }  // namespace
 
-TargetPosture target_posture(const hands::HandModel& hand, const TargetContacts& targets,
-                             const hands::HandConfiguration& start,
-                             const std::optional<double>& palm_room) {
-  return Search(hand, targets, start, palm_room).run();
-}
-
 TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& targets,
                           const PalmPlacement& placement) {
   hands::HandConfiguration start = aligned_open_hand(hand, targets, placement, 0.0);
@@ -259,7 +253,7 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
     ++count;
   }
   start.X_OH.pretranslate(Vector3d(shift / count));
-  return target_posture(hand, targets, start, placement.palm_room);
+  return Search(hand, targets, start, placement.palm_room).run();
 }
 
 namespace {

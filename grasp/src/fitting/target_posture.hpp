@@ -21,19 +21,12 @@ struct TargetPosture {
   double largest_tilt = 0.0;  ///< Of a fingertip's pad from its target's surface [rad].
 };
 
-/// Least squares over the palm's place along and across `start`'s palm direction, its turn about
-/// that direction, and the joints of fingers with targets: distance of each fingertip from its
-/// target and of its normal from the target's reversed one; the palm center from the palm's target.
-/// The palm direction of `start` is kept [P]. Levenberg-Marquardt with joint limits; local.
-///
-/// @param palm_room the palm center stays at least this far before the targets' centroid [m], as a
-/// preference.
-TargetPosture target_posture(const hands::HandModel& hand, const TargetContacts& targets,
-                             const hands::HandConfiguration& start,
-                             const std::optional<double>& palm_room);
-
-/// `target_posture` from the open hand aligned with the targets (section 7), its fingers half way
-/// closed.
+/// Least squares over the palm's place along and across the placement's palm direction, its turn
+/// about that direction, and the joints of fingers with targets: distance of each fingertip from
+/// its target and of its normal from the target's reversed one; the palm center from the palm's
+/// target. The palm direction is kept [P]; the palm center stays `palm_room` before the targets'
+/// centroid as a preference. Levenberg-Marquardt with joint limits; local: from the open hand
+/// aligned with the targets (section 7), its fingers half way closed.
 TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& targets,
                           const PalmPlacement& placement);
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "workspace/tip_pair.hpp"
 
@@ -124,17 +124,11 @@ std::optional<HandWorkspace> from_text(std::string_view text, std::size_t num_fi
 }  // namespace
 
 void WorkspaceOptions::validate() const {
-  const auto require = [](bool holds, const char* field, const std::string& value,
-                          const char* range) {
-    if (holds) return;
-    throw base::InvalidInput(std::string("WorkspaceOptions: ") + field + " = " + value +
-                             ", must be " + range);
-  };
-  require(samples_per_joint >= 2, "samples_per_joint", std::to_string(samples_per_joint), ">= 2");
-  require(max_configurations >= 4, "max_configurations", std::to_string(max_configurations),
-          ">= 4");
-  require(facing_angle > 0.0 && facing_angle < std::numbers::pi / 2, "facing_angle",
-          base::shortest_decimal(facing_angle), "in (0, pi/2) rad");
+  const char* const where = "WorkspaceOptions";
+  base::require(samples_per_joint >= 2, where, "samples_per_joint", samples_per_joint, ">= 2");
+  base::require(max_configurations >= 4, where, "max_configurations", max_configurations, ">= 4");
+  base::require(facing_angle > 0.0 && facing_angle < std::numbers::pi / 2, where, "facing_angle",
+                facing_angle, "in (0, pi/2) rad");
 }
 
 TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& options) {
