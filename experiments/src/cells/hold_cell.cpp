@@ -319,19 +319,18 @@ std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> cel
 }
 
 sweep::Experiment hold_experiment(const std::string& slug) {
-  sweep::Experiment experiment;
-  experiment.slug = slug;
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.settings = own_settings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) {
-    num_margins(cell);
-    settings_of(cell);
-  };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); };
-  return experiment;
+  return {.slug = slug,
+          .columns = columns(),
+          .timings = timings(),
+          .settings = own_settings(),
+          .details = details(),
+          .check =
+              [](const sweep::Cell& cell) {
+                num_margins(cell);
+                settings_of(cell);
+              },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -21,16 +21,13 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment planner_table_experiment(const std::string& slug) {
-  sweep::Experiment experiment;
-  experiment.slug = slug;
-  experiment.columns = planning_columns();
-  experiment.timings = planning_timings();
-  experiment.check = [](const sweep::Cell& cell) { planning_settings(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) {
-    return planning_inputs(planning_settings(cell));
-  };
-  return experiment;
+  return {
+      .slug = slug,
+      .columns = planning_columns(),
+      .timings = planning_timings(),
+      .check = [](const sweep::Cell& cell) { planning_settings(cell); },
+      .run = run,
+      .inputs = [](const sweep::Cell& cell) { return planning_inputs(planning_settings(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -143,15 +143,13 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment contacts_and_time() {
-  sweep::Experiment experiment;
-  experiment.slug = "contacts_and_time";
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) { settings_of(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); };
-  return experiment;
+  return {.slug = "contacts_and_time",
+          .columns = columns(),
+          .timings = timings(),
+          .details = details(),
+          .check = [](const sweep::Cell& cell) { settings_of(cell); },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -174,15 +174,13 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment fitting_stages() {
-  sweep::Experiment experiment;
-  experiment.slug = "fitting_stages";
-  experiment.columns = columns();
-  experiment.timings = planning_timings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) { settings_of(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); };
-  return experiment;
+  return {.slug = "fitting_stages",
+          .columns = columns(),
+          .timings = planning_timings(),
+          .details = details(),
+          .check = [](const sweep::Cell& cell) { settings_of(cell); },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -158,18 +158,17 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment force_closure() {
-  sweep::Experiment experiment;
-  experiment.slug = "force_closure";
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.settings = own_settings();
-  experiment.check = [](const sweep::Cell& cell) {
-    sampling_of(cell);
-    settings_of(cell);
-  };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); };
-  return experiment;
+  return {.slug = "force_closure",
+          .columns = columns(),
+          .timings = timings(),
+          .settings = own_settings(),
+          .check =
+              [](const sweep::Cell& cell) {
+                sampling_of(cell);
+                settings_of(cell);
+              },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -137,17 +137,14 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }  // namespace
 
 sweep::Experiment guidance_models() {
-  sweep::Experiment experiment;
-  experiment.slug = "guidance_models";
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) { planning_settings(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) {
-    return planning_inputs(planning_settings(cell));
-  };
-  return experiment;
+  return {
+      .slug = "guidance_models",
+      .columns = columns(),
+      .timings = timings(),
+      .details = details(),
+      .check = [](const sweep::Cell& cell) { planning_settings(cell); },
+      .run = run,
+      .inputs = [](const sweep::Cell& cell) { return planning_inputs(planning_settings(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -169,15 +169,13 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }  // namespace
 
 sweep::Experiment measured_contacts() {
-  sweep::Experiment experiment;
-  experiment.slug = "measured_contacts";
-  experiment.columns = columns();
-  experiment.settings = own_settings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) { contact_set(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell&) { return std::vector<std::filesystem::path>(); };
-  return experiment;
+  return {.slug = "measured_contacts",
+          .columns = columns(),
+          .settings = own_settings(),
+          .details = details(),
+          .check = [](const sweep::Cell& cell) { contact_set(cell); },
+          .run = run,
+          .inputs = [](const sweep::Cell&) { return std::vector<std::filesystem::path>(); }};
 }
 
 }  // namespace graspfit::experiments::internal

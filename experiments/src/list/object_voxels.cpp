@@ -194,19 +194,18 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }  // namespace
 
 sweep::Experiment object_voxels() {
-  sweep::Experiment experiment;
-  experiment.slug = "object_voxels";
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.settings = own_settings();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) {
-    slice_axis(cell);
-    settings_of(cell);
-  };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); };
-  return experiment;
+  return {.slug = "object_voxels",
+          .columns = columns(),
+          .timings = timings(),
+          .settings = own_settings(),
+          .details = details(),
+          .check =
+              [](const sweep::Cell& cell) {
+                slice_axis(cell);
+                settings_of(cell);
+              },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -51,22 +51,23 @@ sweep::CellResult run(const sweep::Cell& cell) {
 }  // namespace
 
 sweep::Experiment parameter_sweeps() {
-  sweep::Experiment experiment;
-  experiment.slug = "parameter_sweeps";
-  experiment.columns = {{"parameter", "", "the setting that is varied; all others have defaults"},
-                        {"value", "", "its value, in the unit that describe states"}};
-  for (const sweep::Column& column : planning_columns()) experiment.columns.push_back(column);
-  experiment.timings = planning_timings();
-  experiment.settings = own_settings();
-  experiment.check = [](const sweep::Cell& cell) {
-    varied_of(cell);
-    planning_settings(cell, own_settings());
+  return {
+    .slug = "parameter_sweeps",
+    .columns = {{"parameter", "", "the setting that is varied; all others have defaults"},
+                {"value", "", "its value, in the unit that describe states"}};
+    for (const sweep::Column& column : planning_columns())
+      experiment.columns.push_back(column),
+          .timings = planning_timings(), .settings = own_settings(),
+          .check =
+              [](const sweep::Cell& cell) {
+                varied_of(cell);
+                planning_settings(cell, own_settings());
+              },
+          .run = [](const sweep::Cell& cell, const std::filesystem::path&) { return run(cell); },
+          .inputs = [](const sweep::Cell& cell) {
+            return planning_inputs(planning_settings(cell, own_settings()));
+          }
   };
-  experiment.run = [](const sweep::Cell& cell, const std::filesystem::path&) { return run(cell); };
-  experiment.inputs = [](const sweep::Cell& cell) {
-    return planning_inputs(planning_settings(cell, own_settings()));
-  };
-  return experiment;
 }
 
 }  // namespace graspfit::experiments::internal

@@ -160,17 +160,16 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment special_cases() {
-  sweep::Experiment experiment;
-  experiment.slug = "special_cases";
-  experiment.columns = columns();
-  experiment.timings = planning_timings();
-  experiment.settings = own_settings();
-  experiment.check = [](const sweep::Cell& cell) { read_case(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) {
-    return planning_inputs(read_case(cell).modes.front().second);
-  };
-  return experiment;
+  return {.slug = "special_cases",
+          .columns = columns(),
+          .timings = planning_timings(),
+          .settings = own_settings(),
+          .check = [](const sweep::Cell& cell) { read_case(cell); },
+          .run = run,
+          .inputs =
+              [](const sweep::Cell& cell) {
+                return planning_inputs(read_case(cell).modes.front().second);
+              }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -291,16 +291,14 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }  // namespace
 
 sweep::Experiment table_tidying() {
-  sweep::Experiment experiment;
-  experiment.slug = "table_tidying";
-  experiment.columns = columns();
-  experiment.timings = timings();
-  experiment.settings = table_setting_names();
-  experiment.details = details();
-  experiment.check = [](const sweep::Cell& cell) { table_settings(cell); };
-  experiment.run = run;
-  experiment.inputs = [](const sweep::Cell& cell) { return table_inputs(table_settings(cell)); };
-  return experiment;
+  return {.slug = "table_tidying",
+          .columns = columns(),
+          .timings = timings(),
+          .settings = table_setting_names(),
+          .details = details(),
+          .check = [](const sweep::Cell& cell) { table_settings(cell); },
+          .run = run,
+          .inputs = [](const sweep::Cell& cell) { return table_inputs(table_settings(cell)); }};
 }
 
 }  // namespace graspfit::experiments::internal

@@ -58,13 +58,13 @@ struct SummaryTable {
 /// An experiment: a question, the unit of work that answers a part of it, and the columns in which
 /// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
 struct Experiment {
-  std::string slug;              ///< Letters, digits and _; the same in every file name.
-  std::vector<Column> columns;   ///< Results: the same bytes for every run.
-  std::vector<Column> timings;   ///< What may differ from run to run.
-  std::vector<Column> settings;  ///< Settings of its own.
+  std::string slug;                   ///< Letters, digits and _; the same in every file name.
+  std::vector<Column> columns;        ///< Results: the same bytes for every run.
+  std::vector<Column> timings;        ///< What may differ from run to run.
+  std::vector<Column> settings = {};  ///< Settings of its own.
   std::vector<Column> shared_settings = {};  ///< Settings that it reads by a library of them.
-  std::vector<Column> details;  ///< What a cell's row sums up, with any number of rows per cell
-                                ///< (one per grasp); none: no such table.
+  std::vector<Column> details = {};  ///< What a cell's row sums up, with any number of rows per
+                                     ///< cell (one per grasp); none: no such table.
 
   /// Checks a cell's settings without doing its work. @throws SettingError.
   std::function<void(const Cell&)> check;
@@ -74,7 +74,7 @@ struct Experiment {
   /// @throws MissingData, or anything else: a row with that reason.
   std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
 
-  std::vector<SummaryTable> summaries;  ///< Tables over all cells, made of their details.
+  std::vector<SummaryTable> summaries = {};  ///< Tables over all cells, made of their details.
 
   /// The files that a cell reads, for the manifest; those that are not there are left out.
   std::function<std::vector<std::filesystem::path>(const Cell&)> inputs;
