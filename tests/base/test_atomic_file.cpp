@@ -16,6 +16,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_atomic_file {
+
 using namespace graspfit::base;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
@@ -189,3 +191,5 @@ TEST_CASE("Decimals are the shortest that read back", "[geometry][atomic_file]")
     CHECK(std::strtod(shortest_decimal(x).c_str(), nullptr) == x);
   }
 }
+
+}  // namespace test_atomic_file

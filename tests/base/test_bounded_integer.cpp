@@ -5,6 +5,8 @@
 #include "graspfit/base/bounded_integer.hpp"
 #include "support/catch.hpp"
 
+namespace test_bounded_integer {
+
 using graspfit::base::bounded_integer;
 
 TEST_CASE("A double within the bounds loses its fraction, any other becomes a bound",
@@ -29,3 +31,5 @@ TEST_CASE("Bounds that no double holds are kept", "[geometry][bounded_integer]")
   CHECK(bounded_integer(-0x1p63, kLeast, kMost) == kLeast);
   CHECK(bounded_integer(1e19, kLeast, kMost) == kMost);
 }
+
+}  // namespace test_bounded_integer

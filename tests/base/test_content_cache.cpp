@@ -13,6 +13,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_content_cache {
+
 using namespace graspfit::base;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
@@ -211,3 +213,5 @@ TEST_CASE("Numbers are read back to the bit, and nothing else is", "[geometry][c
     CHECK_FALSE(bad.is_good());
   }
 }
+
+}  // namespace test_content_cache

@@ -7,6 +7,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_file_lock {
+
 using namespace graspfit::base;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
@@ -58,3 +60,5 @@ TEST_CASE("What was removed or replaced after it was opened is nobody's to lock"
   CHECK(first.lock() == FileLock::Others);
   CHECK(second.lock() == FileLock::Others);
 }
+
+}  // namespace test_file_lock

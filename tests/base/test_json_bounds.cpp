@@ -7,6 +7,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_json_bounds {
+
 namespace {
 
 using namespace graspfit::base;
@@ -73,3 +75,5 @@ TEST_CASE("A JSON file that is too large is refused before it is read", "[geomet
 }
 
 }  // namespace
+
+}  // namespace test_json_bounds

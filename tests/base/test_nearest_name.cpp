@@ -1,6 +1,8 @@
 #include "graspfit/base/nearest_name.hpp"
 #include "support/catch.hpp"
 
+namespace test_nearest_name {
+
 using graspfit::base::did_you_mean;
 using graspfit::base::nearest_name;
 
@@ -39,3 +41,5 @@ TEST_CASE("The beginning of a longer name is completed where nothing is near",
   CHECK(nearest_name("dexonomy", {"dexgraspbench-100g", "dexonomy-hard"}) == "dexonomy-hard");
   CHECK_FALSE(nearest_name("de", {"dexonomy-hard"}));
 }
+
+}  // namespace test_nearest_name

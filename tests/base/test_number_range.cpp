@@ -7,6 +7,8 @@
 #include "graspfit/base/number_text.hpp"
 #include "support/catch.hpp"
 
+namespace test_number_range {
+
 using namespace graspfit::base;
 
 TEST_CASE("A range ends where its text says", "[geometry][number_range]") {
@@ -52,3 +54,5 @@ TEST_CASE("A value outside is refused by name, value and range", "[geometry][num
   CHECK_THROWS_WITH(between(0, 0.01).checked("--weld", -1), "--weld is -1, must be in [0, 0.01]");
   CHECK_THROWS_AS(above(0).checked("--step", 0), InvalidInput);
 }
+
+}  // namespace test_number_range

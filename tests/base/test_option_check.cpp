@@ -4,6 +4,8 @@
 #include "graspfit/base/option_check.hpp"
 #include "support/catch.hpp"
 
+namespace test_option_check {
+
 using namespace graspfit::base;
 
 TEST_CASE("A value out of its range is refused with place, field, value and rule",
@@ -23,3 +25,5 @@ TEST_CASE("A value out of its range is refused with place, field, value and rule
       require_between(0.0, 1.0, "Options", "share", std::numeric_limits<double>::quiet_NaN()),
       InvalidInput);
 }
+
+}  // namespace test_option_check

@@ -3,6 +3,8 @@
 #include "graspfit/base/path_text.hpp"
 #include "support/catch.hpp"
 
+namespace test_path_text {
+
 using namespace graspfit::base;
 
 TEST_CASE("Only what Unicode calls UTF-8 is UTF-8", "[geometry][path_text]") {
@@ -46,3 +48,5 @@ TEST_CASE("Every path comes back from its text, which is UTF-8", "[geometry][pat
   }
   CHECK(path_of_text(path_text(all)) == all);
 }
+
+}  // namespace test_path_text

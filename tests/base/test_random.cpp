@@ -4,6 +4,8 @@
 #include "graspfit/base/random.hpp"
 #include "support/catch.hpp"
 
+namespace test_random {
+
 using namespace graspfit::base;
 
 TEST_CASE("The generator is SplitMix64", "[geometry][random]") {
@@ -56,3 +58,5 @@ TEST_CASE("Streams depend on seed and index alone", "[geometry][random]") {
   }
   CHECK(firsts.size() == 900);
 }
+
+}  // namespace test_random

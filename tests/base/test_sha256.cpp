@@ -6,6 +6,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_sha256 {
+
 using namespace graspfit::base;
 
 TEST_CASE("A file's hash is that of its bytes, whatever its size", "[geometry][file_hash]") {
@@ -24,3 +26,5 @@ TEST_CASE("A file's hash is that of its bytes, whatever its size", "[geometry][f
   CHECK_THROWS_AS(sha256_of_file(folder.path()), IoError);
   CHECK_THROWS_AS(sha256_of_file(folder.path() / "none"), IoError);
 }
+
+}  // namespace test_sha256

@@ -3,6 +3,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_exchange_format {
+
 using namespace graspfit;
 using exchange::ExchangeFormat;
 
@@ -61,3 +63,5 @@ TEST_CASE("What a format leaves out of these very grasps is said", "[exchange][e
     CHECK(mentions(exchange::limits_of(format, file), "table and obstacles are left out"));
   }
 }
+
+}  // namespace test_exchange_format

@@ -12,6 +12,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_graspit_world {
+
 namespace {
 
 using namespace graspfit;
@@ -112,3 +114,5 @@ TEST_CASE(
     CHECK(values[i] == Approx(expected[i]).margin(1e-12));
   }
 }
+
+}  // namespace test_graspit_world

@@ -8,6 +8,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_imported_grasps {
+
 namespace {
 
 using namespace graspfit;
@@ -142,3 +144,5 @@ TEST_CASE("What cannot be imported is refused", "[exchange][imported_grasps]") {
   CHECK_THROWS_AS(import_grasps(scene.object, scene.hand, beyond, kSource, scene.options),
                   base::InvalidInput);
 }
+
+}  // namespace test_imported_grasps

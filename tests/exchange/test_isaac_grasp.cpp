@@ -10,6 +10,8 @@
 #include "support/damaged.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_isaac_grasp {
+
 namespace {
 
 using namespace graspfit;
@@ -250,3 +252,5 @@ TEST_CASE("Damaged isaac_grasp files are read or refused, never more", "[exchang
   CHECK(num_refused > 1000);
   CHECK(num_refused < 2000);
 }
+
+}  // namespace test_isaac_grasp

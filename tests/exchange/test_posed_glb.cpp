@@ -4,6 +4,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_posed_glb {
+
 using namespace graspfit;
 
 TEST_CASE("A posed scene as GLB is, read by assimp, the posed scene to single precision",
@@ -31,3 +33,5 @@ TEST_CASE("A posed scene as GLB is, read by assimp, the posed scene to single pr
   CHECK(largest < kSinglePrecision);
   CHECK(largest > 0.0);
 }
+
+}  // namespace test_posed_glb

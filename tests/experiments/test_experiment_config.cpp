@@ -6,6 +6,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_experiment_config {
+
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 using graspfit::testing::counting_experiment;
@@ -207,3 +209,5 @@ TEST_CASE("Every registered experiment has a configuration it can use, quick too
     }
   }
 }
+
+}  // namespace test_experiment_config

@@ -13,6 +13,8 @@
 #include "graspfit/experiments/planning_settings.hpp"
 #include "support/catch.hpp"
 
+namespace test_figure_experiments {
+
 using namespace graspfit;
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
@@ -280,3 +282,5 @@ TEST_CASE("Time and quality by contacts: the row sums up the grasps",
   CHECK_THROWS_WITH(run("contacts_and_time", grip + R"(10, "count": 4})"),
                     testing::Contains("the one with the larger M would stay"));
 }
+
+}  // namespace test_figure_experiments

@@ -5,6 +5,8 @@
 #include "graspfit/grasp/grasp_metric.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_measures {
+
 using namespace graspfit;
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
@@ -27,3 +29,5 @@ TEST_CASE("Every metric but those of pose robustness is a column with its unit a
   CHECK(columns.size() + num_left_out == grasp::grasp_metrics().all().size());
   for (const std::string& name : internal::correlated_measures()) CHECK(names.count(name) == 1);
 }
+
+}  // namespace test_grasp_measures

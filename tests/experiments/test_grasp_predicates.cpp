@@ -6,6 +6,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_predicates {
+
 using namespace graspfit::experiments;
 using graspfit::contact::Contact;
 using graspfit::contact::kPalm;
@@ -136,3 +138,5 @@ TEST_CASE("A mode wins by the larger M alone", "[experiments][grasp_predicates]"
   CHECK_FALSE(best_style_by_m({{"pinch", 0.5}, {"grip", 0.6}}, "pinch"));
   CHECK_FALSE(best_style_by_m({{"grip", 0.6}}, "pinch"));
 }
+
+}  // namespace test_grasp_predicates

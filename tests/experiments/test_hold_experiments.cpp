@@ -7,6 +7,8 @@
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
+namespace test_hold_experiments {
+
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 using graspfit::experiments::internal::correlated_measures;
@@ -169,3 +171,5 @@ TEST_CASE("The rates' summary has the quartiles of the margins that were searche
   CHECK(value(2, "upper_quartile_margin_force_n") == "2");
   CHECK(value(2, "median_margin_torque_nm").empty());
 }
+
+}  // namespace test_hold_experiments

@@ -9,6 +9,8 @@
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
+namespace test_method_tables {
+
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 
@@ -239,3 +241,5 @@ TEST_CASE("A standard deviation is about the mean, with one less", "[experiments
   CHECK_FALSE(internal::standard_deviation({1.0}));
   CHECK(*internal::standard_deviation({1.0, 3.0}) == Approx(std::sqrt(2.0)));
 }
+
+}  // namespace test_method_tables

@@ -14,6 +14,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_planning_settings {
+
 using namespace graspfit::sweep;
 using namespace graspfit::experiments;
 namespace grasp = graspfit::grasp;
@@ -326,3 +328,5 @@ TEST_CASE("An object is turned about x, then y, then z, after it is scaled",
   CHECK_THROWS_WITH(settings_with(R"(, "rotation_deg": [90, 0])"),
                     "is [90,0], must be three numbers [x, y, z]");
 }
+
+}  // namespace test_planning_settings

@@ -5,6 +5,8 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 
+namespace test_planning_table {
+
 using namespace graspfit;
 using namespace graspfit::experiments;
 
@@ -49,3 +51,5 @@ TEST_CASE("A cell's hand keeps above its table", "[experiments][planning_table]"
   CHECK_THROWS_WITH(planned_over(R"(, "table": 0.05)"),
                     testing::Contains("table 0.05 is above the whole object"));
 }
+
+}  // namespace test_planning_table

@@ -5,6 +5,8 @@
 #include "graspfit/base/random.hpp"
 #include "support/catch.hpp"
 
+namespace test_prediction_statistics {
+
 using namespace graspfit::experiments::internal;
 using graspfit::base::Random;
 
@@ -147,3 +149,5 @@ TEST_CASE("An interval needs two clusters and draws that have a value",
   const std::vector<ScoredOutcomes> clusters = {{{1}, {0}}, {{2}, {1}}};
   CHECK(estimate(clusters, RankStatistic::Auc, StatisticScope::All).value == 1.0);
 }
+
+}  // namespace test_prediction_statistics

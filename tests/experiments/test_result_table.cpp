@@ -4,6 +4,8 @@
 #include "graspfit/sweep/result_table.hpp"
 #include "support/catch.hpp"
 
+namespace test_result_table {
+
 using namespace graspfit::sweep;
 
 TEST_CASE("CSV fields read back as what they are", "[experiments][result_table]") {
@@ -34,3 +36,5 @@ TEST_CASE("A row knows its columns", "[experiments][result_table]") {
   CHECK(row.csv_fields() == std::vector<std::string>{"", "0.5"});
   CHECK_THROWS_AS(row.set("c", 1.0), std::logic_error);
 }
+
+}  // namespace test_result_table

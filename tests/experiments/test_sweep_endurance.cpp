@@ -13,6 +13,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_sweep_endurance {
+
 using namespace graspfit::sweep;
 using graspfit::base::read_file;
 using graspfit::testing::counting_experiment;
@@ -110,3 +112,5 @@ TEST_CASE("Memory is flat over 10 000 cells", "[experiments][sweep_runner][full]
   CHECK(many - few < 4000);
 #endif
 }
+
+}  // namespace test_sweep_endurance

@@ -19,6 +19,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_sweep_runner {
+
 using namespace graspfit::sweep;
 using graspfit::base::read_file;
 using graspfit::testing::counting_experiment;
@@ -402,3 +404,5 @@ TEST_CASE("Inputs are hashed before the first cell and checked after the last",
     CHECK_FALSE(fs::exists(other / "counting.manifest.json"));
   }
 }
+
+}  // namespace test_sweep_runner

@@ -15,6 +15,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_sweep_shards {
+
 using namespace graspfit::sweep;
 using graspfit::base::InvalidInput;
 using graspfit::base::read_file;
@@ -287,3 +289,5 @@ TEST_CASE("A shard is written I/N", "[experiments][shards]") {
     CHECK_THROWS_AS(parse_shard(text), InvalidInput);
   }
 }
+
+}  // namespace test_sweep_shards

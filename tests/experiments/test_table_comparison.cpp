@@ -6,6 +6,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_table_comparison {
+
 using namespace graspfit::sweep;
 using graspfit::base::InvalidInput;
 using graspfit::testing::TemporaryFolder;
@@ -218,3 +220,5 @@ TEST_CASE("A table that is not the one its manifest was written for is named",
   cut(folder.path() / "published/counting.timing.csv", 1);
   CHECK(compare_both().size() == 3);
 }
+
+}  // namespace test_table_comparison

@@ -9,7 +9,7 @@
 #include "graspfit/hold_test/hold_report.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_hold_knobs {
 namespace {
 
 using base::shortest_decimal;
@@ -82,4 +82,4 @@ TEST_CASE("Knobs that there are not and texts that are no value are refused by n
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_hold_knobs

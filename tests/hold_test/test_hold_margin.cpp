@@ -1,6 +1,8 @@
 #include "hold_scenes.hpp"
 #include "support/catch.hpp"
 
+namespace test_hold_margin {
+
 namespace {
 
 using namespace graspfit;
@@ -50,3 +52,5 @@ TEST_CASE("A margin is zero for what falls by itself, and no more than it was lo
 }
 
 }  // namespace
+
+}  // namespace test_hold_margin

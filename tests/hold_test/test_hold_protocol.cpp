@@ -2,6 +2,8 @@
 #include "graspfit/hold_test/hold_protocol.hpp"
 #include "support/catch.hpp"
 
+namespace test_hold_protocol {
+
 namespace {
 
 using namespace graspfit::hold_test;
@@ -71,3 +73,5 @@ TEST_CASE("A bad knob is refused by name", "[hold_test]") {
 }
 
 }  // namespace
+
+}  // namespace test_hold_protocol

@@ -8,7 +8,7 @@
 #include "graspfit/hold_test/hold_report.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_hold_report {
 namespace {
 
 using hold_test::HoldMargin;
@@ -77,4 +77,4 @@ TEST_CASE("A report has a row of the same width for every grasp, whatever stage 
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_hold_report

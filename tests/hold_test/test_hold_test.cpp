@@ -6,6 +6,8 @@
 #include "hold_scenes.hpp"
 #include "support/catch.hpp"
 
+namespace test_hold_test {
+
 namespace {
 
 using namespace graspfit;
@@ -236,3 +238,5 @@ TEST_CASE("Joint positions that are not the hand's are refused", "[hold_test]") 
 }
 
 }  // namespace
+
+}  // namespace test_hold_test

@@ -1,6 +1,8 @@
 #include "hold_scenes.hpp"
 #include "support/catch.hpp"
 
+namespace test_without_mujoco {
+
 namespace {
 
 using namespace graspfit;
@@ -12,3 +14,5 @@ TEST_CASE("A build without MuJoCo says so", "[hold_test]") {
 }
 
 }  // namespace
+
+}  // namespace test_without_mujoco

@@ -12,6 +12,8 @@
 #include "motion/table_scenes.hpp"
 #include "support/catch.hpp"
 
+namespace test_table_motion {
+
 using namespace graspfit;
 using namespace graspfit::motion;
 using namespace graspfit::grasp;
@@ -292,3 +294,5 @@ TEST_CASE("Objects of one name are refused", "[grasp][table_motion]") {
                               testing::scene_object("a", geometry::box({1, 1, 1}))}),
                   base::InvalidInput);
 }
+
+}  // namespace test_table_motion

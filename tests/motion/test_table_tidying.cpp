@@ -14,6 +14,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_table_tidying {
+
 using namespace graspfit;
 using namespace graspfit::motion;
 using namespace graspfit::grasp;
@@ -445,3 +447,5 @@ TEST_CASE("A motion file that contradicts itself, its hand or its objects is ref
   CHECK_THAT(refusal([&](auto& f) { f.objects[0].sha256[0] = 'x'; }),
              Contains("object block.off is not the one recorded") && Contains("SHA-256"));
 }
+
+}  // namespace test_table_tidying

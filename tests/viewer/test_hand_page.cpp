@@ -6,7 +6,7 @@
 #include "sample_scene.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_hand_page {
 namespace {
 
 using testing::Contains;
@@ -48,4 +48,4 @@ TEST_CASE("A hand's page refuses scenes that do not fit", "[viewer][hand_page]")
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_hand_page

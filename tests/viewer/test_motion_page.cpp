@@ -7,7 +7,7 @@
 #include "sample_motion.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_motion_page {
 namespace {
 
 using testing::Contains;
@@ -94,4 +94,4 @@ TEST_CASE("A motion's page refuses what does not fit together", "[viewer][motion
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_motion_page

@@ -7,7 +7,7 @@
 #include "sample_scene.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_page {
 namespace {
 
 using testing::Contains;
@@ -109,4 +109,4 @@ TEST_CASE("Input that makes no sense is refused in one line", "[viewer][page]") 
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_page

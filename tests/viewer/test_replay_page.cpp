@@ -7,7 +7,7 @@
 #include "sample_replay.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit {
+namespace graspfit::test_replay_page {
 namespace {
 
 using hold_test::HoldStage;
@@ -109,4 +109,4 @@ TEST_CASE("A replay refuses what does not fit together", "[viewer][replay_page]"
 }
 
 }  // namespace
-}  // namespace graspfit
+}  // namespace graspfit::test_replay_page

@@ -51,22 +51,25 @@ sweep::CellResult run(const sweep::Cell& cell) {
 }  // namespace
 
 sweep::Experiment parameter_sweeps() {
+  std::vector<sweep::Column> columns = {
+      {"parameter", "", "the setting that is varied; all others have defaults"},
+      {"value", "", "its value, in the unit that describe states"}};
+  for (const sweep::Column& column : planning_columns()) columns.push_back(column);
   return {
-    .slug = "parameter_sweeps",
-    .columns = {{"parameter", "", "the setting that is varied; all others have defaults"},
-                {"value", "", "its value, in the unit that describe states"}};
-    for (const sweep::Column& column : planning_columns())
-      experiment.columns.push_back(column),
-          .timings = planning_timings(), .settings = own_settings(),
-          .check =
-              [](const sweep::Cell& cell) {
-                varied_of(cell);
-                planning_settings(cell, own_settings());
-              },
-          .run = [](const sweep::Cell& cell, const std::filesystem::path&) { return run(cell); },
-          .inputs = [](const sweep::Cell& cell) {
+      .slug = "parameter_sweeps",
+      .columns = std::move(columns),
+      .timings = planning_timings(),
+      .settings = own_settings(),
+      .check =
+          [](const sweep::Cell& cell) {
+            varied_of(cell);
+            planning_settings(cell, own_settings());
+          },
+      .run = [](const sweep::Cell& cell, const std::filesystem::path&) { return run(cell); },
+      .inputs =
+          [](const sweep::Cell& cell) {
             return planning_inputs(planning_settings(cell, own_settings()));
-          }
+          },
   };
 }
 

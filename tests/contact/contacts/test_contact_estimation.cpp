@@ -10,6 +10,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_contact_estimation {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using Eigen::Vector3d;
@@ -427,3 +429,5 @@ TEST_CASE(
   CHECK_THROWS_WITH(estimate_contact(hand, 1, above(0, 0, 0.1, 0), box, kOptions, &regions),
                     Contains("weak regions of 11 faces for a mesh of 12"));
 }
+
+}  // namespace test_contact_estimation

@@ -12,6 +12,8 @@
 #include "graspfit/contact/contact_quality.hpp"
 #include "support/catch.hpp"
 
+namespace test_contact_quality {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using Eigen::Vector3d;
@@ -490,3 +492,5 @@ TEST_CASE("Contacts and context that make no sense are refused", "[grasp][contac
         base::InvalidInput);
   }
 }
+
+}  // namespace test_contact_quality

@@ -8,6 +8,8 @@
 #include "graspfit/contact/contact_quality.hpp"
 #include "support/catch.hpp"
 
+namespace test_regularity {
+
 using namespace graspfit::contact;
 using Eigen::Vector3d;
 using graspfit::testing::bipyramid;
@@ -197,3 +199,5 @@ TEST_CASE("Regularity is continuous away from the documented branches", "[grasp]
     }
   }
 }
+
+}  // namespace test_regularity

@@ -8,6 +8,8 @@
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "support/catch.hpp"
 
+namespace test_epsilon_linf {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using base::Random;
@@ -106,3 +108,5 @@ TEST_CASE("Epsilon, L-infinity, is zero without closure and says its convention"
   CHECK(epsilon_linf({}, convention_of(0.5)).upper == 0.0);
   CHECK_THROWS_AS(epsilon_linf(antipodal(), convention_of(-0.5)), base::InvalidInput);
 }
+
+}  // namespace test_epsilon_linf

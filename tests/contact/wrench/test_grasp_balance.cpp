@@ -8,6 +8,8 @@
 #include "graspfit/contact/grasp_balance.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_balance {
+
 using namespace graspfit::contact;
 using Eigen::Vector3d;
 using graspfit::base::InvalidInput;
@@ -171,3 +173,5 @@ TEST_CASE("Balances without contacts or sense have documented outcomes", "[grasp
       balance_forces({}, Vector3d::Zero(), load, {.num_cone_edges = 2, .torque_scale = 1.0}),
       InvalidInput);
 }
+
+}  // namespace test_grasp_balance

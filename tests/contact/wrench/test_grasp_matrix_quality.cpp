@@ -7,6 +7,8 @@
 #include "graspfit/contact/grasp_matrix_quality.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_matrix_quality {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using Eigen::Vector3d;
@@ -78,3 +80,5 @@ TEST_CASE("Few contacts span fewer directions", "[grasp][grasp_matrix_quality]")
   CHECK(one.product() == 0.0);
   CHECK_THROWS_AS(of(testing::on_cube(), 0.0), base::InvalidInput);
 }
+
+}  // namespace test_grasp_matrix_quality

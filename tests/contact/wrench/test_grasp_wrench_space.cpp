@@ -12,6 +12,8 @@
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
 
+namespace test_grasp_wrench_space {
+
 using namespace graspfit::contact;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -255,3 +257,5 @@ TEST_CASE("Force scaling, limit and the value outside are as chosen",
                   InvalidInput);
   CHECK_THROWS_AS(grasp_wrench_space({}, Vector3d::Zero(), WrenchSpaceOptions{}), InvalidInput);
 }
+
+}  // namespace test_grasp_wrench_space

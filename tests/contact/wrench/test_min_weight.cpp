@@ -9,6 +9,8 @@
 #include "graspfit/contact/min_weight.hpp"
 #include "support/catch.hpp"
 
+namespace test_min_weight {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using base::Random;
@@ -151,3 +153,5 @@ TEST_CASE("Wrenches that cancel by no weights have no min-weight", "[grasp][min_
   CHECK(*min_weight(both).weight == Approx(-1.0).epsilon(kClosedForm));
   CHECK_THROWS_AS(min_weight(Wrenches(Wrench::Constant(std::nan("")))), base::InvalidInput);
 }
+
+}  // namespace test_min_weight

@@ -13,6 +13,8 @@
 #include "graspfit/hands/jacobian.hpp"
 #include "support/catch.hpp"
 
+namespace test_squeeze {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using base::InvalidInput;
@@ -322,3 +324,5 @@ TEST_CASE("A squeeze refuses what makes no sense", "[grasp][squeeze]") {
   CHECK_THROWS_AS(squeeze({grasp.X_OH, VectorXd::Constant(2, 1.5)}, contacts, 0.04, 0.4, {}),
                   InvalidInput);
 }
+
+}  // namespace test_squeeze

@@ -12,6 +12,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_wrench {
+
 using namespace graspfit::contact;
 using Eigen::Vector3d;
 using graspfit::base::InvalidInput;
@@ -128,3 +130,5 @@ TEST_CASE("Cones, scales and options out of range are refused", "[grasp][wrench]
   CHECK_THROWS_AS((WrenchSpaceOptions{.torque_scale = 1.0, .force_limit = 0.0}.validate()),
                   InvalidInput);
 }
+
+}  // namespace test_wrench

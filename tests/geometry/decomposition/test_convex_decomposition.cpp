@@ -24,6 +24,8 @@
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "support/catch.hpp"
 
+namespace test_convex_decomposition {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -301,3 +303,5 @@ TEST_CASE("What is no solid and bad options are refused", "[geometry][convex_dec
     CHECK_THROWS_AS(convex_decomposition(box({0.1, 0.1, 0.1}), bad), InvalidInput);
   }
 }
+
+}  // namespace test_convex_decomposition

@@ -1,6 +1,8 @@
 #include "graspfit/geometry/dyadic_grid.hpp"
 #include "support/catch.hpp"
 
+namespace test_dyadic_grid {
+
 using namespace graspfit::geometry;
 
 TEST_CASE("Numbers go to the nearest multiple of a power of two, halves to even",
@@ -27,3 +29,5 @@ TEST_CASE("The power above a number is the least", "[geometry][dyadic_grid]") {
   CHECK(power_above(-5.0) == 3);
   CHECK(power_above(0.0) == 0);
 }
+
+}  // namespace test_dyadic_grid

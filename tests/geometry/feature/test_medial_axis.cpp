@@ -9,6 +9,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_medial_axis {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -301,3 +303,5 @@ TEST_CASE("Samples beside the mesh and bad options of balls are refused",
   samples[3].face = 12;
   CHECK_THROWS_WITH(medial_balls(cube, samples), "medial_balls: a sample is on face 12 of 12");
 }
+
+}  // namespace test_medial_axis

@@ -10,6 +10,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_shape_diameter {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using std::numbers::pi;
@@ -208,3 +210,5 @@ TEST_CASE("Options of the shape diameter out of range are refused", "[geometry][
   CHECK_THROWS_AS(shape_diameter(cube, {.trim_deviations = 0.0}), InvalidInput);
   CHECK_THROWS_AS(shape_diameter(cube, {.num_threads = -1}), InvalidInput);
 }
+
+}  // namespace test_shape_diameter

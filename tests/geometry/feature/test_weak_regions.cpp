@@ -20,6 +20,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_weak_regions {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::moved;
@@ -451,3 +453,5 @@ TEST_CASE("Large ears, torus, mug and bottle of the paper's objects are not weak
                       {"bottle.obj", 0.09, {}},
                       {"bottle.obj", 0.15, {}}});
 }
+
+}  // namespace test_weak_regions

@@ -8,6 +8,8 @@
 #include "graspfit/geometry/convex_hull.hpp"
 #include "support/catch.hpp"
 
+namespace test_convex_hull {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Points = std::vector<Eigen::Vector3d>;
@@ -151,3 +153,5 @@ TEST_CASE("Hulls of points that are not finite or with negative thresholds are r
   CHECK_THROWS_AS(convex_hull(Points{{0, 0, std::nan("")}}), InvalidInput);
   CHECK_THROWS_AS(convex_hull(Points{{0, 0, 0}}, {.planar_rel = -1.0}), InvalidInput);
 }
+
+}  // namespace test_convex_hull

@@ -17,6 +17,8 @@
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
 
+namespace test_convex_polytope {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Index;
@@ -453,3 +455,5 @@ TEST_CASE("Coordinates from 1e-80 to 1e80 and far from the origin are no matter"
   wide(2, 0) = 0x1p-1000;
   check_boundary(ConvexPolytope(wide));
 }
+
+}  // namespace test_convex_polytope

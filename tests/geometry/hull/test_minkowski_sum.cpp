@@ -13,6 +13,8 @@
 #include "support/catch.hpp"
 #include "support/qhull.hpp"
 
+namespace test_minkowski_sum {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Index;
@@ -244,3 +246,5 @@ TEST_CASE("Summands that do not belong together are refused", "[geometry][minkow
   CHECK_THROWS_WITH(minkowski_sum_inradius(Summands{in_space}, {.max_points = 0}),
                     graspfit::testing::Contains("max_points = 0"));
 }
+
+}  // namespace test_minkowski_sum

@@ -13,6 +13,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_rest_pose {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
@@ -226,3 +228,5 @@ TEST_CASE("A vertex of no face neither stands nor supports", "[geometry][rest_po
       standing_pose(stray, Vector3d::UnitZ(), 0.0, Vector3d::Zero(), {0.0, 0.0});
   CHECK(X_WO.translation().z() == Approx(0.03));
 }
+
+}  // namespace test_rest_pose

@@ -6,6 +6,8 @@
 #include "graspfit/geometry/surface_sampling.hpp"
 #include "support/catch.hpp"
 
+namespace test_surface_sampling {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -94,3 +96,5 @@ TEST_CASE("Surfaces without area and bad sampling options are refused",
   CHECK_THROWS_WITH(sample_surface(mesh, {.count = 10'000'001}),
                     "SurfaceSamplingOptions: count = 10000001, must be at most 10000000");
 }
+
+}  // namespace test_surface_sampling

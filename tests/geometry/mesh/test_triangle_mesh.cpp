@@ -3,6 +3,8 @@
 #include "graspfit/geometry/triangle_mesh.hpp"
 #include "support/catch.hpp"
 
+namespace test_triangle_mesh {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -58,3 +60,5 @@ TEST_CASE("Moving, scaling and joining meshes", "[geometry][triangle_mesh]") {
   CHECK(both.faces[12][0] == mesh.faces[0][0] + 8);
   CHECK(concatenated({}) == TriangleMesh{});
 }
+
+}  // namespace test_triangle_mesh

@@ -2,6 +2,8 @@
 #include "graspfit/geometry/used_vertices.hpp"
 #include "support/catch.hpp"
 
+namespace test_used_vertices {
+
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
 
@@ -16,3 +18,5 @@ TEST_CASE("Vertices of no face are not used", "[geometry][used_vertices]") {
   CHECK(used_vertices(box({1, 2, 3})).size() == 8);
   CHECK(used_vertices({}).empty());
 }
+
+}  // namespace test_used_vertices

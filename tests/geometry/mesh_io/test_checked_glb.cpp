@@ -12,6 +12,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_checked_glb {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::Contains;
@@ -329,3 +331,5 @@ TEST_CASE("A GLB is refused at once where its container lies", "[geometry][gltf]
     }
   }
 }
+
+}  // namespace test_checked_glb

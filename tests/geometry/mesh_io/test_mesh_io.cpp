@@ -11,6 +11,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_mesh_io {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::Contains;
@@ -364,3 +366,5 @@ TEST_CASE("What cannot be written leaves nothing behind", "[geometry][mesh_io]")
   CHECK_THROWS_AS(write_mesh(folder.path() / "no folder/mesh.off", mesh), IoError);
   CHECK(fs::is_empty(folder.path() / ""));
 }
+
+}  // namespace test_mesh_io

@@ -17,6 +17,8 @@
 #include "support/skip.hpp"
 #include "support/test_data.hpp"
 
+namespace test_shared_meshes {
+
 // Real meshes that do not belong to the repository; skipped where they are not there.
 
 using namespace graspfit::base;
@@ -130,3 +132,5 @@ TEST_CASE("Every shared mesh is in the table", "[geometry][data]") {
     CHECK(listed.contains(name));
   }
 }
+
+}  // namespace test_shared_meshes

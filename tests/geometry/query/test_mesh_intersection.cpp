@@ -11,6 +11,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_mesh_intersection {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -394,3 +396,5 @@ TEST_CASE("The distance of convex bodies is where projecting to and fro comes to
   }
   CHECK(apart > 15);
 }
+
+}  // namespace test_mesh_intersection

@@ -10,6 +10,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_mesh_query {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::moved;
@@ -444,3 +446,5 @@ TEST_CASE("All hits refuse what first_hit refuses", "[geometry][mesh_query]") {
   CHECK_THROWS_AS(query.all_hits({std::nan(""), 0, 0}, {1, 0, 0}), InvalidInput);
   CHECK(query.all_hits({5, 5, 5}, {0, 0, 1}).empty());
 }
+
+}  // namespace test_mesh_query

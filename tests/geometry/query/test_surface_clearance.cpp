@@ -7,6 +7,8 @@
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "support/catch.hpp"
 
+namespace test_surface_clearance {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
@@ -57,3 +59,5 @@ TEST_CASE("Surface clearance is zero where edges pass through faces far from cor
   CHECK(surface_clearance(outer, inner, RigidTransform::Identity(), 1.0, 1.0).at_least ==
         Approx(0.45));
 }
+
+}  // namespace test_surface_clearance

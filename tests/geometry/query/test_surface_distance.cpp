@@ -7,6 +7,8 @@
 #include "graspfit/geometry/surface_distance.hpp"
 #include "support/catch.hpp"
 
+namespace test_surface_distance {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::moved;
@@ -99,3 +101,5 @@ TEST_CASE("Bad options of the Hausdorff distance are refused", "[geometry][surfa
   }
   CHECK_THROWS_AS(hausdorff_distance(cube, cube, {.max_steps = -1}), InvalidInput);
 }
+
+}  // namespace test_surface_distance

@@ -7,6 +7,8 @@
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "support/catch.hpp"
 
+namespace test_surface_proximity {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -85,3 +87,5 @@ TEST_CASE("An open surface pierced in its middle is at distance zero",
   CHECK(nearest->distance == 0.0);
   CHECK(nearest->face_a == 0);
 }
+
+}  // namespace test_surface_proximity

@@ -7,6 +7,8 @@
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_everyday_shape_surfaces {
+
 using namespace graspfit::geometry;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -372,3 +374,5 @@ TEST_CASE("Vertices of a wire cage lie on its bars and frames, fillets aside",
     check_solid(wire_cage(cage, 8), 6 * n + 1);
   }
 }
+
+}  // namespace test_everyday_shape_surfaces

@@ -14,6 +14,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_everyday_shapes {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
@@ -256,3 +258,5 @@ TEST_CASE("Everyday shapes refuse what does not fit and name it", "[geometry][ev
   CHECK_THROWS_WITH(named_shape("cup"),
                     graspfit::testing::StartsWith("there is no shape \"cup\"; there are "));
 }
+
+}  // namespace test_everyday_shapes

@@ -7,6 +7,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_shapes {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -76,3 +78,5 @@ TEST_CASE("Impossible shapes are refused with the name of the number", "[geometr
   CHECK_THROWS_AS(solid_of_revolution({{0, 0}, {1, 0}, {1, 1}}), InvalidInput);
   CHECK_THROWS_AS(solid_of_revolution({{0, 0}, {0, 0.5}, {0, 1}}), InvalidInput);
 }
+
+}  // namespace test_shapes

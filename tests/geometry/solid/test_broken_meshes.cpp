@@ -21,6 +21,8 @@
 #include "support/catch.hpp"
 #include "support/test_data.hpp"
 
+namespace test_broken_meshes {
+
 // The broken meshes against assets/broken_mesh_outcomes.csv, whose rows were written from the
 // contract before the code ran on them. Columns:
 //
@@ -528,3 +530,5 @@ TEST_CASE("As-is mode leaves any mesh alone and every query survives it",
           static_cast<std::size_t>(lattice.num_voxels()));
   }
 }
+
+}  // namespace test_broken_meshes

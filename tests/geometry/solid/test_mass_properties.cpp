@@ -5,6 +5,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_mass_properties {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -87,3 +89,5 @@ TEST_CASE("The largest radius is that of the farthest vertex", "[geometry][mass_
   CHECK(largest_radius(box({2, 4, 4}), {0, 0, 0}) == Approx(3.0));
   CHECK(largest_radius(TriangleMesh{}, {0, 0, 0}) == 0.0);
 }
+
+}  // namespace test_mass_properties

@@ -9,6 +9,8 @@
 #include "solid/intersection_part.hpp"
 #include "support/catch.hpp"
 
+namespace test_mesh_analysis {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::inward;
@@ -207,3 +209,5 @@ TEST_CASE("A mesh of nothing is not closed", "[geometry][mesh_analysis]") {
   CHECK_FALSE(analysis.is_outward);
   CHECK(analysis.box.isEmpty());
 }
+
+}  // namespace test_mesh_analysis

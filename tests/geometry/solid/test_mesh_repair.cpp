@@ -17,6 +17,8 @@
 #include "solid/misfilled_share.hpp"
 #include "support/catch.hpp"
 
+namespace test_mesh_repair {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::inward;
@@ -556,3 +558,5 @@ TEST_CASE("A refusal names the limit for holes that does, and only if it does",
         "the mesh encloses no volume: its faces cancel each other; --wrap lays a closed surface "
         "around it");
 }
+
+}  // namespace test_mesh_repair

@@ -11,6 +11,8 @@
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "support/catch.hpp"
 
+namespace test_solid_boundary {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using graspfit::testing::inward;
@@ -158,3 +160,5 @@ TEST_CASE("An open mesh bounds no solid", "[geometry][solid_boundary]") {
   std::swap(mesh.faces[0][0], mesh.faces[0][1]);
   CHECK_THROWS_AS(solid_boundary(mesh), InvalidInput);
 }
+
+}  // namespace test_solid_boundary

@@ -9,6 +9,8 @@
 #include "graspfit/geometry/linear_program.hpp"
 #include "support/catch.hpp"
 
+namespace test_linear_program {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Index;
@@ -154,3 +156,5 @@ TEST_CASE("Linear programs whose parts do not fit are refused", "[geometry][line
                                   VectorXd::Constant(1, std::numeric_limits<double>::infinity())),
                   InvalidInput);
 }
+
+}  // namespace test_linear_program

@@ -11,6 +11,8 @@
 #include "support/skip.hpp"
 #include "support/test_data.hpp"
 
+namespace test_against_openvdb {
+
 // Voxel classes, distance map and signed distance against an independent library.
 
 using namespace graspfit::geometry;
@@ -133,3 +135,5 @@ TEST_CASE("Classes, distance map and signed distance agree with OpenVDB on every
                   "everyday/mustard_bottle.obj", "everyday/phillips_screwdriver.obj",
                   "everyday/power_drill.ply", "everyday/tomato_soup_can.obj"});
 }
+
+}  // namespace test_against_openvdb

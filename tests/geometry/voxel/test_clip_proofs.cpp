@@ -20,6 +20,8 @@
 #include "support/skip.hpp"
 #include "support/test_data.hpp"
 
+namespace test_clip_proofs {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using namespace graspfit::testing;
@@ -521,3 +523,5 @@ TEST_CASE("Voxels of the mirror image hold the mirror image of their pieces, cor
     REQUIRE(std::abs(found->piece.area - piece.area) <= 6e-12);
   }
 }
+
+}  // namespace test_clip_proofs

@@ -6,6 +6,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_convex_clip {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Triangle = std::array<Eigen::Vector3d, 3>;
@@ -87,3 +89,5 @@ TEST_CASE("A half-space that is not finite is refused", "[geometry][convex_clip]
   CHECK_THROWS_WITH(clip(kUnit, {{{1, 0, 0}, 1.0}, {{nan, 0, 0}, 0.0}}),
                     "clip: half-space 1 is not finite");
 }
+
+}  // namespace test_convex_clip

@@ -8,6 +8,8 @@
 #include "graspfit/geometry/surface_patch.hpp"
 #include "support/catch.hpp"
 
+namespace test_distance_map {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -205,3 +207,5 @@ TEST_CASE("Beyond the lattice distances are bounds from below that a larger latt
 TEST_CASE("A lattice too long for exact squares is refused", "[geometry][distance_map]") {
   CHECK_THROWS_AS(signed_distance_map(grid_of({16385, 1, 1}, VoxelClass::Empty)), InvalidInput);
 }
+
+}  // namespace test_distance_map

@@ -6,6 +6,8 @@
 #include "graspfit/base/random.hpp"
 #include "support/catch.hpp"
 
+namespace test_exact_clip {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using namespace graspfit::testing;
@@ -134,3 +136,5 @@ TEST_CASE("Exact clipping by voxels refuses what leaves the lattice", "[geometry
   // In the last plane it belongs to a voxel that is not there.
   CHECK_THROWS_AS(exact_clip_by_voxels(kTriangle, {{0, 0, -1}, 1.0, {3, 3, 1}}), InvalidInput);
 }
+
+}  // namespace test_exact_clip

@@ -10,6 +10,8 @@
 #include "graspfit/geometry/surface_patch.hpp"
 #include "support/catch.hpp"
 
+namespace test_surface_patch {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -260,3 +262,5 @@ TEST_CASE("A mesh without faces or of degenerate faces has no patches",
   mesh.faces = {{0, 1, 2}, {0, 0, 1}, {1, 1, 1}};
   CHECK(surface_patches(mesh, unit_lattice(2)).empty());
 }
+
+}  // namespace test_surface_patch

@@ -12,6 +12,8 @@
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "support/catch.hpp"
 
+namespace test_voxel_grid {
+
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 
@@ -202,3 +204,5 @@ TEST_CASE("A lattice refuses what it cannot hold", "[geometry][voxel_grid]") {
   const Eigen::AlignedBox3d flat(Eigen::Vector3d::Zero(), Eigen::Vector3d(1, 1, 0));
   CHECK(lattice_around(flat, {.resolution = 4}).counts == Eigen::Vector3i(6, 6, 3));
 }
+
+}  // namespace test_voxel_grid

@@ -17,6 +17,8 @@
 #include "scene/straight_way.hpp"
 #include "support/catch.hpp"
 
+namespace test_pre_grasp {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using base::InvalidInput;
@@ -492,3 +494,5 @@ TEST_CASE("Options and grasps that make no sense are refused", "[grasp][pre_gras
   Pinch beyond(0.03);
   CHECK_THROWS_AS(beyond.find({}), InvalidInput);
 }
+
+}  // namespace test_pre_grasp

@@ -15,6 +15,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_gripper_and_human_fitting {
+
 namespace {
 
 using namespace graspfit;
@@ -160,3 +162,5 @@ TEST_CASE("The fingertips that pinch are points of the skin, not of the bone beh
 }
 
 }  // namespace
+
+}  // namespace test_gripper_and_human_fitting

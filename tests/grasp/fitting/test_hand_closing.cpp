@@ -9,6 +9,8 @@
 #include "graspfit/hands/palm_pose.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_closing {
+
 namespace {
 
 using namespace graspfit;
@@ -213,3 +215,5 @@ TEST_CASE("Closing a hand refuses what makes no sense", "[grasp][hand_closing]")
 }
 
 }  // namespace
+
+}  // namespace test_hand_closing

@@ -24,6 +24,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_fitting {
+
 namespace {
 
 using namespace graspfit;
@@ -466,3 +468,5 @@ TEST_CASE("Fitting options out of range are refused by name and value", "[grasp]
 }
 
 }  // namespace
+
+}  // namespace test_hand_fitting

@@ -15,6 +15,8 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 
+namespace test_palm_placement {
+
 namespace {
 
 using namespace graspfit;
@@ -254,3 +256,5 @@ TEST_CASE("Without the thumb the seed gets the first finger that is asked for",
 }
 
 }  // namespace
+
+}  // namespace test_palm_placement

@@ -13,6 +13,8 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 
+namespace test_power_fitting {
+
 namespace {
 
 using namespace graspfit;
@@ -246,3 +248,5 @@ TEST_CASE("Pads that must lean tell by how much", "[grasp][power_fitting]") {
 }
 
 }  // namespace
+
+}  // namespace test_power_fitting

@@ -17,6 +17,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_grasp_file_meshes {
+
 // The meshes that a grasp file names, and those written beside it.
 namespace {
 
@@ -202,3 +204,5 @@ TEST_CASE("A posed scene holds the object and every link where the hand has it",
 }
 
 }  // namespace
+
+}  // namespace test_grasp_file_meshes

@@ -13,6 +13,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_grasp_io {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -352,3 +354,5 @@ TEST_CASE("The table has a row per grasp and a unit in every column that needs o
 }
 
 }  // namespace
+
+}  // namespace test_grasp_io

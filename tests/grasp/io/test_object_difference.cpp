@@ -1,6 +1,8 @@
 #include "graspfit/grasp/object_difference.hpp"
 #include "support/catch.hpp"
 
+namespace test_object_difference {
+
 using namespace graspfit;
 using grasp::difference_from_file;
 using grasp::reason_against_wrap;
@@ -63,3 +65,5 @@ TEST_CASE("A wrap that was asked for and not made has its reason", "[grasp][obje
   record.repairs = {{"wrapped", 100, 0.0, 0.001}};
   CHECK(!reason_against_wrap(record));
 }
+
+}  // namespace test_object_difference

@@ -10,6 +10,8 @@
 #include "graspfit/grasp/grasp_metric.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_metric {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using namespace graspfit::grasp;
@@ -286,3 +288,5 @@ TEST_CASE("Metrics of one's own are added, chosen by name and refused where they
   CHECK_THAT(refusal({}, changed([](GraspMetric& metric) { metric.value = nullptr; })),
              testing::Contains("value of sum_of_heights"));
 }
+
+}  // namespace test_grasp_metric

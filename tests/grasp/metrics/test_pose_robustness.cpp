@@ -8,6 +8,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_pose_robustness {
+
 using namespace graspfit;
 using namespace graspfit::contact;
 using namespace graspfit::grasp;
@@ -165,3 +167,5 @@ TEST_CASE("Robustness needs contacts, a surface and sound options", "[grasp][pos
                     testing::Contains("rotation_deviation"));
   CHECK_THROWS_WITH(pose_robustness(facts, {.reach = 0.0}), testing::Contains("reach = 0"));
 }
+
+}  // namespace test_pose_robustness

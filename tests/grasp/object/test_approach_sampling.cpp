@@ -10,6 +10,8 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 
+namespace test_approach_sampling {
+
 namespace {
 
 using namespace graspfit;
@@ -160,3 +162,5 @@ TEST_CASE("A box of too many rays is refused", "[grasp][approach_sampling]") {
 }
 
 }  // namespace
+
+}  // namespace test_approach_sampling

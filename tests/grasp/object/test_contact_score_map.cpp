@@ -14,6 +14,8 @@
 #include "graspfit/grasp/contact_score_map.hpp"
 #include "support/catch.hpp"
 
+namespace test_contact_score_map {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using Eigen::Vector3d;
@@ -468,3 +470,5 @@ TEST_CASE("A patch outside the lattice is refused", "[grasp][contact_score_map]"
   outside.voxel = -1;
   CHECK_THROWS_AS(contact_score_map({outside}, lattice), base::InvalidInput);
 }
+
+}  // namespace test_contact_score_map

@@ -11,6 +11,8 @@
 #include "graspfit/hands/palm_pose.hpp"
 #include "support/catch.hpp"
 
+namespace test_medial_symmetry {
+
 namespace {
 
 using namespace graspfit;
@@ -269,3 +271,5 @@ TEST_CASE("A palm is put where it is wanted", "[grasp][medial_symmetry]") {
 }
 
 }  // namespace
+
+}  // namespace test_medial_symmetry

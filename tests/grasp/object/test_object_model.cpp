@@ -16,6 +16,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_object_model {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using Eigen::Vector3d;
@@ -278,3 +280,5 @@ TEST_CASE("The score at a point is that of the patch there", "[grasp][object_mod
   CHECK_FALSE(contact_score_at(object, Vector3d(10, 0, 0)));  // beyond the lattice
   CHECK_FALSE(contact_score_at(object, Vector3d::Zero()));    // far inside
 }
+
+}  // namespace test_object_model

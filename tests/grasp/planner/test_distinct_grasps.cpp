@@ -11,6 +11,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_distinct_grasps {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using base::InvalidInput;
@@ -158,3 +160,5 @@ TEST_CASE("Distinctness refuses what makes no sense", "[grasp][distinct_grasps]"
   CHECK_THROWS_WITH(are_distinct(hand, a, short_one),
                     testing::Contains("2") && testing::Contains("8"));
 }
+
+}  // namespace test_distinct_grasps

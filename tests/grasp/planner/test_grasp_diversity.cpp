@@ -10,6 +10,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_diversity {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using Eigen::AngleAxisd;
@@ -118,3 +120,5 @@ TEST_CASE("No grasp, one and equal ones have no first axis", "[grasp][grasp_dive
   wrong.back().q.resize(1);
   CHECK_THROWS_AS(grasp_diversity(barrett(), wrong), base::InvalidInput);
 }
+
+}  // namespace test_grasp_diversity

@@ -15,6 +15,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_grasp_planner {
+
 namespace {
 
 using namespace graspfit;
@@ -446,3 +448,5 @@ TEST_CASE("Objects of impossible size are refused with their extents and advice"
 }
 
 }  // namespace
+
+}  // namespace test_grasp_planner

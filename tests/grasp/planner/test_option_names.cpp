@@ -6,6 +6,8 @@
 #include "graspfit/grasp/planner_result.hpp"
 #include "support/catch.hpp"
 
+namespace test_option_names {
+
 namespace {
 
 using namespace graspfit;
@@ -46,3 +48,5 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
 }
 
 }  // namespace
+
+}  // namespace test_option_names

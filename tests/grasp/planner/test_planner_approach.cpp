@@ -11,6 +11,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_planner_approach {
+
 namespace {
 
 using namespace graspfit;
@@ -65,3 +67,5 @@ TEST_CASE("Jaws always look at each other, so that nothing adds to how far they 
 }
 
 }  // namespace
+
+}  // namespace test_planner_approach

@@ -12,6 +12,8 @@
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "support/catch.hpp"
 
+namespace test_planner_options {
+
 namespace {
 
 using namespace graspfit;
@@ -208,3 +210,5 @@ TEST_CASE("A hand far from the object has no contact, no measure and no penetrat
 }
 
 }  // namespace
+
+}  // namespace test_planner_options

@@ -4,6 +4,8 @@
 #include "planner/planner_readings.hpp"
 #include "support/catch.hpp"
 
+namespace test_planner_readings {
+
 using namespace graspfit;
 
 namespace {
@@ -39,3 +41,5 @@ TEST_CASE("Methods without targets say which readings they use", "[grasp][planne
     CHECK(scored.at("A17") == unused);
   }
 }
+
+}  // namespace test_planner_readings

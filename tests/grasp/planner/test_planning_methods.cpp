@@ -9,6 +9,8 @@
 #include "graspfit/grasp/planner_result.hpp"
 #include "support/catch.hpp"
 
+namespace test_planning_methods {
+
 namespace {
 
 using graspfit::testing::Contains;
@@ -204,3 +206,5 @@ TEST_CASE("Intermediate models are tables of points on or in the object",
 }
 
 }  // namespace
+
+}  // namespace test_planning_methods

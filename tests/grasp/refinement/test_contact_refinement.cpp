@@ -16,6 +16,8 @@
 #include "graspfit/hands/pad_surface.hpp"
 #include "support/catch.hpp"
 
+namespace test_contact_refinement {
+
 namespace {
 
 using namespace graspfit;
@@ -335,3 +337,5 @@ TEST_CASE("What cannot be refined says why", "[grasp][contact_refinement]") {
   bad.least_distance = 0.0;
   CHECK_THROWS_AS(bad.validate(), base::InvalidInput);
 }
+
+}  // namespace test_contact_refinement

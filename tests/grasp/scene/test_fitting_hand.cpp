@@ -12,6 +12,8 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "support/catch.hpp"
 
+namespace test_fitting_hand {
+
 namespace {
 
 using namespace graspfit;
@@ -144,3 +146,5 @@ TEST_CASE("The smallest distance is that of a search over all points, up to what
 }
 
 }  // namespace
+
+}  // namespace test_fitting_hand

@@ -15,6 +15,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_surroundings {
+
 using namespace graspfit;
 using namespace graspfit::grasp;
 using base::InvalidInput;
@@ -197,3 +199,5 @@ TEST_CASE("Nothing around touches nothing; what makes no sense is refused",
                     testing::Contains("obstacle 1 is not closed (3 boundary edges"));
   CHECK_THROWS_AS(SurroundingsCollision(hand, {{}, {MeshQuery(open)}}), InvalidInput);
 }
+
+}  // namespace test_surroundings

@@ -10,6 +10,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_palm_targets {
+
 namespace {
 
 using namespace graspfit;
@@ -180,3 +182,5 @@ TEST_CASE("Parts that a hand does not have are refused in one line",
 }
 
 }  // namespace
+
+}  // namespace test_palm_targets

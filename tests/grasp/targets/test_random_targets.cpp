@@ -13,6 +13,8 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
 
+namespace test_random_targets {
+
 namespace {
 
 using namespace graspfit;
@@ -265,3 +267,5 @@ TEST_CASE("The ideal M that sets are preferred by is that of the planner's measu
 }
 
 }  // namespace
+
+}  // namespace test_random_targets

@@ -16,6 +16,8 @@
 #include "graspfit/grasp/ranked_targets.hpp"
 #include "support/catch.hpp"
 
+namespace test_ranked_targets {
+
 namespace {
 
 using namespace graspfit;
@@ -383,3 +385,5 @@ TEST_CASE("A thinned pool keeps the best place of each cell and side",
 }
 
 }  // namespace
+
+}  // namespace test_ranked_targets

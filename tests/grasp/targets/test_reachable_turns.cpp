@@ -10,6 +10,8 @@
 #include "support/catch.hpp"
 #include "targets/reachable_turns.hpp"
 
+namespace test_reachable_turns {
+
 namespace {
 
 using namespace graspfit;
@@ -79,3 +81,5 @@ TEST_CASE("Seen from the palm, turning by a turn's width moves on by one azimuth
 }
 
 }  // namespace
+
+}  // namespace test_reachable_turns

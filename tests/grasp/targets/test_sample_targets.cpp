@@ -9,6 +9,8 @@
 #include "graspfit/grasp/approach_sampling.hpp"
 #include "support/catch.hpp"
 
+namespace test_sample_targets {
+
 using namespace graspfit;
 using Eigen::Vector3d;
 using testing::at_voxel_level;
@@ -98,3 +100,5 @@ TEST_CASE("What guides random targets is the sampled surface", "[grasp][sample_t
   CHECK(guided.guidance->model().rows == of_normals.guidance->model().rows);
   CHECK(guided.guidance->counts().at("samples") == 1000);
 }
+
+}  // namespace test_sample_targets

@@ -13,6 +13,8 @@
 #include "support/skip.hpp"
 #include "support/test_data.hpp"
 
+namespace test_target_contacts {
+
 namespace {
 
 using namespace graspfit;
@@ -288,3 +290,5 @@ TEST_CASE("A third contact pairs with the seed, or with both where all pairs are
 }
 
 }  // namespace
+
+}  // namespace test_target_contacts

@@ -15,6 +15,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_hand_check {
+
 namespace {
 
 using namespace graspfit;
@@ -487,3 +489,5 @@ TEST_CASE("The open skin of GraspIt!'s human hand is said", "[hands][hand_check]
 }
 
 }  // namespace
+
+}  // namespace test_hand_check

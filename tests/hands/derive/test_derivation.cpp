@@ -21,6 +21,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_derivation {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -479,3 +481,5 @@ TEST_CASE("Hands from which nothing can be derived are refused in one line",
 }
 
 }  // namespace
+
+}  // namespace test_derivation

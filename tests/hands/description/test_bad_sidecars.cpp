@@ -3,6 +3,8 @@
 
 #include "hands/bad_hand_files.hpp"
 
+namespace test_bad_sidecars {
+
 namespace {
 
 using namespace graspfit;
@@ -187,3 +189,5 @@ TEST_CASE("Every member of a sidecar may be left out, and is derived", "[hands][
 }
 
 }  // namespace
+
+}  // namespace test_bad_sidecars

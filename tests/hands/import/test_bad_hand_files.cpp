@@ -3,6 +3,8 @@
 
 #include "hands/bad_hand_files.hpp"
 
+namespace test_bad_hand_files {
+
 namespace {
 
 using namespace graspfit;
@@ -295,3 +297,5 @@ TEST_CASE("Mesh files that hold no mesh are refused with link and path",
 }
 
 }  // namespace
+
+}  // namespace test_bad_hand_files

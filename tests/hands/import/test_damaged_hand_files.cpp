@@ -8,6 +8,8 @@
 #include "support/damaged.hpp"
 #include "support/skip.hpp"
 
+namespace test_damaged_hand_files {
+
 namespace {
 
 using namespace graspfit;
@@ -173,3 +175,5 @@ TEST_CASE("A German locale changes neither numbers nor what is refused",
 }
 
 }  // namespace
+
+}  // namespace test_damaged_hand_files

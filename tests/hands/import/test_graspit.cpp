@@ -13,6 +13,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_graspit {
+
 namespace {
 
 using namespace graspfit;
@@ -336,3 +338,5 @@ TEST_CASE("A URDF whose joints stand elsewhere lends no mesh, and the finding sa
 }
 
 }  // namespace
+
+}  // namespace test_graspit

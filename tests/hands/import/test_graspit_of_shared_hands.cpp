@@ -15,6 +15,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_graspit_of_shared_hands {
+
 // The hands that GraspIt! ships, against the URDFs beside them and against ours.
 namespace {
 
@@ -329,3 +331,5 @@ TEST_CASE("GraspIt!'s human hand and ours have the same axes and limits",
 }
 
 }  // namespace
+
+}  // namespace test_graspit_of_shared_hands

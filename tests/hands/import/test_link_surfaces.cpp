@@ -13,6 +13,8 @@
 #include "graspfit/hands/hand_io.hpp"
 #include "support/catch.hpp"
 
+namespace test_link_surfaces {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -140,3 +142,5 @@ TEST_CASE("A link that is a flat sheet is wrapped, and a sound part beside it st
 }
 
 }  // namespace
+
+}  // namespace test_link_surfaces

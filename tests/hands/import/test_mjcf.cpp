@@ -1,5 +1,7 @@
 #include "hands/mjcf_reading.hpp"
 
+namespace test_mjcf {
+
 namespace {
 
 using namespace graspfit;
@@ -170,3 +172,5 @@ TEST_CASE("MJCF: random trees stand as in MuJoCo's kinematics at 1000 random con
 }
 
 }  // namespace
+
+}  // namespace test_mjcf

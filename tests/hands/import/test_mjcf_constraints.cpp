@@ -1,5 +1,7 @@
 #include "hands/mjcf_reading.hpp"
 
+namespace test_mjcf_constraints {
+
 namespace {
 
 using namespace graspfit;
@@ -171,3 +173,5 @@ TEST_CASE("MJCF: <exclude>, contype and conaffinity exclude pairs, <pair> includ
 }
 
 }  // namespace
+
+}  // namespace test_mjcf_constraints

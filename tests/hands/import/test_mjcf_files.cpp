@@ -1,5 +1,7 @@
 #include "hands/mjcf_reading.hpp"
 
+namespace test_mjcf_files {
+
 namespace {
 
 using namespace graspfit;
@@ -199,3 +201,5 @@ TEST_CASE("MJCF: read_hand takes a hand in MJCF with its sidecar", "[hands][mjcf
 }
 
 }  // namespace
+
+}  // namespace test_mjcf_files

@@ -1,5 +1,7 @@
 #include "hands/mjcf_reading.hpp"
 
+namespace test_mjcf_of_shared_hands {
+
 namespace {
 
 using namespace graspfit;
@@ -133,3 +135,5 @@ TEST_CASE("MJCF: what MuJoCo writes of each shared URDF stands as the URDF does"
 }
 
 }  // namespace
+
+}  // namespace test_mjcf_of_shared_hands

@@ -6,6 +6,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_mjcf_without_mujoco {
+
 namespace {
 
 using namespace graspfit;
@@ -26,3 +28,5 @@ TEST_CASE("MJCF: a build without MuJoCo says so, and what to install", "[hands][
 }
 
 }  // namespace
+
+}  // namespace test_mjcf_without_mujoco

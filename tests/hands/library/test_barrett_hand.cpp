@@ -8,6 +8,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_barrett_hand {
+
 namespace {
 
 using namespace graspfit;
@@ -189,3 +191,5 @@ TEST_CASE("The reach of the Barrett hand covers its fingertips and little more",
 }
 
 }  // namespace
+
+}  // namespace test_barrett_hand

@@ -11,6 +11,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_exported_hands_elsewhere {
+
 namespace {
 
 using namespace graspfit;
@@ -80,3 +82,5 @@ TEST_CASE("MuJoCo loads every exported hand with its joints, limits and surfaces
 #endif
 
 }  // namespace
+
+}  // namespace test_exported_hands_elsewhere

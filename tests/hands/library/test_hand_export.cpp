@@ -14,6 +14,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_hand_export {
+
 namespace {
 
 using namespace graspfit;
@@ -211,3 +213,5 @@ TEST_CASE("Names that no file can bear are refused before anything is written",
 }
 
 }  // namespace
+
+}  // namespace test_hand_export

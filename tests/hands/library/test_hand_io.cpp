@@ -10,6 +10,8 @@
 #include "support/temporary_folder.hpp"
 #include "support/test_data.hpp"
 
+namespace test_hand_io {
+
 namespace {
 
 using namespace graspfit;
@@ -411,3 +413,5 @@ TEST_CASE("Numbers are read the same in a locale with a decimal comma", "[hands]
 }
 
 }  // namespace
+
+}  // namespace test_hand_io

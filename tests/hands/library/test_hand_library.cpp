@@ -8,6 +8,8 @@
 #include "support/environment_variable.hpp"
 #include "support/test_data.hpp"
 
+namespace test_hand_library {
+
 namespace {
 
 using namespace graspfit;
@@ -42,3 +44,5 @@ TEST_CASE("GRASPFIT_HANDS names the folder of hands, and must be one", "[hands][
 }
 
 }  // namespace
+
+}  // namespace test_hand_library

@@ -6,6 +6,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_human_hand {
+
 namespace {
 
 using namespace graspfit;
@@ -224,3 +226,5 @@ TEST_CASE("Pads of the human hand are convex, about regular and on the closing s
 }
 
 }  // namespace
+
+}  // namespace test_human_hand

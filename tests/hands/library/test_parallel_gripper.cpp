@@ -2,6 +2,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_parallel_gripper {
+
 namespace {
 
 using namespace graspfit;
@@ -71,3 +73,5 @@ TEST_CASE("Both jaws move alike and face each other at every opening",
 }
 
 }  // namespace
+
+}  // namespace test_parallel_gripper

@@ -7,6 +7,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_published_hands {
+
 // The shipped hands against published numbers that they were not written from, or measured on
 // their meshes instead of their joints.
 namespace {
@@ -157,3 +159,5 @@ TEST_CASE("The human hands are as long as their sizes say, from the wrist to the
 }
 
 }  // namespace
+
+}  // namespace test_published_hands

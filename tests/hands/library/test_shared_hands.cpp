@@ -16,6 +16,8 @@
 #include "support/catch.hpp"
 #include "support/skip.hpp"
 
+namespace test_shared_hands {
+
 // Hands as others describe them, without a sidecar: everything that a plan needs is derived.
 namespace {
 
@@ -344,3 +346,5 @@ TEST_CASE("GraspIt!'s own files give back the couplings that the URDFs beside th
 }
 
 }  // namespace
+
+}  // namespace test_shared_hands

@@ -10,6 +10,8 @@
 #include "hands/closing.hpp"
 #include "support/catch.hpp"
 
+namespace test_shipped_hands {
+
 namespace {
 
 using namespace graspfit;
@@ -222,3 +224,5 @@ TEST_CASE("Hands may share meshes inside the package of all hands", "[hands][shi
 }
 
 }  // namespace
+
+}  // namespace test_shipped_hands

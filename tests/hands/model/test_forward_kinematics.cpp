@@ -7,6 +7,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_forward_kinematics {
+
 namespace {
 
 using namespace graspfit;
@@ -204,3 +206,5 @@ TEST_CASE("Fixed links move with their parent and prismatic joints translate",
 }
 
 }  // namespace
+
+}  // namespace test_forward_kinematics

@@ -7,6 +7,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_configuration {
+
 namespace {
 
 using namespace graspfit;
@@ -112,3 +114,5 @@ TEST_CASE("Positions outside the limits are clamped or refused by name and value
 }
 
 }  // namespace
+
+}  // namespace test_hand_configuration

@@ -11,6 +11,8 @@
 #include "graspfit/hands/hand_model.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_model {
+
 namespace {
 
 using namespace graspfit;
@@ -376,3 +378,5 @@ TEST_CASE("The reach bounds every vertex over revolute and prismatic joints",
 }
 
 }  // namespace
+
+}  // namespace test_hand_model

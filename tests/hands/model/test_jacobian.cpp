@@ -7,6 +7,8 @@
 #include "graspfit/hands/jacobian.hpp"
 #include "support/catch.hpp"
 
+namespace test_jacobian {
+
 namespace {
 
 using namespace graspfit;
@@ -155,3 +157,5 @@ TEST_CASE("A Jacobian asks for a link and positions of its own hand", "[hands][j
 }
 
 }  // namespace
+
+}  // namespace test_jacobian

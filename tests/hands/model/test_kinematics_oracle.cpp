@@ -12,6 +12,8 @@
 #include "support/catch.hpp"
 #include "support/skip.hpp"
 
+namespace test_kinematics_oracle {
+
 // Our reader, tree, kinematics and Jacobians against urdfdom and Orocos KDL, which share no line
 // with them.
 namespace {
@@ -188,3 +190,5 @@ TEST_CASE("Every shared hand has the kinematics that KDL gives its URDF",
 }
 
 }  // namespace
+
+}  // namespace test_kinematics_oracle

@@ -6,6 +6,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_closing {
+
 namespace {
 
 using namespace graspfit;
@@ -108,3 +110,5 @@ TEST_CASE("Shares of closing outside 0 to 1 are refused", "[hands][hand_closing]
 }
 
 }  // namespace
+
+}  // namespace test_hand_closing

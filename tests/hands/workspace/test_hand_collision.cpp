@@ -8,6 +8,8 @@
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
 
+namespace test_hand_collision {
+
 namespace {
 
 using namespace graspfit;
@@ -144,3 +146,5 @@ TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collisi
 }
 
 }  // namespace
+
+}  // namespace test_hand_collision

@@ -16,6 +16,8 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+namespace test_hand_workspace {
+
 namespace {
 
 using namespace graspfit;
@@ -554,3 +556,5 @@ TEST_CASE("A hand's workspace is kept by all that it depends on", "[hands][hand_
 }
 
 }  // namespace
+
+}  // namespace test_hand_workspace

@@ -13,6 +13,8 @@
 #include "graspfit/hands/tip_reach.hpp"
 #include "support/catch.hpp"
 
+namespace test_tip_reach {
+
 namespace {
 
 using namespace graspfit;
@@ -90,3 +92,5 @@ TEST_CASE("Palm distances alone are those of the whole workspace", "[hands][tip_
 }
 
 }  // namespace
+
+}  // namespace test_tip_reach
