@@ -63,4 +63,9 @@ std::string read_json_file(const std::filesystem::path& file) {
   return text;
 }
 
+std::string json_fault(const std::string& what) {
+  const std::size_t end = what.find("] ");
+  return end == std::string::npos ? what : what.substr(end + 2);
+}
+
 }  // namespace graspfit::base

@@ -71,7 +71,6 @@ class Flags {
   int integer(const std::string& name, const base::NumberRange& range) const;
   /// Whether the text is `yes`, not `no`.
   bool either(const std::string& name, const char* yes, const char* no) const;
-  bool yes_or_no(const std::string& name) const { return either(name, "yes", "no"); }
   std::vector<std::string> texts(const std::string& name) const;  ///< Of a repeatable option.
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.

@@ -82,9 +82,8 @@ Command merge_command() {
   add_table_flags(how, "no summary");
   Command command{
       "experiment merge", "SLUG",
-      "Takes the cells of all shards in DIR/shards over into DIR and writes the tables: "
-      "the same\nbytes as one run's. Refused while cells are missing or shards are "
-      "running.\n",
+      "Takes the cells of all shards in DIR/shards over into DIR and writes the tables: the same\n"
+      "bytes as one run's. Refused while cells are missing or shards are running.\n",
       option_group(), ""};
   command.options.add(config_change_options()).add(how);
   return command;

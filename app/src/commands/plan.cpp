@@ -51,9 +51,8 @@ Command plan_command() {
   po::options_description hold = option_group("Physics");
   add_option(
       hold, "hold", "PROTOCOL", std::nullopt,
-      "leave out grasps that do not hold in a physics test under this protocol (see hold "
-      "--help) and order the others by the smallest force that fails; failures are counted by "
-      "stage");
+      "leave out grasps that do not hold in a physics test under this protocol (see hold --help) "
+      "and order the others by the smallest force that fails; failures are counted by stage");
 
   Command command{
       "plan", "OBJECT",

@@ -58,8 +58,7 @@ std::vector<sweep::Column> table_setting_names() {
       {"title", "", "what pictures and pages are headed with"},
       {"objects", "",
        "array of {name, file, packaged or shape, size_m, size_axis, start, goal}; start and goal "
-       "are "
-       "{up: direction of the mesh that is up, of all ways of resting the nearest; turn_deg: "
+       "are {up: direction of the mesh that is up, of all ways of resting the nearest; turn_deg: "
        "about z; at_m: [x, y] under the center of mass}"},
       {"home", "",
        "{palm_m, direction, turn_deg}: palm center and palm direction in the world, where every "

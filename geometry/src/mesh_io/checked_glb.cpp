@@ -35,10 +35,7 @@ Json parsed(std::string_view text) {
     if (!json.is_object()) fail("its JSON is not an object");
     return json;
   } catch (const Json::parse_error& error) {
-    // "[json.exception...] parse error at line 1, column 1: ...": the code in front says nothing.
-    const std::string what = error.what();
-    const std::size_t end = what.find("] ");
-    fail("its JSON does not parse: " + (end == std::string::npos ? what : what.substr(end + 2)));
+    fail("its JSON does not parse: " + base::json_fault(error.what()));
   }
 }
 

@@ -45,11 +45,10 @@ HoldProtocol multidex() {
   protocol.name = "multidex-0.05g";
   protocol.source =
       "MultiDex (tengyu-liu/GenDexGrasp, envs/tasks/grasp_test_force.yaml): 0.5 m/s2 along six "
-      "axes "
-      "(5000 N/m3 at 10000 kg/m3) for 50 steps of 1/60 s, 2 cm and any rotation, checked at the "
-      "end, "
-      "friction 10, object damping 10 and 100 1/s. Ours: MuJoCo instead of PhysX and its contact "
-      "parameters, 0.1 kg instead of the density, pre-grasp and squeeze, a reset before each force";
+      "axes (5000 N/m3 at 10000 kg/m3) for 50 steps of 1/60 s, 2 cm and any rotation, checked at "
+      "the end, friction 10, object damping 10 and 100 1/s. Ours: MuJoCo instead of PhysX and its "
+      "contact parameters, 0.1 kg instead of the density, pre-grasp and squeeze, a reset before "
+      "each force";
   protocol.sliding_friction = 10.0;
   protocol.object_linear_damping = 10.0;
   protocol.object_angular_damping = 100.0;
@@ -66,10 +65,9 @@ HoldProtocol tabletop_lift() {
   protocol.name = "tabletop-lift";
   protocol.source =
       "DexGraspBench (eval_func/tabletop_mocap.py): 10 N/kg from the start, 0.1 m up in 0.4 s, 5 "
-      "cm "
-      "and 15 degrees. Ours: the base on a slide instead of a mocap body, the table at the "
-      "object's "
-      "lowest point along z of O, 0.6 s held after lifting. The rest as dexgraspbench-100g";
+      "cm and 15 degrees. Ours: the base on a slide instead of a mocap body, the table at the "
+      "object's lowest point along z of O, 0.6 s held after lifting. The rest as "
+      "dexgraspbench-100g";
   protocol.load = HoldLoad::Lift;
   protocol.gravity = 10.0;
   protocol.hold_time = 1.0;

@@ -19,8 +19,7 @@ Json conventions() {
       {"units", "newtons, newton meters, meters, radians, seconds, kilograms as the keys say"},
       {"frame",
        "O: object, the axes and origin of the object's file after scaling, as in the grasp file; "
-       "it "
-       "stays where the object was planned to be, and the base of the hand stands still in it"},
+       "it stays where the object was planned to be, and the base of the hand stands still in it"},
       {"three_configurations",
        "the hand goes from the pre-grasp to the grasp and on to the squeeze, commanded linearly; "
        "then the load begins. squeeze says where the last one comes from: forces (the grasp file's "
@@ -32,8 +31,7 @@ Json conventions() {
       {"lost",
        "at a check, every check_interval_s, the center of mass has moved by largest_shift_m or the "
        "object has turned by largest_turn_rad, from its pose after squeezing (before the load: "
-       "from "
-       "the planned one), in the palm's frame"},
+       "from the planned one), in the palm's frame"},
       {"approach_shift_m",
        "largest one at any check before the load, from the planned pose; approach_turn_rad alike"},
       {"squeeze_force_N", "sum of the normal forces on the object once it is squeezed"},
@@ -45,8 +43,7 @@ Json conventions() {
       {"pieces",
        "convex pieces stand for the object and for each link. volume_error_rel: (volume of their "
        "union - the solid's) / the solid's; outward_deviation_m: how far a piece reaches out of "
-       "the "
-       "solid; inward_deviation_m: how far the solid's surface is from the nearest piece"}};
+       "the solid; inward_deviation_m: how far the solid's surface is from the nearest piece"}};
 }
 
 Json knob_json(const KnobValue& value) {

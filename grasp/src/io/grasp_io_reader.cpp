@@ -7,8 +7,8 @@
 #include "graspfit/grasp/planner_result.hpp"
 #include "io/grasp_fields.hpp"
 #include "io/json_fields.hpp"
-#include "io/planner_options_json.hpp"
 #include "io/recorded_hand.hpp"
+#include "rows/option_rows.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -229,8 +229,13 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.link_mesh_sha256 = recorded_hand.link_mesh_sha256;
 
   const JsonNode planner = root.at("planner");
-  file.options =
-      internal::read_planner_options(planner.at("options"), planner.at("seed").unsigned_integer());
+  JsonReader{planner}.group("options", file.options, internal::planner_rows);
+  file.options.seed = planner.at("seed").unsigned_integer();
+  try {
+    file.options.validate();
+  } catch (const base::InvalidInput& error) {
+    planner.at("options").fail(error.what());
+  }
   file.version = planner.at("version").text();
   const JsonNode used = planner.at("used");
   for (const JsonNode& finger : used.at("fingers").items()) {

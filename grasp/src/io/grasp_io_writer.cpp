@@ -9,9 +9,9 @@
 #include "io/grasp_fields.hpp"
 #include "io/json_fields.hpp"
 #include "io/json_text.hpp"
-#include "io/planner_options_json.hpp"
 #include "io/record_json.hpp"
 #include "planner/planner_readings.hpp"
+#include "rows/option_rows.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -26,10 +26,8 @@ Json conventions() {
       {"units", "meters, radians, square meters, seconds unless a key names another unit"},
       {"frames",
        "O: object, the axes and origin of the object's file after scaling. H: hand base, the frame "
-       "of "
-       "the root link. L: a link. C: a pad, z leaving the link. X_AB is the pose of frame B in "
-       "frame "
-       "A: p_A = X_AB p_B."},
+       "of the root link. L: a link. C: a pad, z leaving the link. X_AB is the pose of frame B in "
+       "frame A: p_A = X_AB p_B."},
       {"rotation_wxyz", "unit quaternion, scalar first: [w, x, y, z]"},
       {"half_space", "the points p with normal . p <= offset_m"},
       {"contact",
@@ -39,8 +37,7 @@ Json conventions() {
        "distance between the pad's part of the link's mesh and the object's surface, 0 where they "
        "cross: of the mesh, its faces that look along the pad's z, cut along the prism over the "
        "outline, not deeper than 1 mm below the pad; weak is null where it is not known; target: "
-       "the pad was "
-       "asked to touch"},
+       "the pad was asked to touch"},
       {"used_mesh_file",
        "the mesh as it was used, beside this file: scaled, repaired, closed, in meters, as PLY; of "
        "object and obstacles in O, of links in L"},
@@ -85,9 +82,8 @@ Json conventions() {
        "margins_N, the smallest force that fails for each"},
       {"imported",
        "only where grasps come from another tool's file: poses and joints are that file's, "
-       "everything "
-       "else is computed by the planner's options; attempt is the grasp's place in that file, from "
-       "0"},
+       "everything else is computed by the planner's options; attempt is the grasp's place in that "
+       "file, from 0"},
       {"usable", "m > 0"},
       {"valid",
        "usable, no link shares a point with the object, the surroundings or another link that is "
@@ -104,17 +100,15 @@ Json planner_json(const GraspFile& file) {
   const std::string name = file.imported       ? "none: imported"
                            : method != nullptr ? method->title
                                                : "of another library: " + file.options.planner;
-  return {{"name", name},
-          {"version", file.version},
-          {"seed", file.options.seed},
-          {"options", internal::planner_options_json(file.options)},
-          {"used",
-           {{"fingers", file.fingers},
-            {"palm", file.palm},
-            {"voxel_size_m", file.voxel_size},
-            {"clip_thickness_m", file.clip_thickness},
-            {"merge_distance_m", file.merge_distance}}},
-          {"readings", readings}};
+  Json json = {{"name", name}, {"version", file.version}, {"seed", file.options.seed}};
+  JsonWriter(json).group("options", file.options, internal::planner_rows);
+  json["used"] = {{"fingers", file.fingers},
+                  {"palm", file.palm},
+                  {"voxel_size_m", file.voxel_size},
+                  {"clip_thickness_m", file.clip_thickness},
+                  {"merge_distance_m", file.merge_distance}};
+  json["readings"] = readings;
+  return json;
 }
 
 Json joints_json(const hands::HandModel& hand, const Eigen::VectorXd& q) {

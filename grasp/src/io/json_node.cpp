@@ -19,10 +19,7 @@ JsonNode JsonNode::read(const std::filesystem::path& file) {
     const auto root = std::make_shared<const Json>(Json::parse(text));
     return {name, root, root.get(), ""};
   } catch (const Json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, ...": the part in brackets is noise.
-    std::string what = error.what();
-    if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    throw base::IoError(*name + ": is not JSON: " + what);
+    throw base::IoError(*name + ": is not JSON: " + base::json_fault(error.what()));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/list_text.hpp"
 #include "model/finding_text.hpp"
 
 namespace graspfit::hands::internal {
@@ -155,7 +156,7 @@ void look_for_lost_couplings(const JointTree& joints, Findings& findings) {
   const std::string what =
       "no joint follows another; where end joints of this hand follow the "
       "joints before them (" +
-      listed(pairs) + "), add couplings to the sidecar, else an empty list";
+      base::list_text(pairs) + "), add couplings to the sidecar, else an empty list";
   if (joints.num_joints() > kMostDrives) {
     findings.suspicious("", std::to_string(joints.num_joints()) +
                                 " independent joints are more than any built hand drives: " + what);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "check/coupling_check.hpp"
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_closing.hpp"
 #include "graspfit/hands/hand_collision.hpp"
@@ -103,7 +104,7 @@ void look_at_masses(const HandModel& tree, Findings& findings) {
   }
   if (without.empty()) return;
   findings.note("", std::to_string(without.size()) + " of " + std::to_string(num_bodies) +
-                        " links with a mesh have no mass: " + listed(without));
+                        " links with a mesh have no mass: " + base::list_text(without));
 }
 
 // ---- Closing
@@ -260,7 +261,7 @@ void tell_exclusions(const HandModel& hand, Findings& findings) {
                     hand.links[static_cast<std::size_t>(pair.link_b)].name);
   }
   findings.note("", std::to_string(pairs.size()) + " pairs of links are excluded from collision" +
-                        (pairs.empty() ? "" : ": " + listed(pairs)));
+                        (pairs.empty() ? "" : ": " + base::list_text(pairs)));
 }
 
 void tell_idle_joints(const HandModel& hand, Findings& findings) {
@@ -273,7 +274,7 @@ void tell_idle_joints(const HandModel& hand, Findings& findings) {
         });
     if (!is_used) idle.push_back(hand.joints[j].name);
   }
-  if (!idle.empty()) findings.note("", "joints that belong to no finger: " + listed(idle));
+  if (!idle.empty()) findings.note("", "joints that belong to no finger: " + base::list_text(idle));
 }
 
 void look_at_whole(const HandModel& hand, Findings& findings) {

@@ -7,6 +7,7 @@
 
 #include "description/control_characters.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/json_bounds.hpp"
 #include "graspfit/base/list_text.hpp"
 
 namespace graspfit::hands::internal {
@@ -284,13 +285,6 @@ nlohmann::ordered_json list_of(const Items& items) {
   return out;
 }
 
-/// What the parser said, without its own prefix "[json.exception.parse_error.101] ".
-std::string plain(const json::exception& error) {
-  const std::string what = error.what();
-  const std::size_t end = what.find("] ");
-  return end == std::string::npos ? what : what.substr(end + 2);
-}
-
 }  // namespace
 
 Sidecar parse_sidecar(const std::string& text, const std::string& file) {
@@ -298,7 +292,7 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   try {
     document = json::parse(text);
   } catch (const json::exception& error) {
-    throw IoError(file + ": not JSON: " + plain(error));
+    throw IoError(file + ": not JSON: " + base::json_fault(error.what()));
   }
   const Item root(document, file, "");
   root.require_fields({"format", "hand", "description", "conventions", "fingers", "pads", "palm",

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <string>
-#include <vector>
 
 namespace graspfit::hands::internal {
 
@@ -12,13 +11,6 @@ inline std::string rounded(double value) {
   const auto [end, error] =
       std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3);
   return {text, end};
-}
-
-/// "a, b, c".
-inline std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace graspfit::hands::internal

@@ -26,4 +26,7 @@ void require_bounded_json(std::string_view text, const std::string& name);
 /// large is not read first.
 std::string read_json_file(const std::filesystem::path& file);
 
+/// What a parser of nlohmann's has said, without its prefix "[json.exception.parse_error.101] ".
+std::string json_fault(const std::string& what);
+
 }  // namespace graspfit::base

@@ -11,6 +11,7 @@
 #include "config/axis_label.hpp"
 #include "config/config_node.hpp"
 #include "config/object_axis.hpp"
+#include "config/placed_axis.hpp"
 #include "graspfit/base/json_bounds.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
@@ -23,20 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 using internal::ConfigNode;
+using internal::find_value;
 using internal::is_label;
+using internal::labels_text;
+using internal::PlacedAxis;
+using internal::plain_label;
 using SortedJson = nlohmann::json;
 
 constexpr std::size_t kMostCells = 1000000;  // A sweep beyond that is a mistake in its axes.
 
 /// Settings that say what an object is: one of them, so naming one leaves the others behind.
 constexpr std::array kObjectSources = {"file", "packaged", "shape"};
-
-/// An axis with where its values were written, for messages.
-struct PlacedAxis {
-  Axis axis;
-  std::vector<std::string> places;  ///< One per value.
-  bool is_picked = false;           ///< By `quick` or the command line: asked for as it is.
-};
 
 /// The configuration while it is put together.
 struct Draft {
@@ -45,152 +43,6 @@ struct Draft {
   std::map<std::string, std::string> setting_places;
   std::vector<PlacedAxis> axes;
 };
-
-std::string plain_label(const SortedJson& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
-  if (value.is_number_integer()) return value.dump();
-  return base::shortest_decimal(value.get<double>());
-}
-
-/// "there are a, b, c", and which of these labels an unknown one is near to.
-std::string labels_text(const Axis& axis, const std::string& unknown) {
-  std::vector<std::string> labels;
-  for (const AxisValue& value : axis.values) labels.push_back(value.label);
-  return "there are " + base::known_names(unknown, labels);
-}
-
-AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
-  AxisValue value;
-  SortedJson settings = SortedJson::object();
-  if (node.json().is_object()) {
-    value.label = node.at("name").text();
-    for (const auto& [key, member] : node.members()) {
-      if (key == "note") member.text();
-      if (key != "name" && key != "note") settings[key] = SortedJson(member.json());
-    }
-  } else {
-    if (!node.json().is_primitive() || node.json().is_null()) {
-      node.fail("is " + node.json().dump() +
-                "; a value is a number, a text, true, false, or an object with a name");
-    }
-    settings[axis] = SortedJson(node.json());
-    value.label = plain_label(settings[axis]);
-  }
-  if (!is_label(value.label)) {
-    node.fail("is named \"" + value.label + "\"; names are made of letters, digits and _.+-");
-  }
-  value.settings = settings.dump();
-  return value;
-}
-
-/// The value of an axis with that label, or −1.
-std::ptrdiff_t find_value(const Axis& axis, const std::string& label) {
-  const auto found = std::find_if(axis.values.begin(), axis.values.end(),
-                                  [&](const AxisValue& value) { return value.label == label; });
-  return found == axis.values.end() ? -1 : found - axis.values.begin();
-}
-
-/// Keeps the values with these labels, in their old order.
-void keep_values(const std::vector<ConfigNode>& labels, PlacedAxis& placed) {
-  std::set<std::ptrdiff_t> kept;
-  for (const ConfigNode& label : labels) {
-    const std::string name =
-        label.json().is_primitive() ? plain_label(SortedJson(label.json())) : "";
-    const std::ptrdiff_t index = find_value(placed.axis, name);
-    if (index < 0) {
-      label.fail("is no value of axis " + placed.axis.name + "; " + labels_text(placed.axis, name));
-    }
-    kept.insert(index);
-  }
-  PlacedAxis remaining;
-  remaining.axis.name = placed.axis.name;
-  for (const std::ptrdiff_t index : kept) {
-    remaining.axis.values.push_back(placed.axis.values[static_cast<std::size_t>(index)]);
-    remaining.places.push_back(placed.places[static_cast<std::size_t>(index)]);
-  }
-  placed = std::move(remaining);
-}
-
-/// What `quick` has of an axis: values by their labels, in their old order, then its own.
-void pick_values(const ConfigNode& picks, PlacedAxis& placed) {
-  PlacedAxis own;
-  std::vector<ConfigNode> labels;
-  for (const ConfigNode& pick : picks.items()) {
-    if (!pick.json().is_object()) {
-      labels.push_back(pick);
-      continue;
-    }
-    AxisValue value = read_axis_value(placed.axis.name, pick);
-    if (find_value(placed.axis, value.label) >= 0 || find_value(own.axis, value.label) >= 0) {
-      pick.fail("is the second value named " + value.label);
-    }
-    own.axis.values.push_back(std::move(value));
-    own.places.push_back(pick.place());
-  }
-  keep_values(labels, placed);
-  std::move(own.axis.values.begin(), own.axis.values.end(), std::back_inserter(placed.axis.values));
-  std::move(own.places.begin(), own.places.end(), std::back_inserter(placed.places));
-  placed.is_picked = true;
-}
-
-ConfigNode::Json parse(const std::string& file, const std::string& text) {
-  try {
-    return ConfigNode::Json::parse(text);
-  } catch (const ConfigNode::Json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, ...": the part in brackets is noise.
-    std::string what = error.what();
-    if (const std::size_t end = what.find("] "); end != std::string::npos) what.erase(0, end + 2);
-    throw base::IoError(file + ": is not JSON: " + what);
-  }
-}
-
-/// {"values_of": SLUG, "only": [labels]}: the values of the axis `name` in the configuration of
-/// another experiment in `folder`.
-std::vector<AxisValue> values_of(const ConfigNode& item, const std::string& name,
-                                 const fs::path& folder) {
-  item.require_members({"values_of"}, {"only"});
-  const ConfigNode slug = item.at("values_of");
-  if (!is_label(slug.text())) slug.fail("is not the name of an experiment");
-  const fs::path file = folder / (slug.text() + ".json");
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) slug.fail("has no configuration beside this one");
-  const ConfigNode::Json json = parse(file.string(), base::read_json_file(file));
-  PlacedAxis other;
-  other.axis.name = name;
-  for (const ConfigNode& value : ConfigNode(file.string(), json).at("axes").at(name).items()) {
-    other.axis.values.push_back(read_axis_value(name, value));
-    other.places.push_back(value.place());
-  }
-  if (item.has("only")) keep_values(item.at("only").items(), other);
-  return other.axis.values;
-}
-
-/// `folder` is that of the configuration.
-PlacedAxis read_axis(const std::string& name, const ConfigNode& node, const fs::path& folder) {
-  if (!is_label(name) || name == "seed") {
-    node.fail("no axis can be named \"" + name + "\"; \"seeds\" makes the axis seed");
-  }
-  PlacedAxis placed;
-  placed.axis.name = name;
-  std::set<std::string> labels;
-  for (const ConfigNode& item : node.items()) {
-    std::vector<AxisValue> values;
-    if (item.json().is_object() && item.has("values_of")) {
-      values = values_of(item, name, folder);
-    } else {
-      values = {read_axis_value(name, item)};
-    }
-    for (AxisValue& value : values) {
-      if (!labels.insert(value.label).second) {
-        item.fail("is the second value named " + value.label);
-      }
-      placed.axis.values.push_back(std::move(value));
-      placed.places.push_back(item.place());
-    }
-  }
-  return placed;
-}
 
 void read_settings(const ConfigNode& node, Draft& draft) {
   for (const auto& [key, value] : node.members()) {
@@ -205,22 +57,6 @@ void forget_other_objects(const std::string& key, Draft& draft) {
   for (const char* const source : kObjectSources) draft.settings.erase(source);
 }
 
-PlacedAxis seed_axis(const ConfigNode& node) {
-  constexpr std::uint64_t kMostSeeds = 100000;
-  const std::uint64_t count = node.unsigned_integer();
-  if (count < 1 || count > kMostSeeds) {
-    node.fail("is " + std::to_string(count) + ", must be in [1, " + std::to_string(kMostSeeds) +
-              "]");
-  }
-  PlacedAxis placed;
-  placed.axis.name = "seed";
-  for (std::uint64_t seed = 1; seed <= count; ++seed) {
-    placed.axis.values.push_back({std::to_string(seed), "{}"});
-    placed.places.push_back(node.place());
-  }
-  return placed;
-}
-
 PlacedAxis* find_axis(Draft& draft, const std::string& name) {
   const auto found = std::find_if(draft.axes.begin(), draft.axes.end(),
                                   [&](const PlacedAxis& axis) { return axis.axis.name == name; });
@@ -232,7 +68,7 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
   if (quick.has("seeds")) {
     PlacedAxis* const seeds = find_axis(draft, "seed");
     if (seeds == nullptr) quick.at("seeds").fail("there are no \"seeds\" to have fewer of");
-    *seeds = seed_axis(quick.at("seeds"));
+    *seeds = internal::seed_axis(quick.at("seeds"));
   }
   if (quick.has("settings")) {
     for (const auto& [key, value] : quick.at("settings").members()) {
@@ -248,7 +84,7 @@ void apply_quick(const ConfigNode& quick, Draft& draft) {
       for (const PlacedAxis& axis : draft.axes) names.push_back(axis.axis.name);
       labels.fail("there is no axis of that name" + base::did_you_mean(name, names));
     }
-    pick_values(labels, *placed);
+    internal::pick_values(labels, *placed);
   }
 }
 
@@ -311,9 +147,9 @@ void apply_change(const AxisChange& change, Draft& draft) {
   const PlacedAxis* const old = find_axis(draft, change.axis);
   std::set<std::string> labels;
   for (const std::string& text : change.values) {
-    const std::ptrdiff_t index = old == nullptr ? -1 : find_value(old->axis, text);
-    if (index >= 0) {
-      changed.axis.values.push_back(old->axis.values[static_cast<std::size_t>(index)]);
+    const auto index = old == nullptr ? std::nullopt : find_value(old->axis, text);
+    if (index) {
+      changed.axis.values.push_back(old->axis.values[*index]);
     } else if (old == nullptr || has_plain_values(old->axis)) {
       changed.axis.values.push_back(changed_value(change, text));
     } else {
@@ -361,7 +197,7 @@ void add_default_objects(Draft& draft) {
   if (std::none_of(values.begin(), values.end(), lacks_data)) return;
   const bool has_sizes = size_axis_of(draft) != nullptr || draft.settings.contains("size_m");
   for (AxisValue& object : internal::default_objects(has_sizes)) {
-    if (find_value(placed->axis, object.label) >= 0) continue;
+    if (find_value(placed->axis, object.label)) continue;
     values.push_back(std::move(object));
     placed->places.push_back("default objects");
   }
@@ -443,7 +279,7 @@ void require_separate_axes(const Draft& draft) {
 std::string place_of(const Draft& draft, const Cell& cell, const std::string& key) {
   for (std::size_t i = 0; i < draft.axes.size(); ++i) {
     const Axis& axis = draft.axes[i].axis;
-    const auto index = static_cast<std::size_t>(find_value(axis, cell.labels[i]));
+    const std::size_t index = find_value(axis, cell.labels[i]).value();
     if (!SortedJson::parse(axis.values[index].settings).contains(key)) continue;
     const std::string& place = draft.axes[i].places[index];
     return key == axis.name ? place : place + '/' + key;
@@ -524,7 +360,7 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
   config.file = file.string();
   const std::string text = base::read_json_file(file);
   config.sha256 = base::sha256_hex(text);
-  const ConfigNode::Json json = parse(config.file, text);
+  const ConfigNode::Json json = internal::parsed_config(config.file, text);
   const ConfigNode root(config.file, json);
   root.require_members({"experiment", "question", "cell", "seed", "axes"},
                        {"seeds", "settings", "quick"});
@@ -538,10 +374,10 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
   draft.file = config.file;
   if (root.has("settings")) read_settings(root.at("settings"), draft);
   for (const auto& [name, values] : root.at("axes").members()) {
-    draft.axes.push_back(read_axis(name, values, file.parent_path()));
+    draft.axes.push_back(internal::read_axis(name, values, file.parent_path()));
   }
   if (draft.axes.empty()) root.at("axes").fail("is empty; a sweep has at least one axis");
-  if (root.has("seeds")) draft.axes.push_back(seed_axis(root.at("seeds")));
+  if (root.has("seeds")) draft.axes.push_back(internal::seed_axis(root.at("seeds")));
   if (request.is_quick) {
     if (!root.has("quick")) root.at("quick");
     apply_quick(root.at("quick"), draft);

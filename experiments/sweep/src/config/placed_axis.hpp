@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/config_node.hpp"
+#include "graspfit/sweep/parameter_sweep.hpp"
+
+namespace graspfit::sweep::internal {
+
+/// An axis with where its values were written, for messages.
+struct PlacedAxis {
+  Axis axis;
+  std::vector<std::string> places;  ///< One per value.
+  bool is_picked = false;           ///< By `quick` or the command line: asked for as it is.
+};
+
+/// The text of a number, text, true or false as a label.
+std::string plain_label(const nlohmann::json& value);
+
+/// "there are a, b, c", and which of these labels an unknown one is near to.
+std::string labels_text(const Axis& axis, const std::string& unknown);
+
+/// The place of the value of an axis with that label; empty if there is none.
+std::optional<std::size_t> find_value(const Axis& axis, const std::string& label);
+
+/// The JSON of a configuration. @throws IoError: file and place.
+ConfigNode::Json parsed_config(const std::string& file, const std::string& text);
+
+/// An axis of a configuration in `folder`, where `{"values_of": SLUG, "only": [labels]}` are values
+/// of another configuration there.
+PlacedAxis read_axis(const std::string& name, const ConfigNode& node,
+                     const std::filesystem::path& folder);
+
+/// The axis seed from a number of seeds.
+PlacedAxis seed_axis(const ConfigNode& node);
+
+/// What `quick` has of an axis: values by their labels, in their old order, then its own.
+void pick_values(const ConfigNode& picks, PlacedAxis& placed);
+
+}  // namespace graspfit::sweep::internal
