@@ -6,7 +6,8 @@
 namespace graspfit::testing {
 
 /// A rectangular pad in the x-y plane of its link, facing z [m].
-inline hands::ContactPad rectangular_pad(double width, double length, int link, int finger) {
+inline hands::ContactPad rectangular_pad(double width, double length, int link,
+                                         std::optional<int> finger) {
   hands::ContactPad pad;
   pad.name = "pad_" + std::to_string(link);
   pad.link = link;
@@ -27,7 +28,8 @@ inline hands::HandModel pad_hand(int num_fingers, double width = 0.02, double le
     body.name = "link_" + std::to_string(link);
     if (link > 0) body.parent_link = 0;
     hand.links.push_back(body);
-    hand.pads.push_back(rectangular_pad(width, length, link, link - 1));
+    hand.pads.push_back(
+        rectangular_pad(width, length, link, link == 0 ? std::nullopt : std::optional(link - 1)));
     if (link == 0) continue;
     hands::Finger finger;
     finger.name = "finger_" + std::to_string(link);
@@ -48,7 +50,7 @@ inline contact::Contact ball_contact(const hands::HandModel& hand, int finger,
   contact::Contact contact;
   contact.point_O = radius * direction;
   contact.inward_normal_O = -direction;
-  contact.finger = finger;
+  if (finger >= 0) contact.finger = finger;
   contact.link = finger + 1;
   contact.pad = finger + 1;
   contact.area = 0.3 * hands::pad_area(hand.pads[contact.pad]);

@@ -10,7 +10,6 @@ namespace test_grasp_predicates {
 
 using namespace graspfit::experiments;
 using graspfit::contact::Contact;
-using graspfit::contact::kPalm;
 using graspfit::grasp::Grasp;
 
 namespace {
@@ -92,7 +91,7 @@ TEST_CASE("Parts that touch are told by name", "[experiments][grasp_predicates]"
   const auto hand = graspfit::hands::find_hand("barrett");
   std::vector<Contact> contacts(3);
   contacts[0].finger = 0;
-  contacts[1].finger = kPalm;
+  contacts[1].finger.reset();  // the palm
   contacts[2].finger = 1;
   contacts[2].gap = 0.001;
   const std::string first = hand.fingers[0].name;

@@ -185,7 +185,8 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
                                             .force_limit = 2.0,
                                             .outside = contact::OutsideValue::MinusOne};
       measured.penetration.surroundings_touched = true;
-      measured.targets.contacts[1].finger = contact::kPalm;
+      measured.targets.contacts[1].is_palm = true;
+      measured.targets.contacts[1].finger.reset();
     }
     if (!measured.contacts.empty()) measured.contacts[0].weak = i == 2;
     file.grasps.push_back(measured);

@@ -76,14 +76,16 @@ inline std::string all_fields(const Grasp& grasp) {
   for (const auto& target : grasp.targets.contacts) {
     vector(target.point_O);
     vector(target.outward_normal_O);
-    out << target.patch << ' ' << target.score << ' ' << target.finger << '\n';
+    out << target.patch.value_or(-1) << ' ' << target.score << ' ' << target.is_palm << ' '
+        << target.finger.value_or(-1) << '\n';
   }
   for (const auto& contact : grasp.contacts) {
     vector(contact.point_O);
     vector(contact.inward_normal_O);
     out << contact.area << ' ' << contact.pad_boundary_distance << ' ' << contact.gap << ' '
-        << contact.link << ' ' << contact.pad << ' ' << contact.finger << ' ' << contact.is_target
-        << ' ' << (contact.weak ? (*contact.weak ? "weak" : "strong") : "unknown") << '\n';
+        << contact.link << ' ' << contact.pad << ' ' << contact.finger.value_or(-1) << ' '
+        << contact.is_target << ' '
+        << (contact.weak ? (*contact.weak ? "weak" : "strong") : "unknown") << '\n';
   }
   const contact::ContactQuality& quality = grasp.quality;
   out << quality.m1 << ' ' << quality.m2 << ' ' << quality.m3 << ' ' << quality.m << ' '
@@ -271,7 +273,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     target_options.min_separation = std::numeric_limits<double>::infinity();
     for (const int finger : fingers) {
       target_options.min_separation = std::min(target_options.min_separation,
-                                               pad_width(hand.pads[hand.fingers[finger].tip_pad]));
+                                               pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
     }
   }
   const grasp::SurroundingsCollision surroundings(hand, run.surroundings);
@@ -298,10 +300,10 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       for (const auto& target : g.targets.contacts) {
         const bool is_near =
             std::any_of(g.contacts.begin(), g.contacts.end(), [&](const contact::Contact& contact) {
-              return contact.finger == target.finger && contact.is_target &&
+              return grasp::is_for_part_of(target, contact) && contact.is_target &&
                      (contact.point_O - target.point_O).norm() <= *options.largest_deviation;
             });
-        if (!is_near) wrong("no contact near the target of finger ", target.finger);
+        if (!is_near) wrong("no contact near the target of finger ", target.finger.value_or(-1));
       }
     }
     if (has_targets ? !(g.ideal_m > 0.0) : g.ideal_m != 0.0) wrong("ideal M ", g.ideal_m);
@@ -315,7 +317,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       wrong(line);
     }
     std::vector<int> assigned;
-    for (const auto& target : g.targets.contacts) assigned.push_back(target.finger);
+    for (const auto& target : g.targets.contacts) assigned.push_back(target.finger.value_or(-1));
     if (has_targets &&
         !std::is_permutation(assigned.begin(), assigned.end(), fingers.begin(), fingers.end())) {
       wrong("targets are not one for each finger");

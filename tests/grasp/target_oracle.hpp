@@ -84,7 +84,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
   if (parts.palm) {
     const grasp::TargetContact palm = contacts.back();
     contacts.pop_back();
-    if (palm.finger != contact::kPalm) report("the last target is not the palm's");
+    if (!palm.is_palm) report("the last target is not the palm's");
     for (const grasp::TargetContact& target : contacts) {
       const Eigen::Vector3d from_palm = target.point_O - palm.point_O;
       if (!(from_palm.dot(palm.outward_normal_O) < 0.0)) report("a target behind the palm");
@@ -110,12 +110,13 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
   std::set<int> patches;
   for (std::size_t i = 0; i < targets.contacts.size(); ++i) {
     const grasp::TargetContact& target = targets.contacts[i];
-    if (target.patch < 0 || target.patch >= static_cast<int>(object.patches.size())) {
-      report("target ", i, ": patch ", target.patch);
+    const int patch_index = target.patch.value_or(-1);
+    if (patch_index < 0 || patch_index >= static_cast<int>(object.patches.size())) {
+      report("target ", i, ": patch ", patch_index);
       return broken;
     }
-    if (!patches.insert(target.patch).second) report("target ", i, ": patch used twice");
-    const geometry::SurfacePatch& patch = object.patches[target.patch];
+    if (!patches.insert(patch_index).second) report("target ", i, ": patch used twice");
+    const geometry::SurfacePatch& patch = object.patches[patch_index];
     if (!patch.has_normal) report("target ", i, ": patch without a normal");
     if (target.point_O != patch.centroid) report("target ", i, ": not the patch's centroid");
     if (target.outward_normal_O != patch.outward_normal) report("target ", i, ": other normal");
@@ -123,10 +124,10 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
       report("target ", i, ": normal of length ", target.outward_normal_O.norm());
     }
     if (options.exclude_weak && !object.is_weak_patch.empty() &&
-        object.is_weak_patch[target.patch]) {
+        object.is_weak_patch[patch_index]) {
       report("target ", i, ": on a weak feature");
     }
-    if (target.score != object.scores.scores[target.patch]) report("target ", i, ": other score");
+    if (target.score != object.scores.scores[patch_index]) report("target ", i, ": other score");
     if (!(target.score > options.score_threshold)) report("target ", i, ": score ", target.score);
   }
 

@@ -103,7 +103,7 @@ inline TargetSelection select(const grasp::ObjectModel& object, const PartDistan
 
 inline std::vector<int> patches_of(const grasp::TargetContacts& targets) {
   std::vector<int> patches;
-  for (const auto& target : targets.contacts) patches.push_back(target.patch);
+  for (const auto& target : targets.contacts) patches.push_back(target.patch.value());
   return patches;
 }
 inline std::vector<int> patches_of(const TargetSelection& selection) {

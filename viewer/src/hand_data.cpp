@@ -49,7 +49,7 @@ Json fingers(const hands::HandModel& hand) {
     list.push_back({{"name", finger.name},
                     {"is_thumb", finger.is_thumb},
                     {"joints", finger.joints},
-                    {"tip_pad", finger.tip_pad}});
+                    {"tip_pad", finger.tip_pad.value_or(-1)}});
   }
   return list;
 }
@@ -60,7 +60,7 @@ Json pads(const hands::HandModel& hand, double clip_thickness) {
     const double thickness = pad.clip_thickness.value_or(clip_thickness);
     list.push_back({{"name", pad.name},
                     {"link", pad.link},
-                    {"finger", pad.finger},
+                    {"finger", pad.finger.value_or(-1)},
                     {"X_LC", to_json(pad.X_LC)},
                     {"clip", thickness > 0.0 ? clip_volume(pad, thickness) : Json(nullptr)}});
   }

@@ -55,9 +55,9 @@ Json views(const hands::HandModel& hand) {
   Eigen::Vector3d others = Eigen::Vector3d::Zero();  // mean of the other fingers' tips
   double num_others = 0.0;
   for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
-    if (hand.fingers[f].tip_pad < 0) continue;
+    if (!hand.fingers[f].tip_pad) continue;
     const Eigen::Vector3d tip =
-        hands::pad_pose(hand, hand.fingers[f].tip_pad, X_HL).translation() - hand.palm.center_H;
+        hands::pad_pose(hand, *hand.fingers[f].tip_pad, X_HL).translation() - hand.palm.center_H;
     if (static_cast<int>(f) == hand.thumb()) {
       thumb = tip;
     } else {

@@ -15,8 +15,8 @@ namespace {
 using base::InvalidInput;
 using geometry::RigidTransform;
 
-std::string finger_name(const hands::HandModel& hand, int finger) {
-  return finger < 0 ? "palm" : hand.fingers[finger].name;
+std::string finger_name(const hands::HandModel& hand, const std::optional<int>& finger) {
+  return finger ? hand.fingers[*finger].name : "palm";
 }
 
 Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
@@ -47,8 +47,7 @@ Json targets(const PageInput& input, const grasp::Grasp& grasp) {
     list.push_back(
         {{"point", to_json(target.point_O)},
          {"normal", to_json(target.outward_normal_O)},
-         {"finger",
-          target.finger == grasp::kUnassigned ? "" : finger_name(input.hand, target.finger)},
+         {"finger", target.is_palm || target.finger ? finger_name(input.hand, target.finger) : ""},
          {"score", target.score}});
   }
   return list;
@@ -188,10 +187,13 @@ void validate(const PageInput& input) {
       }
     }
   }
-  const auto is_index = [](int index, std::size_t size, int lowest) {
-    return index >= lowest && index < static_cast<int>(size);
+  const auto is_index = [](int index, std::size_t size) {
+    return index >= 0 && index < static_cast<int>(size);
   };
   const hands::HandModel& hand = input.hand;
+  const auto has_no_finger = [&](const std::optional<int>& finger) {
+    return finger && !is_index(*finger, hand.fingers.size());
+  };
   for (std::size_t i = 0; i < input.grasps.size(); ++i) {
     const grasp::Grasp& grasp = input.grasps[i];
     const std::string name = "grasp " + std::to_string(i + 1);
@@ -204,21 +206,21 @@ void validate(const PageInput& input) {
     if (grasp.pre_grasp) require_joints("pre-grasp of " + name, grasp.pre_grasp->configuration.q);
     if (grasp.squeeze) require_joints("squeeze of " + name, grasp.squeeze->configuration.q);
     for (const contact::Contact& contact : grasp.contacts) {
-      if (!is_index(contact.link, hand.links.size(), 0) ||
-          !is_index(contact.finger, hand.fingers.size(), -1)) {
+      if (!is_index(contact.link, hand.links.size()) || has_no_finger(contact.finger)) {
         refuse(name + " has a contact of link " + std::to_string(contact.link) + " and finger " +
-               std::to_string(contact.finger) + ", which " + hand.name + " does not have");
+               (contact.finger ? std::to_string(*contact.finger) : "none") + ", which " +
+               hand.name + " does not have");
       }
     }
     for (const grasp::TargetContact& target : grasp.targets.contacts) {
-      if (!is_index(target.finger, hand.fingers.size(), grasp::kUnassigned)) {
-        refuse(name + " has a target of finger " + std::to_string(target.finger) + ", which " +
+      if (has_no_finger(target.finger)) {
+        refuse(name + " has a target of finger " + std::to_string(*target.finger) + ", which " +
                hand.name + " does not have");
       }
     }
     const int num_contacts = static_cast<int>(grasp.contacts.size());
     for (const contact::StablePair& pair : grasp.quality.stable_pairs) {
-      if (!is_index(pair.first, num_contacts, 0) || !is_index(pair.second, num_contacts, 0)) {
+      if (!is_index(pair.first, num_contacts) || !is_index(pair.second, num_contacts)) {
         refuse(name + " has a stable pair of contacts " + std::to_string(pair.first) + " and " +
                std::to_string(pair.second) + " of " + std::to_string(num_contacts));
       }
@@ -226,7 +228,7 @@ void validate(const PageInput& input) {
     for (const std::optional<int>& link :
          {grasp.penetration.object_link, grasp.penetration.self_link_a,
           grasp.penetration.self_link_b}) {
-      if (link && !is_index(*link, hand.links.size(), 0)) {
+      if (link && !is_index(*link, hand.links.size())) {
         refuse(name + " penetrates with link " + std::to_string(*link) + ", which " + hand.name +
                " does not have");
       }

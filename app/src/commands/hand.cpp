@@ -72,7 +72,7 @@ ExitCode run_hand_list(const std::vector<std::string>& arguments) {
       const hands::HandModel& hand = reading.model;
       std::printf("%s: %zu fingers, %zu joints, %d independent, %zu pads%s\n", name.c_str(),
                   hand.fingers.size(), hand.joints.size(), hand.num_intrinsic_dof(),
-                  hand.pads.size(), hand.palm.pad < 0 ? "" : ", one on the palm");
+                  hand.pads.size(), hand.palm.pad ? ", one on the palm" : "");
       if (!reading.description.empty()) std::printf("  %s\n", reading.description.c_str());
       std::printf("  %s\n", hand.description_file.c_str());
     } catch (const base::Error& error) {

@@ -61,7 +61,7 @@ std::string names_of(const Items& items, const std::vector<int>& indices) {
 
 template <class Items>
 std::string name_or_dash(const Items& items, std::optional<int> index) {
-  return !index || *index < 0 ? "-" : items[static_cast<std::size_t>(*index)].name;
+  return index ? items[static_cast<std::size_t>(*index)].name : "-";
 }
 
 std::string coupling_text(const HandModel& hand, const hands::Joint& joint) {
@@ -118,7 +118,7 @@ void print_fingers(const HandModel& hand) {
   for (const hands::Finger& finger : hand.fingers) {
     rows.push_back({finger.name, finger.is_thumb ? "yes" : "-",
                     name_or_dash(hand.pads, finger.tip_pad),
-                    name_or_dash(hand.joints, finger.swing_joint.value_or(-1)),
+                    name_or_dash(hand.joints, finger.swing_joint),
                     names_of(hand.links, finger.links), names_of(hand.joints, finger.joints)});
   }
   print_table("fingers", rows);
@@ -128,7 +128,7 @@ void print_pads(const HandModel& hand) {
   std::vector<std::vector<std::string>> rows = {
       {"pad", "finger", "link", "area_mm2", "inradius_mm", "height_mm", "clip_mm"}};
   for (const hands::ContactPad& pad : hand.pads) {
-    rows.push_back({pad.name, pad.finger < 0 ? "palm" : name_or_dash(hand.fingers, pad.finger),
+    rows.push_back({pad.name, pad.finger ? name_or_dash(hand.fingers, pad.finger) : "palm",
                     name_or_dash(hand.links, pad.link), fixed_decimal(1e6 * pad_area(pad), 1),
                     fixed_decimal(1e3 * largest_boundary_distance(pad), 2),
                     fixed_decimal(1e3 * pad_height(pad), 2),

@@ -199,7 +199,7 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
 void require_possible(const Flags& flags, const hands::HandModel& hand,
                       const grasp::PlannerOptions& options) {
   const bool has_palm = options.palm.value_or(options.style == grasp::GraspStyle::Power);
-  if (has_palm && hand.palm.pad < 0) {
+  if (has_palm && !hand.palm.pad) {
     throw base::InvalidInput("hand " + hand.name + " has no pad on its palm to touch with" +
                              (flags.has("palm") ? "" : "; --no-palm asks for none"));
   }

@@ -108,7 +108,7 @@ std::vector<contact::Contact> contacts_on_pads(const ContactSet& set,
                                std::to_string(hand.fingers.size()) + " fingers for " +
                                std::to_string(set.contacts.size()) + " contacts");
     }
-    const int pad = hand.fingers[i].tip_pad;
+    const int pad = *hand.fingers[i].tip_pad;
     const BallContact& given = set.contacts[i];
     contact::Contact contact;
     contact.point_O = set.radius * given.direction;

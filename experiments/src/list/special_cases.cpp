@@ -96,9 +96,8 @@ std::string contacts_text(const grasp::Grasp& grasp, const hands::HandModel& han
   constexpr double kHundredthsOfMillimeter = 1e5;
   std::string text;
   for (const contact::Contact& contact : grasp.contacts) {
-    const std::string part = contact.finger == contact::kPalm
-                                 ? "palm"
-                                 : hand.fingers[static_cast<std::size_t>(contact.finger)].name;
+    const std::string part =
+        contact.finger ? hand.fingers[static_cast<std::size_t>(*contact.finger)].name : "palm";
     text += (text.empty() ? "" : "; ") + part + ' ' +
             sweep::csv_field(std::round(contact.gap * kHundredthsOfMillimeter) / 100.0);
   }

@@ -32,7 +32,7 @@ GraspFile empty_file(const grasp::ObjectFile& object, const hands::HandModel& ha
   file.link_mesh_sha256 = grasp::internal::link_mesh_hashes(hand);
   file.options = options;
   const grasp::RequestedParts requested = grasp::requested_parts(hand, options);
-  if (requested.palm && hand.palm.pad < 0) {
+  if (requested.palm && !hand.palm.pad) {
     throw base::InvalidInput("import_grasps: hand " + hand.name +
                              " has no pad on its palm to touch with");
   }

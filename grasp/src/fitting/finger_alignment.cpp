@@ -32,8 +32,8 @@ bool is_one_sided(const hands::HandModel& hand) {
   const Vector3d zero_azimuth = axis.unitOrthogonal();
   std::vector<double> azimuths;
   for (const hands::Finger& finger : hand.fingers) {
-    if (finger.tip_pad < 0) continue;
-    const Vector3d tip = hands::pad_contact_point(hand, finger.tip_pad, X_HL);
+    if (!finger.tip_pad) continue;
+    const Vector3d tip = hands::pad_contact_point(hand, *finger.tip_pad, X_HL);
     azimuths.push_back(azimuth_error(zero_azimuth, tip - hand.palm.center_H, axis));
   }
   if (azimuths.empty()) return false;
@@ -55,9 +55,9 @@ Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
   Vector3d to_tips = Vector3d::Zero();
   int num_fingers = 0;
   for (const TargetContact& target : targets.contacts) {
-    if (target.finger == contact::kPalm) return palm_center;
+    if (target.is_palm) return palm_center;
     to_tips +=
-        hands::pad_contact_point(hand, hand.fingers[target.finger].tip_pad, X_OL) - palm_center;
+        hands::pad_contact_point(hand, *hand.fingers[*target.finger].tip_pad, X_OL) - palm_center;
     ++num_fingers;
   }
   to_tips /= num_fingers;
@@ -86,14 +86,14 @@ hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
   configuration.X_OH.linear() =
       Eigen::Quaterniond::FromTwoVectors(hand.palm.direction_H, direction).toRotationMatrix();
   std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
-  const bool has_palm = targets.contacts.back().finger == contact::kPalm;
+  const bool has_palm = targets.contacts.back().is_palm;
   const Vector3d pivot =
       (has_palm ? targets.contacts.back().point_O : targets.centroid()) - distance * direction;
   configuration.X_OH.pretranslate(
       Vector3d(pivot - turning_point(hand, is_one_sided(hand), X_OL, targets)));
   const TargetContact& seed = targets.contacts.front();
   X_OL = hands::forward_kinematics(hand, configuration);
-  const Vector3d tip = hands::pad_contact_point(hand, hand.fingers[seed.finger].tip_pad, X_OL);
+  const Vector3d tip = hands::pad_contact_point(hand, *hand.fingers[*seed.finger].tip_pad, X_OL);
   const double angle = azimuth_error(tip - pivot, seed.point_O - pivot, direction);
   configuration.X_OH = turned(configuration.X_OH, pivot, direction, angle + placement.turn);
   configuration.q = aligned_swing(hand, configuration, targets);

@@ -20,7 +20,7 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
     throw base::InvalidInput("assign_fingers: " + std::to_string(parts.size()) + " parts for " +
                              std::to_string(targets.contacts.size()) + " targets");
   }
-  if (parts.palm != (targets.contacts.back().finger == contact::kPalm)) {
+  if (parts.palm != targets.contacts.back().is_palm) {
     throw base::InvalidInput(
         "assign_fingers: the palm's target must be there exactly if the palm is asked for, and be "
         "the last one");

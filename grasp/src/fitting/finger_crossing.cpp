@@ -102,7 +102,7 @@ HandConfiguration with_fingers_apart(const FittingHand& hand, const TargetContac
   const HandModel& model = hand.model();
   std::vector<bool> has_target(model.fingers.size(), false);
   for (const TargetContact& target : targets.contacts) {
-    if (target.finger >= 0) has_target[target.finger] = true;
+    if (target.finger) has_target[*target.finger] = true;
   }
   std::vector<int> placed, free;
   for (std::size_t f = 0; f < model.fingers.size(); ++f) {

@@ -21,8 +21,8 @@ double azimuth_error(const Vector3d& from, const Vector3d& to, const Vector3d& a
 AzimuthOfFinger::AzimuthOfFinger(const hands::HandModel& hand, int finger)
     : hand_(hand),
       finger_(hand.fingers[finger]),
-      chain_(hands::links_to(hand, hand.pads[finger_.tip_pad].link)),
-      contact_C_(hands::pad_contact_point_C(hand.pads[finger_.tip_pad])),
+      chain_(hands::links_to(hand, hand.pads[*finger_.tip_pad].link)),
+      contact_C_(hands::pad_contact_point_C(hand.pads[*finger_.tip_pad])),
       X_OL_(hand.links.size()) {}
 
 double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
@@ -35,7 +35,7 @@ double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
       pivot = X_OL_[swing.parent_link] * swing.X_PJ.translation();
     }
   }
-  const Vector3d tip = X_OL_[chain_.back()] * (hand_.pads[finger_.tip_pad].X_LC * contact_C_);
+  const Vector3d tip = X_OL_[chain_.back()] * (hand_.pads[*finger_.tip_pad].X_LC * contact_C_);
   const Vector3d axis = (configuration.X_OH.linear() * hand_.palm.direction_H).normalized();
   return azimuth_error(tip - pivot, point_O - pivot, axis);
 }
@@ -97,8 +97,8 @@ std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::Han
                                                                 const TargetContacts& targets) {
   std::map<std::optional<int>, std::vector<Look>> looks;
   for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
-    const int finger = targets.contacts[t].finger;
-    if (finger == contact::kPalm) continue;
+    if (targets.contacts[t].is_palm) continue;
+    const int finger = *targets.contacts[t].finger;
     std::optional<int> leader = hand.fingers[finger].swing_joint;
     if (leader) leader = hands::leader_of(hand, *leader);
     looks[leader].push_back({finger, static_cast<int>(t)});

@@ -88,7 +88,7 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
   const int steps_to_far = steps_of(std::ceil(far / step));
   const int most_steps = rule.most_steps.value_or(steps_to_far);
   if (!retreat(start, step, most_steps) && !rule.closes_in_collision) return failed_start();
-  if (rule.palm_may_touch && model_.palm.pad >= 0) {
+  if (rule.palm_may_touch && model_.palm.pad) {
     bring_palm((start.X_OH.translation() - initial_.X_OH.translation()).dot(palm_direction()));
   }
   seat_palm(0.0);
@@ -139,7 +139,7 @@ void FittingLoop::add_part(int finger, bool has_target) {
   part.finger = finger;
   part.has_target = has_target;
   const hands::Finger& description = model_.fingers[finger];
-  if (description.tip_pad >= 0) part.pad = description.tip_pad;
+  part.pad = description.tip_pad;
   part.tip_link = part.pad ? model_.pads[*part.pad].link : description.links.back();
   part.closing = closing_joints(model_, description);
   parts_.push_back(part);
@@ -246,8 +246,8 @@ void FittingLoop::press_palm() {
 }
 
 bool FittingLoop::palm_touches() {
-  return state_.distance(model_.pads[model_.palm.pad].link) <= options_.large_step_at &&
-         has_contact_at(model_.palm.pad, state_.X_OL());
+  return state_.distance(model_.pads[*model_.palm.pad].link) <= options_.large_step_at &&
+         has_contact_at(*model_.palm.pad, state_.X_OL());
 }
 
 /// Accepts `candidate` if the guard lets every moved link through and no touching part loses
@@ -261,7 +261,7 @@ bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std:
     if (!has_contact_at(*part.pad, state_.trial_X_OL())) return false;
   }
   if (is_palm_held_ && moved.size() == state_.all_links().size() &&
-      !has_contact_at(model_.palm.pad, state_.trial_X_OL())) {
+      !has_contact_at(*model_.palm.pad, state_.trial_X_OL())) {
     return false;
   }
   if (!state_.passes_exact(moved)) return false;
@@ -324,7 +324,7 @@ void FittingLoop::finish(FittingResult& result) {
   for (const Part& part : parts_) {
     if (part.has_target) look_at(*part.pad, part.state == Part::State::Blocked);
   }
-  if (has_palm_target_) look_at(model_.palm.pad, true);
+  if (has_palm_target_) look_at(*model_.palm.pad, true);
   result.contact_tests_s = contact_tests_s_;
   const bool is_out_of_budget = iterations_ >= options_.max_iterations && num_free() > 0;
   result.stop = is_out_of_budget ? FittingStop::IterationLimit

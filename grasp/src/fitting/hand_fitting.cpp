@@ -21,13 +21,13 @@ void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t 
     throw InvalidInput("fit_hand: target " + std::to_string(target) +
                        " is the palm's, which must be the last after a finger's");
   }
-  if (hand.palm.pad < 0) {
+  if (!hand.palm.pad) {
     throw InvalidInput("fit_hand: the palm of hand " + hand.name + " has no pad");
   }
 }
 
 void require_tip_pad(const std::string& where, const hands::HandModel& hand, int finger) {
-  if (hand.fingers[finger].tip_pad >= 0) return;
+  if (hand.fingers[finger].tip_pad) return;
   throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
 }
 
@@ -69,19 +69,20 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
   const hands::HandModel& model = scene.hand.model();
   RequestedParts requested;
   for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
-    const int finger = targets.contacts[t].finger;
-    if (finger == contact::kPalm) {
+    const TargetContact& target = targets.contacts[t];
+    if (target.is_palm) {
       require_palm(model, t, targets.contacts.size());
       requested.palm = true;
       continue;
     }
-    if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
-      throw InvalidInput("fit_hand: a target is assigned to finger " + std::to_string(finger) +
-                         " of " + std::to_string(model.fingers.size()) +
-                         "; call assign_fingers first");
+    const auto num_fingers = static_cast<int>(model.fingers.size());
+    if (!target.finger || *target.finger < 0 || *target.finger >= num_fingers) {
+      throw InvalidInput("fit_hand: a target is assigned to finger " +
+                         (target.finger ? std::to_string(*target.finger) : "none") + " of " +
+                         std::to_string(num_fingers) + "; call assign_fingers first");
     }
-    require_tip_pad("fit_hand", model, finger);
-    requested.fingers.push_back(finger);
+    require_tip_pad("fit_hand", model, *target.finger);
+    requested.fingers.push_back(*target.finger);
   }
   return fitted(
       options.guard, [&] { return internal::FittingLoop(scene, style, requested, options); },
@@ -103,7 +104,7 @@ FittingResult close_hand(const GraspScene& scene, GraspStyle style, const Reques
     }
     require_tip_pad("close_hand", model, finger);
   }
-  if (requested.palm && model.palm.pad < 0) {
+  if (requested.palm && !model.palm.pad) {
     throw InvalidInput("close_hand: the palm of hand " + model.name + " has no pad");
   }
   if (const double step = retreat.step.value_or(1.0); !(step > 0.0 && std::isfinite(step))) {

@@ -69,7 +69,7 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
                                            double approach_angle) {
   const Vector3d center = targets.centroid();
   const TargetContact& last = targets.contacts.back();
-  const bool has_palm = last.finger == contact::kPalm;
+  const bool has_palm = last.is_palm;
   struct Ranked {
     double key;
     PalmPlacement placement;

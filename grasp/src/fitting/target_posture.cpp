@@ -55,11 +55,11 @@ class Search {
         variable_of_(hand.joints.size()),
         start_(start) {
     for (const TargetContact& target : targets.contacts) {
-      if (target.finger == contact::kPalm) {
+      if (target.is_palm) {
         palm_target_ = &target;
         continue;
       }
-      const int pad = hand.fingers[target.finger].tip_pad;
+      const int pad = *hand.fingers[*target.finger].tip_pad;
       tips_.push_back({pad, hands::pad_contact_point_C(hand.pads[pad]),
                        hands::links_to(hand, hand.pads[pad].link),
                        hands::joints_to(hand, hand.pads[pad].link), &target});
@@ -232,8 +232,8 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
                           const PalmPlacement& placement) {
   hands::HandConfiguration start = aligned_open_hand(hand, targets, placement, 0.0);
   for (const TargetContact& target : targets.contacts) {
-    if (target.finger == contact::kPalm) continue;
-    for (const int index : hand.fingers[target.finger].joints) {
+    if (target.is_palm) continue;
+    for (const int index : hand.fingers[*target.finger].joints) {
       const hands::Joint& joint = hand.joints[index];
       if (joint.closing_sign == 0 || joint.coupling) continue;
       const double open = joint.open_limit();
@@ -246,10 +246,10 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
   Vector3d shift = Vector3d::Zero();
   int count = 0;
   for (const TargetContact& target : targets.contacts) {
-    const bool is_palm = target.finger == contact::kPalm;
     shift += target.point_O -
-             (is_palm ? Vector3d(start.X_OH * hand.palm.center_H)
-                      : hands::pad_contact_point(hand, hand.fingers[target.finger].tip_pad, X_OL));
+             (target.is_palm
+                  ? Vector3d(start.X_OH * hand.palm.center_H)
+                  : hands::pad_contact_point(hand, *hand.fingers[*target.finger].tip_pad, X_OL));
     ++count;
   }
   start.X_OH.pretranslate(Vector3d(shift / count));
@@ -277,10 +277,10 @@ double pair_angle(const Vector3d& point_a, const Vector3d& normal_a, const Vecto
 
 double reach_misfit(const hands::HandModel& hand, const TargetContacts& targets,
                     const TargetPosture& posture) {
-  if (targets.contacts.back().finger == contact::kPalm) return tilt_and_miss(posture);
+  if (targets.contacts.back().is_palm) return tilt_and_miss(posture);
   const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, posture.configuration);
   const auto pad_of = [&](const TargetContact& target) {
-    const int pad = hand.fingers[target.finger].tip_pad;
+    const int pad = *hand.fingers[*target.finger].tip_pad;
     return std::make_pair(hands::pad_contact_point(hand, pad, X_OL),
                           Vector3d(hands::pad_pose(hand, pad, X_OL).linear().col(2)));
   };

@@ -10,7 +10,7 @@ std::vector<double> target_distances(const Grasp& grasp) {
   for (const TargetContact& target : grasp.targets.contacts) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const contact::Contact& contact : grasp.contacts) {
-      if (!contact.is_target || contact.finger != target.finger) continue;
+      if (!contact.is_target || !is_for_part_of(target, contact)) continue;
       nearest = std::min(nearest, (contact.point_O - target.point_O).norm());
     }
     distances.push_back(nearest);

@@ -52,8 +52,7 @@ std::string row(const GraspFile& file, const Grasp& grasp, std::size_t rank) {
   const contact::ContactQuality& quality = grasp.quality;
   const std::size_t num_joints = file.hand.joints.size();
   bool is_palm_touching = false;
-  for (const contact::Contact& contact : grasp.contacts)
-    is_palm_touching |= contact.finger == contact::kPalm;
+  for (const contact::Contact& contact : grasp.contacts) is_palm_touching |= !contact.finger;
 
   std::string cells = std::to_string(rank);
   for (double value : {quality.m, quality.m1, quality.m2, quality.m3, quality.regularity,

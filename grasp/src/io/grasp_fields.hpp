@@ -110,10 +110,10 @@ constexpr auto penetration_fields = [](auto& at, auto& penetration) {
 };
 
 constexpr auto target_fields = [](auto& at, auto& target) {
-  at.part(target.finger, "finger");
+  at.part(target, "finger");
   at(target.point_O, "point_O_m");
   at(target.outward_normal_O, "outward_normal_O");
-  at(target.patch, "patch");
+  at.index(target.patch, "patch");
   at(target.score, "score");
 };
 

@@ -96,7 +96,7 @@ Json hand_json(const GraspFile& file) {
          {"is_thumb", finger.is_thumb},
          {"links", finger_links},
          {"joints", finger_joints},
-         {"tip_pad", finger.tip_pad < 0 ? Json(nullptr) : Json(hand.pads[finger.tip_pad].name)}});
+         {"tip_pad", finger.tip_pad ? Json(hand.pads[*finger.tip_pad].name) : Json(nullptr)}});
   }
   Json pads = Json::array();
   for (const hands::ContactPad& pad : hand.pads) {
@@ -116,7 +116,7 @@ Json hand_json(const GraspFile& file) {
            {{"link", hand.links[hand.palm.link].name},
             {"center_H_m", to_json(hand.palm.center_H)},
             {"direction_H", to_json(hand.palm.direction_H)},
-            {"pad", hand.palm.pad < 0 ? Json(nullptr) : Json(hand.pads[hand.palm.pad].name)}}},
+            {"pad", hand.palm.pad ? Json(hand.pads[*hand.palm.pad].name) : Json(nullptr)}}},
           {"links", links},
           {"joints", joints},
           {"fingers", fingers},

@@ -47,6 +47,8 @@ class JsonWriter {
   void part(const Part& part, const char* key) {
     json_[key] = finger_name(*hand_, part);
   }
+  /// None is −1.
+  void index(const std::optional<int>& index, const char* key) { json_[key] = index.value_or(-1); }
 
   template <class Struct, class Fields>
   void group(std::string_view key, const Struct& within, const Fields& fields) {
@@ -124,11 +126,20 @@ class JsonReader {
     if (!node_.at(key).is_null()) link = index_by_name(hand_->links, node_.at(key));
   }
   void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
-  template <class Part>
-  void part(Part& part, const char* key) const {
+  void part(std::optional<int>& finger, const char* key) const {
     const JsonNode name = node_.at(key);
-    if (name.is_null()) return;
-    part = name.text() == "palm" ? contact::kPalm : index_by_name(hand_->fingers, name);
+    if (name.is_null() || name.text() == "palm") return;
+    finger = index_by_name(hand_->fingers, name);
+  }
+  void part(TargetContact& target, const char* key) const {
+    const JsonNode name = node_.at(key);
+    target.is_palm = !name.is_null() && name.text() == "palm";
+    part(target.finger, key);
+  }
+  /// None is −1.
+  void index(std::optional<int>& index, const char* key) const {
+    const int number = node_.at(key).small_integer();
+    if (number >= 0) index = number;
   }
 
   template <class Struct, class Fields>

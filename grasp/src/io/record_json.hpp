@@ -27,10 +27,14 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// What grasp files call a finger of a contact or target; null for kUnassigned.
-inline Json finger_name(const hands::HandModel& hand, int finger) {
-  if (finger == kUnassigned) return nullptr;
-  return finger == contact::kPalm ? "palm" : hand.fingers[finger].name;
+/// What grasp files call the finger of a pad or contact.
+inline Json finger_name(const hands::HandModel& hand, const std::optional<int>& finger) {
+  return finger ? hand.fingers[*finger].name : "palm";
+}
+
+/// What they call that of a target; null where it is not assigned.
+inline Json finger_name(const hands::HandModel& hand, const TargetContact& target) {
+  return target.is_palm || target.finger ? finger_name(hand, target.finger) : Json(nullptr);
 }
 
 /// The parts of a grasp file that say what was planned on, with, and amid.

@@ -78,7 +78,7 @@ std::optional<double> bearing_gap(const PlannerOptions& options) {
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {
   RequestedParts parts;
   parts.palm = options.palm.value_or(options.style == GraspStyle::Power);
-  if (parts.palm && hand.palm.pad < 0) {
+  if (parts.palm && !hand.palm.pad) {
     throw InvalidInput("the palm of hand " + hand.name +
                        " has no contact pad, so it cannot be asked to touch");
   }
@@ -103,7 +103,7 @@ RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOption
     }
   }
   for (const int finger : fingers) {
-    if (hand.fingers[finger].tip_pad < 0) {
+    if (!hand.fingers[finger].tip_pad) {
       throw InvalidInput("finger " + hand.fingers[finger].name + " of hand " + hand.name +
                          " has no fingertip pad");
     }

@@ -119,12 +119,12 @@ class Refinement {
     claim.pad = pad;
     claim.link = model_.pads[static_cast<std::size_t>(pad)].link;
     if (!targets) return claim;
-    const int finger = model_.pads[static_cast<std::size_t>(pad)].finger;
+    const std::optional<int>& finger = model_.pads[static_cast<std::size_t>(pad)].finger;
     for (const TargetContact& target : targets->contacts) {
-      const bool is_own = finger < 0
-                              ? target.finger == contact::kPalm
-                              : target.finger == finger &&
-                                    model_.fingers[static_cast<std::size_t>(finger)].tip_pad == pad;
+      const bool is_own = finger
+                              ? target.finger == finger &&
+                                    model_.fingers[static_cast<std::size_t>(*finger)].tip_pad == pad
+                              : target.is_palm;
       if (is_own) claim.target = &target;
     }
     return claim;

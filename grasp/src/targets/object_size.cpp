@@ -36,7 +36,7 @@ std::string in_tenths_of_millimeters(double length) {
 double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fingers) {
   double width = 0.0;
   for (const int finger : fingers) {
-    width = std::max(width, pad_width(hand.pads[hand.fingers[finger].tip_pad]));
+    width = std::max(width, pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
   }
   return width;
 }

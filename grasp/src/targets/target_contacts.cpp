@@ -14,11 +14,15 @@ void TargetOptions::validate() const {
   internal::require_ranges("TargetOptions", *this, internal::target_rows);
 }
 
+bool is_for_part_of(const TargetContact& target, const contact::Contact& contact) {
+  return contact.finger ? target.finger == contact.finger : target.is_palm;
+}
+
 Vector3d TargetContacts::centroid() const {
   Vector3d sum = Vector3d::Zero();
   int num_fingers = 0;
   for (const TargetContact& contact : contacts) {
-    if (contact.finger == contact::kPalm) continue;
+    if (contact.is_palm) continue;
     sum += contact.point_O;
     ++num_fingers;
   }
@@ -32,12 +36,12 @@ PartDistances part_distances(const hands::HandModel& hand) {
 PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts) {
   PartDistances distances;
   distances.tip_to_tip = hands::tip_distances(hand);
-  if (!parts.palm || hand.palm.pad < 0) return distances;
+  if (!parts.palm || !hand.palm.pad) return distances;
   distances.palm_to_tip = hands::palm_distances(hand);
   PalmReach& palm = distances.palm.emplace();
   palm.center_H = hand.palm.center_H;
   palm.direction_H = hand.palm.direction_H;
-  for (const Eigen::Vector2d& corner : hand.pads[hand.palm.pad].outline) {
+  for (const Eigen::Vector2d& corner : hand.pads[*hand.palm.pad].outline) {
     palm.pad_radius = std::max(palm.pad_radius, corner.norm());
   }
   palm.tips = hands::tip_reaches(hand);
@@ -52,7 +56,7 @@ std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
     contact.point_O = target.point_O;
     contact.inward_normal_O = -target.outward_normal_O;
     contact.finger = target.finger;
-    if (target.finger == kUnassigned && contacts.size() < fingers.size()) {
+    if (!target.is_palm && !target.finger && contacts.size() < fingers.size()) {
       contact.finger = fingers[contacts.size()];
     }
     contacts.push_back(contact);
@@ -72,8 +76,8 @@ double ideal_m(const ObjectModel& object, const TargetContacts& targets,
 
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested) {
   std::vector<int> pads;
-  for (const int finger : requested.fingers) pads.push_back(hand.fingers[finger].tip_pad);
-  if (requested.palm) pads.push_back(hand.palm.pad);
+  for (const int finger : requested.fingers) pads.push_back(*hand.fingers[finger].tip_pad);
+  if (requested.palm) pads.push_back(*hand.palm.pad);
   return pads;
 }
 

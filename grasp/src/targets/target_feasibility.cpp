@@ -359,10 +359,9 @@ TargetContacts TargetRules::as_targets(Places places, std::optional<double> palm
     const Place& place = pool_[index];
     const double score = place.patch ? object_.scores.scores[*place.patch]
                                      : contact_score_at(object_, place.point_O).value_or(0.0);
-    targets.contacts.push_back(
-        {place.point_O, -place.inward_normal_O, place.patch.value_or(-1), score, kUnassigned});
+    targets.contacts.push_back({place.point_O, -place.inward_normal_O, place.patch, score});
   }
-  if (has_palm()) targets.contacts.back().finger = contact::kPalm;
+  if (has_palm()) targets.contacts.back().is_palm = true;
   return targets;
 }
 

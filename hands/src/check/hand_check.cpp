@@ -129,16 +129,16 @@ void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
   for (const Finger& finger : hand.fingers) {
     const bool is_mine =
         std::find(finger.joints.begin(), finger.joints.end(), j) != finger.joints.end();
-    if (!is_mine || finger.tip_pad < 0) continue;
+    if (!is_mine || !finger.tip_pad) continue;
     HandConfiguration c = open_configuration(hand);
     const double from = c.q[j];
-    RigidTransform X_last = pad_pose(hand, finger.tip_pad, forward_kinematics(hand, c));
+    RigidTransform X_last = pad_pose(hand, *finger.tip_pad, forward_kinematics(hand, c));
     double forward = 0.0;
     double path = 0.0;
     for (int step = 1; step <= kClosingSteps; ++step) {
       c.q[j] = from + (joint.closed_limit() - from) * step / kClosingSteps;
       apply_couplings(hand, c.q);
-      const RigidTransform X_OC = pad_pose(hand, finger.tip_pad, forward_kinematics(hand, c));
+      const RigidTransform X_OC = pad_pose(hand, *finger.tip_pad, forward_kinematics(hand, c));
       const Vector3d moved = X_OC.translation() - X_last.translation();
       forward += moved.dot(X_last.linear().col(2));
       path += moved.norm();
@@ -165,7 +165,7 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
     findings.suspicious(item, "has no joint that closes: list one under closing in the sidecar");
     return;
   }
-  if (finger.tip_pad < 0) return;
+  if (!finger.tip_pad) return;
   const HandConfiguration open = open_configuration(hand);
   const auto distances = [&](int step) {
     HandConfiguration c = open;
@@ -176,14 +176,14 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
     }
     apply_couplings(hand, c.q);
     const auto X_OL = forward_kinematics(hand, c);
-    const Vector3d tip = pad_pose(hand, finger.tip_pad, X_OL).translation();
+    const Vector3d tip = pad_pose(hand, *finger.tip_pad, X_OL).translation();
     const Vector3d from_center = tip - hand.palm.center_H;
     std::vector<double> result = {from_center.norm(),
                                   from_center.cross(hand.palm.direction_H).norm()};
     for (std::size_t other = 0; other < hand.fingers.size(); ++other) {
-      if (other == f || hand.fingers[other].tip_pad < 0) continue;
+      if (other == f || !hand.fingers[other].tip_pad) continue;
       result.push_back(
-          (pad_pose(hand, hand.fingers[other].tip_pad, X_OL).translation() - tip).norm());
+          (pad_pose(hand, *hand.fingers[other].tip_pad, X_OL).translation() - tip).norm());
     }
     return result;
   };

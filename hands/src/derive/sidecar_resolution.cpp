@@ -103,7 +103,7 @@ class SidecarResolver {
         for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
           if (model_.fingers[f].name == source.finger) result.finger = static_cast<int>(f);
         }
-        if (result.finger == -1) fail(item + ": no finger named " + source.finger);
+        if (!result.finger) fail(item + ": no finger named " + source.finger);
       }
       result.X_LC = source.X_LC;
       result.outline = source.outline;
@@ -126,8 +126,8 @@ class SidecarResolver {
       for (std::size_t p = 0; p < model_.pads.size(); ++p) {
         const ContactPad& candidate = model_.pads[p];
         if (candidate.finger != static_cast<int>(f)) continue;
-        if (finger.tip_pad == -1 ||
-            candidate.link >= model_.pads[static_cast<std::size_t>(finger.tip_pad)].link) {
+        if (!finger.tip_pad ||
+            candidate.link >= model_.pads[static_cast<std::size_t>(*finger.tip_pad)].link) {
           finger.tip_pad = static_cast<int>(p);
         }
       }

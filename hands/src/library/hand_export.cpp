@@ -154,9 +154,9 @@ std::string urdf_text(const HandModel& model) {
 internal::Sidecar sidecar_of(const HandModel& model) {
   const auto link_name = [&](int link) { return model.links[static_cast<std::size_t>(link)].name; };
   const auto joint_name = [&](int j) { return model.joints[static_cast<std::size_t>(j)].name; };
-  const auto pad_name = [&](int pad) -> std::optional<std::string> {
-    if (pad < 0) return std::nullopt;
-    return model.pads[static_cast<std::size_t>(pad)].name;
+  const auto pad_name = [&](const std::optional<int>& pad) -> std::optional<std::string> {
+    if (!pad) return std::nullopt;
+    return model.pads[static_cast<std::size_t>(*pad)].name;
   };
   internal::Sidecar sidecar;
   sidecar.fingers.emplace();
@@ -173,7 +173,7 @@ internal::Sidecar sidecar_of(const HandModel& model) {
   sidecar.pads.emplace();
   for (const ContactPad& pad : model.pads) {
     const std::string finger =
-        pad.finger < 0 ? "palm" : model.fingers[static_cast<std::size_t>(pad.finger)].name;
+        pad.finger ? model.fingers[static_cast<std::size_t>(*pad.finger)].name : "palm";
     sidecar.pads->push_back({pad.name, link_name(pad.link), finger, pad.X_LC, pad.outline,
                              pad.surface, pad.clip_thickness});
   }

@@ -177,12 +177,12 @@ class Checker {
                     finger.joints.end(),
                 what + ": its swing joint is not one of its joints");
       }
-      if (finger.tip_pad != -1) {
-        require_index(finger.tip_pad, model_.pads.size(), what + ": tip pad");
-        require(model_.pads[static_cast<std::size_t>(finger.tip_pad)].finger == static_cast<int>(f),
-                what + ": its tip pad " +
-                    model_.pads[static_cast<std::size_t>(finger.tip_pad)].name +
-                    " belongs to another finger");
+      if (finger.tip_pad) {
+        require_index(*finger.tip_pad, model_.pads.size(), what + ": tip pad");
+        require(
+            model_.pads[static_cast<std::size_t>(*finger.tip_pad)].finger == static_cast<int>(f),
+            what + ": its tip pad " + model_.pads[static_cast<std::size_t>(*finger.tip_pad)].name +
+                " belongs to another finger");
       }
       num_thumbs += finger.is_thumb ? 1 : 0;
     }
@@ -194,11 +194,11 @@ class Checker {
     for (const ContactPad& pad : model_.pads) {
       const std::string what = "pad " + pad.name;
       require_index(pad.link, model_.links.size(), what + ": link");
-      if (pad.finger == -1) {
+      if (!pad.finger) {
         require(pad.link == model_.palm.link, what + " of the palm is not on the palm link");
       } else {
-        require_index(pad.finger, model_.fingers.size(), what + ": finger");
-        const Finger& finger = model_.fingers[static_cast<std::size_t>(pad.finger)];
+        require_index(*pad.finger, model_.fingers.size(), what + ": finger");
+        const Finger& finger = model_.fingers[static_cast<std::size_t>(*pad.finger)];
         require(std::find(finger.links.begin(), finger.links.end(), pad.link) != finger.links.end(),
                 what + ": its link " + model_.links[static_cast<std::size_t>(pad.link)].name +
                     " is none of finger " + finger.name);
@@ -270,9 +270,9 @@ class Checker {
     require(model_.palm.direction_H.allFinite() &&
                 std::abs(model_.palm.direction_H.norm() - 1.0) < 1e-9,
             "palm direction is not a unit vector");
-    if (model_.palm.pad == -1) return;
-    require_index(model_.palm.pad, model_.pads.size(), "palm pad");
-    require(model_.pads[static_cast<std::size_t>(model_.palm.pad)].finger == -1,
+    if (!model_.palm.pad) return;
+    require_index(*model_.palm.pad, model_.pads.size(), "palm pad");
+    require(!model_.pads[static_cast<std::size_t>(*model_.palm.pad)].finger,
             "the palm's pad belongs to a finger");
   }
 

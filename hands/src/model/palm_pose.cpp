@@ -14,8 +14,8 @@ std::vector<Vector3d> half_closed_tips_H(const HandModel& hand) {
   const auto X_HL = forward_kinematics(hand, closed_configuration(hand, 0.5));
   std::vector<Vector3d> tips;
   for (const Finger& finger : hand.fingers) {
-    tips.push_back(finger.tip_pad < 0 ? hand.palm.center_H
-                                      : pad_contact_point(hand, finger.tip_pad, X_HL));
+    tips.push_back(finger.tip_pad ? pad_contact_point(hand, *finger.tip_pad, X_HL)
+                                  : hand.palm.center_H);
   }
   return tips;
 }

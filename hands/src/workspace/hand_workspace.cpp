@@ -77,7 +77,7 @@ std::string workspace_key(const HandModel& model, const WorkspaceOptions& option
     key.list(pad.surface);
   }
   append(key, static_cast<int>(model.fingers.size()));
-  for (const Finger& finger : model.fingers) append(key, finger.tip_pad);
+  for (const Finger& finger : model.fingers) append(key, finger.tip_pad.value_or(-1));
   append(key, model.thumb());
   append(key, model.palm.center_H);
   append(key, static_cast<int>(model.exclusions.size()));
@@ -139,10 +139,10 @@ TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& optio
   TipDistances ranges(size, std::vector<DistanceRange>(size));
   for (std::size_t a = 0; a < size; ++a) {
     for (std::size_t b = a + 1; b < size; ++b) {
-      const int pad_a = model.fingers[a].tip_pad;
-      const int pad_b = model.fingers[b].tip_pad;
-      if (pad_a < 0 || pad_b < 0) continue;
-      ranges[a][b] = ranges[b][a] = internal::tip_distance_range(hand, pad_a, pad_b, options);
+      const std::optional<int>& pad_a = model.fingers[a].tip_pad;
+      const std::optional<int>& pad_b = model.fingers[b].tip_pad;
+      if (!pad_a || !pad_b) continue;
+      ranges[a][b] = ranges[b][a] = internal::tip_distance_range(hand, pad_a, *pad_b, options);
     }
   }
   return ranges;
@@ -154,9 +154,9 @@ std::vector<DistanceRange> palm_distances(const HandModel& model, const Workspac
   const internal::SampledHand hand(model);
   std::vector<DistanceRange> ranges;
   for (const Finger& finger : model.fingers) {
-    ranges.push_back(finger.tip_pad < 0 ? DistanceRange{}
-                                        : internal::tip_distance_range(hand, std::nullopt,
-                                                                       finger.tip_pad, options));
+    ranges.push_back(
+        finger.tip_pad ? internal::tip_distance_range(hand, std::nullopt, *finger.tip_pad, options)
+                       : DistanceRange{});
   }
   return ranges;
 }
@@ -173,11 +173,11 @@ HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& opt
   };
   const int thumb = model.thumb();
   for (std::size_t f = 0; f < model.fingers.size(); ++f) {
-    const int pad = model.fingers[f].tip_pad;
-    if (pad < 0) continue;
-    if (static_cast<int>(f) == thumb || model.fingers[thumb].tip_pad < 0) continue;
+    const std::optional<int>& thumb_pad = model.fingers[thumb].tip_pad;
+    const std::optional<int>& pad = model.fingers[f].tip_pad;
+    if (static_cast<int>(f) == thumb || !thumb_pad || !pad) continue;
     const DistanceRange range =
-        internal::facing_distance_range(hand, model.fingers[thumb].tip_pad, pad, options, is_clear);
+        internal::facing_distance_range(hand, *thumb_pad, *pad, options, is_clear);
     workspace.graspable_diameter[f] = range;
     DistanceRange& any = workspace.any_graspable_diameter;
     if (range.largest == 0.0) continue;

@@ -77,8 +77,8 @@ std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
     apply_couplings(model, configuration.q);
     // The hand's base is the frame.
     const std::vector<RigidTransform> X_HL = forward_kinematics(model, configuration);
-    poses.push_back({pad_contact_point(model, finger.tip_pad, X_HL),
-                     pad_pose(model, finger.tip_pad, X_HL).linear().col(2)});
+    poses.push_back({pad_contact_point(model, *finger.tip_pad, X_HL),
+                     pad_pose(model, *finger.tip_pad, X_HL).linear().col(2)});
   }
   return poses;
 }
@@ -135,7 +135,7 @@ std::vector<std::optional<TipReach>> tip_reaches(const HandModel& model) {
   std::vector<std::optional<TipReach>> reaches;
   for (const Finger& finger : model.fingers) {
     reaches.emplace_back();
-    if (finger.tip_pad >= 0) reaches.back().emplace(tip_poses(model, finger), kCell);
+    if (finger.tip_pad) reaches.back().emplace(tip_poses(model, finger), kCell);
   }
   return reaches;
 }

@@ -358,7 +358,7 @@ TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]")
   CHECK(num_contacts > 30);
 }
 
-TEST_CASE("All pads of a hand report in pad order, the palm's finger being -1",
+TEST_CASE("All pads of a hand report in pad order, the palm's without a finger",
           "[grasp][contact_estimation]") {
   // Two fingers and a palm around a box of 10 cm: finger 0 on +x, finger 1 clear of it, the palm on
   // top.
@@ -370,7 +370,7 @@ TEST_CASE("All pads of a hand report in pad order, the palm's finger being -1",
   const std::vector<Contact> contacts = estimate_contacts(hand, X_OL, box, kOptions);
   REQUIRE(contacts.size() == 2);
   CHECK(contacts[0].pad == 0);
-  CHECK(contacts[0].finger == -1);
+  CHECK(!contacts[0].finger);
   CHECK(contacts[1].pad == 1);
   CHECK(contacts[1].finger == 0);
   CHECK((contacts[1].inward_normal_O + Vector3d::UnitX()).norm() < kRounding);

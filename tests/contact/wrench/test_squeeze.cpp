@@ -130,8 +130,8 @@ TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[grasp][
   const auto X = hands::forward_kinematics(hand, grasp);
   Contacts contacts;
   for (const hands::Finger& finger : hand.fingers) {
-    const Eigen::Isometry3d X_OC = hands::pad_pose(hand, finger.tip_pad, X);
-    contacts.push_back(link_contact(hand.pads[static_cast<std::size_t>(finger.tip_pad)].link,
+    const Eigen::Isometry3d X_OC = hands::pad_pose(hand, *finger.tip_pad, X);
+    contacts.push_back(link_contact(hand.pads[static_cast<std::size_t>(*finger.tip_pad)].link,
                                     X_OC.translation(), X_OC.linear().col(2)));
   }
   const Vector3d center = 0.5 * (contacts[0].point_O + contacts[1].point_O);

@@ -60,7 +60,7 @@ TEST_CASE(
     CHECK(result.configuration.q[0] == Approx(0.02).margin(2 * settled));
     CHECK(result.configuration.q[0] == result.configuration.q[1]);
     for (const contact::Contact& contact : scene.contacts(result)) {
-      if (contact.finger < 0) continue;
+      if (!contact.finger) continue;
       CHECK(contact.is_target);
       CHECK(contact.gap < 4 * settled);
     }
@@ -98,7 +98,7 @@ TEST_CASE("A human hand brings its fingertips near their targets on a ball",
     }
     const TargetContacts targets = scene.assigned(targets_at(points, normals), placement);
     std::vector<int> served;
-    for (const auto& target : targets.contacts) served.push_back(target.finger);
+    for (const auto& target : targets.contacts) served.push_back(target.finger.value_or(-1));
     CHECK(std::is_permutation(served.begin(), served.end(), scene.parts.fingers.begin()));
     grasp::FittingOptions options;
     options.guard = grasp::PenetrationGuard::Voxels;
@@ -106,8 +106,8 @@ TEST_CASE("A human hand brings its fingertips near their targets on a ball",
     const FittingResult result = scene.fit(targets, placement, options);
     const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
     for (const grasp::TargetContact& target : targets.contacts) {
-      CAPTURE(number, scene.hand.fingers[target.finger].name, static_cast<int>(result.stop));
-      const int pad = scene.hand.fingers[target.finger].tip_pad;
+      CAPTURE(number, scene.hand.fingers[*target.finger].name, static_cast<int>(result.stop));
+      const int pad = *scene.hand.fingers[*target.finger].tip_pad;
       const Vector3d tip = hands::pad_contact_point(scene.hand, pad, X_OL);
       CHECK((tip - target.point_O).norm() < 0.012);
     }
@@ -152,7 +152,7 @@ TEST_CASE("The fingertips that pinch are points of the skin, not of the bone beh
   REQUIRE(result.stop == FittingStop::Contact);
   const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
   for (const int finger : scene.parts.fingers) {
-    const int pad = scene.hand.fingers[finger].tip_pad;
+    const int pad = *scene.hand.fingers[finger].tip_pad;
     const Vector3d point = hands::pad_contact_point(scene.hand, pad, X_OL);
     const Vector3d origin = hands::pad_pose(scene.hand, pad, X_OL).translation();
     CHECK((point - origin).norm() == Approx(hands::pad_height(scene.hand.pads[pad])).epsilon(0.1));

@@ -106,7 +106,7 @@ TEST_CASE("A hand that has backed off may go back until its palm touches",
   const auto has_palm = [&](const FittingResult& result) {
     const std::vector<contact::Contact> contacts = scene.contacts(result);
     return std::any_of(contacts.begin(), contacts.end(),
-                       [](const contact::Contact& contact) { return contact.finger < 0; });
+                       [](const contact::Contact& contact) { return !contact.finger; });
   };
   const FittingResult away = closed(scene, start, {.step = step});
   CHECK_FALSE(has_palm(away));

@@ -211,9 +211,9 @@ std::vector<std::string> broken_guarantees(const Scene& scene, const TargetConta
   if (result.stop == FittingStop::Contact) {
     for (const auto& target : targets.contacts) {
       if (std::none_of(contacts.begin(), contacts.end(), [&](const auto& contact) {
-            return contact.is_target && contact.finger == target.finger;
+            return contact.is_target && grasp::is_for_part_of(target, contact);
           })) {
-        report("formed, but no contact of finger ", target.finger);
+        report("formed, but no contact of finger ", target.finger.value_or(-1));
       }
     }
   }
@@ -247,7 +247,7 @@ TEST_CASE("The Barrett hand forms a grasp on ideal targets around a ball",
       // Sections 7.4 and 8.3: the thumb is turned to the seed.
       const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
       const Vector3d center = result.configuration.X_OH * scene.hand.palm.center_H;
-      const int thumb_pad = scene.hand.fingers[scene.hand.thumb()].tip_pad;
+      const int thumb_pad = *scene.hand.fingers[scene.hand.thumb()].tip_pad;
       Vector3d to_thumb = hands::pad_pose(scene.hand, thumb_pad, X_OL).translation() - center;
       Vector3d to_seed = targets.contacts[0].point_O - center;
       to_thumb.z() = 0.0;
@@ -312,7 +312,7 @@ TEST_CASE("A palm that goes on after the first contact brings fingers nearer to 
       double sum = 0.0;
       for (const contact::Contact& contact : scene.contacts(result)) {
         for (const grasp::TargetContact& target : targets.contacts) {
-          if (contact.is_target && contact.finger == target.finger) {
+          if (contact.is_target && grasp::is_for_part_of(target, contact)) {
             sum += (contact.point_O - target.point_O).norm();
           }
         }

@@ -170,7 +170,7 @@ std::vector<int> best_assignment(const hands::HandModel& hand, const TargetConta
       hands::apply_couplings(hand, configuration.q);
       const auto X_HL = hands::forward_kinematics(hand, configuration);
       const auto pad_at = [&](int finger) -> Vector3d {
-        return hands::pad_pose(hand, hand.fingers[finger].tip_pad, X_HL).translation() -
+        return hands::pad_pose(hand, *hand.fingers[finger].tip_pad, X_HL).translation() -
                hand.palm.center_H;
       };
       double error = 0.0;
@@ -193,7 +193,7 @@ std::vector<int> best_assignment(const hands::HandModel& hand, const TargetConta
 
 std::vector<int> fingers_of(const TargetContacts& targets) {
   std::vector<int> fingers;
-  for (const auto& target : targets.contacts) fingers.push_back(target.finger);
+  for (const auto& target : targets.contacts) fingers.push_back(target.finger.value());
   return fingers;
 }
 

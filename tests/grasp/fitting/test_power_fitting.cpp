@@ -48,7 +48,7 @@ TargetContacts power_targets(double radius, double height) {
   normals.push_back(Vector3d::UnitZ());
   points.push_back({0.0, 0.0, height});
   TargetContacts targets = targets_at(points, normals);
-  targets.contacts.back().finger = contact::kPalm;
+  targets.contacts.back().is_palm = true;
   return targets;
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("A power grasp has the palm on the object, looking against its target'
     const Vector3d palm_direction =
         result.configuration.X_OH.linear() * scene.hand.palm.direction_H;
     CHECK(angle_between(palm_direction, Vector3d(0, 0, -1)) < 1e-9);
-    const auto is_palm = [](const contact::Contact& c) { return c.finger == contact::kPalm; };
+    const auto is_palm = [](const contact::Contact& c) { return !c.finger; };
     const std::vector<contact::Contact> contacts = scene.contacts(result);
     REQUIRE(std::count_if(contacts.begin(), contacts.end(), is_palm) == 1);
     const auto palm = std::find_if(contacts.begin(), contacts.end(), is_palm);
@@ -109,7 +109,7 @@ TEST_CASE("Fingers of a power grasp close whether or not they have targets",
   for (const hands::Finger& finger : scene.hand.fingers) {
     const bool has_target =
         std::any_of(targets.contacts.begin(), targets.contacts.end(), [&](const auto& target) {
-          return target.finger >= 0 && &scene.hand.fingers[target.finger] == &finger;
+          return target.finger && &scene.hand.fingers[*target.finger] == &finger;
         });
     for (const int joint : finger.joints) {
       if (scene.hand.joints[joint].closing_sign == 0) continue;
@@ -190,7 +190,8 @@ TEST_CASE("A palm's target is assigned to the palm and refused where it cannot b
   const PalmPlacement placement{Vector3d(0, 0, -1)};
   const TargetContacts targets = power_targets(0.045, 0.045);
   const TargetContacts assigned = scene.assigned(targets, placement);
-  CHECK(assigned.contacts.back().finger == contact::kPalm);
+  CHECK(assigned.contacts.back().is_palm);
+  CHECK(!assigned.contacts.back().finger);
   CHECK(assigned.contacts.front().finger == scene.hand.thumb());
   grasp::RequestedParts without_palm = scene.parts;
   without_palm.palm = false;

@@ -135,7 +135,10 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
     CHECK(b.penetration.object_link == a.penetration.object_link);
     CHECK(b.is_valid() == a.is_valid());
     CHECK(b.targets.contacts[0].score == a.targets.contacts[0].score);
-    CHECK(b.targets.contacts[0].finger == grasp::kUnassigned);
+    CHECK(!b.targets.contacts[0].finger);
+    CHECK(!b.targets.contacts[0].is_palm);
+    CHECK(!b.targets.contacts[0].patch);
+    CHECK(b.targets.contacts[1].is_palm == a.targets.contacts[1].is_palm);
     CHECK(b.targets.contacts[1].finger == a.targets.contacts[1].finger);
     REQUIRE(b.contacts.size() == a.contacts.size());
     for (std::size_t j = 0; j < a.contacts.size(); ++j) {

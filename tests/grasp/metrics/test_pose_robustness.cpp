@@ -94,7 +94,7 @@ TEST_CASE("Poses are usable where the paper's measure of what is met is positive
   Contacts contacts = testing::on_cube();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     contacts[i].finger = static_cast<int>(i % 2);  // opposite contacts are of different fingers
-    contacts[i].pad = hand.fingers[i % 2].tip_pad;
+    contacts[i].pad = *hand.fingers[i % 2].tip_pad;
     contacts[i].area = 1e-4;
     contacts[i].pad_boundary_distance = 0.004;
   }

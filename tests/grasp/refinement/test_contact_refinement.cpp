@@ -47,7 +47,7 @@ struct Scene {
 
   std::vector<int> tip_pads() const {
     std::vector<int> pads;
-    for (const hands::Finger& finger : hand.fingers) pads.push_back(finger.tip_pad);
+    for (const hands::Finger& finger : hand.fingers) pads.push_back(*finger.tip_pad);
     return pads;
   }
 
@@ -150,8 +150,8 @@ bool same_bytes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 HandConfiguration around_box(const hands::HandModel& hand, double aside, double opening) {
   HandConfiguration start = hands::open_configuration(hand);
   const auto X_HL = hands::forward_kinematics(hand, start);
-  const Vector3d left = hands::pad_contact_point(hand, hand.fingers[0].tip_pad, X_HL);
-  const Vector3d right = hands::pad_contact_point(hand, hand.fingers[1].tip_pad, X_HL);
+  const Vector3d left = hands::pad_contact_point(hand, *hand.fingers[0].tip_pad, X_HL);
+  const Vector3d right = hands::pad_contact_point(hand, *hand.fingers[1].tip_pad, X_HL);
   const Vector3d along = (right - left).normalized();
   start.X_OH.translation() = -0.5 * (left + right) + aside * along;
   const double width = 0.03 + 2 * opening;

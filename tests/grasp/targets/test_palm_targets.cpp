@@ -45,8 +45,9 @@ bool has_palm_target(const std::vector<Place>& places, const PartDistances& dist
     }
     CHECK(broken_requirements(object, distances, parts, {}, *selection.targets).empty());
     CHECK(selection.targets->contacts.back().patch == 2);
-    CHECK(selection.targets->contacts.back().finger == contact::kPalm);
-    CHECK(selection.targets->contacts.front().finger == grasp::kUnassigned);
+    CHECK(selection.targets->contacts.back().is_palm);
+    CHECK(!selection.targets->contacts.front().is_palm);
+    CHECK(!selection.targets->contacts.front().finger);
     // The fingers' own center, without the palm's target.
     CHECK(selection.targets->centroid().norm() < 1e-15);
     return true;

@@ -135,8 +135,7 @@ std::vector<OrderedSet> by_brute_force(const grasp::ObjectModel& object,
       if (!(object.scores.scores[place] > options.score_threshold)) continue;
       targets.contacts.resize(k);
       targets.contacts.push_back({patch.centroid, patch.outward_normal, place,
-                                  object.scores.scores[place],
-                                  k == num_fingers ? contact::kPalm : grasp::kUnassigned});
+                                  object.scores.scores[place], k == num_fingers});
       self(self, k + 1);
       targets.contacts.resize(k);
     }
@@ -244,7 +243,7 @@ TEST_CASE("More sets than are kept at a time come in order and without a gap",
   const auto add = [&](int place) {
     targets.contacts.push_back({object.patches[place].centroid,
                                 object.patches[place].outward_normal, place,
-                                object.scores.scores[place], grasp::kUnassigned});
+                                object.scores.scores[place]});
   };
   const auto are_stable = [&](int a, int b) {
     targets.contacts.clear();

@@ -46,7 +46,7 @@ TEST_CASE("Random targets are samples of the surface that the fingers can have",
       CHECK(seed.finger == guided.scene.hand.thumb());
       for (std::size_t i = 0; i < targets.contacts.size(); ++i) {
         const grasp::TargetContact& target = targets.contacts[i];
-        CHECK(target.patch == -1);
+        CHECK(!target.patch);
         CHECK(std::any_of(samples.begin(), samples.end(), [&](const auto& sample) {
           return sample.point == target.point_O && sample.normal == target.outward_normal_O;
         }));
@@ -55,7 +55,7 @@ TEST_CASE("Random targets are samples of the surface that the fingers can have",
                                          -target.outward_normal_O, options.targets.theta_max));
         for (std::size_t k = 0; k < i; ++k) {
           const hands::DistanceRange& range =
-              distances.tip_to_tip[target.finger][targets.contacts[k].finger];
+              distances.tip_to_tip[target.finger.value()][targets.contacts[k].finger.value()];
           const double distance = (target.point_O - targets.contacts[k].point_O).norm();
           CHECK(distance >= range.smallest);
           CHECK(distance <= range.largest);

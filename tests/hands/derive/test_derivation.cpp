@@ -101,8 +101,8 @@ double tip_distance(const HandModel& hand, double closing) {
   int count = 0;
   for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
     for (std::size_t g = 0; g < f; ++g, ++count) {
-      sum += (hands::pad_pose(hand, hand.fingers[f].tip_pad, X_HL).translation() -
-              hands::pad_pose(hand, hand.fingers[g].tip_pad, X_HL).translation())
+      sum += (hands::pad_pose(hand, *hand.fingers[f].tip_pad, X_HL).translation() -
+              hands::pad_pose(hand, *hand.fingers[g].tip_pad, X_HL).translation())
                  .norm();
     }
   }
@@ -132,9 +132,9 @@ TEST_CASE(
       CHECK(same->joints == finger.joints);
       CHECK(same->is_thumb == finger.is_thumb);
       CHECK(same->swing_joint == finger.swing_joint);
-      REQUIRE(same->tip_pad >= 0);
-      CHECK(found.pads[static_cast<std::size_t>(same->tip_pad)].link ==
-            made.pads[static_cast<std::size_t>(finger.tip_pad)].link);
+      REQUIRE(same->tip_pad);
+      CHECK(found.pads[static_cast<std::size_t>(*same->tip_pad)].link ==
+            made.pads[static_cast<std::size_t>(*finger.tip_pad)].link);
     }
   }
 }
@@ -227,10 +227,10 @@ TEST_CASE("Every shared hand is derived with its fingers, its thumb and one tip 
     std::string thumb;
     for (const Finger& finger : hand.fingers) {
       if (finger.is_thumb) thumb = link_names(hand, finger).back();
-      REQUIRE(finger.tip_pad >= 0);
+      REQUIRE(finger.tip_pad);
     }
     CHECK(thumb == expected.thumb);
-    CHECK(hand.palm.pad >= 0);
+    CHECK(hand.palm.pad);
     for (const hands::HandFinding& finding : reading->findings) {
       CHECK(finding.what.find('\n') == std::string::npos);
     }
@@ -252,14 +252,14 @@ TEST_CASE("Shared hands close on something: tips come together and tip pads turn
     const auto X_HL = closed_by(hand, 0.5);
     Vector3d between = Vector3d::Zero();
     for (const Finger& finger : hand.fingers) {
-      between += hands::pad_pose(hand, finger.tip_pad, X_HL).translation() /
+      between += hands::pad_pose(hand, *finger.tip_pad, X_HL).translation() /
                  static_cast<double>(hand.fingers.size());
     }
     CHECK(hand.palm.direction_H.dot(between - hand.palm.center_H) > 0.0);
     const Vector3d held = 0.5 * (between + hand.palm.center_H);
     for (const Finger& finger : hand.fingers) {
       CAPTURE(finger.name);
-      const RigidTransform pad = hands::pad_pose(hand, finger.tip_pad, X_HL);
+      const RigidTransform pad = hands::pad_pose(hand, *finger.tip_pad, X_HL);
       const Vector3d goal = hand.fingers.size() == 2 ? between : held;
       // 75 degrees: fingers of Barrett hands are far past each other when all joints are half way.
       CHECK(pad.linear().col(2).dot((goal - pad.translation()).normalized()) > 0.25);
@@ -352,7 +352,7 @@ TEST_CASE(
     const Finger& finger = hand.fingers[static_cast<std::size_t>(hand.finger_index(side))];
     CHECK_FALSE(finger.is_thumb);
     CHECK_FALSE(finger.swing_joint);
-    const ContactPad& pad = hand.pads[static_cast<std::size_t>(finger.tip_pad)];
+    const ContactPad& pad = hand.pads[static_cast<std::size_t>(*finger.tip_pad)];
     CHECK(pad.surface.empty());
     // The inner face of a box 0.01 x 0.02 x 0.04 whose middle is at z = 0.02.
     CHECK(degrees_between(pad.X_LC.linear().col(2), Vector3d::UnitX()) < 1e-6);
@@ -361,7 +361,7 @@ TEST_CASE(
   }
   CHECK(hand.palm.direction_H == Vector3d::UnitZ());
   CHECK(hand.palm.center_H.z() == Approx(0.01).margin(1e-9));
-  const ContactPad& palm = hand.pads[static_cast<std::size_t>(hand.palm.pad)];
+  const ContactPad& palm = hand.pads[static_cast<std::size_t>(*hand.palm.pad)];
   // As wide as the first joints stand apart, 0.09; the plate's 0.06 the other way.
   CHECK(hands::pad_area(palm) == Approx(0.09 * 0.06).epsilon(1e-9));
 }
@@ -379,7 +379,7 @@ TEST_CASE("What a partial sidecar says is kept, and the rest follows it", "[hand
     CHECK(hand.joints[static_cast<std::size_t>(hand.joint_index("left_bend"))].closing_sign == -1);
     CHECK(hand.joints[static_cast<std::size_t>(hand.joint_index("right_curl"))].closing_sign == 0);
     const Finger& left = hand.fingers[static_cast<std::size_t>(hand.finger_index("left"))];
-    CHECK(degrees_between(hand.pads[static_cast<std::size_t>(left.tip_pad)].X_LC.linear().col(2),
+    CHECK(degrees_between(hand.pads[static_cast<std::size_t>(*left.tip_pad)].X_LC.linear().col(2),
                           -Vector3d::UnitX()) < 1e-6);
   }
   SECTION("fingers: names, thumb and tip pad") {
@@ -388,9 +388,9 @@ TEST_CASE("What a partial sidecar says is kept, and the rest follows it", "[hand
             "joints": ["left_bend", "left_curl"], "tip_pad": "my_pad"}])");
     REQUIRE(hand.fingers.size() == 1);
     CHECK(hand.fingers[0].is_thumb);
-    CHECK(hand.pads[static_cast<std::size_t>(hand.fingers[0].tip_pad)].name == "my_pad");
+    CHECK(hand.pads[static_cast<std::size_t>(*hand.fingers[0].tip_pad)].name == "my_pad");
     CHECK(hand.links[static_cast<std::size_t>(
-                         hand.pads[static_cast<std::size_t>(hand.fingers[0].tip_pad)].link)]
+                         hand.pads[static_cast<std::size_t>(*hand.fingers[0].tip_pad)].link)]
               .name == "left_upper");
   }
   SECTION("pads: their fingers are named after them") {
@@ -400,15 +400,15 @@ TEST_CASE("What a partial sidecar says is kept, and the rest follows it", "[hand
             "outline_m": [[0.01, -0.01], [0.01, 0.01], [-0.01, 0.01], [-0.01, -0.01]]}])");
     REQUIRE(hand.pads.size() == 1);
     CHECK(hand.pads[0].finger == hand.finger_index("friend"));
-    CHECK(hand.palm.pad == -1);
+    CHECK(!hand.palm.pad);
     CHECK(hand.finger_index("left") >= 0);
   }
   SECTION("palm: its direction, center and pad's name") {
     const HandModel hand = read(
         R"("palm": {"link": "plate", "center_m": [0, 0, -0.01], "direction": [0, 0, -1], "pad": "back"})");
     CHECK(hand.palm.direction_H == -Vector3d::UnitZ());
-    CHECK(hand.pads[static_cast<std::size_t>(hand.palm.pad)].name == "back");
-    CHECK(hand.pads[static_cast<std::size_t>(hand.palm.pad)].X_LC.linear()(2, 2) == Approx(-1.0));
+    CHECK(hand.pads[static_cast<std::size_t>(*hand.palm.pad)].name == "back");
+    CHECK(hand.pads[static_cast<std::size_t>(*hand.palm.pad)].X_LC.linear()(2, 2) == Approx(-1.0));
   }
 }
 

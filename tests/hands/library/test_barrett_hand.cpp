@@ -44,8 +44,8 @@ TEST_CASE("The Barrett hand has four independent joints, three fingers, a thumb 
   CHECK(hand.fingers[0].swing_joint == hand.joint_index("finger_1_spread"));
   CHECK_FALSE(hand.fingers[2].swing_joint.has_value());
   CHECK(hand.pads.size() == 7);
-  REQUIRE(hand.palm.pad >= 0);
-  CHECK(hand.pads[static_cast<std::size_t>(hand.palm.pad)].name == "palm_pad");
+  REQUIRE(hand.palm.pad);
+  CHECK(hand.pads[static_cast<std::size_t>(*hand.palm.pad)].name == "palm_pad");
   CHECK(hand.palm.center_H == Vector3d::Zero());
   CHECK(hand.palm.direction_H == Vector3d::UnitZ());
   CHECK(hand.description_sha256.size() == 64);
@@ -158,13 +158,13 @@ TEST_CASE("Every pad is a flat part of its link's mesh: a contact of the pad is 
 
 TEST_CASE("Pads of the Barrett hand have the stated sizes", "[hands][barrett]") {
   // 52 x 23 mm: the inner pad box of jhu-lcsr/barrett_model.
-  const ContactPad& tip = barrett().pads[static_cast<std::size_t>(barrett().fingers[0].tip_pad)];
+  const ContactPad& tip = barrett().pads[static_cast<std::size_t>(*barrett().fingers[0].tip_pad)];
   CHECK(hands::pad_area(tip) == Approx(0.052 * 0.023).epsilon(1e-9));
   CHECK(hands::largest_boundary_distance(tip) == Approx(0.0115).epsilon(1e-9));
   // The pad's plane is tangent to the base cylinder: 9.5 mm from the distal axis, Barrett's D3.
   CHECK(tip.X_LC.translation().dot(tip.X_LC.linear().col(2)) == Approx(0.0095).epsilon(1e-9));
   // Palm: 76 x 46 mm with cut corners, less an edge of 1.5 mm.
-  const ContactPad& palm = barrett().pads[static_cast<std::size_t>(barrett().palm.pad)];
+  const ContactPad& palm = barrett().pads[static_cast<std::size_t>(*barrett().palm.pad)];
   CHECK(palm.outline.size() == 8);
   CHECK(hands::largest_boundary_distance(palm) == Approx(0.0215).epsilon(1e-9));
 }

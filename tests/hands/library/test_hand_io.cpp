@@ -107,9 +107,9 @@ TEST_CASE("A small description is read as it is written", "[hands][hand_io]") {
   CHECK(turn.coupling->offset == 0.5);
   CHECK(turn.closing_sign == 1);  // follows a closing joint of sign −1 by a negative ratio
   CHECK(hand.palm.direction_H == Vector3d(0, 0, 1));
-  CHECK(hand.palm.pad == -1);
+  CHECK(!hand.palm.pad);
   CHECK(hand.fingers[0].tip_pad == 0);
-  CHECK(hand.fingers[1].tip_pad == -1);
+  CHECK(!hand.fingers[1].tip_pad);
   CHECK(hand.is_excluded(0, 1));
   CHECK(hand.is_excluded(1, 2));  // fixed to each other
   CHECK_FALSE(hand.is_excluded(0, 2));

@@ -221,7 +221,7 @@ TEST_CASE("Pads of the human hand are convex, about regular and on the closing s
     const double r = hands::largest_boundary_distance(pad);
     CHECK(n * r * r * std::tan(pi / n) / hands::pad_area(pad) > 0.6);
     const Vector3d normal_L = pad.X_LC.linear().col(2);
-    CHECK((pad.finger == -1 ? normal_L.z() : normal_L.y()) > 0.9);
+    CHECK((pad.finger ? normal_L.y() : normal_L.z()) > 0.9);
   }
 }
 

@@ -20,8 +20,8 @@ Jaws jaws(const HandModel& hand, double position) {
   c.q[hand.joint_index("right_slide")] = position;
   hands::apply_couplings(hand, c.q);
   const auto X_OL = hands::forward_kinematics(hand, c);
-  return {hands::pad_pose(hand, hand.fingers[0].tip_pad, X_OL),
-          hands::pad_pose(hand, hand.fingers[1].tip_pad, X_OL)};
+  return {hands::pad_pose(hand, *hand.fingers[0].tip_pad, X_OL),
+          hands::pad_pose(hand, *hand.fingers[1].tip_pad, X_OL)};
 }
 
 struct Row {
@@ -48,7 +48,7 @@ TEST_CASE("Stroke and pads of the grippers are the published ones", "[hands][par
           1e-12);
     for (const int finger : {0, 1}) {
       const hands::ContactPad& pad = hand.pads[static_cast<std::size_t>(
-          hand.fingers[static_cast<std::size_t>(finger)].tip_pad)];
+          *hand.fingers[static_cast<std::size_t>(finger)].tip_pad)];
       CHECK(hands::pad_area(pad) == Approx(row.width * row.length).epsilon(1e-12));
       CHECK(hands::largest_boundary_distance(pad) ==
             Approx(std::min(row.width, row.length) / 2).epsilon(1e-12));

@@ -62,7 +62,7 @@ const hands::Link& link_of(const HandModel& hand, const ContactPad& pad) {
 }
 
 const ContactPad& tip_pad(const HandModel& hand, const Finger& finger) {
-  return hand.pads[static_cast<std::size_t>(finger.tip_pad)];
+  return hand.pads[static_cast<std::size_t>(*finger.tip_pad)];
 }
 
 TEST_CASE("The seven shared hands have the fingers, thumb and joints that their makers gave them",
@@ -85,7 +85,7 @@ TEST_CASE("The seven shared hands have the fingers, thumb and joints that their 
     int num_thumbs = 0;
     for (const Finger& finger : hand.fingers) {
       CAPTURE(finger.name);
-      REQUIRE(finger.tip_pad >= 0);
+      REQUIRE(finger.tip_pad);
       REQUIRE_FALSE(finger.joints.empty());
       // Some joint of each finger closes it, and the pad is carried by it.
       CHECK(std::any_of(finger.joints.begin(), finger.joints.end(), [&](int j) {
@@ -112,8 +112,8 @@ TEST_CASE("Closing brings the tips of the shared hands to the thumb, pads face t
     const HandModel& hand = reading.model;
     const Finger& thumb = hand.fingers[static_cast<std::size_t>(hand.thumb())];
     const auto distance = [&](const std::vector<RigidTransform>& X_OL, const Finger& finger) {
-      return (hands::pad_pose(hand, finger.tip_pad, X_OL).translation() -
-              hands::pad_pose(hand, thumb.tip_pad, X_OL).translation())
+      return (hands::pad_pose(hand, *finger.tip_pad, X_OL).translation() -
+              hands::pad_pose(hand, *thumb.tip_pad, X_OL).translation())
           .norm();
     };
     int num_facing = 0;
@@ -126,8 +126,8 @@ TEST_CASE("Closing brings the tips of the shared hands to the thumb, pads face t
       for (int step = 1; step <= 20; ++step) {
         const auto X_OL = hands::forward_kinematics(hand, closed_by(hand, step / 20.0));
         nearest = std::min(nearest, distance(X_OL, finger));
-        const RigidTransform tip = hands::pad_pose(hand, finger.tip_pad, X_OL);
-        const RigidTransform other = hands::pad_pose(hand, thumb.tip_pad, X_OL);
+        const RigidTransform tip = hands::pad_pose(hand, *finger.tip_pad, X_OL);
+        const RigidTransform other = hands::pad_pose(hand, *thumb.tip_pad, X_OL);
         const Vector3d line = (tip.translation() - other.translation()).normalized();
         // Around half closed each pad sees the other within 60 degrees of its normal.
         if (step >= 6 && step <= 14 && other.linear().col(2).dot(line) > 0.5 &&

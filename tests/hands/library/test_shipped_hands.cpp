@@ -53,9 +53,9 @@ TEST_CASE("The paper's three hands are shipped with their options and degrees of
     CHECK(hand.name == name);
     CHECK(hand.num_intrinsic_dof() == counts.first);
     CHECK(hand.fingers.size() == counts.second);
-    CHECK(hand.palm.pad >= 0);
+    CHECK(hand.palm.pad);
     CHECK(hand.palm.direction_H == Vector3d::UnitZ());
-    for (const hands::Finger& finger : hand.fingers) CHECK(finger.tip_pad >= 0);
+    for (const hands::Finger& finger : hand.fingers) CHECK(finger.tip_pad);
   }
 }
 
@@ -203,12 +203,12 @@ TEST_CASE("Closing brings the thumb's pad and the fingers' pads face to face",
     const bool is_human = name.starts_with("human");
     const auto X_OL = hands::forward_kinematics(hand, closed_by(hand, is_human ? 0.25 : 0.45));
     const RigidTransform thumb =
-        hands::pad_pose(hand, hand.fingers[static_cast<std::size_t>(hand.thumb())].tip_pad, X_OL);
+        hands::pad_pose(hand, *hand.fingers[static_cast<std::size_t>(hand.thumb())].tip_pad, X_OL);
     for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
       // The little finger stays beside GraspIt!'s thumb, which does not turn so far.
       if (static_cast<int>(f) == hand.thumb() || hand.fingers[f].name == "little") continue;
       CAPTURE(name, hand.fingers[f].name);
-      const RigidTransform tip = hands::pad_pose(hand, hand.fingers[f].tip_pad, X_OL);
+      const RigidTransform tip = hands::pad_pose(hand, *hand.fingers[f].tip_pad, X_OL);
       const Vector3d line = (tip.translation() - thumb.translation()).normalized();
       CHECK(thumb.linear().col(2).dot(line) > 0.5);
       CHECK(-tip.linear().col(2).dot(line) > 0.5);

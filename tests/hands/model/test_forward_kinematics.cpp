@@ -138,7 +138,7 @@ TEST_CASE("Pads face the closing direction: up when open, toward the palm axis h
   const auto normal = [](double q, const char* finger) {
     const auto X_OL = hands::forward_kinematics(barrett(), configuration(0, q, q, q));
     const int pad =
-        barrett().fingers[static_cast<std::size_t>(barrett().finger_index(finger))].tip_pad;
+        *barrett().fingers[static_cast<std::size_t>(barrett().finger_index(finger))].tip_pad;
     return Vector3d(hands::pad_pose(barrett(), pad, X_OL).linear().col(2));
   };
   CHECK(normal(0, "finger_1").z() > 0.7);

@@ -284,8 +284,8 @@ DistanceRange searched_range(const HandModel& hand, int finger_a, int finger_b, 
     }
     const auto X_OL = hands::forward_kinematics(hand, configuration);
     const double distance =
-        (hands::pad_pose(hand, hand.fingers[finger_a].tip_pad, X_OL).translation() -
-         hands::pad_pose(hand, hand.fingers[finger_b].tip_pad, X_OL).translation())
+        (hands::pad_pose(hand, *hand.fingers[finger_a].tip_pad, X_OL).translation() -
+         hands::pad_pose(hand, *hand.fingers[finger_b].tip_pad, X_OL).translation())
             .norm();
     range.smallest = std::min(range.smallest, distance);
     range.largest = std::max(range.largest, distance);
@@ -362,8 +362,8 @@ TEST_CASE("The Barrett hand's graspable diameters are those of its grid, and a l
       position("thumb_proximal", i / 24 / 24);
       hands::apply_couplings(hand, c.q);
       const auto X = hands::forward_kinematics(hand, c);
-      const RigidTransform X_a = hands::pad_pose(hand, hand.fingers[thumb].tip_pad, X);
-      const RigidTransform X_b = hands::pad_pose(hand, hand.fingers[finger].tip_pad, X);
+      const RigidTransform X_a = hands::pad_pose(hand, *hand.fingers[thumb].tip_pad, X);
+      const RigidTransform X_b = hands::pad_pose(hand, *hand.fingers[finger].tip_pad, X);
       const Vector3d between = X_b.translation() - X_a.translation();
       const auto angle = [&](const Vector3d& normal, const Vector3d& line) {
         return std::acos(std::clamp(normal.dot(line.normalized()), -1.0, 1.0));
@@ -457,7 +457,7 @@ TEST_CASE("Ranges of every shipped hand hold the distances of 1000 random config
       for (std::size_t a = 0; a < hand.fingers.size(); ++a) {
         for (std::size_t b = a + 1; b < hand.fingers.size(); ++b) {
           const auto contact_point = [&](std::size_t finger) -> Vector3d {
-            const int pad = hand.fingers[finger].tip_pad;
+            const int pad = *hand.fingers[finger].tip_pad;
             const double height = -hands::height_over_pad(hand.pads[pad], Vector3d::Zero());
             return hands::pad_pose(hand, pad, X_OL) * Vector3d(0, 0, height);
           };
@@ -489,7 +489,7 @@ TEST_CASE("More joints than the grid has room for are sampled at random",
 TEST_CASE("Fingers without a tip pad have no ranges; options and models are checked",
           "[hands][hand_workspace]") {
   HandModel hand = planar_hand(0.05, {0.07, 0.05}, 1.5);
-  hand.fingers[1].tip_pad = -1;
+  hand.fingers[1].tip_pad.reset();
   const HandWorkspace workspace = hands::hand_workspace(hand, {.samples_per_joint = 5});
   CHECK(workspace.tip_to_tip[0][1] == DistanceRange{});
   CHECK(workspace.palm_to_tip[1] == DistanceRange{});

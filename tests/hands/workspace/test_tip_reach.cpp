@@ -73,7 +73,7 @@ TEST_CASE("Whatever its joints, a tip is where its reach says", "[hands][tip_rea
       hands::apply_couplings(hand, configuration.q);
       const auto X_HL = hands::forward_kinematics(hand, configuration);
       for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
-        const int pad = hand.fingers[f].tip_pad;
+        const int pad = *hand.fingers[f].tip_pad;
         REQUIRE(reaches[f].has_value());
         const Vector3d point = hands::pad_contact_point(hand, pad, X_HL);
         const Vector3d normal = hands::pad_pose(hand, pad, X_HL).linear().col(2);

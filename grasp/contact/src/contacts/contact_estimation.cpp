@@ -200,8 +200,8 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
 
 bool is_counted(const hands::HandModel& hand, int pad, const ContactEstimationOptions& options) {
   if (options.pads == CountedPads::All) return true;
-  const int finger = hand.pads[static_cast<std::size_t>(pad)].finger;
-  return finger == kPalm || hand.fingers[static_cast<std::size_t>(finger)].tip_pad == pad;
+  const std::optional<int>& finger = hand.pads[static_cast<std::size_t>(pad)].finger;
+  return !finger || hand.fingers[static_cast<std::size_t>(*finger)].tip_pad == pad;
 }
 
 bool has_contact(const hands::HandModel& hand, int pad, const RigidTransform& X_OC,

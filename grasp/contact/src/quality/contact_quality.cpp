@@ -52,11 +52,17 @@ const hands::ContactPad& pad_of(const Contact& contact, const hands::HandModel& 
 const hands::ContactPad& nominal_pad(const Contact& contact, const hands::HandModel& hand) {
   Contact resolved = contact;
   if (resolved.pad < 0) {
-    const bool has_finger =
-        contact.finger >= 0 && contact.finger < static_cast<int>(hand.fingers.size());
-    resolved.pad = has_finger ? hand.fingers[contact.finger].tip_pad : hand.palm.pad;
+    const bool has_finger = contact.finger && *contact.finger >= 0 &&
+                            *contact.finger < static_cast<int>(hand.fingers.size());
+    const std::optional<int>& pad =
+        has_finger ? hand.fingers[*contact.finger].tip_pad : hand.palm.pad;
+    resolved.pad = pad.value_or(-1);
   }
   return pad_of(resolved, hand);
+}
+
+std::string finger_text(const Contact& contact) {
+  return contact.finger ? std::to_string(*contact.finger) : "none";
 }
 
 double strength(const Contact& contact) { return contact.weak.value_or(false) ? 0.0 : 1.0; }
@@ -210,7 +216,8 @@ ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityCon
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       base::require(contacts[i].finger != contacts[j].finger, "ideal_quality",
-                    "the finger of two contacts", contacts[i].finger, "different for each contact");
+                    "the finger of two contacts", finger_text(contacts[i]),
+                    "different for each contact");
     }
   }
 

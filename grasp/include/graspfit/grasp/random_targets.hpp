@@ -17,8 +17,8 @@ namespace graspfit::grasp {
 /// targets to the others has every two of them within those fingers' own range (`assign_fingers`
 /// chooses one way).
 ///
-/// A target for the palm, if `parts` has it, comes last and is the only one assigned here (finger
-/// kPalm). With n its outward normal, the palm there looks along −n. It is chosen so that
+/// A target for the palm, if `parts` has it, comes last and is the only one assigned here
+/// (`is_palm`). With n its outward normal, the palm there looks along −n. It is chosen so that
 ///  - no other surface stands in the palm's way: within the pad's radius around n, none is higher
 ///    than a voxel over the target's plane;
 ///  - every finger's target is in front of the palm: (V − palm) · n < 0;

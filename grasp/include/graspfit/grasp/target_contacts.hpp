@@ -85,17 +85,19 @@ struct TargetOptions {
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// What a target is assigned to before it is assigned.
-inline constexpr int kUnassigned = -2;
-
 /// One contact to reach.
 struct TargetContact {
   Eigen::Vector3d point_O = Eigen::Vector3d::Zero();           ///< Patch centroid, or sample [m].
   Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Its normal, unit.
-  std::int32_t patch = -1;   ///< Index into ObjectModel::patches; −1: not a patch's.
-  double score = 0.0;        ///< Of that patch, or of the voxel that the point is in.
-  int finger = kUnassigned;  ///< Assigned finger of the hand, kPalm, or kUnassigned.
+  std::optional<std::int32_t> patch;  ///< Index into ObjectModel::patches; empty: not a patch's.
+  double score = 0.0;                 ///< Of that patch, or of the voxel that the point is in.
+  bool is_palm = false;               ///< The palm's target.
+  /// Assigned finger of the hand; empty: none yet, or the palm's target.
+  std::optional<int> finger = {};
 };
+
+/// Whether the contact is of the part, finger or palm, that the target is for.
+bool is_for_part_of(const TargetContact& target, const contact::Contact& contact);
 
 /// A set of targets, the seed first, the palm's (if any) last.
 struct TargetContacts {
@@ -150,7 +152,7 @@ PartDistances part_distances(const hands::HandModel& hand);
 PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts);
 
 /// The contacts that targets stand for: at their points, of their fingers. Targets that are not
-/// assigned are those of `fingers` in order.
+/// assigned are those of `fingers` in order; beyond these, they have no finger, as the palm's.
 std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
                                           const std::vector<int>& fingers = {});
 

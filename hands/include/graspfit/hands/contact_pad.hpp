@@ -22,7 +22,7 @@ using geometry::TriangleMesh;
 struct ContactPad {
   std::string name;
   int link = -1;
-  int finger = -1;                                   ///< Index of its finger; −1 for the palm.
+  std::optional<int> finger;                         ///< Of the hand model; empty: the palm.
   RigidTransform X_LC = RigidTransform::Identity();  ///< Pad frame in the link's frame.
   std::vector<Eigen::Vector2d>
       outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].

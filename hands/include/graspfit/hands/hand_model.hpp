@@ -71,8 +71,8 @@ struct Finger {
   std::string name;
   std::vector<int> links;  ///< Proximal to distal.
   std::vector<int>
-      joints;        ///< Movable joints of the chain, proximal to distal, coupled ones included.
-  int tip_pad = -1;  ///< The pad that precision grasps use.
+      joints;  ///< Movable joints of the chain, proximal to distal, coupled ones included.
+  std::optional<int> tip_pad;  ///< The pad that precision grasps use; empty: no pad.
   bool is_thumb = false;
   std::optional<int> swing_joint;  ///< Turns the finger around the palm (spread, abduction).
 };
@@ -83,7 +83,7 @@ struct Palm {
   Eigen::Vector3d center_H = Eigen::Vector3d::Zero();  ///< Palm center [m].
   Eigen::Vector3d direction_H =
       Eigen::Vector3d::UnitZ();  ///< Unit n_palm: leaves the palm toward the object.
-  int pad = -1;                  ///< Its contact pad; −1 if none.
+  std::optional<int> pad;        ///< Its contact pad; empty: none.
 };
 
 /// Two links whose collision does not count (neighbors, or always overlapping).
