@@ -55,13 +55,13 @@ void print_table(const std::string& name, const std::vector<std::vector<std::str
 
 template <class Items>
 std::string names_of(const Items& items, const std::vector<int>& indices) {
-  const auto name = [&](int i) { return items[static_cast<std::size_t>(i)].name; };
+  const auto name = [&](int i) { return items[i].name; };
   return base::list_text(indices, name, " ");
 }
 
 template <class Items>
 std::string name_or_dash(const Items& items, std::optional<int> index) {
-  return index ? items[static_cast<std::size_t>(*index)].name : "-";
+  return index ? items[*index].name : "-";
 }
 
 std::string coupling_text(const HandModel& hand, const hands::Joint& joint) {
@@ -105,7 +105,7 @@ void print_joints(const HandModel& hand, const std::vector<viewer::HandPose>& po
                                                              : "-",
                                     coupling_text(hand, joint)};
     for (const viewer::HandPose& pose : poses) {
-      row.push_back(fixed_decimal(pose.q[static_cast<Eigen::Index>(j)], 4));
+      row.push_back(fixed_decimal(pose.q[j], 4));
     }
     rows.push_back(std::move(row));
   }

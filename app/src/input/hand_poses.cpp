@@ -55,16 +55,16 @@ Eigen::VectorXd joint_positions(const hands::HandModel& hand, const WantedPose& 
   const Eigen::VectorXd open = hands::open_configuration(hand).q;
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     if (hand.joints[j].coupling) {
-      q[static_cast<Eigen::Index>(j)] = open[static_cast<Eigen::Index>(j)];
+      q[j] = open[j];
     }
   }
   for (const auto& [joint, position] : wanted.positions) q[joint] = position;
   hands::apply_couplings(hand, q);
   constexpr double kSame = 1e-9;  // [rad or m]; what a person types for a follower is rounded
   for (const auto& [index, position] : wanted.positions) {
-    const hands::Joint& joint = hand.joints[static_cast<std::size_t>(index)];
+    const hands::Joint& joint = hand.joints[index];
     if (!joint.coupling || std::abs(q[index] - position) <= kSame) continue;
-    const std::string& leader = hand.joints[static_cast<std::size_t>(joint.coupling->leader)].name;
+    const std::string& leader = hand.joints[joint.coupling->leader].name;
     throw InvalidInput("--pose: joint " + joint.name + " follows " + leader +
                        ", which puts it at " + shortest_decimal(q[index]) + ", not " +
                        shortest_decimal(position) + "; set " + leader);
@@ -87,8 +87,7 @@ std::vector<viewer::HandPose> read_poses(const std::vector<std::string>& words,
       throw UsageError("--pose \"" + word + "\" is none of open, half, closed and JOINT=VALUE");
     }
     const int joint = hand.joint_index(word.substr(0, sign));
-    const double position =
-        position_of(hand.joints[static_cast<std::size_t>(joint)], word.substr(sign + 1));
+    const double position = position_of(hand.joints[joint], word.substr(sign + 1));
     if (wanted.empty()) wanted.push_back({"", 0.0, {}});
     WantedPose& pose = wanted.back();
     if (!pose.positions.emplace(joint, position).second) {

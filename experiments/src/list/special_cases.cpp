@@ -96,8 +96,7 @@ std::string contacts_text(const grasp::Grasp& grasp, const hands::HandModel& han
   constexpr double kHundredthsOfMillimeter = 1e5;
   std::string text;
   for (const contact::Contact& contact : grasp.contacts) {
-    const std::string part =
-        contact.finger ? hand.fingers[static_cast<std::size_t>(*contact.finger)].name : "palm";
+    const std::string part = contact.finger ? hand.fingers[*contact.finger].name : "palm";
     text += (text.empty() ? "" : "; ") + part + ' ' +
             sweep::csv_field(std::round(contact.gap * kHundredthsOfMillimeter) / 100.0);
   }

@@ -197,7 +197,7 @@ std::vector<sweep::ResultRow> move_rows(const Table& table, const motion::Tidyin
       row.set("failures", move.refusals);
       rows.push_back(std::move(row));
     }
-    X_WO[static_cast<std::size_t>(move.object)] = move.X_WO_to;
+    X_WO[move.object] = move.X_WO_to;
   }
   for (const motion::UnmovedObject& unmoved : result.unmoved) {
     sweep::ResultRow row(details());

@@ -65,7 +65,7 @@ std::vector<Sample> samples_of(const SolidPart& part, base::Random& random) {
         (static_cast<double>(i) + random.uniform()) / static_cast<double>(kNumSamples) * total;
     const auto at = std::min(std::upper_bound(areas.begin(), areas.end(), place) - areas.begin(),
                              static_cast<std::ptrdiff_t>(areas.size()) - 1);
-    const auto& t = triangles[static_cast<std::size_t>(at)];
+    const auto& t = triangles[at];
     double u = random.uniform();
     double v = random.uniform();
     if (u + v > 1.0) {

@@ -97,13 +97,13 @@ ExactSide exact_side(const PolytopeData& data, Index facet,
   long largest = std::numeric_limits<long>::min();
   VectorXd gradient(rank);
   for (Index j = 0; j < rank; ++j) {
-    const auto [mantissa, exponent] = plane.normal_parts[static_cast<std::size_t>(j)];
+    const auto [mantissa, exponent] = plane.normal_parts[j];
     gradient[j] = mantissa;
-    exponents[static_cast<std::size_t>(j)] = exponent + exact.scale(static_cast<int>(j));
-    if (mantissa != 0.0) largest = std::max(largest, exponents[static_cast<std::size_t>(j)]);
+    exponents[j] = exponent + exact.scale(static_cast<int>(j));
+    if (mantissa != 0.0) largest = std::max(largest, exponents[j]);
   }
   for (Index j = 0; j < rank; ++j) {
-    const long shift = exponents[static_cast<std::size_t>(j)] - largest;
+    const long shift = exponents[j] - largest;
     gradient[j] = std::ldexp(gradient[j], static_cast<int>(std::max(shift, -2000L)));
   }
   const auto [mantissa, exponent] = value;
@@ -146,7 +146,7 @@ double distance_within_span(const PolytopeData& data, const Eigen::Ref<const Vec
   }
   double distance = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < count; ++f) {
-    const auto [low, high] = ranges[static_cast<std::size_t>(f)];
+    const auto [low, high] = ranges[f];
     if (low > nearest) continue;
     const double middle = 0.5 * (low + high);
     const bool is_precise = high - low <= internal::kNormalPrecision * std::abs(middle);

@@ -108,7 +108,7 @@ class HullBuilder {
       return best;
     };
     std::vector<int> simplex = {static_cast<int>(farthest())};
-    const Vector base = rest[static_cast<std::size_t>(simplex[0])];
+    const Vector base = rest[simplex[0]];
     for (Vector& x : rest) x -= base;
     for (int k = 0; k < D; ++k) {
       const std::size_t next = farthest();

@@ -158,7 +158,7 @@ class SpanHull {
     data.gradients.resize(D, count);
     data.unit_bounds.resize(count);
     for (Index i = 0; i < count; ++i) {
-      const Sorted& s = sorted[static_cast<std::size_t>(i)];
+      const Sorted& s = sorted[i];
       const auto& plane = builder_.precise_plane(s.facet);
       for (int k = 0; k < D; ++k) {
         data.facets(k, i) = s.corners[k];
@@ -307,9 +307,9 @@ void measure_in_space(PolytopeData& data) {
   } else {
     MatrixXd edges(data.dimension(), rank);
     for (Index k = 0; k < rank; ++k) {
-      edges.col(k) = (data.points.col(data.independent[static_cast<std::size_t>(k + 1)]) -
-                      data.points.col(data.independent[0]))
-                         .stableNormalized();
+      edges.col(k) =
+          (data.points.col(data.independent[k + 1]) - data.points.col(data.independent[0]))
+              .stableNormalized();
     }
     data.directions = Eigen::HouseholderQR<MatrixXd>(edges).householderQ() *
                       MatrixXd::Identity(edges.rows(), rank);
@@ -323,7 +323,7 @@ void measure_in_space(PolytopeData& data) {
   for (Index f = 0; f < data.facets.cols(); ++f) {
     gradient = data.gradients.col(f);
     for (Index j = 0; j < rank; ++j) {
-      gradient[j] = std::ldexp(gradient[j], -data.exponents[static_cast<std::size_t>(j)]);
+      gradient[j] = std::ldexp(gradient[j], -data.exponents[j]);
     }
     if (is_full) {
       gradient.array() += 0.0;  // no negative zeros, which the products leave none of either

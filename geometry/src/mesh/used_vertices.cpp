@@ -5,7 +5,7 @@ namespace graspfit::geometry {
 std::vector<Eigen::Vector3d> used_vertices(const TriangleMesh& mesh) {
   std::vector<bool> is_used(mesh.vertices.size(), false);
   for (const Face& face : mesh.faces) {
-    for (const std::int32_t vertex : face) is_used[static_cast<std::size_t>(vertex)] = true;
+    for (const std::int32_t vertex : face) is_used[vertex] = true;
   }
   std::vector<Eigen::Vector3d> used;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

@@ -31,7 +31,7 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
     Index entering = -1;
     double steepest = 0.0;
     for (Index j = 0; j < a.cols(); ++j) {
-      if (is_refused[static_cast<std::size_t>(j)] || !(lengths[j] > 0.0) ||
+      if (is_refused[j] || !(lengths[j] > 0.0) ||
           std::binary_search(passive.begin(), passive.end(), j)) {
         continue;
       }
@@ -59,7 +59,7 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
       const auto place = std::lower_bound(passive.begin(), passive.end(), entering);
       if (is_new && best[place - passive.begin()] <= 0.0) {
         // Steep by rounding alone: nearly in the span of the others.
-        is_refused[static_cast<std::size_t>(entering)] = true;
+        is_refused[entering] = true;
         passive.erase(place);
         break;
       }

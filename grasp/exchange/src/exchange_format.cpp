@@ -62,7 +62,7 @@ std::string off_coupling(const grasp::GraspFile& file) {
       if (!joint.coupling) continue;
       const Eigen::VectorXd& q = grasp.configuration.q;
       const double follows = hands::followed_position(joint, q);
-      if (std::abs(q[static_cast<Eigen::Index>(j)] - follows) > 1e-9) return true;
+      if (std::abs(q[j] - follows) > 1e-9) return true;
     }
     return false;
   });

@@ -66,8 +66,7 @@ std::string dof_values(const hands::HandModel& hand, const Eigen::VectorXd& q) {
   }
   for (std::size_t i = 0; i < hand.joints.size(); ++i) {
     if (hand.joints[i].coupling) continue;
-    text += (text.empty() ? "" : " ") +
-            shortest_decimal(in_graspit_units(hand.joints[i], q[static_cast<Eigen::Index>(i)]));
+    text += (text.empty() ? "" : " ") + shortest_decimal(in_graspit_units(hand.joints[i], q[i]));
   }
   return text;
 }

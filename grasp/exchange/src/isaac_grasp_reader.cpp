@@ -58,10 +58,10 @@ class Reader {
                                                   std::numeric_limits<double>::quiet_NaN());
     for (const auto& [name, value] : node.members()) {
       const std::size_t joint = index_of(name, value);
-      q[static_cast<Eigen::Index>(joint)] = within_limits(hand_.joints[joint], value);
+      q[joint] = within_limits(hand_.joints[joint], value);
     }
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
-      if (std::isnan(q[static_cast<Eigen::Index>(j)]) && !hand_.joints[j].coupling) {
+      if (std::isnan(q[j]) && !hand_.joints[j].coupling) {
         node.fail("joint " + hand_.joints[j].name + " of hand " + hand_.name + " is missing");
       }
     }
@@ -95,14 +95,14 @@ class Reader {
     const Eigen::VectorXd stated = q;
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
       // Any place will do for a follower: all but those that a clutch lets go on are put right.
-      if (std::isnan(q[static_cast<Eigen::Index>(j)])) {
-        q[static_cast<Eigen::Index>(j)] = hand_.joints[j].open_limit();
+      if (std::isnan(q[j])) {
+        q[j] = hand_.joints[j].open_limit();
       }
     }
     hands::apply_couplings(hand_, q);
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
-      const double value = stated[static_cast<Eigen::Index>(j)];
-      const double follows = q[static_cast<Eigen::Index>(j)];
+      const double value = stated[j];
+      const double follows = q[j];
       if (std::isnan(value) || std::abs(value - follows) <= options_.largest_coupling_error) {
         continue;
       }

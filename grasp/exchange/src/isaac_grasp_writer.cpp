@@ -15,8 +15,7 @@ void append_joints(const std::string& key, const hands::HandModel& hand, const E
                    std::string& text) {
   text += "    " + key + ":\n";
   for (std::size_t i = 0; i < hand.joints.size(); ++i) {
-    text += "      " + in_quotes(hand.joints[i].name) + ": " +
-            yaml_number(q[static_cast<Eigen::Index>(i)]) + '\n';
+    text += "      " + in_quotes(hand.joints[i].name) + ": " + yaml_number(q[i]) + '\n';
   }
 }
 

@@ -25,7 +25,7 @@ std::string posture(const char* key, const hands::HandModel& hand, const std::st
   for (std::size_t i = 0; i < hand.joints.size() && q != nullptr; ++i) {
     if (hand.joints[i].coupling) continue;
     names += (names.empty() ? "" : ", ") + in_quotes(hand.joints[i].name);
-    positions += (positions.empty() ? "" : ", ") + yaml_number((*q)[static_cast<Eigen::Index>(i)]);
+    positions += (positions.empty() ? "" : ", ") + yaml_number((*q)[i]);
   }
   const std::string point = "{positions: [" + positions + "]}";
   return std::string("  ") + key + ":\n    " + header(frame) + "\n    joint_names: [" + names +

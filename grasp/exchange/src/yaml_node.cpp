@@ -89,8 +89,7 @@ Eigen::Vector3d YamlNode::vector3() const {
   if (!node_.IsSequence() || node_.size() != 3) fail("is not a list of three numbers");
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) {
-    v[i] = YamlNode(file_, node_[static_cast<std::size_t>(i)], place_ + '/' + std::to_string(i))
-               .number();
+    v[i] = YamlNode(file_, node_[i], place_ + '/' + std::to_string(i)).number();
   }
   return v;
 }

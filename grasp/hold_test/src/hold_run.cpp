@@ -29,7 +29,7 @@ std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::Ve
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const auto& coupling = hand.joints[j].coupling;
     if (!coupling) continue;
-    const double off = q[static_cast<Eigen::Index>(j)] - hands::led_position(*coupling, q);
+    const double off = q[j] - hands::led_position(*coupling, q);
     follows[j] = !coupling->breakaway || std::abs(off) <= kFollowingSlack;
   }
   return follows;
@@ -105,7 +105,7 @@ std::string HoldRun::rejection(const grasp::Grasp& grasp) {
   physics_.reset(grasp.pre_grasp->configuration, following_joints(hand_, grasp.configuration.q));
   const Physics::Overlap overlap = physics_.deepest_overlap();
   if (overlap.depth <= protocol_.largest_penetration) return {};
-  const auto name = [&](int link) { return hand_.links[static_cast<std::size_t>(link)].name; };
+  const auto name = [&](int link) { return hand_.links[link].name; };
   return "at the pre-grasp " + name(overlap.link_a) + " is " + millimeters(overlap.depth) +
          " deep in " + (overlap.link_b < 0 ? "the object or table" : name(overlap.link_b));
 }

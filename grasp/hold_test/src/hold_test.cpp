@@ -91,8 +91,7 @@ struct HoldTest::Impl {
     return protocol.load == HoldLoad::Lift ? 1 : static_cast<int>(six_directions().size());
   }
   Vector3d direction(int index) const {
-    return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ()
-                                           : six_directions()[static_cast<std::size_t>(index)];
+    return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ() : six_directions()[index];
   }
   DirectionVerdict load(int index, const HoldRun::Watch& watch = {}) {
     const Vector3d force = protocol.load == HoldLoad::Lift

@@ -62,7 +62,7 @@ struct Physics::Engine {
     palm_body = body_of_link(hand.palm.link);
     link_of_body.assign(static_cast<std::size_t>(model->nbody), -1);
     for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
-      link_of_body[static_cast<std::size_t>(body_of_link(link))] = link;
+      link_of_body[body_of_link(link)] = link;
     }
     const int object_joint = model->body_jntadr[object_body];
     object_position = model->jnt_qposadr[object_joint];
@@ -95,9 +95,7 @@ struct Physics::Engine {
     model->actuator_biasprm[mjNBIAS * actuator + 1] = -kp;
   }
 
-  int link_of_geom(int geom) const {
-    return link_of_body[static_cast<std::size_t>(model->geom_bodyid[geom])];
-  }
+  int link_of_geom(int geom) const { return link_of_body[model->geom_bodyid[geom]]; }
 
   struct JointIds {
     int position;  ///< In qpos.
@@ -131,7 +129,7 @@ void Physics::reset(const hands::HandConfiguration& start, const std::vector<boo
   mj_resetData(e.model, e.data.get());
   for (std::size_t j = 0; j < e.joints.size(); ++j) {
     const Engine::JointIds& ids = e.joints[j];
-    e.data->qpos[ids.position] = start.q[static_cast<Eigen::Index>(j)];
+    e.data->qpos[ids.position] = start.q[j];
     if (ids.equality < 0) continue;
     e.model->eq_active[ids.equality] = follows[j] ? 1 : 0;
     if (ids.actuator < 0) continue;
@@ -148,7 +146,7 @@ void Physics::command(const hands::HandConfiguration& to) {
   set_quaternion(e.model->body_quat + 4 * e.palm_body, to.X_OH.linear());
   for (std::size_t j = 0; j < e.joints.size(); ++j) {
     const int actuator = e.joints[j].actuator;
-    if (actuator >= 0) e.data->ctrl[actuator] = to.q[static_cast<Eigen::Index>(j)];
+    if (actuator >= 0) e.data->ctrl[actuator] = to.q[j];
   }
 }
 
@@ -200,7 +198,7 @@ hands::HandConfiguration Physics::hand() const {
   result.X_OH.linear() = quaternion(e.model->body_quat + 4 * e.palm_body).toRotationMatrix();
   result.q.resize(static_cast<Eigen::Index>(e.joints.size()));
   for (std::size_t j = 0; j < e.joints.size(); ++j) {
-    result.q[static_cast<Eigen::Index>(j)] = e.data->qpos[e.joints[j].position];
+    result.q[j] = e.data->qpos[e.joints[j].position];
   }
   return result;
 }

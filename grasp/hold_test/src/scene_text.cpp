@@ -148,7 +148,7 @@ class Scene {
   }
 
   std::string joint_element(int index) const {
-    const hands::Joint& joint = model().joints[static_cast<std::size_t>(index)];
+    const hands::Joint& joint = model().joints[index];
     const bool is_slide = joint.type == JointType::Prismatic;
     return "<joint" + attribute("name", joint_name(index)) +
            attribute("type", is_slide ? "slide" : "hinge") +
@@ -161,21 +161,19 @@ class Scene {
   }
 
   void add_link(int index) {
-    const hands::Link& link = model().links[static_cast<std::size_t>(index)];
+    const hands::Link& link = model().links[index];
     RigidTransform X_PL = RigidTransform::Identity();
     std::string joint;
     if (link.parent_joint) {
-      X_PL = model().joints[static_cast<std::size_t>(*link.parent_joint)].X_PJ;
+      X_PL = model().joints[*link.parent_joint].X_PJ;
       joint = joint_element(*link.parent_joint);
     } else if (link.parent_link) {
       X_PL = link.X_PL_fixed;
     }
-    bodies_ +=
-        "<body" + attribute("name", link_name(index)) + pose(X_PL) + ">\n" + joint +
-        link_inertial(link) +
-        pieces(hand_.links[static_cast<std::size_t>(index)], "hand", Eigen::Vector3d::Zero());
+    bodies_ += "<body" + attribute("name", link_name(index)) + pose(X_PL) + ">\n" + joint +
+               link_inertial(link) + pieces(hand_.links[index], "hand", Eigen::Vector3d::Zero());
     for (int child = 0; child < static_cast<int>(model().links.size()); ++child) {
-      if (model().links[static_cast<std::size_t>(child)].parent_link == index) add_link(child);
+      if (model().links[child].parent_link == index) add_link(child);
     }
     bodies_ += "</body>\n";
   }
@@ -225,7 +223,7 @@ class Scene {
 
   void add_drives() {
     for (int j = 0; j < static_cast<int>(model().joints.size()); ++j) {
-      const hands::Joint& joint = model().joints[static_cast<std::size_t>(j)];
+      const hands::Joint& joint = model().joints[j];
       if (!joint.coupling || joint.coupling->breakaway) {
         actuators_ += "<position" + attribute("name", joint_name(j)) +
                       attribute("joint", joint_name(j)) +

@@ -70,7 +70,7 @@ hands::HandConfiguration hand_at(const JsonNode& node, std::size_t num_joints) {
   hands::HandConfiguration hand{node.at("X_WH").pose(),
                                 Eigen::VectorXd(static_cast<Eigen::Index>(num_joints))};
   for (std::size_t j = 0; j < num_joints; ++j) {
-    hand.q[static_cast<Eigen::Index>(j)] = positions[j].number();
+    hand.q[j] = positions[j].number();
   }
   return hand;
 }
@@ -111,7 +111,7 @@ struct Whereabouts {
 
 /// A move must begin where things are.
 void require_there(const JsonNode& from, const MotionStretch& first, const Whereabouts& now) {
-  if (!are_same(first.X_WO_from, now.X_WO[static_cast<std::size_t>(first.object)])) {
+  if (!are_same(first.X_WO_from, now.X_WO[first.object])) {
     from.at("X_WO").fail("is not where the object stands then");
   }
   if (!now.hand) return;
@@ -142,7 +142,7 @@ RecordedMove read_move(const JsonNode& node, const MotionFile& file, Whereabouts
   }
   if (move.stretches.empty()) node.at("to").fail("is empty");
   now.hand = move.stretches.back().to;
-  now.X_WO[static_cast<std::size_t>(move.object)] = move.stretches.back().X_WO_to;
+  now.X_WO[move.object] = move.stretches.back().X_WO_to;
   return move;
 }
 

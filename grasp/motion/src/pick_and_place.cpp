@@ -43,7 +43,7 @@ class MoveSearch {
       : scene_(scene),
         X_WO_(X_WO),
         object_(object),
-        X_WO_start_(X_WO[static_cast<std::size_t>(object)]),
+        X_WO_start_(X_WO[object]),
         X_WO_goal_(X_WO_goal),
         options_(options) {}
 
@@ -91,7 +91,7 @@ class MoveSearch {
     for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
       if (other == object_) continue;
       const SceneObject& standing = scene_.object(other);
-      const RigidTransform X_SO = X_WO_[static_cast<std::size_t>(other)].inverse() * X_WO_goal_;
+      const RigidTransform X_SO = X_WO_[other].inverse() * X_WO_goal_;
       if (geometry::do_intersect(standing.surface_O, moved.surface_O, X_SO)) {
         ++attempt_.failures["the goal is taken by " + standing.name];
       }
@@ -129,7 +129,7 @@ class MoveSearch {
         2.0 * hands::largest_reach(scene_.hand()) + pre_grasp.largest_retreat + pre_grasp.clearance;
     for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
       if (other == object_) continue;
-      const RigidTransform& X_WS = X_WO_[static_cast<std::size_t>(other)];
+      const RigidTransform& X_WS = X_WO_[other];
       for (const RigidTransform& X : {X_WS, X_from_goal * X_WS}) {
         if (object_W.exteriorDistance(box_of(other, X)) > reach) continue;
         around.obstacles.emplace_back(geometry::transformed(scene_.hull_O(other), X));

@@ -90,7 +90,7 @@ class Travel {
     }
   }
 
-  double link(int link) const { return links_[static_cast<std::size_t>(link)]; }
+  double link(int link) const { return links_[link]; }
   double object() const { return object_; }
   double links_apart(int a, int b) const { return is_carrying_ ? 0.0 : way_.relative_speed(a, b); }
   double largest() const {
@@ -126,7 +126,7 @@ std::vector<int> solid_links(const TableScene& scene) {
 }
 
 const std::string& link_name(const TableScene& scene, int link) {
-  return scene.hand().links[static_cast<std::size_t>(link)].name;
+  return scene.hand().links[link].name;
 }
 
 /// Proves a stretch free, or finds two bodies for which it cannot.
@@ -185,7 +185,7 @@ class StretchProof {
 
   bool is_link_over_table(int link) const {
     const auto height = [&](const Posed& at, double enough) {
-      return scene_.height_of_link(link, at.X_WL[static_cast<std::size_t>(link)], enough);
+      return scene_.height_of_link(link, at.X_WL[link], enough);
     };
     if (!only_translates_) return stay_apart(travel_.link(link), clearance_, 0.0, height);
     const double enough = clearance_ + 1.0;
@@ -222,7 +222,7 @@ class StretchProof {
       });
     };
     for (const int link : links_) {
-      const auto X_WL = [&](const Posed& at) { return at.X_WL[static_cast<std::size_t>(link)]; };
+      const auto X_WL = [&](const Posed& at) { return at.X_WL[link]; };
       if (is_apart(*scene_.collision().link_solid(link), travel_.link(link), X_WL)) continue;
       return Encounter{link_name(scene_, link), object.name};
     }
@@ -243,8 +243,8 @@ class StretchProof {
         if (!(travel > 0.0)) continue;
         geometry::ProximitySeed seed;
         const bool is_apart = stay_apart(travel, 0.0, 0.0, [&](const Posed& at, double enough) {
-          const RigidTransform& X_WA = at.X_WL[static_cast<std::size_t>(a)];
-          const RigidTransform& X_WB = at.X_WL[static_cast<std::size_t>(b)];
+          const RigidTransform& X_WA = at.X_WL[a];
+          const RigidTransform& X_WB = at.X_WL[b];
           return surface_distance(*scene_.collision().link_solid(a),
                                   *scene_.collision().link_solid(b), X_WA.inverse() * X_WB, enough,
                                   0.0, seed);
@@ -341,7 +341,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
   MotionClearance nearest{grasp::internal::kInfinity, grasp::internal::kInfinity};
   const std::vector<int> links = solid_links(scene);
   for (const int link : links) {
-    const RigidTransform& X_WL = at.X_WL[static_cast<std::size_t>(link)];
+    const RigidTransform& X_WL = at.X_WL[link];
     nearest.hand = std::min(nearest.hand, scene.height_of_link(link, X_WL, nearest.hand));
   }
   if (carries && !is_resting(stretch.phase)) {
@@ -360,8 +360,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
                   : geometry::surface_clearance(surface, body, X_OB, least, 1.0).at_least;
     };
     for (const int link : links) {
-      approach(*scene.collision().link_solid(link), at.X_WL[static_cast<std::size_t>(link)],
-               nearest.hand);
+      approach(*scene.collision().link_solid(link), at.X_WL[link], nearest.hand);
     }
     if (carries) approach(scene.object(stretch.object).surface_O, at.state.X_WO, nearest.object);
   }
@@ -372,7 +371,7 @@ std::optional<Encounter> find_overlap(const TableScene& scene, std::span<const R
                                       const MotionStretch& stretch, double share) {
   const Posed at = posed(scene, stretch, share);
   const bool carries = is_carrying(stretch.phase);
-  const auto X_WB = [&](int link) { return at.X_WL[static_cast<std::size_t>(link)]; };
+  const auto X_WB = [&](int link) { return at.X_WL[link]; };
   const std::vector<int> links = solid_links(scene);
   for (const int a : links) {
     if (scene.height_of_link(a, X_WB(a), 1.0) <= 0.0) {

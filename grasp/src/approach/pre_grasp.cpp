@@ -113,15 +113,15 @@ class PreGraspSearch {
   const geometry::MeshQuery& solid(int link) const { return *collision_.link_solid(link); }
 
   static RigidTransform between(const std::vector<RigidTransform>& X_OL, int a, int b) {
-    return X_OL[static_cast<std::size_t>(a)].inverse() * X_OL[static_cast<std::size_t>(b)];
+    return X_OL[a].inverse() * X_OL[b];
   }
 
   Eigen::VectorXd opened(double opening, Joints joints) const {
     Eigen::VectorXd q = grasp_.q;
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
       if (hand_.joints[j].closing_sign == 0 && joints == Joints::Closing) continue;
-      double& position = q[static_cast<Eigen::Index>(j)];
-      position = (1.0 - opening) * position + opening * open_q_[static_cast<Eigen::Index>(j)];
+      double& position = q[j];
+      position = (1.0 - opening) * position + opening * open_q_[j];
     }
     hands::clamp_to_limits(hand_, q);
     hands::apply_couplings(hand_, q);
@@ -155,7 +155,7 @@ class PreGraspSearch {
     const double wanted = options_.clearance;
     return all_pass(links_, [&](GuardedLink& guarded) {
       const int link = guarded.link;
-      const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+      const RigidTransform& X = X_OL[link];
       if (surroundings_distance(link, X, wanted) < wanted) return false;
       const auto near =
           geometry::nearest_points(object_, solid(link), X, wanted, guarded.seed, wanted);
@@ -168,7 +168,7 @@ class PreGraspSearch {
   double nearest_distance(const std::vector<RigidTransform>& X_OL) const {
     double nearest = internal::kInfinity;
     for (const GuardedLink& guarded : links_) {
-      const RigidTransform& X = X_OL[static_cast<std::size_t>(guarded.link)];
+      const RigidTransform& X = X_OL[guarded.link];
       nearest = std::min(nearest, surroundings_distance(guarded.link, X, nearest));
       nearest =
           geometry::surface_clearance(object_, solid(guarded.link), X, nearest, 1.0, guarded.seed)

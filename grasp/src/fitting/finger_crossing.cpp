@@ -77,7 +77,7 @@ HandConfiguration opened_from(const HandModel& hand, const HandConfiguration& go
   const HandConfiguration open = hands::open_configuration(hand);
   for (std::size_t joint = 0; joint < hand.joints.size(); ++joint) {
     if (hand.joints[joint].closing_sign != 0) {
-      start.q[static_cast<Eigen::Index>(joint)] = open.q[static_cast<Eigen::Index>(joint)];
+      start.q[joint] = open.q[joint];
     }
   }
   hands::apply_couplings(hand, start.q);

@@ -108,7 +108,7 @@ class GraspReader {
     const JsonNode joints = node.at("joints");
     configuration.q.resize(static_cast<Eigen::Index>(hand_.joints.size()));
     for (std::size_t i = 0; i < hand_.joints.size(); ++i) {
-      configuration.q[static_cast<Eigen::Index>(i)] = joints.at(hand_.joints[i].name).number();
+      configuration.q[i] = joints.at(hand_.joints[i].name).number();
     }
     try {
       hands::validate(hand_, configuration);

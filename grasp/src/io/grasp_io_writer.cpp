@@ -114,7 +114,7 @@ Json planner_json(const GraspFile& file) {
 Json joints_json(const hands::HandModel& hand, const Eigen::VectorXd& q) {
   Json joints = Json::object();
   for (std::size_t i = 0; i < hand.joints.size(); ++i) {
-    joints[hand.joints[i].name] = q[static_cast<Eigen::Index>(i)];
+    joints[hand.joints[i].name] = q[i];
   }
   return joints;
 }

@@ -170,7 +170,7 @@ class FittingGuidance : public GraspGuidance {
       if (!next) return std::nullopt;
       ranked_sets_.push_back(std::move(*next));
     }
-    return ranked_sets_[static_cast<std::size_t>(number)];
+    return ranked_sets_[number];
   }
 
   const GuidanceScene scene_;

@@ -57,7 +57,7 @@ class MedialGuidance : public GraspGuidance {
       if (number == 0) result.failure = kNoCandidate;
       return result;
     }
-    const MedialCandidate& candidate = candidates_[static_cast<std::size_t>(number)];
+    const MedialCandidate& candidate = candidates_[number];
     const hands::HandModel& hand = scene_.hand.model();
     hands::HandConfiguration start = hands::open_configuration(hand);
     start.X_OH = hands::palm_pose(hand, axis_H_, center_H_, -candidate.outward_O, candidate.axis_O,

@@ -101,7 +101,7 @@ class SamplingGuidance : public GraspGuidance {
     for (std::size_t j = 0; j < hand.joints.size(); ++j) {
       const hands::Joint& joint = hand.joints[j];
       if (joint.type != hands::JointType::Revolute || joint.coupling) continue;
-      double& position = q[static_cast<Eigen::Index>(j)];
+      double& position = q[j];
       position = std::clamp(position + joint.closing_sign * angle, joint.lower, joint.upper);
     }
     hands::apply_couplings(hand, q);

@@ -117,14 +117,12 @@ class Refinement {
                   "claimed pad", pad, "an index into the pads of hand " + model_.name);
     Claim claim;
     claim.pad = pad;
-    claim.link = model_.pads[static_cast<std::size_t>(pad)].link;
+    claim.link = model_.pads[pad].link;
     if (!targets) return claim;
-    const std::optional<int>& finger = model_.pads[static_cast<std::size_t>(pad)].finger;
+    const std::optional<int>& finger = model_.pads[pad].finger;
     for (const TargetContact& target : targets->contacts) {
-      const bool is_own = finger
-                              ? target.finger == finger &&
-                                    model_.fingers[static_cast<std::size_t>(*finger)].tip_pad == pad
-                              : target.is_palm;
+      const bool is_own = finger ? target.finger == finger && model_.fingers[*finger].tip_pad == pad
+                                 : target.is_palm;
       if (is_own) claim.target = &target;
     }
     return claim;
@@ -206,9 +204,9 @@ class Refinement {
   /// False if a pad is farther than twice the reach.
   bool measure_gaps() {
     for (Claim& claim : claims_) {
-      const auto nearest = geometry::nearest_points(object_.query, hand_.pad_surface(claim.pad),
-                                                    X_OL_[static_cast<std::size_t>(claim.link)],
-                                                    2.0 * options_.reach, claim.seed);
+      const auto nearest =
+          geometry::nearest_points(object_.query, hand_.pad_surface(claim.pad), X_OL_[claim.link],
+                                   2.0 * options_.reach, claim.seed);
       claim.gap = 2.0 * options_.reach;
       if (!nearest) return false;
       claim.gap = nearest->distance;
@@ -298,8 +296,7 @@ class Refinement {
       }
       Claim claim = claim_of(pad, nullptr);
       claim.gap =
-          contact::pad_gap(hand_.pad_surface(pad), X_OL_[static_cast<std::size_t>(claim.link)],
-                           object_.query, options_.reach)
+          contact::pad_gap(hand_.pad_surface(pad), X_OL_[claim.link], object_.query, options_.reach)
               .value_or(options_.reach);
       if (claim.gap > options_.largest_gap) near.push_back(claim);
     }

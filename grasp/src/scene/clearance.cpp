@@ -158,15 +158,14 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const
   for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
     const auto& solid = hand_.collision().link_solid(link);
     if (!solid) continue;
-    const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+    const RigidTransform& X = X_OL[link];
     if (geometry::nearest_points(object_.query, *solid, X, least, {}, least) ||
         surroundings_.touches(hand_.collision(), link, X)) {
       result.links.push_back(link);
     }
   }
   for (const auto& [a, b] : pairs_) {
-    const RigidTransform X_AB =
-        X_OL[static_cast<std::size_t>(a)].inverse() * X_OL[static_cast<std::size_t>(b)];
+    const RigidTransform X_AB = X_OL[a].inverse() * X_OL[b];
     if (!geometry::nearest_points(*hand_.collision().link_solid(a),
                                   *hand_.collision().link_solid(b), X_AB, least, {}, least)) {
       continue;
@@ -179,7 +178,7 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const
 
 bool Clearance::is_clear_of_world(const LinkPoses& X_OL) const {
   for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
-    const RigidTransform& X = X_OL[static_cast<std::size_t>(link)];
+    const RigidTransform& X = X_OL[link];
     if (hand_.collision().link_intersects(object_.query, link, X)) return false;
     if (surroundings_.touches(hand_.collision(), link, X)) return false;
   }
@@ -188,8 +187,7 @@ bool Clearance::is_clear_of_world(const LinkPoses& X_OL) const {
 
 bool Clearance::is_clear_of_itself(const LinkPoses& X_OL) const {
   return std::none_of(pairs_.begin(), pairs_.end(), [&](const std::pair<int, int>& pair) {
-    const RigidTransform X_AB = X_OL[static_cast<std::size_t>(pair.first)].inverse() *
-                                X_OL[static_cast<std::size_t>(pair.second)];
+    const RigidTransform X_AB = X_OL[pair.first].inverse() * X_OL[pair.second];
     return geometry::do_intersect(*hand_.collision().link_solid(pair.first),
                                   *hand_.collision().link_solid(pair.second), X_AB);
   });

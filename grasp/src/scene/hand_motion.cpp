@@ -33,7 +33,7 @@ HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool 
   for (std::size_t j = 0; j < num_joints; ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.type == hands::JointType::Revolute) {
-      const Vector3d origin = X_OL[static_cast<std::size_t>(joint.child_link)].translation();
+      const Vector3d origin = X_OL[joint.child_link].translation();
       double reach = kShortestLever;
       for (const int link : hands::links_moved_by(hand, static_cast<int>(j))) {
         const auto index = static_cast<std::size_t>(link);
@@ -51,7 +51,7 @@ HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool 
   for (std::size_t j = 0; j < num_joints; ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (!joint.coupling || joint.coupling->breakaway) continue;
-    entry_of_joint_[j] = entry_of_joint_[static_cast<std::size_t>(joint.coupling->leader)];
+    entry_of_joint_[j] = entry_of_joint_[joint.coupling->leader];
     ratio_[j] = joint.coupling->ratio;
   }
 }
@@ -75,12 +75,12 @@ double HandMotion::share_of_follower(int j) const {
 template <class Rate>
 void HandMotion::add_joints(int link, const Vector3d& point_O, const Rate& rate,
                             RowVectorXd& row) const {
-  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
-    const hands::Joint& joint = hand_.joints[static_cast<std::size_t>(j)];
+  for (const int j : joints_above_[link]) {
+    const hands::Joint& joint = hand_.joints[j];
     const hands::JointVelocity velocity =
-        hands::joint_velocity(joint, X_OL_[static_cast<std::size_t>(joint.child_link)], point_O);
-    const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
-    const auto leader = static_cast<std::size_t>(free_joints_[static_cast<std::size_t>(entry - 6)]);
+        hands::joint_velocity(joint, X_OL_[joint.child_link], point_O);
+    const int entry = entry_of_joint_[j];
+    const auto leader = static_cast<std::size_t>(free_joints_[entry - 6]);
     row[entry] += share_of_follower(j) * rate(velocity) / lever_[leader];
   }
 }
@@ -139,7 +139,7 @@ std::vector<HandMotion::Limit> HandMotion::breakaway_rows() const {
 
 VectorXd HandMotion::opening(int link, double step) const {
   VectorXd motion = VectorXd::Zero(size());
-  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
+  for (const int j : joints_above_[link]) {
     const auto index = static_cast<std::size_t>(j);
     const hands::Joint& joint = hand_.joints[index];
     const double sign = -joint.closing_sign * (ratio_[index] < 0.0 ? -1.0 : 1.0);
@@ -151,12 +151,12 @@ VectorXd HandMotion::opening(int link, double step) const {
 
 VectorXd HandMotion::straightening(int link, double step) const {
   VectorXd motion = VectorXd::Zero(size());
-  for (const int j : joints_above_[static_cast<std::size_t>(link)]) {
-    if (hand_.joints[static_cast<std::size_t>(j)].closing_sign != 0) continue;
-    const int entry = entry_of_joint_[static_cast<std::size_t>(j)];
-    const int joint = free_joints_[static_cast<std::size_t>(entry - 6)];
+  for (const int j : joints_above_[link]) {
+    if (hand_.joints[j].closing_sign != 0) continue;
+    const int entry = entry_of_joint_[j];
+    const int joint = free_joints_[entry - 6];
     const double way = open_q_[joint] - configuration_.q[joint];
-    motion[entry] = std::clamp(way * lever_[static_cast<std::size_t>(joint)], -step, step);
+    motion[entry] = std::clamp(way * lever_[joint], -step, step);
   }
   return motion;
 }
@@ -177,8 +177,7 @@ hands::HandConfiguration HandMotion::moved(const VectorXd& motion) const {
   }
   if (palm_translates_) result.X_OH.translation() += motion.head<3>();
   for (std::size_t k = 0; k < free_joints_.size(); ++k) {
-    result.q[free_joints_[k]] +=
-        motion[static_cast<Index>(6 + k)] / lever_[static_cast<std::size_t>(free_joints_[k])];
+    result.q[free_joints_[k]] += motion[static_cast<Index>(6 + k)] / lever_[free_joints_[k]];
   }
   hands::clamp_to_limits(hand_, result.q);
   hands::apply_couplings(hand_, result.q);

@@ -20,7 +20,7 @@ constexpr double kTouching = 1e-8;
 double offset_of(const hands::HandModel& hand, const hands::Link& link, const Eigen::VectorXd& from,
                  const Eigen::VectorXd& to) {
   if (!link.parent_joint) return link.X_PL_fixed.translation().norm();
-  const hands::Joint& joint = hand.joints[static_cast<std::size_t>(*link.parent_joint)];
+  const hands::Joint& joint = hand.joints[*link.parent_joint];
   if (joint.type == hands::JointType::Revolute) return joint.X_PJ.translation().norm();
   const auto at = [&](const Eigen::VectorXd& q) {
     return (joint.X_PJ * (q[*link.parent_joint] * joint.axis_J)).norm();
@@ -41,7 +41,7 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
   const double palm_turn = turn_between(from.X_OH, to.X_OH);
   for (const hands::Link& link : hand.links) {
     Vector3d axis = Vector3d::Zero();
-    if (link.parent_joint) axis = hand.joints[static_cast<std::size_t>(*link.parent_joint)].axis_J;
+    if (link.parent_joint) axis = hand.joints[*link.parent_joint].axis_J;
     double radius = 0.0;
     double lever = 0.0;
     for (const Vector3d& vertex : link.mesh_L.vertices) {
@@ -54,9 +54,9 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
   }
   for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
     int root = link;
-    double reach = radii_[static_cast<std::size_t>(link)];
-    while (const auto parent = hand.links[static_cast<std::size_t>(root)].parent_link) {
-      reach += offsets_[static_cast<std::size_t>(root)];
+    double reach = radii_[link];
+    while (const auto parent = hand.links[root].parent_link) {
+      reach += offsets_[root];
       root = *parent;
     }
     speeds_.push_back(palm_path + palm_turn * reach + speed_in(link, root));
@@ -65,12 +65,11 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
 
 double StraightWay::speed_in(int link, int ancestor) const {
   double speed = 0.0;
-  double reach = radii_[static_cast<std::size_t>(link)];  // from the frame of the link `at`
+  double reach = radii_[link];  // from the frame of the link `at`
   for (int at = link; at != ancestor;) {
     const auto index = static_cast<std::size_t>(at);
     if (const auto joint = hand_.links[index].parent_joint) {
-      const bool is_revolute =
-          hand_.joints[static_cast<std::size_t>(*joint)].type == hands::JointType::Revolute;
+      const bool is_revolute = hand_.joints[*joint].type == hands::JointType::Revolute;
       speed += motion_[*joint] * (!is_revolute ? 1.0 : at == link ? levers_[index] : reach);
     }
     reach += offsets_[index];
@@ -85,7 +84,7 @@ double StraightWay::relative_speed(int link_a, int link_b) const {
   int b = link_b;
   while (a != b) {
     int& later = a > b ? a : b;
-    later = *hand_.links[static_cast<std::size_t>(later)].parent_link;
+    later = *hand_.links[later].parent_link;
   }
   return speed_in(link_a, a) + speed_in(link_b, a);
 }

@@ -23,7 +23,7 @@ class StraightWay {
 
   /// Upper bound of the speed in O of any point of a link [m]: palm translation, palm rotation
   /// times reach, and joint motions times levers, where a reach is a sum of the lengths of a chain.
-  double speed(int link) const { return speeds_[static_cast<std::size_t>(link)]; }
+  double speed(int link) const { return speeds_[link]; }
 
   /// The same for the motion of two links against each other: only joints between them count.
   double relative_speed(int link_a, int link_b) const;

@@ -24,7 +24,7 @@ namespace {
 std::vector<Vector3d> hull_corners(const geometry::TriangleMesh& mesh) {
   std::vector<bool> is_used(mesh.vertices.size(), false);
   for (const geometry::Face& face : mesh.faces) {
-    for (const std::int32_t vertex : face) is_used[static_cast<std::size_t>(vertex)] = true;
+    for (const std::int32_t vertex : face) is_used[vertex] = true;
   }
   std::vector<Vector3d> used;
   for (std::size_t i = 0; i < is_used.size(); ++i) {
@@ -79,7 +79,7 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
   const auto& corners = corners_L_.at(static_cast<std::size_t>(link));
   if (corners.empty()) return lowest;
   const double table = *surroundings_.table_z_O;
-  const Eigen::AlignedBox3d& box = boxes_L_[static_cast<std::size_t>(link)];
+  const Eigen::AlignedBox3d& box = boxes_L_[link];
   const double box_height = (X_OL * box.center()).z() -
                             X_OL.linear().row(2).cwiseAbs().dot(0.5 * box.sizes().transpose()) -
                             table;

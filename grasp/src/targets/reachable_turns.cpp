@@ -102,7 +102,7 @@ void ReachableTurns::add(double ahead, double aside, double azimuth, double reac
     const int near = cell_of(aside - across, num_aside_);
     const int far = cell_of(aside + across, num_aside_);
     for (int j = near; j <= far; ++j) {
-      azimuths_[static_cast<std::size_t>(i * num_aside_ + j)] |= seen;
+      azimuths_[i * num_aside_ + j] |= seen;
     }
   }
 }
@@ -111,8 +111,7 @@ Turns ReachableTurns::at(const PlaceFromPalm& place) const {
   const double ahead = (place.ahead - first_ahead_) / kTableCell;
   const double aside = place.aside / kTableCell;
   if (ahead < 0.0 || ahead >= num_ahead_ || aside >= num_aside_) return {};
-  const Turns& azimuths = azimuths_[static_cast<std::size_t>(static_cast<int>(ahead) * num_aside_ +
-                                                             static_cast<int>(aside))];
+  const Turns& azimuths = azimuths_[static_cast<int>(ahead) * num_aside_ + static_cast<int>(aside)];
   // Turned by k, the place is at azimuth + k.
   const auto by = static_cast<std::size_t>(place.azimuth);
   return (azimuths >> by) | (azimuths << (kTurns - by));

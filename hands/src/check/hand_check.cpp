@@ -117,7 +117,7 @@ void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
   constexpr double kShortestTurn = 0.1;    // [rad]
   constexpr double kShortestSlide = 1e-3;  // [m]
   constexpr double kBackward = -0.5;       // of the path: more backward than sideways
-  const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
+  const Joint& joint = hand.joints[j];
   const std::string item = "joint " + joint.name;
   const double travel = joint.upper - joint.lower;
   const bool is_revolute = joint.type == JointType::Revolute;
@@ -158,9 +158,8 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
   constexpr double kNearer = 0.9;
   const Finger& finger = hand.fingers[f];
   const std::string item = "finger " + finger.name;
-  const bool closes = std::any_of(finger.joints.begin(), finger.joints.end(), [&](int j) {
-    return hand.joints[static_cast<std::size_t>(j)].closing_sign != 0;
-  });
+  const bool closes = std::any_of(finger.joints.begin(), finger.joints.end(),
+                                  [&](int j) { return hand.joints[j].closing_sign != 0; });
   if (!closes) {
     findings.suspicious(item, "has no joint that closes: list one under closing in the sidecar");
     return;
@@ -171,7 +170,7 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
     HandConfiguration c = open;
     for (std::size_t j = 0; j < hand.joints.size(); ++j) {
       if (hand.joints[j].closing_sign == 0) continue;
-      double& q = c.q[static_cast<Eigen::Index>(j)];
+      double& q = c.q[j];
       q += (hand.joints[j].closed_limit() - q) * step / kClosingSteps;
     }
     apply_couplings(hand, c.q);
@@ -202,12 +201,12 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
 /// Fingers that self-collision keeps open: whoever closes the hand finds them straight.
 void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
   constexpr double kStillOpen = 0.1;  // of the way
-  const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
+  const auto name = [&](int link) { return hand.links[link].name; };
   for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
     if (!stop.finger || stop.share >= kStillOpen) continue;
     const std::string a = name(stop.link_a);
     const std::string b = name(stop.link_b);
-    findings.suspicious("finger " + hand.fingers[static_cast<std::size_t>(*stop.finger)].name,
+    findings.suspicious("finger " + hand.fingers[*stop.finger].name,
                         "closing leaves it open: after " + rounded(100.0 * stop.share) +
                             " % of its way link " + a + " meets link " + b +
                             "; if that is how they are built, exclude the pair from collision in "
@@ -246,7 +245,7 @@ void look_for_overlaps(const HandModel& hand, Findings& findings) {
   const auto overlap =
       HandCollision(hand).against_self(forward_kinematics(hand, open_configuration(hand)));
   if (!overlap.intersects) return;
-  const auto name = [&](int link) { return hand.links[static_cast<std::size_t>(link)].name; };
+  const auto name = [&](int link) { return hand.links[link].name; };
   findings.suspicious("link " + name(*overlap.link_a),
                       "overlaps link " + name(*overlap.link_b) + " by " +
                           rounded(overlap.depth * 1e3) +
@@ -257,8 +256,7 @@ void look_for_overlaps(const HandModel& hand, Findings& findings) {
 void tell_exclusions(const HandModel& hand, Findings& findings) {
   std::vector<std::string> pairs;
   for (const CollisionExclusion& pair : hand.exclusions) {
-    pairs.push_back(hand.links[static_cast<std::size_t>(pair.link_a)].name + " - " +
-                    hand.links[static_cast<std::size_t>(pair.link_b)].name);
+    pairs.push_back(hand.links[pair.link_a].name + " - " + hand.links[pair.link_b].name);
   }
   findings.note("", std::to_string(pairs.size()) + " pairs of links are excluded from collision" +
                         (pairs.empty() ? "" : ": " + base::list_text(pairs)));

@@ -42,8 +42,7 @@ HandConfiguration random_configuration(const HandModel& model, std::size_t sampl
   HandConfiguration configuration;
   configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    configuration.q[static_cast<Eigen::Index>(j)] =
-        random.uniform(model.joints[j].lower, model.joints[j].upper);
+    configuration.q[j] = random.uniform(model.joints[j].lower, model.joints[j].upper);
   }
   // A breakaway joint would keep its own random position.
   HandModel rigid = {};
@@ -57,9 +56,9 @@ HandConfiguration random_configuration(const HandModel& model, std::size_t sampl
 
 /// The nearest body above that has a surface, if any has.
 std::optional<int> body_above(const std::vector<Body>& bodies, int body) {
-  std::optional<int> at = bodies[static_cast<std::size_t>(body)].parent;
-  while (at && bodies[static_cast<std::size_t>(*at)].mesh.faces.empty()) {
-    at = bodies[static_cast<std::size_t>(*at)].parent;
+  std::optional<int> at = bodies[body].parent;
+  while (at && bodies[*at].mesh.faces.empty()) {
+    at = bodies[*at].parent;
   }
   return at;
 }

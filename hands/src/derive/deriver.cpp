@@ -41,7 +41,7 @@ HandConfiguration Deriver::followed(const VectorXd& q) const {
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     const Joint& joint = tree_.joints[j];
     if (!joint.coupling) continue;
-    configuration.q[static_cast<Eigen::Index>(j)] = followed_position(joint, q);
+    configuration.q[j] = followed_position(joint, q);
   }
   return configuration;
 }
@@ -53,7 +53,7 @@ std::vector<RigidTransform> Deriver::poses(const VectorXd& q) const {
 VectorXd Deriver::rest() const {
   VectorXd q(static_cast<Eigen::Index>(tree_.joints.size()));
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
-    q[static_cast<Eigen::Index>(j)] = std::clamp(0.0, tree_.joints[j].lower, tree_.joints[j].upper);
+    q[j] = std::clamp(0.0, tree_.joints[j].lower, tree_.joints[j].upper);
   }
   return q;
 }
@@ -64,7 +64,7 @@ VectorXd Deriver::closed_by(double share) const {
     const Joint& joint = tree_.joints[j];
     if (joint.closing_sign == 0) continue;
     const double open = joint.open_limit();
-    q[static_cast<Eigen::Index>(j)] = open + share * (joint.closed_limit() - open);
+    q[j] = open + share * (joint.closed_limit() - open);
   }
   return q;
 }

@@ -17,7 +17,7 @@ VectorXd Deriver::sampled(std::size_t sample) const {
   base::Random random = base::Random::stream(kSeed, sample);
   VectorXd q(static_cast<Eigen::Index>(tree_.joints.size()));
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
-    q[static_cast<Eigen::Index>(j)] = random.uniform(tree_.joints[j].lower, tree_.joints[j].upper);
+    q[j] = random.uniform(tree_.joints[j].lower, tree_.joints[j].upper);
   }
   return q;
 }
@@ -66,9 +66,9 @@ void Deriver::signs() {
     if (role_[j] != Role::Bend) continue;
     for (std::size_t s = 0; s < kNumSamples; ++s) {
       VectorXd q = sampled(s);
-      q[static_cast<Eigen::Index>(j)] = tree_.joints[j].lower;
+      q[j] = tree_.joints[j].lower;
       gain[j] += spread(poses(q));
-      q[static_cast<Eigen::Index>(j)] = tree_.joints[j].upper;
+      q[j] = tree_.joints[j].upper;
       gain[j] -= spread(poses(q));
     }
   }

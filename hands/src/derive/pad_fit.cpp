@@ -118,13 +118,13 @@ std::vector<Vector2d> largest_rectangle(const RayGrid& grid, const std::vector<b
   std::vector<int> height(static_cast<std::size_t>(grid.nx), 0);
   for (int y = 0; y < grid.ny; ++y) {
     for (int x = 0; x < grid.nx; ++x) {
-      int& h = height[static_cast<std::size_t>(x)];
+      int& h = height[x];
       h = cells[grid.index(x, y)] ? h + 1 : 0;
     }
     for (int from = 0; from < grid.nx; ++from) {
       int lowest = std::numeric_limits<int>::max();
       for (int to = from; to < grid.nx; ++to) {
-        lowest = std::min(lowest, height[static_cast<std::size_t>(to)]);
+        lowest = std::min(lowest, height[to]);
         if (lowest == 0) break;
         const int area = (to - from) * (lowest - 1);
         if (area > best) {

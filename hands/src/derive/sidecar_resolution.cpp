@@ -54,7 +54,7 @@ class SidecarResolver {
     fail(item + ": no pad named " + name);
   }
 
-  Joint& joint_at(int index) { return model_.joints[static_cast<std::size_t>(index)]; }
+  Joint& joint_at(int index) { return model_.joints[index]; }
 
   void closing() {
     for (const auto& [name, sign] : *sidecar_.closing) {
@@ -126,8 +126,7 @@ class SidecarResolver {
       for (std::size_t p = 0; p < model_.pads.size(); ++p) {
         const ContactPad& candidate = model_.pads[p];
         if (candidate.finger != static_cast<int>(f)) continue;
-        if (!finger.tip_pad ||
-            candidate.link >= model_.pads[static_cast<std::size_t>(*finger.tip_pad)].link) {
+        if (!finger.tip_pad || candidate.link >= model_.pads[*finger.tip_pad].link) {
           finger.tip_pad = static_cast<int>(p);
         }
       }
@@ -153,9 +152,7 @@ class SidecarResolver {
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       const Link& own = model_.links[i];
       const int index = static_cast<int>(i);
-      body[i] = own.parent_link && !own.parent_joint
-                    ? body[static_cast<std::size_t>(*own.parent_link)]
-                    : index;
+      body[i] = own.parent_link && !own.parent_joint ? body[*own.parent_link] : index;
       if (own.mesh_L.faces.empty()) continue;
       std::vector<int>& before = solid_links[body[i]];
       for (const int other : before) {
@@ -186,7 +183,7 @@ void set_couplings(const std::vector<SidecarCoupling>& couplings, const std::str
   for (const SidecarCoupling& source : couplings) {
     const std::string item = "coupling of joint " + source.joint;
     if (!seen.insert(source.joint).second) fail(item + ": given twice");
-    model.joints[static_cast<std::size_t>(joint(source.joint, item))].coupling =
+    model.joints[joint(source.joint, item)].coupling =
         Coupling{joint(source.leader, item), source.ratio, source.offset, source.breakaway};
   }
 }
@@ -197,8 +194,7 @@ void follow_first_leaders(const std::string& file, HandModel& model) {
     if (!follower.coupling) continue;
     Coupling& own = *follower.coupling;
     for (std::size_t steps = 0;; ++steps) {
-      const std::optional<Coupling>& above =
-          model.joints[static_cast<std::size_t>(own.leader)].coupling;
+      const std::optional<Coupling>& above = model.joints[own.leader].coupling;
       if (!above) break;
       if (steps > model.joints.size()) {
         throw InvalidInput(file + ": coupling of joint " + follower.name +

@@ -119,7 +119,7 @@ class Item {
       fail("has " + std::to_string(items.size()) + " of " + std::to_string(Size) + " numbers");
     }
     Eigen::Matrix<double, Size, 1> result;
-    for (int i = 0; i < Size; ++i) result[i] = items[static_cast<std::size_t>(i)].number();
+    for (int i = 0; i < Size; ++i) result[i] = items[i].number();
     return result;
   }
 

@@ -345,7 +345,7 @@ class Reader : private XmlSource {
     std::string parent = palm_name_;
     auto next = joints.begin();
     for (std::size_t l = 0; l < links.size(); ++l) {
-      const std::string& name = link_names_[static_cast<std::size_t>(index)][l];
+      const std::string& name = link_names_[index][l];
       for (int j = 0; j < links[l].num_joints; ++j, ++next) {
         DescribedJoint described = next->described;
         described.X_PJ = X_PG * next->before;
@@ -353,7 +353,7 @@ class Reader : private XmlSource {
         described.child = j + 1 == links[l].num_joints ? name : described.name + "_link";
         parent = described.child;
         X_PG = next->after;
-        Dof& dof = dofs_[static_cast<std::size_t>(next->value.dof)];
+        Dof& dof = dofs_[next->value.dof];
         dof.joints.push_back(description_.joints.size());
         dof.ratios.push_back(next->value.ratio);
         description_.joints.push_back(std::move(described));

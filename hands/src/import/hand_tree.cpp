@@ -223,7 +223,7 @@ class TreeBuilder {
       const DescribedCoupling& coupling = *source.coupling;
       findings_.attempt(
           [&] {
-            model_.joints[static_cast<std::size_t>(joint(source.name, item))].coupling =
+            model_.joints[joint(source.name, item)].coupling =
                 Coupling{joint(coupling.joint, item), coupling.multiplier, coupling.offset,
                          coupling.breakaway};
           },

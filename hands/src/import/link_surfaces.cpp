@@ -125,8 +125,8 @@ TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_
 std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
   constexpr std::size_t kMostParts = 200;  // more is a soup of triangles
   const auto less = [&](std::int32_t a, std::int32_t b) {
-    const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(a)];
-    const Eigen::Vector3d& q = mesh.vertices[static_cast<std::size_t>(b)];
+    const Eigen::Vector3d& p = mesh.vertices[a];
+    const Eigen::Vector3d& q = mesh.vertices[b];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
   };
   std::map<std::int32_t, std::int32_t, decltype(less)> place_of(less);
@@ -137,18 +137,17 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
   }
   std::vector<std::int32_t> above(place);  // union-find over places
   const auto root = [&](std::int32_t v) {
-    v = place[static_cast<std::size_t>(v)];
-    while (above[static_cast<std::size_t>(v)] != v) {
-      v = above[static_cast<std::size_t>(v)] =
-          above[static_cast<std::size_t>(above[static_cast<std::size_t>(v)])];
+    v = place[v];
+    while (above[v] != v) {
+      v = above[v] = above[above[v]];
     }
     return v;
   };
   for (const geometry::Face& face : mesh.faces) {
     for (const int k : {1, 2}) {
       const std::int32_t a = root(face[0]);
-      const std::int32_t b = root(face[static_cast<std::size_t>(k)]);
-      above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      const std::int32_t b = root(face[k]);
+      above[std::max(a, b)] = std::min(a, b);
     }
   }
   std::map<std::int32_t, std::size_t> number;  // by first vertex: the order of the file
@@ -162,10 +161,10 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
     TriangleMesh& part = parts[number.at(root(face[0]))];
     geometry::Face own;
     for (std::size_t k = 0; k < 3; ++k) {
-      std::int32_t& index = in_part[static_cast<std::size_t>(face[k])];
+      std::int32_t& index = in_part[face[k]];
       if (index < 0) {
         index = static_cast<std::int32_t>(part.vertices.size());
-        part.vertices.push_back(mesh.vertices[static_cast<std::size_t>(face[k])]);
+        part.vertices.push_back(mesh.vertices[face[k]]);
       }
       own[k] = index;
     }

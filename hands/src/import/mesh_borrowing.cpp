@@ -52,8 +52,7 @@ struct Skeleton : JointTree {
 
   /// A joint's axis in the root link's frame.
   AxisLine axis_line(int index) const {
-    const RigidTransform X_HJ =
-        poses()[static_cast<std::size_t>(joint(index).parent_link)] * joint(index).X_PJ;
+    const RigidTransform X_HJ = poses()[joint(index).parent_link] * joint(index).X_PJ;
     return {X_HJ.translation(), X_HJ.linear() * joint(index).axis_J};
   }
 
@@ -107,7 +106,7 @@ class JointMatcher {
       theirs_.q[b] = position;
       unmatched_.clear();
       if (match_after(a, b)) {
-        match_[static_cast<std::size_t>(a)] = b;
+        match_[a] = b;
         return true;
       }
     }
@@ -236,7 +235,7 @@ void borrow(const fs::path& file, RobotDescription& description, Findings& findi
     const auto l = static_cast<std::size_t>(our_tree.link_index(link.name));
     std::optional<int> body;
     if (const auto above = ours.above_link(l)) {
-      body = matcher.match()[static_cast<std::size_t>(*above)];
+      body = matcher.match()[*above];
     }
     std::vector<const DescribedLink*> with_inertia;
     RigidTransform X_with_inertia = RigidTransform::Identity();

@@ -188,7 +188,7 @@ class MjcfReader {
     const std::string& name = link_names_.at(body);
     const std::string item = "link " + name;
     if (body != root_) add_joints(body, item);
-    link_of_[static_cast<std::size_t>(body)] = static_cast<int>(description_.links.size());
+    link_of_[body] = static_cast<int>(description_.links.size());
     DescribedLink link;
     link.name = name;
     const int first = model_.body_geomadr[body];
@@ -239,7 +239,7 @@ class MjcfReader {
                    joint_motion(joint, -model_.qpos0[model_.jnt_qposadr[j]]);
       parent = joint.child;
       X_P = RigidTransform(Eigen::Translation3d(-anchor));
-      joint_of_[static_cast<std::size_t>(j)] = static_cast<int>(description_.joints.size());
+      joint_of_[j] = static_cast<int>(description_.joints.size());
       description_.joints.push_back(std::move(joint));
     }
     if (is_joined) return;

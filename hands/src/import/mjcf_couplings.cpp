@@ -77,11 +77,8 @@ class CouplingReader {
     return what + " " + (name && *name ? std::string(name) : std::to_string(id));
   }
 
-  bool is_kept(int joint) const { return joint_of_[static_cast<std::size_t>(joint)] >= 0; }
-  DescribedJoint& described(int joint) {
-    return description_
-        .joints[static_cast<std::size_t>(joint_of_[static_cast<std::size_t>(joint)])];
-  }
+  bool is_kept(int joint) const { return joint_of_[joint] >= 0; }
+  DescribedJoint& described(int joint) { return description_.joints[joint_of_[joint]]; }
   double ref(int joint) const { return model_.qpos0[model_.jnt_qposadr[joint]]; }
 
   void equality(int e) {
@@ -113,8 +110,7 @@ class CouplingReader {
 
   void closed_loop(int first, int second, const std::string& item) {
     const auto text = [&](int body) { return name_of(mjOBJ_BODY, body, "body"); };
-    if (link_of_[static_cast<std::size_t>(first)] >= 0 &&
-        link_of_[static_cast<std::size_t>(second)] >= 0) {
+    if (link_of_[first] >= 0 && link_of_[second] >= 0) {
       findings_.suspicious(item, "joins " + text(first) + " and " + text(second) +
                                      ": closed loops are not kept; couple the joints by "
                                      "\"couplings\" in the sidecar");

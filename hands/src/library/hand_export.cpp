@@ -101,15 +101,14 @@ std::string joint_head(const std::string& name, const char* type, const std::str
 }
 
 std::string joint_text(const HandModel& model, const Joint& joint) {
-  std::string text =
-      joint_head(joint.name, joint.type == JointType::Prismatic ? "prismatic" : "revolute",
-                 model.links[static_cast<std::size_t>(joint.parent_link)].name,
-                 model.links[static_cast<std::size_t>(joint.child_link)].name, joint.X_PJ);
+  std::string text = joint_head(
+      joint.name, joint.type == JointType::Prismatic ? "prismatic" : "revolute",
+      model.links[joint.parent_link].name, model.links[joint.child_link].name, joint.X_PJ);
   text += "    <axis xyz=\"" + three(joint.axis_J) + "\"/>\n    <limit lower=\"" +
           shortest_decimal(joint.lower) + "\" upper=\"" + shortest_decimal(joint.upper) +
           "\" effort=\"" + kEffort + "\" velocity=\"" + kVelocity + "\"/>\n";
   if (joint.coupling) {
-    const Joint& leader = model.joints[static_cast<std::size_t>(joint.coupling->leader)];
+    const Joint& leader = model.joints[joint.coupling->leader];
     text += "    <mimic joint=\"" + escaped(leader.name) + "\" multiplier=\"" +
             shortest_decimal(joint.coupling->ratio) + "\" offset=\"" +
             shortest_decimal(joint.coupling->offset) + "\"/>\n";
@@ -127,15 +126,14 @@ std::string urdf_text(const HandModel& model) {
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<robot name=\"" + escaped(model.name) + "\">\n";
   for (const Link& link : model.links) {
     if (link.parent_joint) {
-      text += joint_text(model, model.joints[static_cast<std::size_t>(*link.parent_joint)]);
+      text += joint_text(model, model.joints[*link.parent_joint]);
     } else if (link.parent_link) {
       // A model does not keep the names of fixed joints.
       std::string name = link.name + "_fixed";
       while (!joint_names.insert(name).second) name += '_';
-      text +=
-          joint_head(name, "fixed", model.links[static_cast<std::size_t>(*link.parent_link)].name,
-                     link.name, link.X_PL_fixed) +
-          "  </joint>\n";
+      text += joint_head(name, "fixed", model.links[*link.parent_link].name, link.name,
+                         link.X_PL_fixed) +
+              "  </joint>\n";
     }
     text += "  <link name=\"" + escaped(link.name) + "\">\n";
     if (link.inertia) text += inertial(*link.inertia);
@@ -152,11 +150,11 @@ std::string urdf_text(const HandModel& model) {
 
 /// What the model says beyond the URDF, with every member there, so that nothing is derived.
 internal::Sidecar sidecar_of(const HandModel& model) {
-  const auto link_name = [&](int link) { return model.links[static_cast<std::size_t>(link)].name; };
-  const auto joint_name = [&](int j) { return model.joints[static_cast<std::size_t>(j)].name; };
+  const auto link_name = [&](int link) { return model.links[link].name; };
+  const auto joint_name = [&](int j) { return model.joints[j].name; };
   const auto pad_name = [&](const std::optional<int>& pad) -> std::optional<std::string> {
     if (!pad) return std::nullopt;
-    return model.pads[static_cast<std::size_t>(*pad)].name;
+    return model.pads[*pad].name;
   };
   internal::Sidecar sidecar;
   sidecar.fingers.emplace();
@@ -172,8 +170,7 @@ internal::Sidecar sidecar_of(const HandModel& model) {
   }
   sidecar.pads.emplace();
   for (const ContactPad& pad : model.pads) {
-    const std::string finger =
-        pad.finger ? model.fingers[static_cast<std::size_t>(*pad.finger)].name : "palm";
+    const std::string finger = pad.finger ? model.fingers[*pad.finger].name : "palm";
     sidecar.pads->push_back({pad.name, link_name(pad.link), finger, pad.X_LC, pad.outline,
                              pad.surface, pad.clip_thickness});
   }

@@ -59,9 +59,9 @@ std::vector<int> links_moved_by(const HandModel& model, int joint) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const Link& link = model.links[i];
     if (!link.parent_link) continue;
-    moves[i] = moves[static_cast<std::size_t>(*link.parent_link)];
+    moves[i] = moves[*link.parent_link];
     if (link.parent_joint) {
-      const Joint& own = model.joints[static_cast<std::size_t>(*link.parent_joint)];
+      const Joint& own = model.joints[*link.parent_joint];
       moves[i] = moves[i] || link.parent_joint == joint ||
                  (own.coupling && own.coupling->leader == joint && own.coupling->ratio != 0.0);
     }

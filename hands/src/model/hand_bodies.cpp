@@ -8,7 +8,7 @@ std::vector<Body> bodies_of(const HandModel& tree) {
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     const Link& link = tree.links[i];
     std::optional<int> above;
-    if (link.parent_link) above = body_of[static_cast<std::size_t>(*link.parent_link)];
+    if (link.parent_link) above = body_of[*link.parent_link];
     if (above && !link.parent_joint) {
       body_of[i] = *above;
     } else {
@@ -16,16 +16,15 @@ std::vector<Body> bodies_of(const HandModel& tree) {
       Body& body = bodies.emplace_back();
       body.joint = link.parent_joint;
       body.parent = above;
-      if (above) bodies[static_cast<std::size_t>(*above)].children.push_back(body_of[i]);
+      if (above) bodies[*above].children.push_back(body_of[i]);
     }
-    bodies[static_cast<std::size_t>(body_of[i])].links.push_back(static_cast<int>(i));
+    bodies[body_of[i]].links.push_back(static_cast<int>(i));
   }
   for (Body& body : bodies) {
     const std::vector<RigidTransform> X_BL = poses_in_body(tree, body);
     std::vector<TriangleMesh> meshes;
     for (std::size_t i = 0; i < body.links.size(); ++i) {
-      meshes.push_back(
-          transformed(tree.links[static_cast<std::size_t>(body.links[i])].mesh_L, X_BL[i]));
+      meshes.push_back(transformed(tree.links[body.links[i]].mesh_L, X_BL[i]));
     }
     body.mesh = geometry::concatenated(meshes);
   }
@@ -35,8 +34,7 @@ std::vector<Body> bodies_of(const HandModel& tree) {
 std::vector<int> body_of_links(const std::vector<Body>& bodies, std::size_t num_links) {
   std::vector<int> body_of(num_links);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    for (const int link : bodies[b].links)
-      body_of[static_cast<std::size_t>(link)] = static_cast<int>(b);
+    for (const int link : bodies[b].links) body_of[link] = static_cast<int>(b);
   }
   return body_of;
 }
@@ -45,9 +43,8 @@ std::vector<RigidTransform> poses_in_body(const HandModel& tree, const Body& bod
   std::vector<RigidTransform> X_BL;
   for (const int link : body.links) {
     RigidTransform X = RigidTransform::Identity();
-    for (int at = link; at != body.links.front();
-         at = *tree.links[static_cast<std::size_t>(at)].parent_link) {
-      X = tree.links[static_cast<std::size_t>(at)].X_PL_fixed * X;
+    for (int at = link; at != body.links.front(); at = *tree.links[at].parent_link) {
+      X = tree.links[at].X_PL_fixed * X;
     }
     X_BL.push_back(X);
   }

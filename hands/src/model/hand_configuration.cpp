@@ -26,7 +26,7 @@ HandConfiguration open_configuration(const HandModel& model) {
   configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
-    configuration.q[static_cast<Eigen::Index>(j)] =
+    configuration.q[j] =
         joint.closing_sign != 0 ? joint.open_limit() : std::clamp(0.0, joint.lower, joint.upper);
   }
   apply_couplings(model, configuration.q);
@@ -43,7 +43,7 @@ HandConfiguration closed_configuration(const HandModel& model, double share) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
     if (joint.closing_sign == 0 || joint.coupling) continue;
-    double& position = configuration.q[static_cast<Eigen::Index>(j)];
+    double& position = configuration.q[j];
     position = (1.0 - share) * position + share * joint.closed_limit();
   }
   // Followers start open: one that may break away would keep a position that is further closed.
@@ -64,7 +64,7 @@ void apply_couplings(const HandModel& model, Eigen::VectorXd& q) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
     if (!joint.coupling) continue;
-    double& position = q[static_cast<Eigen::Index>(j)];
+    double& position = q[j];
     const double follows = followed_position(joint, q);
     const bool has_gone_on =
         joint.coupling->breakaway && joint.closing_sign * (position - follows) > 0.0;
@@ -75,7 +75,7 @@ void apply_couplings(const HandModel& model, Eigen::VectorXd& q) {
 void clamp_to_limits(const HandModel& model, Eigen::VectorXd& q) {
   require_size(model, q);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    double& position = q[static_cast<Eigen::Index>(j)];
+    double& position = q[j];
     position = std::clamp(position, model.joints[j].lower, model.joints[j].upper);
   }
 }
@@ -88,7 +88,7 @@ void validate(const HandModel& model, const HandConfiguration& configuration) {
   constexpr double kSlack = 1e-9;  // rounding of positions that were written as text
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
-    const double position = configuration.q[static_cast<Eigen::Index>(j)];
+    const double position = configuration.q[j];
     // Written so that NaN fails.
     if (position >= joint.lower - kSlack && position <= joint.upper + kSlack) continue;
     throw InvalidInput("hand " + model.name + ": joint " + joint.name + " at " +

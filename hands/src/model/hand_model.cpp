@@ -103,7 +103,7 @@ class Checker {
       require_pose(link.X_PL_fixed, what + ": fixed pose");
       if (!link.parent_joint) continue;
       require_index(*link.parent_joint, model_.joints.size(), what + ": parent joint");
-      const Joint& joint = model_.joints[static_cast<std::size_t>(*link.parent_joint)];
+      const Joint& joint = model_.joints[*link.parent_joint];
       require(joint.child_link == static_cast<int>(i) && joint.parent_link == parent,
               what + ": joint " + joint.name + " joins other links");
     }
@@ -117,8 +117,7 @@ class Checker {
       const std::string what = "joint " + joint.name;
       require_index(joint.parent_link, model_.links.size(), what + ": parent link");
       require_index(joint.child_link, model_.links.size(), what + ": child link");
-      require(model_.links[static_cast<std::size_t>(joint.child_link)].parent_joint ==
-                  static_cast<int>(j),
+      require(model_.links[joint.child_link].parent_joint == static_cast<int>(j),
               what + ": its child link hangs on another joint");
       require_pose(joint.X_PJ, what + ": origin");
       require(joint.axis_J.allFinite() && std::abs(joint.axis_J.norm() - 1.0) < 1e-9,
@@ -132,7 +131,7 @@ class Checker {
           what + ": closing sign " + std::to_string(joint.closing_sign) + " is none of -1, 0, 1");
       if (!joint.coupling) continue;
       require_index(joint.coupling->leader, model_.joints.size(), what + ": leader");
-      const Joint& leader = model_.joints[static_cast<std::size_t>(joint.coupling->leader)];
+      const Joint& leader = model_.joints[joint.coupling->leader];
       require(joint.coupling->leader != static_cast<int>(j), what + " follows itself");
       require(!leader.coupling, what + ": its leader " + leader.name + " follows another joint");
       require(std::isfinite(joint.coupling->ratio) && std::isfinite(joint.coupling->offset),
@@ -156,7 +155,7 @@ class Checker {
       for (std::size_t i = 0; i < finger.links.size(); ++i) {
         const int link = finger.links[i];
         require_index(link, model_.links.size(), what + ": link");
-        const std::string& link_name = model_.links[static_cast<std::size_t>(link)].name;
+        const std::string& link_name = model_.links[link].name;
         require(link != model_.palm.link, what + ": link " + link_name + " is the palm");
         require(taken.insert(link).second, what + ": link " + link_name + " is listed twice");
         require(i == 0 || link > finger.links[i - 1],
@@ -165,7 +164,7 @@ class Checker {
       for (std::size_t i = 0; i < finger.joints.size(); ++i) {
         const int joint = finger.joints[i];
         require_index(joint, model_.joints.size(), what + ": joint");
-        const Joint& j = model_.joints[static_cast<std::size_t>(joint)];
+        const Joint& j = model_.joints[joint];
         require(
             std::find(finger.links.begin(), finger.links.end(), j.child_link) != finger.links.end(),
             what + ": joint " + j.name + " moves none of its links");
@@ -179,10 +178,9 @@ class Checker {
       }
       if (finger.tip_pad) {
         require_index(*finger.tip_pad, model_.pads.size(), what + ": tip pad");
-        require(
-            model_.pads[static_cast<std::size_t>(*finger.tip_pad)].finger == static_cast<int>(f),
-            what + ": its tip pad " + model_.pads[static_cast<std::size_t>(*finger.tip_pad)].name +
-                " belongs to another finger");
+        require(model_.pads[*finger.tip_pad].finger == static_cast<int>(f),
+                what + ": its tip pad " + model_.pads[*finger.tip_pad].name +
+                    " belongs to another finger");
       }
       num_thumbs += finger.is_thumb ? 1 : 0;
     }
@@ -198,10 +196,10 @@ class Checker {
         require(pad.link == model_.palm.link, what + " of the palm is not on the palm link");
       } else {
         require_index(*pad.finger, model_.fingers.size(), what + ": finger");
-        const Finger& finger = model_.fingers[static_cast<std::size_t>(*pad.finger)];
+        const Finger& finger = model_.fingers[*pad.finger];
         require(std::find(finger.links.begin(), finger.links.end(), pad.link) != finger.links.end(),
-                what + ": its link " + model_.links[static_cast<std::size_t>(pad.link)].name +
-                    " is none of finger " + finger.name);
+                what + ": its link " + model_.links[pad.link].name + " is none of finger " +
+                    finger.name);
       }
       require_pose(pad.X_LC, what + ": frame");
       outline(pad.outline, what);
@@ -272,8 +270,7 @@ class Checker {
             "palm direction is not a unit vector");
     if (!model_.palm.pad) return;
     require_index(*model_.palm.pad, model_.pads.size(), "palm pad");
-    require(!model_.pads[static_cast<std::size_t>(*model_.palm.pad)].finger,
-            "the palm's pad belongs to a finger");
+    require(!model_.pads[*model_.palm.pad].finger, "the palm's pad belongs to a finger");
   }
 
   void exclusions() const {
@@ -347,9 +344,8 @@ double largest_reach(const HandModel& model) {
     if (i == 0) {
       bound.distance = model.palm.center_H.norm();
     } else {
-      const Bound& parent = bounds[static_cast<std::size_t>(*link.parent_link)];
-      const Joint* joint =
-          link.parent_joint ? &model.joints[static_cast<std::size_t>(*link.parent_joint)] : nullptr;
+      const Bound& parent = bounds[*link.parent_link];
+      const Joint* joint = link.parent_joint ? &model.joints[*link.parent_joint] : nullptr;
       const RigidTransform& X_PL = joint ? joint->X_PJ : link.X_PL_fixed;
       bound.is_fixed = parent.is_fixed && joint == nullptr;
       bound.X_HL = parent.X_HL * X_PL;

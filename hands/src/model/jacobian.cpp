@@ -23,7 +23,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
                              std::to_string(model.links.size()));
   }
   const std::vector<RigidTransform> X_OL = forward_kinematics(model, configuration);
-  const Eigen::Vector3d point_O = X_OL[static_cast<std::size_t>(link)] * point_L;
+  const Eigen::Vector3d point_O = X_OL[link] * point_L;
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian =
       Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(
           6, static_cast<Eigen::Index>(model.joints.size()));

@@ -18,8 +18,7 @@ class JointTree {
   explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size()) {
     for (std::size_t i = 1; i < tree_.links.size(); ++i) {
       const Link& link = tree_.links[i];
-      above_[i] = link.parent_joint ? link.parent_joint
-                                    : above_[static_cast<std::size_t>(*link.parent_link)];
+      above_[i] = link.parent_joint ? link.parent_joint : above_[*link.parent_link];
     }
     const HandConfiguration zero{
         .X_OH = RigidTransform::Identity(),
@@ -28,15 +27,13 @@ class JointTree {
   }
 
   const HandModel& tree() const { return tree_; }
-  const Joint& joint(int j) const { return tree_.joints[static_cast<std::size_t>(j)]; }
+  const Joint& joint(int j) const { return tree_.joints[j]; }
   int num_joints() const { return static_cast<int>(tree_.joints.size()); }
 
   /// The joint that moves a link; empty for what the root carries.
   std::optional<int> above_link(std::size_t link) const { return above_[link]; }
   /// The joint before a joint, if there is one.
-  std::optional<int> above(int j) const {
-    return above_[static_cast<std::size_t>(joint(j).parent_link)];
-  }
+  std::optional<int> above(int j) const { return above_[joint(j).parent_link]; }
   /// The joints next after a joint; of none: those on the root.
   std::vector<int> next(std::optional<int> j) const {
     std::vector<int> result;
@@ -65,9 +62,7 @@ class JointTree {
   bool is_revolute(int j) const { return joint(j).type == JointType::Revolute; }
 
  private:
-  RigidTransform X_HJ(int j) const {
-    return X_HL_[static_cast<std::size_t>(joint(j).parent_link)] * joint(j).X_PJ;
-  }
+  RigidTransform X_HJ(int j) const { return X_HL_[joint(j).parent_link] * joint(j).X_PJ; }
 
   const HandModel& tree_;
   std::vector<std::optional<int>> above_;

@@ -54,9 +54,7 @@ TriangleMesh modeled_surface_L(const ContactPad& pad) {
   }
   points.insert(points.end(), pad.surface.begin(), pad.surface.end());
   for (const geometry::HullFacet& facet : geometry::convex_hull(points).facets) {
-    const Polygon triangle = {points[static_cast<std::size_t>(facet[0])],
-                              points[static_cast<std::size_t>(facet[1])],
-                              points[static_cast<std::size_t>(facet[2])]};
+    const Polygon triangle = {points[facet[0]], points[facet[1]], points[facet[2]]};
     const Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
     if (normal.z() > 0.0) add_fan(mesh, triangle, pad.X_LC);
   }
@@ -71,8 +69,8 @@ TriangleMesh pad_surface_L(const HandModel& model, int pad_index) {
                              std::to_string(pad_index) + " of " +
                              std::to_string(model.pads.size()));
   }
-  const ContactPad& pad = model.pads[static_cast<std::size_t>(pad_index)];
-  const TriangleMesh& link = model.links[static_cast<std::size_t>(pad.link)].mesh_L;
+  const ContactPad& pad = model.pads[pad_index];
+  const TriangleMesh& link = model.links[pad.link].mesh_L;
   const RigidTransform X_CL = pad.X_LC.inverse();
   Eigen::AlignedBox2d outline;
   for (const Eigen::Vector2d& corner : pad.outline) outline.extend(corner);
@@ -84,7 +82,7 @@ TriangleMesh pad_surface_L(const HandModel& model, int pad_index) {
     Polygon polygon;
     Eigen::AlignedBox2d box;
     for (const std::int32_t vertex : face) {
-      polygon.push_back(vertices_C[static_cast<std::size_t>(vertex)]);
+      polygon.push_back(vertices_C[vertex]);
       box.extend(polygon.back().head<2>());
     }
     if (!box.intersects(outline)) continue;

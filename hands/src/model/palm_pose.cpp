@@ -39,12 +39,12 @@ Vector3d closing_axis_H(const HandModel& hand) {
   double count = 0.0;
   for (int finger = 0; finger < static_cast<int>(tips.size()); ++finger) {
     if (finger == thumb) continue;
-    others += tips[static_cast<std::size_t>(finger)];
+    others += tips[finger];
     count += 1.0;
   }
   const Vector3d& direction = hand.palm.direction_H;
   if (count == 0.0) return any_normal(direction);
-  const Vector3d across = others / count - tips[static_cast<std::size_t>(thumb)];
+  const Vector3d across = others / count - tips[thumb];
   const Vector3d axis = direction.cross(across);
   constexpr double kLeastAcross = 1e-6;  // [m]
   return axis.norm() < kLeastAcross ? any_normal(direction) : axis.normalized();
@@ -80,7 +80,7 @@ hands::HandConfiguration open_hand_spread_by(const HandModel& hand, double share
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const Joint& joint = hand.joints[j];
     if (joint.closing_sign != 0 || joint.coupling) continue;
-    open.q[static_cast<Eigen::Index>(j)] = joint.lower + share * (joint.upper - joint.lower);
+    open.q[j] = joint.lower + share * (joint.upper - joint.lower);
   }
   apply_couplings(hand, open.q);
   return open;

@@ -23,9 +23,9 @@ std::vector<Group> closing_groups(const HandModel& model) {
   std::vector<bool> is_taken(model.joints.size(), false);
   const auto take = [&](int joint, Group& group) {
     const int moved = leader_of(model, joint);
-    if (model.joints[static_cast<std::size_t>(moved)].closing_sign == 0) return;
-    if (is_taken[static_cast<std::size_t>(moved)]) return;
-    is_taken[static_cast<std::size_t>(moved)] = true;
+    if (model.joints[moved].closing_sign == 0) return;
+    if (is_taken[moved]) return;
+    is_taken[moved] = true;
     group.joints.push_back(moved);
   };
   std::vector<Group> groups;

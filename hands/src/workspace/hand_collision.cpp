@@ -59,7 +59,7 @@ HandCollision::HandCollision(const HandModel& model) : model_(model) {
 bool HandCollision::link_intersects(const geometry::MeshQuery& object, int link,
                                     const RigidTransform& X_OL) const {
   const auto& query = links_.at(static_cast<std::size_t>(link));
-  return query && may_meet(object.box(), boxes_[static_cast<std::size_t>(link)], X_OL) &&
+  return query && may_meet(object.box(), boxes_[link], X_OL) &&
          geometry::do_intersect(object, *query, X_OL);
 }
 
@@ -67,7 +67,7 @@ geometry::DepthBounds HandCollision::link_depth_above(
     const geometry::MeshQuery& object, int link, const RigidTransform& X_OL, double floor,
     const geometry::PenetrationOptions& options) const {
   const auto& query = links_.at(static_cast<std::size_t>(link));
-  if (!query || !may_meet(object.box(), boxes_[static_cast<std::size_t>(link)], X_OL)) return {};
+  if (!query || !may_meet(object.box(), boxes_[link], X_OL)) return {};
   return geometry::depth_above(object, *query, X_OL, floor, options);
 }
 

@@ -318,7 +318,7 @@ class TipPair {
       shared.set(s, q);
       for (std::int64_t i = 0; i < only_b.size(); ++i) {
         only_b.set(i, q);
-        all_b[static_cast<std::size_t>(i)] = hand_.tip(pad_b_, hand_.poses(q));
+        all_b[i] = hand_.tip(pad_b_, hand_.poses(q));
       }
       for (std::int64_t i = 0; i < only_a.size(); ++i) {
         only_a.set(i, q);
@@ -380,8 +380,7 @@ SampledHand::SampledHand(const HandModel& model)
   for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
     const Joint& description = model.joints[joint];
     if (!description.coupling) continue;
-    open_[static_cast<Eigen::Index>(joint)] =
-        description.closing_sign < 0 ? description.upper : description.lower;
+    open_[joint] = description.closing_sign < 0 ? description.upper : description.lower;
   }
 }
 
@@ -394,14 +393,13 @@ std::vector<RigidTransform> SampledHand::poses(const VectorXd& q) const {
 Tip SampledHand::tip(std::optional<int> pad, const std::vector<RigidTransform>& X_HL) const {
   if (!pad) return {model_.palm.center_H, model_.palm.direction_H};
   const RigidTransform X_HC = pad_pose(model_, *pad, X_HL);
-  return {X_HC * contact_points_C_[static_cast<std::size_t>(*pad)], X_HC.linear().col(2)};
+  return {X_HC * contact_points_C_[*pad], X_HC.linear().col(2)};
 }
 
 double SampledHand::speed(std::optional<int> pad, int leader,
                           const std::vector<int>& standing) const {
   if (!pad) return 0.0;
-  double reach =
-      (model_.pads[*pad].X_LC * contact_points_C_[static_cast<std::size_t>(*pad)]).norm();
+  double reach = (model_.pads[*pad].X_LC * contact_points_C_[*pad]).norm();
   double total = 0.0;
   for (const Link* link = &model_.links[link_of(pad)]; link->parent_link;
        link = &model_.links[*link->parent_link]) {

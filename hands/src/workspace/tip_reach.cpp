@@ -116,7 +116,7 @@ TipReach::TipReach(const std::vector<TipPose>& poses, double cell) : cell_(cell)
     for (const TipPose& pose : poses) {
       if (pose.normal_H.dot(direction) < kCosLooking) continue;
       const std::int64_t voxel = grid.lattice.index(grid.lattice.voxel_at(pose.point_H));
-      grid.classes[static_cast<std::size_t>(voxel)] = geometry::VoxelClass::Partial;
+      grid.classes[voxel] = geometry::VoxelClass::Partial;
       is_visited = true;
     }
     maps_H_.emplace_back();

@@ -60,7 +60,7 @@ void ResultRow::set(std::string_view column, Value value) {
   if (found == names_.end()) {
     throw std::logic_error("ResultRow: no column " + std::string(column));
   }
-  values_[static_cast<std::size_t>(found - names_.begin())] = std::move(value);
+  values_[found - names_.begin()] = std::move(value);
 }
 
 std::vector<std::string> ResultRow::csv_fields() const {

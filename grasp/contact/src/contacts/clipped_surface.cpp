@@ -134,7 +134,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::Clip
   for (std::size_t i = 0; i < pieces.size(); ++i) sets.make_set(i);
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> piece_at;  // by edge
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const auto& face = mesh.faces[static_cast<std::size_t>(pieces[i].face)];
+    const auto& face = mesh.faces[pieces[i].face];
     for (int corner = 0; corner < 3; ++corner) {
       const std::pair edge = std::minmax({face[corner], face[(corner + 1) % 3]});
       const auto [found, is_new] = piece_at.emplace(edge, i);

@@ -110,7 +110,7 @@ geometry::TriangleMesh faces_of(const std::vector<ClippedPiece>& pieces, const G
 
 /// All contacts of a pad.
 std::vector<Contact> contacts_of(int pad_index, const RigidTransform& X_OC, const Scene& scene) {
-  const hands::ContactPad& pad = scene.hand.pads[static_cast<std::size_t>(pad_index)];
+  const hands::ContactPad& pad = scene.hand.pads[pad_index];
   const geometry::TriangleMesh& mesh = scene.object.mesh();
   const std::vector<ClippedPiece> pieces = internal::clipped_surface(
       internal::faces_in_clip_volume(pad, scene.options.clip_thickness, X_OC, scene.object), mesh);
@@ -200,8 +200,8 @@ std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
 
 bool is_counted(const hands::HandModel& hand, int pad, const ContactEstimationOptions& options) {
   if (options.pads == CountedPads::All) return true;
-  const std::optional<int>& finger = hand.pads[static_cast<std::size_t>(pad)].finger;
-  return !finger || hand.fingers[static_cast<std::size_t>(*finger)].tip_pad == pad;
+  const std::optional<int>& finger = hand.pads[pad].finger;
+  return !finger || hand.fingers[*finger].tip_pad == pad;
 }
 
 bool has_contact(const hands::HandModel& hand, int pad, const RigidTransform& X_OC,
@@ -209,7 +209,7 @@ bool has_contact(const hands::HandModel& hand, int pad, const RigidTransform& X_
   options.validate();
   require_pad(hand, pad);
   const geometry::TriangleMesh& mesh = object.mesh();
-  const hands::ContactPad& description = hand.pads[static_cast<std::size_t>(pad)];
+  const hands::ContactPad& description = hand.pads[pad];
   const FacesInVolume faces =
       internal::faces_in_clip_volume(description, options.clip_thickness, X_OC, object);
   if (faces.inside.empty() && faces.cut.empty()) return false;

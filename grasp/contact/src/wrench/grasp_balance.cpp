@@ -61,7 +61,7 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
   Eigen::Matrix3Xd edges(3, num_contacts * num_edges);
   Wrenches wrenches(6, edges.cols());
   for (Index i = 0; i < num_contacts; ++i) {
-    const Contact& contact = contacts[static_cast<std::size_t>(i)];
+    const Contact& contact = contacts[i];
     edges.middleCols(i * num_edges, num_edges) = cone_edges(
         friction_cone(contact.inward_normal_O, options.friction), options.num_cone_edges);
     for (Index k = i * num_edges; k < (i + 1) * num_edges; ++k) {

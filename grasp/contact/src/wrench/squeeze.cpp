@@ -45,7 +45,7 @@ VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfigurati
   const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
   MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const hands::RigidTransform& X = X_OL[static_cast<std::size_t>(contacts[i].link)];
+    const hands::RigidTransform& X = X_OL[contacts[i].link];
     const MatrixXd jacobian =
         hands::point_jacobian(hand, grasp, contacts[i].link, X.inverse() * contacts[i].point_O);
     per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
@@ -65,7 +65,7 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
   for (std::size_t k = 0; k < independent.size(); ++k) {
     const double change = displacement[static_cast<Index>(k)];
     if (change == 0.0) continue;
-    const hands::Joint& joint = hand.joints[static_cast<std::size_t>(independent[k])];
+    const hands::Joint& joint = hand.joints[independent[k]];
     const double wanted = q[independent[k]] + change;
     q[independent[k]] = std::clamp(wanted, joint.lower, joint.upper);
     is_clamped = is_clamped || q[independent[k]] != wanted;
@@ -131,8 +131,7 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
   VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O, follows);
   const std::vector<int> independent = hands::independent_joints(hand);
   for (std::size_t k = 0; k < independent.size(); ++k) {
-    const bool is_slide =
-        hand.joints[static_cast<std::size_t>(independent[k])].type == hands::JointType::Prismatic;
+    const bool is_slide = hand.joints[independent[k]].type == hands::JointType::Prismatic;
     displacement[static_cast<Index>(k)] /= is_slide ? options.slide_stiffness : options.stiffness;
   }
   result.is_clamped = command(hand, displacement, follows, result.configuration.q);
