@@ -217,7 +217,7 @@ void print_weak(const geometry::TriangleMesh& mesh, const geometry::WeakRegions&
                                             "held all around", "on their own"};
   std::array<int, 5> counts{};
   for (const geometry::WeakRegion& region : weak.regions) {
-    ++counts[region.verdict];
+    ++counts[static_cast<std::size_t>(region.verdict)];
   }
   std::string text = fixed_decimal(100.0 * weak_area / area, 1) +
                      "% of the surface; thin regions: " + std::to_string(weak.regions.size());

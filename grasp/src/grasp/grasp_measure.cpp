@@ -49,8 +49,8 @@ Grasp internal::with_self_penetration(const MeasuringScene& scene, Grasp grasp) 
       scene.collision.against_self(hands::forward_kinematics(scene.hand, grasp.configuration));
   grasp.penetration.self_intersects = with_self.intersects;
   grasp.penetration.self_depth = with_self.depth;
-  grasp.penetration.self_link_a = with_self.link_a.value_or(-1);
-  grasp.penetration.self_link_b = with_self.link_b.value_or(-1);
+  grasp.penetration.self_link_a = with_self.link_a;
+  grasp.penetration.self_link_b = with_self.link_b;
   return grasp;
 }
 
@@ -63,7 +63,7 @@ Grasp internal::with_all_measures(const MeasuringScene& scene, Grasp grasp) {
   penetration.object_intersects = with_object.intersects;
   penetration.object_depth = with_object.depth;
   penetration.object_depth_bound = with_object.depth_bound;
-  penetration.object_link = with_object.link_a.value_or(-1);
+  penetration.object_link = with_object.link_a;
   for (std::size_t link = 0; link < X_OL.size(); ++link) {
     penetration.surroundings_touched =
         penetration.surroundings_touched ||

@@ -28,7 +28,6 @@ namespace {
 using Eigen::Vector3d;
 using internal::Findings;
 using internal::JointTree;
-using internal::listed;
 using internal::rounded;
 
 // ---- Links

@@ -123,7 +123,7 @@ class TreeBuilder {
       std::optional<int> parent;
       const DescribedJoint* above = nullptr;
     };
-    std::vector<Next> waiting{{.name = root}};
+    std::vector<Next> waiting{{.name = root, .parent = std::nullopt}};
     while (!waiting.empty()) {
       const Next next = waiting.back();
       waiting.pop_back();

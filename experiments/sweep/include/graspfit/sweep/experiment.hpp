@@ -60,7 +60,7 @@ struct SummaryTable {
 struct Experiment {
   std::string slug;                   ///< Letters, digits and _; the same in every file name.
   std::vector<Column> columns;        ///< Results: the same bytes for every run.
-  std::vector<Column> timings;        ///< What may differ from run to run.
+  std::vector<Column> timings = {};   ///< What may differ from run to run.
   std::vector<Column> settings = {};  ///< Settings of its own.
   std::vector<Column> shared_settings = {};  ///< Settings that it reads by a library of them.
   std::vector<Column> details = {};  ///< What a cell's row sums up, with any number of rows per
