@@ -1,5 +1,7 @@
 #include "input/planner_flags.hpp"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include "settings/planning_setting_list.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "graspfit/base/units.hpp"

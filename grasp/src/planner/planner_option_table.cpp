@@ -2,7 +2,9 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/number_text.hpp"

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <type_traits>
+
 #include "graspfit/grasp/option_row.hpp"
 
 /// \file
 /// Every option of the planner, once: its row. Of these rows come the checks of ranges, the options
-/// of grasp files with their schema, the flags of the program with their help, the settings of
-/// experiments with theirs, and the pages that list options.
+/// of grasp files, the flags of the program with their help, and the settings of experiments with
+/// their schema. `grasps.schema.json` is kept by hand.
 ///
 /// Each function names the fields of one struct, in the order of grasp files, to a visitor:
 /// `at(field, row)` for a field, `at.group(key, struct, rows)` for a struct within, and
