@@ -130,8 +130,10 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
     const Vector3d low = node.lower.array() - point.error;
     const Vector3d high = node.upper.array() + point.error;
     const Vector3d& p = point.near;
-    return high[axis] >= p[axis] && low[a] <= p[a] && high[a] >= p[a] && low[b] <= p[b] &&
-           high[b] >= p[b];
+    // Not the comparisons turned round: of a sliver the bounds may be infinite and the place NaN,
+    // which has to be looked for everywhere.
+    return !(high[axis] < p[axis] || low[a] > p[a] || high[a] < p[a] || low[b] > p[b] ||
+             high[b] < p[b]);
   };
   internal::traverse(tree, enter, [&](const BoxTree::Triangle& triangle) {
     const auto& [corners, face] = triangle;

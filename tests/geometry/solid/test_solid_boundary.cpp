@@ -53,6 +53,27 @@ TriangleMesh checked_boundary(const TriangleMesh& mesh) {
 
 }  // namespace
 
+TEST_CASE("A face whose area is of the size of rounding is no gap in the boundary",
+          "[geometry][solid_boundary]") {
+  // Two boxes that cross; vertex 8 lies an ulp beside the diagonal of the first one's top, so that
+  // the bounds of that sliver's normal hold zero.
+  TriangleMesh mesh;
+  mesh.vertices = {
+      {0.1, 0.2, 0.0},   {0.95, 0.13, 0.0}, {0.9, 0.85, 0.0},
+      {0.07, 0.93, 0.0}, {0.1, 0.2, 1.0},   {0.95, 0.13, 1.0},
+      {0.9, 0.85, 1.0},  {0.07, 0.93, 1.0}, {0.272127437817821, 0.3398535432269796, 1.0},
+      {0.41, 0.42, 0.5}, {0.63, 0.39, 0.5}, {0.61, 0.66, 0.5},
+      {0.38, 0.64, 0.5}, {0.41, 0.42, 1.5}, {0.63, 0.39, 1.5},
+      {0.61, 0.66, 1.5}, {0.38, 0.64, 1.5}};
+  mesh.faces = {{0, 1, 5},    {0, 5, 4},    {1, 2, 6},   {1, 6, 5},    {2, 3, 7},    {2, 7, 6},
+                {3, 0, 4},    {3, 4, 7},    {0, 2, 1},   {0, 3, 2},    {4, 5, 6},    {4, 8, 7},
+                {8, 6, 7},    {4, 6, 8},    {9, 10, 14}, {9, 14, 13},  {10, 11, 15}, {10, 15, 14},
+                {11, 12, 16}, {11, 16, 15}, {12, 9, 13}, {12, 13, 16}, {9, 11, 10},  {9, 12, 11},
+                {13, 14, 15}, {13, 15, 16}};
+  const TriangleMesh boundary = checked_boundary(mesh);
+  CHECK(boundary.faces.size() == 42);
+}
+
 TEST_CASE("Boxes in every position to each other are united", "[geometry][solid_boundary]") {
   const TriangleMesh cube = box({2, 2, 2});
   struct Case {
