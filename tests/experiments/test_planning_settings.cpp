@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
@@ -111,6 +114,39 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       CHECK_THAT(error.what(), graspfit::testing::Contains(expected[1]));
     }
   }
+}
+
+TEST_CASE("Numbers have the ranges that are written here", "[experiments][planning_settings]") {
+  std::map<std::string, std::vector<std::string>> ranges;
+  for (const SettingDescription& setting : planning_setting_descriptions()) {
+    if (setting.range) ranges[setting.range->text()].push_back(setting.name.name);
+  }
+  for (auto& [range, names] : ranges) std::sort(names.begin(), names.end());
+  CHECK(ranges ==
+        std::map<std::string, std::vector<std::string>>{
+            {"> 0",
+             {"clip-thickness-mm", "largest-deviation-mm", "largest-gap-mm", "largest_thickness_m",
+              "least-distance-mm", "pre-grasp-clearance-mm", "score-length-voxels", "size_m",
+              "squeeze-force", "squeeze-stiffness", "wanted-gap-mm"}},
+            {">= 0",
+             {"alpha", "angle-weight", "beta", "centroid-limit", "distinct-joints",
+              "distinct-rotation-deg", "distinct-translation-mm", "edge-tolerance", "friction",
+              "ideal-m-bias", "largest-shift-mm", "largest-turn-deg", "palm-reach-tolerance-mm",
+              "pool-spacing-mm", "squeeze-friction", "w1", "w2", "w3", "weak-thickness-mm"}},
+            {">= 1",
+             {"contacts", "count", "ideal-m-draws", "max-attempts", "max-iterations",
+              "max-placements", "max-seeds", "target-draws"}},
+            {"in (0, 180]", {"approach-angle-deg"}},
+            {"in (0, 1]", {"pool-fraction"}},
+            {"in (0, 90)", {"theta-max-deg"}},
+            {"in [0, 1)", {"contact-score-threshold", "score-threshold"}},
+            {"in [0, 10000]", {"clearance-mm", "pre-grasp-retreat-mm"}},
+            {"in [0, 1000]", {"mean-filter-passes", "near-pad-steps", "slide-steps"}},
+            {"in [0, 31]", {"mean-filter-radius"}},
+            {"in [1, 1000000]", {"gs-samples", "ma-samples"}},
+            {"in [1, 1000]", {"refine-iterations"}},
+            {"in [3, 63]", {"neighborhood"}},
+            {"in [4, 512]", {"resolution"}}});
 }
 
 TEST_CASE("Ranges of settings end where the planner's own checks do",

@@ -37,11 +37,15 @@ std::string value_name(const PlannerOption& option) {
   return "";
 }
 
+/// Of the flag: settings say 0 where flags say --no-weak.
+base::NumberRange range_of(const PlannerOption& option) {
+  return option.name == "weak-thickness-mm" ? base::above(0) : option.range;
+}
+
 /// "how raw scores become comparable with the threshold [R, A1]".
 std::string description_of(const PlannerOption& option) {
   std::string text(option.meaning);
-  const bool is_bounded = option.kind == OptionKind::Number || option.kind == OptionKind::Integer;
-  if (is_bounded) text += ", " + option.range.text();
+  if (option.is_number()) text += ", " + range_of(option).text();
   if (option.source.empty()) return text;
   return text + " [" + std::string(option.source) + (option.reading.empty() ? "" : ", ") +
          std::string(option.reading) + ']';
@@ -108,7 +112,7 @@ OptionValue value_of(const Flags& flags, const PlannerOption& option) {
   const std::string name(option.name);
   switch (option.kind) {
     case OptionKind::Number:
-      return flags.number(name, option.range);
+      return flags.number(name, range_of(option));
     case OptionKind::Integer:
       return std::int64_t{flags.integer(name, option.range)};
     case OptionKind::YesNo:
@@ -117,10 +121,8 @@ OptionValue value_of(const Flags& flags, const PlannerOption& option) {
       return flags.words(name);
     case OptionKind::Choice: {
       const std::string text = flags.text(name);
-      for (const std::string& choice : option.choices) {
-        if (choice == text) return text;
-      }
-      fail_choice(name, text, option.choices_text());
+      if (!option.has_choice(text)) fail_choice(name, text, option.choices_text());
+      return text;
     }
     case OptionKind::Direction:
       break;
@@ -185,7 +187,6 @@ PlannerOptions read_planner_flags(const Flags& flags) {
     throw UsageError("--contacts " + flags.text("contacts") + " contradicts the " +
                      std::to_string(flags.words("fingers").size()) + " named by --fingers");
   }
-  flags.number("weak-thickness-mm", base::above(0));  // 0, which settings have for it, is --no-weak
   PlannerOptions options;
   read_flags(flags, "", options);
   options.seed = flags.unsigned_integer("seed");

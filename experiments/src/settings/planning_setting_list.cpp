@@ -1,6 +1,5 @@
 #include "settings/planning_setting_list.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -100,21 +99,18 @@ OptionValue value_of(const PlannerOption& option, const SettingValue& value) {
       break;
   }
   const std::string name = value.text();
-  if (std::find(option.choices.begin(), option.choices.end(), name) == option.choices.end()) {
-    value.fail("must be one of " + option.choices_text());
-  }
+  if (!option.has_choice(name)) value.fail("must be one of " + option.choices_text());
   return name;
 }
 
 PlanningSetting setting_of(const PlannerOption& option) {
-  const bool is_number = option.kind == OptionKind::Number || option.kind == OptionKind::Integer;
-  return {{std::string(option.name), is_number ? std::string(option.unit) : "",
+  return {{std::string(option.name), option.is_number() ? std::string(option.unit) : "",
            std::string(option.meaning)},
           schema_of(option),
           [&option](PlanningSettings& settings, const SettingValue& value) {
             grasp::set_option(settings.options, option, value_of(option, value));
           },
-          is_number ? std::optional(option.range) : std::nullopt,
+          option.is_number() ? std::optional(option.range) : std::nullopt,
           option.fallback};
 }
 

@@ -174,7 +174,6 @@ PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
   settings.options.seed = seed;
   require_compatible(settings.options);
   try {
-    grasp::planning_methods().at(settings.options.planner);
     settings.options.validate();
   } catch (const base::InvalidInput& error) {
     throw sweep::SettingError("", error.what());

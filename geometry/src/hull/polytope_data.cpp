@@ -4,7 +4,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -81,7 +80,7 @@ bool certainly_span(std::vector<Eigen::Matrix<double, D, 1>> normals) {
   return true;
 }
 
-/// The hull of distinct points `chosen` that span `PolytopeData::axes`; see `build_in_span`.
+/// The hull of distinct points `chosen` that span `PolytopeData::axes`.
 template <int D>
 class SpanHull {
  public:

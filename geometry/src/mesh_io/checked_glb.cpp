@@ -418,7 +418,7 @@ class Document {
     uint64_t corners = 0;
     std::size_t num_nodes = 0;
 
-    /// The sums stay far below overflow: what `shows` too much is refused before they grow on.
+    /// Refuses what is too much, so that sums stay far below overflow; `shows` begins the message.
     void add(const Size& more, const std::string& shows) {
       vertices += more.vertices;
       corners += more.corners;

@@ -7,7 +7,7 @@
 
 namespace graspfit::geometry::internal::gltf {
 
-/// Of all buffers together.
+/// Of a file, and of all buffers together.
 inline constexpr std::uint64_t kMostBufferBytes = std::uint64_t{1} << 30;
 
 /// The bytes that a buffer's URI stands for: data in base64, or a file in `folder` or below, links

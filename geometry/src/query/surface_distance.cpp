@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <string>
 
 #include "graspfit/base/option_check.hpp"
 #include "query/box_tree.hpp"

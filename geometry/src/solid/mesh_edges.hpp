@@ -54,7 +54,7 @@ void for_each_edge(const std::vector<FaceSide>& sides, Visit visit) {
 std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
                                          const std::vector<FaceSide>& sides);
 
-/// Whether every edge is run through as often up as down.
+/// Whether every edge is run through as often up as down; so it is without faces.
 bool bounds_solid(const TriangleMesh& mesh);
 
 /// Exact: a repeated index, or three collinear corners.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include "query/box_tree.hpp"
 #include "voxel/voxel_cutter.hpp"

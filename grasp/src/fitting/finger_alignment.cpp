@@ -1,7 +1,6 @@
 #include "fitting/finger_alignment.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "fitting/finger_swing.hpp"

@@ -114,7 +114,7 @@ constexpr auto target_fields = [](auto& at, auto& target) {
   at(target.point_O, "point_O_m");
   at(target.outward_normal_O, "outward_normal_O");
   at.index(target.patch, "patch");
-  at(target.score, "score");
+  at.open_number(target.score, "score");  // Raw scores of planes are infinite.
 };
 
 constexpr auto targets_fields = [](auto& at, auto& targets) {

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "graspfit/base/path_text.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/grasp/option_row.hpp"
 #include "io/json_node.hpp"
@@ -30,14 +29,22 @@ class JsonWriter {
       : json_(json), hand_(hand) {}
 
   template <class Value>
-  void operator()(const Value& value, const char* key) {
-    json_[key] = json_of(value);
+  void operator()(const Value& value, std::string_view key) {
+    json_[std::string(key)] = json_of(value);
   }
   template <class Value>
   void operator()(const Value& value, const OptionRow& row) {
-    json_[row.key] = json_of(value);
+    const std::string key(row.key);
+    if constexpr (std::is_same_v<Value, double>) {
+      open_number(value, key.c_str());
+    } else {
+      json_[key] = json_of(value);
+    }
   }
-  void path(const std::string& path, const char* key) { json_[key] = base::path_text(path); }
+  /// JSON has no infinity: it is a text.
+  void open_number(double value, const char* key) {
+    json_[key] = std::isinf(value) ? Json("infinity") : Json(value);
+  }
   void counts(const std::map<std::string, std::int64_t>& counts, const char* key) {
     json_[key] = Json::object();
     for (const auto& [name, count] : counts) json_[key][name] = count;
@@ -77,9 +84,6 @@ class JsonWriter {
     fields(writer, within);
     return json;
   }
-  static Json json_of(double value) {
-    return std::isinf(value) ? Json("infinity") : Json(value);  // JSON has no infinity
-  }
   static Json json_of(const Eigen::Vector3d& value) { return to_json(value); }
   template <class Value>
   static Json json_of(const std::optional<Value>& value) {
@@ -114,14 +118,19 @@ class JsonReader {
       : node_(std::move(node)), hand_(hand) {}
 
   template <class Value>
-  void operator()(Value& value, const char* key) const {
-    read(node_.at(key), value);
+  void operator()(Value& value, std::string_view key) const {
+    read(node_.at(std::string(key)), value);
   }
   template <class Value>
   void operator()(Value& value, const OptionRow& row) const {
-    read(node_.at(std::string(row.key)), value);
+    const std::string key(row.key);
+    if constexpr (std::is_same_v<Value, double>) {
+      open_number(value, key.c_str());
+    } else {
+      read(node_.at(key), value);
+    }
   }
-  void path(std::string& path, const char* key) const { path = node_.at(key).path(); }
+  void open_number(double& value, const char* key) const { read_open(node_.at(key), value); }
   void counts(std::map<std::string, std::int64_t>& counts, const char* key) const {
     for (const auto& [name, count] : node_.at(key).members()) counts[name] = count.integer();
   }
@@ -132,13 +141,12 @@ class JsonReader {
   void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
   void part(std::optional<int>& finger, const char* key) const {
     const JsonNode name = node_.at(key);
-    if (name.is_null() || name.text() == "palm") return;
-    finger = index_by_name(hand_->fingers, name);
+    if (name.text() != "palm") finger = index_by_name(hand_->fingers, name);
   }
   void part(TargetContact& target, const char* key) const {
-    const JsonNode name = node_.at(key);
-    target.is_palm = !name.is_null() && name.text() == "palm";
+    if (node_.at(key).is_null()) return;
     part(target.finger, key);
+    target.is_palm = !target.finger;
   }
   /// None is −1.
   void index(std::optional<int>& index, const char* key) const {
@@ -166,10 +174,11 @@ class JsonReader {
   }
 
  private:
-  static void read(const JsonNode& node, double& value) {
+  static void read_open(const JsonNode& node, double& value) {
     const bool is_infinite = node.is_text() && node.text() == "infinity";
     value = is_infinite ? std::numeric_limits<double>::infinity() : node.number();
   }
+  static void read(const JsonNode& node, double& value) { value = node.number(); }
   static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
   static void read(const JsonNode& node, std::int64_t& value) { value = node.integer(); }
   static void read(const JsonNode& node, std::size_t& value) { value = node.count(); }

@@ -1,5 +1,6 @@
 #include "graspfit/grasp/planner_option_table.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -121,6 +122,10 @@ class Assignment {
 };
 
 }  // namespace
+
+bool PlannerOption::has_choice(std::string_view text) const {
+  return std::find(choices.begin(), choices.end(), text) != choices.end();
+}
 
 std::string PlannerOption::choices_text() const { return base::list_text(choices, {}, "|"); }
 

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "graspfit/base/option_check.hpp"

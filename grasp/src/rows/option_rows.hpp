@@ -46,20 +46,23 @@ constexpr auto score_rows = [](auto& at, auto& score) {
   at(score.median_factor, {"median_factor", above(0)});
 };
 
+// The structs of geometry and contact (weak features with their rays, squeeze, measure) check
+// themselves, without the planner: what rows say of their ranges is for flags and settings.
+
 constexpr auto shape_diameter_rows = [](auto& at, auto& rays) {
-  at(rays.num_rays, {"num_rays", between(1, 10000)});
-  at(rays.cone_angle_deg, {"cone_angle_deg", between(0, 179)});
-  at(rays.trim_deviations, {"trim_deviations"});
+  at(rays.num_rays, OptionRow{"num_rays"});
+  at(rays.cone_angle_deg, OptionRow{"cone_angle_deg"});
+  at(rays.trim_deviations, OptionRow{"trim_deviations"});
 };
 
 constexpr auto weak_rows = [](auto& at, auto& weak) {
   at(weak.weak_thickness, {"weak_thickness_m", at_least(0), "weak-thickness-mm", "mm", kTargets,
-                           "slender features thinner than this are fragile: S = 0 in M1; of "
-                           "experiments 0 means that none are looked for",
+                           "slender features thinner than this are fragile: S = 0 in M1; "
+                           "experiments say 0 where none are looked for",
                            "P; what is fragile: R", "A37"});
-  at(weak.min_length_ratio, {"min_length_ratio", at_least(0)});
-  at(weak.voxels_per_thickness, {"voxels_per_thickness", between(4, 32)});
-  at(weak.max_resolution, {"max_resolution", between(16, 512)});
+  at(weak.min_length_ratio, OptionRow{"min_length_ratio"});
+  at(weak.voxels_per_thickness, OptionRow{"voxels_per_thickness"});
+  at(weak.max_resolution, OptionRow{"max_resolution"});
   at.group("shape_diameter", weak.shape_diameter, shape_diameter_rows);
 };
 
@@ -208,8 +211,8 @@ constexpr auto squeeze_rows = [](auto& at, auto& squeeze) {
                           "sum of the normal forces of all contacts in the squeeze, in newtons"});
   at(squeeze.stiffness, {"stiffness_N_m_per_rad", above(0), "squeeze-stiffness", "N m/rad", kForces,
                          "of revolute joints under position control, in N m/rad"});
-  at(squeeze.slide_stiffness, {"slide_stiffness_N_per_m", above(0)});
-  at(squeeze.largest_residual, {"largest_residual", at_least(0)});
+  at(squeeze.slide_stiffness, OptionRow{"slide_stiffness_N_per_m"});
+  at(squeeze.largest_residual, OptionRow{"largest_residual"});
 };
 
 constexpr auto distinct_rows = [](auto& at, auto& distinct) {
@@ -241,7 +244,7 @@ constexpr auto quality_rows = [](auto& at, auto& quality) {
   at(quality.centroid,
      {"centroid", kAny, "centroid", "", kMeasure,
       "centroid of the contacts' hull: of its area or volume, or of its corners", "R", "A15"});
-  at(quality.merge_distance, {"merge_distance_m", at_least(0)});
+  at(quality.merge_distance, OptionRow{"merge_distance_m"});
 };
 
 constexpr auto planner_rows = [](auto& at, auto& options) {

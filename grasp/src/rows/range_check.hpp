@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -20,8 +22,9 @@ class RangeCheck {
       NumberRange range = row.range;
       range.least = to_field_unit(range.least, row.unit);
       range.most = to_field_unit(range.most, row.unit);
-      base::require(range.contains(static_cast<double>(value)), where_, row.key, value,
-                    range.text());
+      const auto number = static_cast<double>(value);
+      base::require(range.contains(number), where_, row.key, value,
+                    (std::isfinite(number) ? "" : "finite and ") + range.text());
     }
   }
   template <class Value>

@@ -1,7 +1,6 @@
 #include "graspfit/grasp/target_contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "graspfit/contact/contact.hpp"
 #include "rows/range_check.hpp"

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "workspace/tip_pair.hpp"

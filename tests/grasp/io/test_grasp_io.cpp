@@ -332,6 +332,13 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(
       refusal(path, replaced(good, "\"fingers\": [", "\"fingers\": [\"pinky\", ", "\"used\"")),
       Contains("/planner/used/fingers/0: the hand has nothing named \"pinky\""));
+  // Only options and raw scores may be infinite, only a target may lack its finger.
+  CHECK_THAT(refusal(path, replaced(good, "\"area_m2\": ", "\"area_m2\": \"infinity\", \"was\": ",
+                                    "\"results\"")),
+             Contains("/contacts/0/area_m2: is not a number"));
+  CHECK_THAT(
+      refusal(path, replaced(good, "\"finger\": ", "\"finger\": null, \"was\": ", "\"results\"")),
+      Contains("/contacts/0/finger: is not a text"));
   const std::string hash = sample_file(folder.path() / "ball.off").hand.sidecar_sha256;
   CHECK_THAT(refusal(path, replaced(good, hash, std::string(64, 'f'))), Contains("sidecar"));
 }

@@ -15,7 +15,6 @@
 #include "graspfit/base/json_bounds.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
-#include "graspfit/base/number_text.hpp"
 #include "graspfit/base/sha256.hpp"
 #include "graspfit/sweep/data_needs.hpp"
 

@@ -1,9 +1,11 @@
 #include "config/placed_axis.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "config/axis_label.hpp"
 #include "graspfit/base/errors.hpp"

@@ -215,8 +215,8 @@ ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityCon
                 "in [0, 1]");
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      base::require(contacts[i].finger != contacts[j].finger, "ideal_quality",
-                    "the finger of two contacts", finger_text(contacts[i]),
+      if (contacts[i].finger != contacts[j].finger) continue;
+      base::require(false, "ideal_quality", "the finger of two contacts", finger_text(contacts[i]),
                     "different for each contact");
     }
   }

@@ -45,7 +45,8 @@ enum class PalmAfterContact {
 
 /// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
 struct FittingOptions {
-  double clearance = 0.02;  ///< Between the object and the palm at the start [m], ≥ 0 (A24) [R].
+  double clearance =
+      0.02;  ///< Between the object and the palm at the start [m], in [0, 10] (A24) [R].
   double large_step_at = 2.0;  ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
   double large_step_limit =
       8.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct PlannerOption : OptionRow {
   std::vector<std::string> choices = {};  ///< Of a choice.
   std::string fallback = "";              ///< Its default as text; empty: it is not set.
 
+  bool is_number() const { return kind == OptionKind::Number || kind == OptionKind::Integer; }
+  bool has_choice(std::string_view text) const;
   std::string choices_text() const;  ///< "a|b|c".
 };
 

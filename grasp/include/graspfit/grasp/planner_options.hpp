@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,7 +94,8 @@ struct PlannerOptions {
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
                                               ///< by targets' sides and by every grasp accepted.
   double approach_angle =
-      1.57079632679489662;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
+      std::numbers::pi /
+      2;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
   std::optional<double>
       wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
   int resolution = 30;     ///< Voxels along the object's longest extent [P].

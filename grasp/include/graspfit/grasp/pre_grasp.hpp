@@ -12,7 +12,7 @@ namespace graspfit::grasp {
 /// What a pre-grasp must keep.
 struct PreGraspOptions {
   double clearance = 0.005;      ///< Every link from the object and the surroundings [m], > 0.
-  double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], ≥ 0.
+  double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], in [0, 10].
   double retreat_step = 0.01;    ///< [m], > 0; at most 1000 of them up to `largest_retreat`.
   int opening_steps = 10;        ///< From the grasp's joints to open ones, in [1, 1000].
   /// Whether neutral joints (spread, abduction) may go with the closing ones where nothing else is

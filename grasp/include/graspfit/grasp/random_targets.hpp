@@ -23,9 +23,8 @@ namespace graspfit::grasp {
 ///    than a voxel over the target's plane;
 ///  - every finger's target is in front of the palm: (V − palm) · n < 0;
 ///  - some turn of the hand about n and some assignment that suits the fingers' own ranges has
-///  every
-///    finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of a place
-///    that the finger's tip gets to with its pad looking into the surface, roughly
+///    every finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of a
+///    place that the finger's tip gets to with its pad looking into the surface, roughly
 ///    (`hands::TipReach`; turns are sampled, 5° apart).
 /// It need not form a stable pair. Its rank is the distance of the whole set's centroid from the
 /// center of mass, plus the mean distance from the tips' reach, both over the normalizing radius.
