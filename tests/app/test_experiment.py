@@ -247,7 +247,7 @@ class Schema(ProgramTest):
             return config
 
         for path, value, says in [
-                (["seed"], -1, "/seed: is -1, not an integer from 0"),
+                (["seed"], -1, "/seed: is -1, must be an integer from 0"),
                 (["seeds"], 0, "/seeds: is 0, must be in [1, 100000]"),
                 (["question"], None, "/question: is missing"),
                 (["colour"], "red", "/colour: is not a member that is known here; there are "),
@@ -257,7 +257,7 @@ class Schema(ProgramTest):
                 (["settings", "slide-steps"], 1.5, "/settings/slide-steps: is 1.5, must be an"),
                 (["settings", "approach"], [0, 1], "/settings/approach: is [0,1], must be three"),
                 (["settings", "size_m"], 0, "/settings/size_m: is 0, must be > 0"),
-                (["axes", "option"], [], "/axes/option: is not an array with at least one"),
+                (["axes", "option"], [], "/axes/option: is [], must be an array with at least one"),
                 (["axes", "option", 0, "name"], None, "/axes/option/0/name: is missing"),
                 (["axes", "option", 0, "name"], "a/b", "/axes/option/0: is named \"a/b\""),
                 (["axes", "refine"], [1], "/axes/refine/0: is 1, must be true or false"),

@@ -132,7 +132,8 @@ TEST_CASE("Configuration errors name file, key and what is allowed", "[experimen
         {"counting.json: /cel: ", "there are experiment, question, cell, seed, axes"});
   check(message_of(with("\"cell\": \"Adds.\",", "")), {"counting.json: /cell: is missing"});
   check(message_of(with("\"counting\"", "\"other\"")), {"/experiment: is not counting"});
-  check(message_of(with("\"seed\": 7", "\"seed\": -7")), {"/seed: is -7, not an integer from 0"});
+  check(message_of(with("\"seed\": 7", "\"seed\": -7")),
+        {"/seed: is -7, must be an integer from 0"});
   check(message_of(with("\"seeds\": 2", "\"seeds\": 0")), {"/seeds: is 0, must be in [1, 100000]"});
   check(message_of(with("\"amount\": 2", "\"amont\": 2")),
         {"counting.json: /axes/letter/1/amont: is no setting; there are amount, step, base"});

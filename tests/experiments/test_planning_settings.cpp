@@ -162,7 +162,7 @@ TEST_CASE("Ranges of settings end where the planner's own checks do",
     settings.options.refinement.least_distance = 1e-13;
     settings.options.refinement.wanted_gap =
         setting.name.name == "least-distance-mm" ? 1e-5 : 5e-13;
-    setting.apply(settings, graspfit::sweep::SettingValue(setting.name.name, json));
+    setting.apply(settings, graspfit::sweep::setting_value(setting.name.name, json));
     try {
       settings.options.validate();
       return true;

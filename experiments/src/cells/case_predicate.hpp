@@ -22,6 +22,6 @@ struct JudgedGrasp {
 using CasePredicate = std::function<bool(const JudgedGrasp&)>;
 
 /// Reads {"name": ..., parameters}. @throws SettingError that lists the predicates or parameters.
-CasePredicate read_predicate(const sweep::SettingValue& value);
+CasePredicate read_predicate(const base::JsonValue& value);
 
 }  // namespace graspfit::experiments::internal

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cells/grasp_measures.hpp"
@@ -25,11 +24,9 @@ std::vector<sweep::Column> own_settings() {
 }
 
 int num_margins(const sweep::Cell& cell) {
-  const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  if (!json.contains("margins")) throw sweep::SettingError("", "there is no setting margins");
-  const sweep::SettingValue value("margins", json.at("margins"));
-  if (value.integer() < 0) value.fail("must be >= 0");
-  return value.integer();
+  const base::JsonValue value = sweep::setting(cell, "margins");
+  if (value.small_integer() < 0) value.refuse("must be >= 0");
+  return value.small_integer();
 }
 
 /// The planner's settings; those by which it would keep some grasps from the test are refused.

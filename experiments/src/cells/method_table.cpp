@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <nlohmann/json.hpp>
 
 #include "cells/grasp_measures.hpp"
 #include "cells/planning_table.hpp"
@@ -25,13 +24,9 @@ std::vector<sweep::Column> own_settings() {
 }
 
 std::uint64_t planner_seed(const sweep::Cell& cell) {
-  const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  if (!json.contains(kSeedSetting)) {
-    throw sweep::SettingError("", std::string("there is no setting ") + kSeedSetting);
-  }
-  const sweep::SettingValue value(kSeedSetting, json.at(kSeedSetting));
-  if (value.integer() < 0) value.fail("must be >= 0");
-  return static_cast<std::uint64_t>(value.integer());
+  const base::JsonValue value = sweep::setting(cell, kSeedSetting);
+  if (value.small_integer() < 0) value.refuse("must be >= 0");
+  return static_cast<std::uint64_t>(value.small_integer());
 }
 
 PlanningSettings settings_of(const sweep::Cell& cell) {

@@ -9,7 +9,6 @@
 // `least_epsilon` ("selected"), each with the attempts and the processor time that they took. At
 // least 0.6 in `closed_share` with a median epsilon above 0.05, unselected, is what is aimed at.
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "cells/planning_table.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
@@ -31,15 +30,10 @@ std::vector<sweep::Column> own_settings() {
 }
 
 Sampling sampling_of(const sweep::Cell& cell) {
-  const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  for (const sweep::Column& setting : own_settings()) {
-    if (!json.contains(setting.name))
-      throw sweep::SettingError("", "there is no setting " + setting.name);
-  }
-  const sweep::SettingValue sample("sample", json.at("sample"));
-  const sweep::SettingValue least("least_epsilon", json.at("least_epsilon"));
-  if (sample.integer() < 1) sample.fail("must be >= 1");
-  return {sample.integer(), least.positive_number()};
+  const base::JsonValue sample = sweep::setting(cell, "sample");
+  const base::JsonValue least = sweep::setting(cell, "least_epsilon");
+  if (sample.small_integer() < 1) sample.refuse("must be >= 1");
+  return {sample.small_integer(), least.positive_number()};
 }
 
 PlanningSettings settings_of(const sweep::Cell& cell) {

@@ -41,9 +41,9 @@ std::vector<sweep::Column> own_settings() {
            "ball, d and A as shares of the pad's, whether that part is fragile"}};
 }
 
-double share(const sweep::SettingValue& value) {
+double share(const base::JsonValue& value) {
   const double number = value.number();
-  if (number < 0.0 || number > 1.0) value.fail("must be in [0, 1]");
+  if (number < 0.0 || number > 1.0) value.refuse("must be in [0, 1]");
   return number;
 }
 
@@ -55,23 +55,18 @@ ContactSet contact_set(const sweep::Cell& cell) {
     if (!is_known)
       throw sweep::SettingError(key, "is no setting; there are radius_m, pads_of, contact_set");
   }
-  for (const sweep::Column& setting : own_settings()) {
-    if (!json.contains(setting.name))
-      throw sweep::SettingError("", "there is no setting " + setting.name);
-  }
   ContactSet set;
-  set.radius = sweep::SettingValue("radius_m", json.at("radius_m")).positive_number();
-  set.hand = sweep::SettingValue("pads_of", json.at("pads_of")).text();
-  for (const sweep::SettingValue& item :
-       sweep::SettingValue("contact_set", json.at("contact_set")).items()) {
-    item.require_members_among({"direction", "boundary_distance_rel", "area_rel", "weak"});
+  set.radius = sweep::setting(cell, "radius_m").positive_number();
+  set.hand = sweep::setting(cell, "pads_of").name();
+  for (const base::JsonValue& item : sweep::setting(cell, "contact_set").some_items()) {
+    item.require_members({}, {"direction", "boundary_distance_rel", "area_rel", "weak"});
     BallContact contact;
-    contact.direction = item.at("direction").vector3();
-    if (!(contact.direction.norm() > 0.0)) item.at("direction").fail("must not be zero");
+    contact.direction = sweep::vector_of(item.at("direction"));
+    if (!(contact.direction.norm() > 0.0)) item.at("direction").refuse("must not be zero");
     contact.direction.normalize();
     contact.boundary_distance_rel = share(item.at("boundary_distance_rel"));
     contact.area_rel = share(item.at("area_rel"));
-    contact.weak = item.at("weak").yes_or_no();
+    contact.weak = item.at("weak").flag();
     set.contacts.push_back(contact);
   }
   return set;

@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,10 +38,8 @@ std::vector<sweep::Column> own_settings() {
 }
 
 std::optional<int> slice_axis(const sweep::Cell& cell) {
-  const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  const std::string name = own_settings().front().name;
-  if (!json.contains(name)) return std::nullopt;
-  return sweep::SettingValue(name, json.at(name)).axis();
+  const auto axis = sweep::find_setting(cell, own_settings().front().name);
+  return axis ? std::optional(sweep::axis_of(*axis)) : std::nullopt;
 }
 
 PlanningSettings settings_of(const sweep::Cell& cell) {

@@ -6,7 +6,6 @@
 // beside `parameter` and `value`, so that a plot of any column over the value is a filter and a
 // sort. A parameter that matters moves usable_rate or mean_m by more than its neighbors' scatter,
 // which the repeated defaults (each parameter has its own) show.
-#include <nlohmann/json.hpp>
 
 #include "cells/planning_table.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
@@ -27,12 +26,11 @@ struct Varied {
 };
 
 Varied varied_of(const sweep::Cell& cell) {
-  const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  if (!json.contains("parameter")) throw sweep::SettingError("", "there is no setting parameter");
-  const sweep::SettingValue parameter("parameter", json.at("parameter"));
-  const std::string name = parameter.text();
-  if (!json.contains(name)) parameter.fail("must be the name of a setting that is given");
-  return {name, sweep::SettingValue(name, json.at(name)).number()};
+  const base::JsonValue parameter = sweep::setting(cell, "parameter");
+  const std::string name = parameter.name();
+  const auto value = sweep::find_setting(cell, name);
+  if (!value) parameter.refuse("must be the name of a setting that is given");
+  return {name, value->number()};
 }
 
 sweep::CellResult run(const sweep::Cell& cell) {

@@ -37,10 +37,10 @@ std::vector<std::pair<std::string, PlanningSettings>> read_modes(const sweep::Ce
                                                                  const nlohmann::json& json) {
   if (!json.contains("modes")) return {{"", planning_settings(cell, own_settings())}};
   std::vector<std::pair<std::string, PlanningSettings>> modes;
-  const sweep::SettingValue value("modes", json.at("modes"));
-  value.require_members_among({kModes.begin(), kModes.end()});
+  const base::JsonValue value = sweep::setting(cell, "modes");
+  value.require_members({}, {kModes.begin(), kModes.end()});
   for (const auto& [name, added] : value.json().items()) {
-    if (!added.is_object()) value.at(name).fail("must be an object of settings");
+    if (!added.is_object()) value.at(name).refuse("must be an object of settings");
     nlohmann::json merged = json;
     merged.update(added);
     try {
@@ -51,7 +51,7 @@ std::vector<std::pair<std::string, PlanningSettings>> read_modes(const sweep::Ce
           error.what());
     }
   }
-  if (modes.empty()) value.fail("must have at least one mode");
+  if (modes.empty()) value.refuse("must have at least one mode");
   return modes;
 }
 
@@ -62,16 +62,13 @@ Case read_case(const sweep::Cell& cell) {
   if (json.contains("mode") != json.contains("modes")) {
     throw sweep::SettingError("", "mode and modes belong together");
   }
-  if (json.contains("mode")) {
-    const sweep::SettingValue mode("mode", json.at("mode"));
-    read.mode = mode.text();
+  if (const auto mode = sweep::find_setting(cell, "mode")) {
+    read.mode = mode->name();
     const bool is_planned = std::any_of(read.modes.begin(), read.modes.end(),
                                         [&](const auto& m) { return m.first == read.mode; });
-    if (!is_planned) mode.fail("must be one of the modes");
+    if (!is_planned) mode->refuse("must be one of the modes");
   }
-  if (!json.contains("predicates")) throw sweep::SettingError("", "there is no setting predicates");
-  for (const sweep::SettingValue& item :
-       sweep::SettingValue("predicates", json.at("predicates")).items()) {
+  for (const base::JsonValue& item : sweep::setting(cell, "predicates").some_items()) {
     read.predicates.push_back(read_predicate(item));
   }
   return read;

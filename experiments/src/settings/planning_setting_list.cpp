@@ -9,10 +9,10 @@
 namespace graspfit::experiments::internal {
 namespace {
 
+using base::JsonValue;
 using grasp::OptionKind;
 using grasp::OptionValue;
 using grasp::PlannerOption;
-using sweep::SettingValue;
 using Schema = nlohmann::ordered_json;
 
 Schema of_type(const char* type) { return {{"type", type}}; }
@@ -25,44 +25,44 @@ std::vector<PlanningSetting> object_and_hand_settings() {
   return {
       {{"file", "", "the object's mesh in the data folder"},
        text(),
-       [](PlanningSettings& s, const SettingValue& v) { s.object.file = v.text(); }},
+       [](PlanningSettings& s, const JsonValue& v) { s.object.file = v.name(); }},
       {{"packaged", "", "instead of file: a mesh of libcgal-demo, by the name of its file"},
        text(),
-       [](PlanningSettings& s, const SettingValue& v) {
-         s.object.packaged = v.text();
-         if (v.text().find('/') != std::string::npos) v.fail("must be a file's name, no path");
+       [](PlanningSettings& s, const JsonValue& v) {
+         s.object.packaged = v.name();
+         if (v.name().find('/') != std::string::npos) v.refuse("must be a file's name, no path");
        }},
       {{"shape", "", "instead of file: a shape of graspfit shape"},
        text(),
-       [](PlanningSettings& s, const SettingValue& v) { s.object.shape = v.text(); }},
+       [](PlanningSettings& s, const JsonValue& v) { s.object.shape = v.name(); }},
       {{"size_m", "m", "length of the object's bounding box along size_axis"},
        of_type("number"),
-       [](PlanningSettings& s, const SettingValue& v) { s.object.size = v.number(); },
+       [](PlanningSettings& s, const JsonValue& v) { s.object.size = v.number(); },
        base::above(0)},
       {{"size_axis", "", "edge of the bounding box that size_m is for"},
        {{"enum", {"x", "y", "z", "longest"}}},
-       [](PlanningSettings& s, const SettingValue& v) {
-         if (v.text() != "longest") s.object.size_axis = v.axis();
+       [](PlanningSettings& s, const JsonValue& v) {
+         if (v.name() != "longest") s.object.size_axis = sweep::axis_of(v);
        },
        {},
        "longest"},
       {{"largest_thickness_m", "m", "scaled down where the bounding box's shortest edge is longer"},
        of_type("number"),
-       [](PlanningSettings& s, const SettingValue& v) { s.object.largest_thickness = v.number(); },
+       [](PlanningSettings& s, const JsonValue& v) { s.object.largest_thickness = v.number(); },
        base::above(0)},
       {{"rotation_deg", "deg",
         "[x, y, z]: the object is turned before planning, about its frame's x, then y, then z "
         "axis"},
        three_numbers(),
-       [](PlanningSettings& s, const SettingValue& v) {
-         s.object.rotation_xyz = v.vector3() * base::kRadiansPerDegree;
+       [](PlanningSettings& s, const JsonValue& v) {
+         s.object.rotation_xyz = sweep::vector_of(v) * base::kRadiansPerDegree;
        }},
       {{"hand", "", "a shipped hand, or a description in the data folder"},
        text(),
-       [](PlanningSettings& s, const SettingValue& v) { s.hand = v.text(); }},
+       [](PlanningSettings& s, const JsonValue& v) { s.hand = v.name(); }},
       {{"table", "m", "a table: everything at or below this z of the object's frame is solid"},
        of_type("number"),
-       [](PlanningSettings& s, const SettingValue& v) { s.table_z_O = v.number(); }}};
+       [](PlanningSettings& s, const JsonValue& v) { s.table_z_O = v.number(); }}};
 }
 
 Schema schema_of(const PlannerOption& option) {
@@ -83,23 +83,23 @@ Schema schema_of(const PlannerOption& option) {
   return {};
 }
 
-OptionValue value_of(const PlannerOption& option, const SettingValue& value) {
+OptionValue value_of(const PlannerOption& option, const JsonValue& value) {
   switch (option.kind) {
     case OptionKind::Number:
       return value.number();
     case OptionKind::Integer:
-      return std::int64_t{value.integer()};
+      return std::int64_t{value.small_integer()};
     case OptionKind::YesNo:
-      return value.yes_or_no();
+      return value.flag();
     case OptionKind::Names:
-      return value.texts();
+      return sweep::names_of(value);
     case OptionKind::Direction:
-      return value.vector3();
+      return sweep::vector_of(value);
     case OptionKind::Choice:
       break;
   }
-  const std::string name = value.text();
-  if (!option.has_choice(name)) value.fail("must be one of " + option.choices_text());
+  const std::string name = value.name();
+  if (!option.has_choice(name)) value.refuse("must be one of " + option.choices_text());
   return name;
 }
 
@@ -107,7 +107,7 @@ PlanningSetting setting_of(const PlannerOption& option) {
   return {{std::string(option.name), option.is_number() ? std::string(option.unit) : "",
            std::string(option.meaning)},
           schema_of(option),
-          [&option](PlanningSettings& settings, const SettingValue& value) {
+          [&option](PlanningSettings& settings, const JsonValue& value) {
             grasp::set_option(settings.options, option, value_of(option, value));
           },
           option.is_number() ? std::optional(option.range) : std::nullopt,

@@ -17,7 +17,7 @@ struct PlanningSetting {
   sweep::Column name;
   nlohmann::ordered_json schema;  ///< JSON Schema of its values, but for `range`.
   /// Sets what it names, from any value of the right type: `range` is checked beforehand.
-  std::function<void(PlanningSettings&, const sweep::SettingValue&)> apply;
+  std::function<void(PlanningSettings&, const base::JsonValue&)> apply;
   std::optional<base::NumberRange> range = {};  ///< In `name.unit`.
   std::string fallback = "";  ///< Its value where it is not given, as text; empty: none.
 };

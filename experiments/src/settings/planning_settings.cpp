@@ -15,7 +15,6 @@ namespace {
 
 using internal::planning_setting_list;
 using internal::PlanningSetting;
-using sweep::SettingValue;
 using Schema = nlohmann::ordered_json;
 
 [[noreturn]] void fail_unknown(const std::string& key, const std::vector<sweep::Column>& others) {
@@ -159,10 +158,10 @@ PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
         planning_setting_list().begin(), planning_setting_list().end(),
         [&, &name = key](const PlanningSetting& setting) { return setting.name.name == name; });
     if (found == planning_setting_list().end()) fail_unknown(key, others);
-    const sweep::SettingValue given(key, value);
+    const base::JsonValue given = sweep::setting_value(key, value);
     const bool is_outside =
         found->range && value.is_number() && !found->range->contains(value.get<double>());
-    if (is_outside) given.fail("must be " + range_text(*found));
+    if (is_outside) given.refuse("must be " + range_text(*found));
     found->apply(settings, given);
   }
   const ObjectSettings& object = settings.object;

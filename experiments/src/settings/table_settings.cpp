@@ -11,20 +11,20 @@
 namespace graspfit::experiments::internal {
 namespace {
 
-Eigen::Vector2d place_of(const sweep::SettingValue& value) {
-  const std::vector<sweep::SettingValue> numbers = value.items();
-  if (numbers.size() != 2) value.fail("must be [x, y] in meters");
+Eigen::Vector2d place_of(const base::JsonValue& value) {
+  const std::vector<base::JsonValue> numbers = value.items();
+  if (numbers.size() != 2) value.refuse("must be [x, y] in meters");
   return {numbers[0].number(), numbers[1].number()};
 }
 
-Eigen::Vector3d direction_of(const sweep::SettingValue& value) {
-  const Eigen::Vector3d direction = value.vector3();
-  if (!(direction.norm() > 0.0)) value.fail("must have a length");
+Eigen::Vector3d direction_of(const base::JsonValue& value) {
+  const Eigen::Vector3d direction = sweep::vector_of(value);
+  if (!(direction.norm() > 0.0)) value.refuse("must have a length");
   return direction;
 }
 
-RestSettings rest_of(const sweep::SettingValue& value) {
-  value.require_members_among({"up", "turn_deg", "at_m"});
+RestSettings rest_of(const base::JsonValue& value) {
+  value.require_members({}, {"up", "turn_deg", "at_m"});
   RestSettings rest;
   rest.up_O = direction_of(value.at("up"));
   rest.place_W = place_of(value.at("at_m"));
@@ -34,19 +34,19 @@ RestSettings rest_of(const sweep::SettingValue& value) {
 
 /// The planner's settings for an object of the table: those of the cell and the object's own.
 PlanningSettings object_settings(const sweep::Cell& cell, const nlohmann::json& cell_settings,
-                                 const sweep::SettingValue& value) {
+                                 const base::JsonValue& value) {
   nlohmann::json merged = cell_settings;
   for (const char* key : {"file", "packaged", "shape", "size_m", "size_axis"}) {
     if (cell_settings.contains(key)) {
       throw sweep::SettingError(key, "must be among those of an object of `objects`");
     }
-    if (value.has(key)) merged[key] = value.json().at(key);
+    if (value.has(key)) merged[key] = nlohmann::json(value.at(key).json());
   }
   try {
     return planning_settings(merged.dump(), cell.seed, table_setting_names());
   } catch (const sweep::SettingError& error) {
     if (value.has(error.key()))
-      throw sweep::SettingError(value.key() + '/' + error.key(), error.what());
+      throw sweep::SettingError(value.place() + '/' + error.key(), error.what());
     throw;
   }
 }
@@ -73,10 +73,6 @@ std::vector<sweep::Column> table_setting_names() {
 
 TableSettings table_settings(const sweep::Cell& cell) {
   const nlohmann::json json = nlohmann::json::parse(cell.settings);
-  for (const sweep::Column& setting : table_setting_names()) {
-    if (!json.contains(setting.name))
-      throw sweep::SettingError("", "there is no setting " + setting.name);
-  }
   for (const char* key : {"table", "approach"}) {
     if (json.contains(key)) throw sweep::SettingError(key, "is set by the experiment itself");
   }
@@ -84,32 +80,31 @@ TableSettings table_settings(const sweep::Cell& cell) {
     throw sweep::SettingError("rotation_deg",
                               "means nothing here: start and goal say how objects lie");
   }
-  const auto value = [&](const char* key) { return sweep::SettingValue(key, json.at(key)); };
+  const auto value = [&](const char* key) { return sweep::setting(cell, key); };
   TableSettings settings;
-  settings.title = value("title").text();
+  settings.title = value("title").name();
   std::set<std::string> names;
-  for (const sweep::SettingValue& item : value("objects").items()) {
-    item.require_members_among(
-        {"name", "file", "packaged", "shape", "size_m", "size_axis", "start", "goal", "note"});
+  for (const base::JsonValue& item : value("objects").some_items()) {
+    item.require_members(
+        {}, {"name", "file", "packaged", "shape", "size_m", "size_axis", "start", "goal", "note"});
     const PlanningSettings planning = object_settings(cell, json, item);
     settings.hand = planning.hand;
     settings.tidying.move.planner = planning.options;
-    settings.objects.push_back({item.at("name").text(), planning.object, rest_of(item.at("start")),
+    settings.objects.push_back({item.at("name").name(), planning.object, rest_of(item.at("start")),
                                 rest_of(item.at("goal"))});
     if (!names.insert(settings.objects.back().name).second) {
-      item.at("name").fail("must differ from those of the other objects");
+      item.at("name").refuse("must differ from those of the other objects");
     }
   }
-  if (settings.objects.empty()) value("objects").fail("must have at least one object");
-  const sweep::SettingValue home = value("home");
-  home.require_members_among({"palm_m", "direction", "turn_deg"});
-  settings.home_palm_W = home.at("palm_m").vector3();
+  const base::JsonValue home = value("home");
+  home.require_members({}, {"palm_m", "direction", "turn_deg"});
+  settings.home_palm_W = sweep::vector_of(home.at("palm_m"));
   settings.home_direction_W = direction_of(home.at("direction")).normalized();
   if (home.has("turn_deg"))
     settings.home_turn = home.at("turn_deg").number() * base::kRadiansPerDegree;
   settings.frame_step = value("frame_step_mm").positive_number() * base::kMetersPerMillimeter;
   motion::TidyingOptions& tidying = settings.tidying;
-  for (const sweep::SettingValue& place : value("resting_places_m").items()) {
+  for (const base::JsonValue& place : value("resting_places_m").some_items()) {
     tidying.resting_places_W.push_back(place_of(place));
   }
   tidying.move.clearance = value("travel_clearance_mm").number() * base::kMetersPerMillimeter;
@@ -117,7 +112,7 @@ TableSettings table_settings(const sweep::Cell& cell) {
   const base::NumberRange clearances{.least = 0, .most = kept, .has_most = false};
   if (!clearances.contains(value("travel_clearance_mm").number())) {
     value("travel_clearance_mm")
-        .fail("must be " + clearances.text() + ", below pre-grasp-clearance-mm");
+        .refuse("must be " + clearances.text() + ", below pre-grasp-clearance-mm");
   }
   const grasp::PlannerOptions& planner = tidying.move.planner;
   if (planner.acceptance != grasp::Acceptance::Valid) {
@@ -127,8 +122,8 @@ TableSettings table_settings(const sweep::Cell& cell) {
     throw sweep::SettingError("pre-grasps", "must be true: objects are approached from pre-grasps");
   }
   tidying.move.cache = {.is_on = true};
-  tidying.max_moves_tried = value("max_moves").integer();
-  if (tidying.max_moves_tried < 1) value("max_moves").fail("must be >= 1");
+  tidying.max_moves_tried = value("max_moves").small_integer();
+  if (tidying.max_moves_tried < 1) value("max_moves").refuse("must be >= 1");
   tidying.validate();
   return settings;
 }

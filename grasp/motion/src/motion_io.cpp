@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/json_bounds.hpp"
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/path_text.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -12,16 +14,16 @@
 #include "graspfit/grasp/object_file.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
-#include "io/json_node.hpp"
 #include "io/json_text.hpp"
 #include "io/record_json.hpp"
 
 namespace graspfit::motion {
 
 namespace fs = std::filesystem;
+using base::JsonValue;
 using geometry::RigidTransform;
 using grasp::internal::Json;
-using grasp::internal::JsonNode;
+using grasp::internal::pose;
 
 namespace {
 
@@ -53,7 +55,7 @@ Json move_json(const MotionFile& file, const RecordedMove& move) {
           {"to", stretches}};
 }
 
-int object_index(const JsonNode& node, const std::vector<MotionObject>& objects) {
+int object_index(const JsonValue& node, const std::vector<MotionObject>& objects) {
   const std::string name = node.text();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (objects[i].name == name) return static_cast<int>(i);
@@ -61,13 +63,13 @@ int object_index(const JsonNode& node, const std::vector<MotionObject>& objects)
   node.fail("is \"" + name + "\", which is none of the objects");
 }
 
-hands::HandConfiguration hand_at(const JsonNode& node, std::size_t num_joints) {
-  const std::vector<JsonNode> positions = node.at("q").items();
+hands::HandConfiguration hand_at(const JsonValue& node, std::size_t num_joints) {
+  const std::vector<JsonValue> positions = node.at("q").items();
   if (positions.size() != num_joints) {
     node.at("q").fail("has " + std::to_string(positions.size()) + " positions for " +
                       std::to_string(num_joints) + " joints");
   }
-  hands::HandConfiguration hand{node.at("X_WH").pose(),
+  hands::HandConfiguration hand{pose(node.at("X_WH")),
                                 Eigen::VectorXd(static_cast<Eigen::Index>(num_joints))};
   for (std::size_t j = 0; j < num_joints; ++j) {
     hand.q[j] = positions[j].number();
@@ -87,7 +89,7 @@ bool are_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 }
 
 /// What a stretch says of the object must be true of the phase that it calls itself.
-void require_possible(const JsonNode& end, const MotionStretch& stretch) {
+void require_possible(const JsonValue& end, const MotionStretch& stretch) {
   const std::string phase = phase_name(stretch.phase);
   if (!is_carrying(stretch.phase)) {
     if (are_same(stretch.X_WO_from, stretch.X_WO_to)) return;
@@ -110,7 +112,7 @@ struct Whereabouts {
 };
 
 /// A move must begin where things are.
-void require_there(const JsonNode& from, const MotionStretch& first, const Whereabouts& now) {
+void require_there(const JsonValue& from, const MotionStretch& first, const Whereabouts& now) {
   if (!are_same(first.X_WO_from, now.X_WO[first.object])) {
     from.at("X_WO").fail("is not where the object stands then");
   }
@@ -123,19 +125,19 @@ void require_there(const JsonNode& from, const MotionStretch& first, const Where
   }
 }
 
-RecordedMove read_move(const JsonNode& node, const MotionFile& file, Whereabouts& now) {
+RecordedMove read_move(const JsonValue& node, const MotionFile& file, Whereabouts& now) {
   RecordedMove move{object_index(node.at("object"), file.objects),
                     node.at("grasp_m").number(),
                     node.at("num_contacts").small_integer(),
                     {}};
-  JsonNode before = node.at("from");
-  for (const JsonNode& after : node.at("to").items()) {
-    const JsonNode phase = after.at("phase");
+  JsonValue before = node.at("from");
+  for (const JsonValue& after : node.at("to").items()) {
+    const JsonValue phase = after.at("phase");
     const auto value = phase_named(phase.text());
     if (!value) phase.fail("is \"" + phase.text() + "\", which is no phase of a motion");
     move.stretches.push_back({*value, move.object, hand_at(before, file.joints.size()),
-                              hand_at(after, file.joints.size()), before.at("X_WO").pose(),
-                              after.at("X_WO").pose()});
+                              hand_at(after, file.joints.size()), pose(before.at("X_WO")),
+                              pose(after.at("X_WO"))});
     if (move.stretches.size() == 1) require_there(before, move.stretches.front(), now);
     require_possible(after, move.stretches.back());
     before = after;
@@ -266,7 +268,8 @@ std::string to_json(const MotionFile& file) {
 }
 
 MotionFile read_motion(const fs::path& path) {
-  const JsonNode root = JsonNode::read(path);
+  const JsonValue root =
+      JsonValue::parsed<base::IoError>(base::read_json_file(path), path.string());
   if (root.at("format").text() != kFormat) {
     root.at("format").fail(std::string("is not \"") + kFormat + '"');
   }
@@ -279,18 +282,18 @@ MotionFile read_motion(const fs::path& path) {
   file.description_sha256 = root.at("hand").at("description_sha256").text();
   file.joints = root.at("hand").at("joints").texts();
   file.clearance = root.at("proven_clearance_m").number();
-  for (const JsonNode& object : root.at("objects").items()) {
+  for (const JsonValue& object : root.at("objects").items()) {
     file.objects.push_back({object.at("name").text(), object.at("file").path(),
                             object.at("sha256").text(),
                             object.at("meters_per_file_unit").positive_number(),
-                            object.at("X_WO_start").pose(), object.at("X_WO_goal").pose()});
+                            pose(object.at("X_WO_start")), pose(object.at("X_WO_goal"))});
   }
   Whereabouts now;
   for (const MotionObject& object : file.objects) now.X_WO.push_back(object.X_WO_start);
-  for (const JsonNode& move : root.at("moves").items()) {
+  for (const JsonValue& move : root.at("moves").items()) {
     file.moves.push_back(read_move(move, file, now));
   }
-  for (const JsonNode& object : root.at("unmoved").items()) {
+  for (const JsonValue& object : root.at("unmoved").items()) {
     file.unmoved.push_back(
         {object_index(object.at("object"), file.objects), object.at("reason").text()});
   }

@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/json_bounds.hpp"
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/base/replacement_mark.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/option_names.hpp"
@@ -13,10 +15,10 @@
 namespace graspfit::grasp {
 namespace {
 
-using internal::JsonNode;
+using base::JsonValue;
 using internal::JsonReader;
 
-ObjectRecord read_object_record(const JsonNode& node) {
+ObjectRecord read_object_record(const JsonValue& node) {
   ObjectRecord object;
   object.file = node.at("file").path();
   const JsonReader at(node);
@@ -24,46 +26,46 @@ ObjectRecord read_object_record(const JsonNode& node) {
   at(object.meters_per_file_unit, "meters_per_file_unit");
   at.group("repair", object, internal::repair_fields);
   at.group("mesh", object.analysis, internal::mesh_fields);
-  const JsonNode box = node.at("mesh").at("bounding_box_m");
-  object.analysis.box = {box.at("lower").vector3(), box.at("upper").vector3()};
+  const JsonValue box = node.at("mesh").at("bounding_box_m");
+  object.analysis.box = {internal::vector3(box.at("lower")), internal::vector3(box.at("upper"))};
   at(object.center_of_mass_O, "center_of_mass_O_m");
   at(object.volume, "volume_m3");
   at(object.normalizing_radius, "normalizing_radius_m");
   return object;
 }
 
-SurroundingsRecord read_surroundings_record(const JsonNode& node) {
+SurroundingsRecord read_surroundings_record(const JsonValue& node) {
   SurroundingsRecord surroundings;
   JsonReader{node}(surroundings.table_z_O, "table_z_O_m");
-  for (const JsonNode& obstacle : node.at("obstacles").items()) {
+  for (const JsonValue& obstacle : node.at("obstacles").items()) {
     surroundings.obstacles.push_back(read_object_record(obstacle));
   }
   return surroundings;
 }
 
 /// The names of meshes as used, where the file has them.
-std::optional<UsedMeshFiles> read_used_meshes(const JsonNode& root) {
-  const JsonNode object = root.at("object").at("used_mesh_file");
+std::optional<UsedMeshFiles> read_used_meshes(const JsonValue& root) {
+  const JsonValue object = root.at("object").at("used_mesh_file");
   if (object.is_null()) return std::nullopt;
   UsedMeshFiles files;
   files.object = object.text();
-  for (const JsonNode& obstacle : root.at("surroundings").at("obstacles").items()) {
+  for (const JsonValue& obstacle : root.at("surroundings").at("obstacles").items()) {
     files.obstacles.push_back(obstacle.at("used_mesh_file").text());
   }
-  for (const JsonNode& link : root.at("hand").at("links").items()) {
-    const JsonNode file = link.at("used_mesh_file");
+  for (const JsonValue& link : root.at("hand").at("links").items()) {
+    const JsonValue file = link.at("used_mesh_file");
     files.links.push_back(file.is_null() ? std::string() : file.text());
   }
   return files;
 }
 
-internal::RecordedHand read_hand_record(const JsonNode& node) {
+internal::RecordedHand read_hand_record(const JsonValue& node) {
   internal::RecordedHand hand;
   hand.description_file = node.at("description_file").path();
   hand.description_sha256 = node.at("description_sha256").text();
   hand.sidecar_sha256 = node.at("sidecar_sha256").text();
-  for (const JsonNode& link : node.at("links").items()) {
-    const JsonNode hash = link.at("mesh_sha256");
+  for (const JsonValue& link : node.at("links").items()) {
+    const JsonValue hash = link.at("mesh_sha256");
     hand.link_mesh_sha256.push_back(hash.is_null() ? std::string() : hash.text());
   }
   return hand;
@@ -74,16 +76,16 @@ class GraspReader {
  public:
   explicit GraspReader(const hands::HandModel& hand) : hand_(hand) {}
 
-  Grasp read(const JsonNode& node) const {
+  Grasp read(const JsonValue& node) const {
     const JsonReader at(node, &hand_);
     Grasp grasp;
     grasp.configuration = read_configuration(node);
-    if (const JsonNode pre_grasp = node.at("pre_grasp"); !pre_grasp.is_null()) {
+    if (const JsonValue pre_grasp = node.at("pre_grasp"); !pre_grasp.is_null()) {
       grasp.pre_grasp = read_pre_grasp(pre_grasp);
     }
     at(grasp.has_all_contacts, "has_all_contacts");
     at.list(grasp.contacts, "contacts", internal::contact_fields);
-    if (const JsonNode squeeze = node.at("squeeze"); !squeeze.is_null()) {
+    if (const JsonValue squeeze = node.at("squeeze"); !squeeze.is_null()) {
       grasp.squeeze = read_squeeze(squeeze, grasp.contacts.size());
     }
     internal::quality_fields(at, grasp.quality);
@@ -103,10 +105,10 @@ class GraspReader {
   }
 
  private:
-  hands::HandConfiguration read_configuration(const JsonNode& node) const {
+  hands::HandConfiguration read_configuration(const JsonValue& node) const {
     hands::HandConfiguration configuration;
-    configuration.X_OH = node.at("X_OH").pose();
-    const JsonNode joints = node.at("joints");
+    configuration.X_OH = internal::pose(node.at("X_OH"));
+    const JsonValue joints = node.at("joints");
     configuration.q.resize(static_cast<Eigen::Index>(hand_.joints.size()));
     for (std::size_t i = 0; i < hand_.joints.size(); ++i) {
       configuration.q[i] = joints.at(hand_.joints[i].name).number();
@@ -119,25 +121,25 @@ class GraspReader {
     return configuration;
   }
 
-  PreGrasp read_pre_grasp(const JsonNode& node) const {
+  PreGrasp read_pre_grasp(const JsonValue& node) const {
     return {.configuration = read_configuration(node),
             .clearance = node.at("clearance_m").number(),
             .opening = node.at("opening").number(),
             .retreat = node.at("retreat_m").number()};
   }
 
-  contact::Squeeze read_squeeze(const JsonNode& node, std::size_t num_contacts) const {
+  contact::Squeeze read_squeeze(const JsonValue& node, std::size_t num_contacts) const {
     contact::Squeeze squeeze;
     squeeze.configuration = read_configuration(node);
-    const JsonNode forces = node.at("forces_O_N");
-    const std::vector<JsonNode> items = forces.items();
+    const JsonValue forces = node.at("forces_O_N");
+    const std::vector<JsonValue> items = forces.items();
     if (items.size() != num_contacts) {
       forces.fail("has " + std::to_string(items.size()) + " forces for " +
                   std::to_string(num_contacts) + " contacts");
     }
     squeeze.forces_O.resize(3, static_cast<Eigen::Index>(items.size()));
     for (std::size_t i = 0; i < items.size(); ++i) {
-      squeeze.forces_O.col(static_cast<Eigen::Index>(i)) = items[i].vector3();
+      squeeze.forces_O.col(static_cast<Eigen::Index>(i)) = internal::vector3(items[i]);
     }
     squeeze.residual = node.at("residual").number();
     squeeze.is_balanced = node.at("is_balanced").flag();
@@ -145,15 +147,15 @@ class GraspReader {
     return squeeze;
   }
 
-  static std::vector<contact::StablePair> read_stable_pairs(const JsonNode& node,
+  static std::vector<contact::StablePair> read_stable_pairs(const JsonValue& node,
                                                             std::size_t num_contacts) {
     std::vector<contact::StablePair> pairs;
-    for (const JsonNode& pair : node.items()) {
-      const JsonNode contacts = pair.at("contacts");
-      const std::vector<JsonNode> indices = contacts.items();
+    for (const JsonValue& pair : node.items()) {
+      const JsonValue contacts = pair.at("contacts");
+      const std::vector<JsonValue> indices = contacts.items();
       if (indices.size() != 2) contacts.fail("is not a pair");
-      for (const JsonNode& index : indices) {
-        if (index.count() >= num_contacts) index.fail("is not the index of a contact");
+      for (const JsonValue& index : indices) {
+        if (index.unsigned_integer() >= num_contacts) index.fail("is not the index of a contact");
       }
       pairs.push_back(
           {indices[0].small_integer(), indices[1].small_integer(), pair.at("angle_rad").number()});
@@ -164,7 +166,7 @@ class GraspReader {
   const hands::HandModel& hand_;
 };
 
-PlannerStatistics read_statistics(const JsonNode& node) {
+PlannerStatistics read_statistics(const JsonValue& node) {
   PlannerStatistics statistics;
   const JsonReader at(node);
   at(statistics.attempts, "attempts");
@@ -188,13 +190,13 @@ PlannerStatistics read_statistics(const JsonNode& node) {
   return statistics;
 }
 
-HoldRecord read_hold(const JsonNode& node, std::size_t num_grasps) {
+HoldRecord read_hold(const JsonValue& node, std::size_t num_grasps) {
   HoldRecord hold;
   hold.protocol = node.at("protocol").text();
   JsonReader{node}.counts(hold.stages, "stages");
-  const JsonNode margins = node.at("margins_N");
+  const JsonValue margins = node.at("margins_N");
   if (margins.is_null()) return hold;
-  for (const JsonNode& margin : margins.items()) hold.margins.push_back(margin.number());
+  for (const JsonValue& margin : margins.items()) hold.margins.push_back(margin.number());
   if (hold.margins.size() != num_grasps) {
     margins.fail("has " + std::to_string(hold.margins.size()) + " margins for " +
                  std::to_string(num_grasps) + " grasps");
@@ -206,7 +208,8 @@ HoldRecord read_hold(const JsonNode& node, std::size_t num_grasps) {
 
 GraspFile read_grasps(const std::filesystem::path& path) {
   base::require_no_replacement_mark(path);
-  const JsonNode root = JsonNode::read(path);
+  const JsonValue root =
+      JsonValue::parsed<base::IoError>(base::read_json_file(path), path.string());
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
@@ -220,7 +223,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.object = read_object_record(root.at("object"));
   file.surroundings = read_surroundings_record(root.at("surroundings"));
   file.used_meshes = read_used_meshes(root);
-  const JsonNode hand = root.at("hand");
+  const JsonValue hand = root.at("hand");
   const internal::RecordedHand recorded_hand = read_hand_record(hand);
   try {
     file.hand = internal::read_recorded_hand(recorded_hand, path.parent_path());
@@ -229,7 +232,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   }
   file.link_mesh_sha256 = recorded_hand.link_mesh_sha256;
 
-  const JsonNode planner = root.at("planner");
+  const JsonValue planner = root.at("planner");
   JsonReader{planner}.group("options", file.options, internal::planner_rows);
   file.options.seed = planner.at("seed").unsigned_integer();
   try {
@@ -238,8 +241,8 @@ GraspFile read_grasps(const std::filesystem::path& path) {
     planner.at("options").fail(error.what());
   }
   file.version = planner.at("version").text();
-  const JsonNode used = planner.at("used");
-  for (const JsonNode& finger : used.at("fingers").items()) {
+  const JsonValue used = planner.at("used");
+  for (const JsonValue& finger : used.at("fingers").items()) {
     internal::index_by_name(file.hand.fingers, finger);
     file.fingers.push_back(finger.text());
   }
@@ -248,11 +251,11 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.clip_thickness = used.at("clip_thickness_m").positive_number();
   file.merge_distance = used.at("merge_distance_m").positive_number();
 
-  const JsonNode results = root.at("results");
-  file.stop = results.at("stop").choice<PlannerStop>();
+  const JsonValue results = root.at("results");
+  JsonReader{results}(file.stop, "stop");
   file.statistics = read_statistics(results.at("statistics"));
   const GraspReader reader(file.hand);
-  for (const JsonNode& grasp : results.at("grasps").items()) {
+  for (const JsonValue& grasp : results.at("grasps").items()) {
     file.grasps.push_back(reader.read(grasp));
   }
   for (const auto& [key, node] : results.members()) {

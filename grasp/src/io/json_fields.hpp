@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "graspfit/grasp/option_row.hpp"
-#include "io/json_node.hpp"
 #include "io/record_json.hpp"
 
 /// \file
@@ -104,7 +104,7 @@ class JsonWriter {
 
 /// The index of the part of a hand that has this name.
 template <class Item>
-int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
+int index_by_name(const std::vector<Item>& items, const base::JsonValue& name) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (items[i].name == name.text()) return static_cast<int>(i);
   }
@@ -114,7 +114,7 @@ int index_by_name(const std::vector<Item>& items, const JsonNode& name) {
 /// Sets fields from the members of a JSON object. @throws IoError: file, place, what is wrong.
 class JsonReader {
  public:
-  explicit JsonReader(JsonNode node, const hands::HandModel* hand = nullptr)
+  explicit JsonReader(base::JsonValue node, const hands::HandModel* hand = nullptr)
       : node_(std::move(node)), hand_(hand) {}
 
   template <class Value>
@@ -140,7 +140,7 @@ class JsonReader {
   }
   void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
   void part(std::optional<int>& finger, const char* key) const {
-    const JsonNode name = node_.at(key);
+    const base::JsonValue name = node_.at(key);
     if (name.text() != "palm") finger = index_by_name(hand_->fingers, name);
   }
   void part(TargetContact& target, const char* key) const {
@@ -167,35 +167,44 @@ class JsonReader {
   }
   template <class Struct, class Fields>
   void list(std::vector<Struct>& items, const char* key, const Fields& fields) const {
-    for (const JsonNode& item : node_.at(key).items()) {
+    for (const base::JsonValue& item : node_.at(key).items()) {
       JsonReader reader(item, hand_);
       fields(reader, items.emplace_back());
     }
   }
 
  private:
-  static void read_open(const JsonNode& node, double& value) {
+  static void read_open(const base::JsonValue& node, double& value) {
     const bool is_infinite = node.is_text() && node.text() == "infinity";
     value = is_infinite ? std::numeric_limits<double>::infinity() : node.number();
   }
-  static void read(const JsonNode& node, double& value) { value = node.number(); }
-  static void read(const JsonNode& node, int& value) { value = node.small_integer(); }
-  static void read(const JsonNode& node, std::int64_t& value) { value = node.integer(); }
-  static void read(const JsonNode& node, std::size_t& value) { value = node.count(); }
-  static void read(const JsonNode& node, bool& value) { value = node.flag(); }
-  static void read(const JsonNode& node, std::string& value) { value = node.text(); }
-  static void read(const JsonNode& node, std::vector<std::string>& value) { value = node.texts(); }
-  static void read(const JsonNode& node, Eigen::Vector3d& value) { value = node.vector3(); }
+  static void read(const base::JsonValue& node, double& value) { value = node.number(); }
+  static void read(const base::JsonValue& node, int& value) { value = node.small_integer(); }
+  static void read(const base::JsonValue& node, std::int64_t& value) { value = node.integer(); }
+  static void read(const base::JsonValue& node, std::size_t& value) {
+    value = node.unsigned_integer();
+  }
+  static void read(const base::JsonValue& node, bool& value) { value = node.flag(); }
+  static void read(const base::JsonValue& node, std::string& value) { value = node.text(); }
+  static void read(const base::JsonValue& node, std::vector<std::string>& value) {
+    value = node.texts();
+  }
+  static void read(const base::JsonValue& node, Eigen::Vector3d& value) { value = vector3(node); }
   template <class Value>
-  static void read(const JsonNode& node, std::optional<Value>& value) {
+  static void read(const base::JsonValue& node, std::optional<Value>& value) {
     value.reset();
     if (!node.is_null()) read(node, value.emplace());
   }
   template <class Enum>
   requires std::is_enum_v<Enum>
-  static void read(const JsonNode& node, Enum& value) { value = node.choice<Enum>(); }
+  static void read(const base::JsonValue& node, Enum& value) {
+    const std::string name = node.text();
+    const auto named = value_named<Enum>(name);
+    if (!named) node.refuse("must be one of " + names_of<Enum>());
+    value = *named;
+  }
 
-  JsonNode node_;
+  base::JsonValue node_;
   const hands::HandModel* hand_;
 };
 

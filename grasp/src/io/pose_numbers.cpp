@@ -1,6 +1,7 @@
 #include "io/pose_numbers.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace graspfit::grasp::internal {
 
@@ -27,6 +28,20 @@ geometry::RigidTransform pose(const Eigen::Vector3d& translation,
   X_AB.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
   X_AB.translation() = translation;
   return X_AB;
+}
+
+Eigen::Vector3d vector3(const base::JsonValue& value) {
+  return Eigen::Vector3d(value.numbers<3>().data());
+}
+
+geometry::RigidTransform pose(const base::JsonValue& value) {
+  const base::JsonValue rotation = value.at("rotation_wxyz");
+  const std::array<double, 4> wxyz = rotation.numbers<4>();
+  double squared_norm = 0.0;
+  for (double component : wxyz) squared_norm += component * component;
+  // Written quaternions are unit to rounding; six digits by hand pass, a wrong convention does not.
+  if (!(std::abs(squared_norm - 1.0) < 1e-5)) rotation.fail("is not a unit quaternion");
+  return pose(vector3(value.at("translation_m")), wxyz);
 }
 
 }  // namespace graspfit::grasp::internal

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
 
 namespace graspfit::grasp::internal {
@@ -14,5 +15,9 @@ std::array<double, 4> rotation_wxyz(const geometry::RigidTransform& X_AB);
 /// The pose of these numbers; the quaternion is normalized.
 geometry::RigidTransform pose(const Eigen::Vector3d& translation,
                               const std::array<double, 4>& rotation_wxyz);
+
+/// Those of a JSON file: [x, y, z], and {translation_m, rotation_wxyz}.
+Eigen::Vector3d vector3(const base::JsonValue& value);
+geometry::RigidTransform pose(const base::JsonValue& value);
 
 }  // namespace graspfit::grasp::internal

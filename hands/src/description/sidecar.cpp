@@ -7,131 +7,39 @@
 
 #include "description/control_characters.hpp"
 #include "graspfit/base/errors.hpp"
-#include "graspfit/base/json_bounds.hpp"
-#include "graspfit/base/list_text.hpp"
+#include "graspfit/base/json_value.hpp"
 
 namespace graspfit::hands::internal {
 
 namespace {
 
-using base::InvalidInput;
-using base::IoError;
-using nlohmann::json;
+using base::JsonValue;
 
 constexpr const char* kFormat = "graspfit hand sidecar";
 constexpr int kVersion = 1;
 
-/// A value of the file and where it stands, so that every complaint names both.
-class Item {
- public:
-  Item(const json& value, std::string file, std::string path)
-      : value_(value), file_(std::move(file)), path_(std::move(path)) {}
+/// A name as it may be shown in messages of one line.
+std::string checked(const std::string& name, const JsonValue& item) {
+  if (std::any_of(name.begin(), name.end(), is_control)) item.fail("has a control character");
+  return name;
+}
 
-  /// In one line, whatever the file's keys hold.
-  [[noreturn]] void fail(const std::string& what) const {
-    std::string message = file_ + ": " + (path_.empty() ? "" : path_ + ": ") + what;
-    std::replace_if(message.begin(), message.end(), is_control, ' ');
-    throw InvalidInput(message);
-  }
+std::string name(const JsonValue& item) { return checked(item.name(), item); }
 
-  /// Refuses fields that the format does not know: most are misspelled.
-  void require_fields(const std::vector<std::string>& known) const {
-    if (!value_.is_object()) fail("is not an object {...}");
-    for (const auto& [key, unused] : value_.items()) {
-      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-      fail("unknown field " + key + "; known are " + base::list_text(known));
-    }
-  }
+std::vector<std::string> names(const JsonValue& item) {
+  std::vector<std::string> result;
+  for (const JsonValue& entry : item.items()) result.push_back(name(entry));
+  return result;
+}
 
-  Item at(const std::string& key) const {
-    const std::string inner = path_.empty() ? key : path_ + "." + key;
-    if (!value_.is_object()) fail("is not an object {...}");
-    const auto found = value_.find(key);
-    if (found == value_.end()) fail("no field " + key);
-    return {*found, file_, inner};
-  }
+template <int Size>
+Eigen::Matrix<double, Size, 1> vector(const JsonValue& item) {
+  return Eigen::Matrix<double, Size, 1>(item.numbers<Size>().data());
+}
 
-  /// The field unless it is missing or null.
-  std::optional<Item> find(const std::string& key) const {
-    if (!value_.is_object()) fail("is not an object {...}");
-    const auto found = value_.find(key);
-    if (found == value_.end() || found->is_null()) return std::nullopt;
-    return at(key);
-  }
-
-  std::vector<Item> array() const {
-    if (!value_.is_array()) fail("is not a list [...]");
-    std::vector<Item> items;
-    for (std::size_t i = 0; i < value_.size(); ++i) {
-      items.emplace_back(value_[i], file_, path_ + "[" + std::to_string(i) + "]");
-    }
-    return items;
-  }
-
-  std::vector<std::pair<std::string, Item>> entries() const {
-    if (!value_.is_object()) fail("is not an object {...}");
-    std::vector<std::pair<std::string, Item>> result;
-    for (const auto& [key, value] : value_.items()) {
-      result.emplace_back(key, Item(value, file_, path_ + "." + key));
-      if (std::any_of(key.begin(), key.end(), is_control))
-        fail("has a control character in a name");
-    }
-    return result;
-  }
-
-  std::string text() const {
-    if (!value_.is_string()) fail("is not a text");
-    return value_.get<std::string>();
-  }
-
-  std::string name() const {
-    if (!value_.is_string() || value_.get_ref<const std::string&>().empty()) {
-      fail("is not a name (a text that is not empty)");
-    }
-    const auto& name = value_.get_ref<const std::string&>();
-    // Names are shown in messages of one line.
-    if (std::any_of(name.begin(), name.end(), is_control)) fail("has a control character");
-    return name;
-  }
-
-  std::vector<std::string> names() const {
-    std::vector<std::string> result;
-    for (const Item& item : array()) result.push_back(item.name());
-    return result;
-  }
-
-  double number() const {
-    if (!value_.is_number()) fail("is not a number");
-    const double value = value_.get<double>();
-    if (!std::isfinite(value)) fail("is not finite");
-    return value;
-  }
-
-  bool boolean() const {
-    if (!value_.is_boolean()) fail("is neither true nor false");
-    return value_.get<bool>();
-  }
-
-  template <int Size>
-  Eigen::Matrix<double, Size, 1> vector() const {
-    const std::vector<Item> items = array();
-    if (items.size() != Size) {
-      fail("has " + std::to_string(items.size()) + " of " + std::to_string(Size) + " numbers");
-    }
-    Eigen::Matrix<double, Size, 1> result;
-    for (int i = 0; i < Size; ++i) result[i] = items[i].number();
-    return result;
-  }
-
- private:
-  const json& value_;
-  std::string file_;
-  std::string path_;
-};
-
-void check_format(const Item& format) {
-  format.require_fields({"name", "version"});
-  if (format.at("name").name() != kFormat) {
+void check_format(const JsonValue& format) {
+  format.require_members({"name", "version"}, {});
+  if (name(format.at("name")) != kFormat) {
     format.fail("name is not \"" + std::string(kFormat) + "\"");
   }
   const double version = format.at("version").number();
@@ -140,41 +48,41 @@ void check_format(const Item& format) {
   }
 }
 
-SidecarFinger finger(const Item& item) {
-  item.require_fields({"name", "thumb", "links", "joints", "swing_joint", "tip_pad"});
+SidecarFinger finger(const JsonValue& item) {
+  item.require_members({"name", "links", "joints"}, {"thumb", "swing_joint", "tip_pad"});
   SidecarFinger result;
-  result.name = item.at("name").name();
-  if (const auto thumb = item.find("thumb")) result.is_thumb = thumb->boolean();
-  result.links = item.at("links").names();
-  result.joints = item.at("joints").names();
-  if (const auto swing = item.find("swing_joint")) result.swing_joint = swing->name();
-  if (const auto pad = item.find("tip_pad")) result.tip_pad = pad->name();
+  result.name = name(item.at("name"));
+  if (const auto thumb = item.find("thumb")) result.is_thumb = thumb->flag();
+  result.links = names(item.at("links"));
+  result.joints = names(item.at("joints"));
+  if (const auto swing = item.find("swing_joint")) result.swing_joint = name(*swing);
+  if (const auto pad = item.find("tip_pad")) result.tip_pad = name(*pad);
   return result;
 }
 
-SidecarPad pad(const Item& item) {
-  item.require_fields({"name", "link", "finger", "frame", "outline_m", "surface_m", "clip"});
+SidecarPad pad(const JsonValue& item) {
+  item.require_members({"name", "link", "finger", "frame", "outline_m"}, {"surface_m", "clip"});
   SidecarPad result;
-  result.name = item.at("name").name();
-  result.link = item.at("link").name();
-  result.finger = item.at("finger").name();
-  const Item frame = item.at("frame");
-  frame.require_fields({"translation_m", "rotation_wxyz"});
-  result.X_LC.translation() = frame.at("translation_m").vector<3>();
-  const Item rotation = frame.at("rotation_wxyz");
-  const Eigen::Vector4d q = rotation.vector<4>();
+  result.name = name(item.at("name"));
+  result.link = name(item.at("link"));
+  result.finger = name(item.at("finger"));
+  const JsonValue frame = item.at("frame");
+  frame.require_members({"translation_m", "rotation_wxyz"}, {});
+  result.X_LC.translation() = vector<3>(frame.at("translation_m"));
+  const JsonValue rotation = frame.at("rotation_wxyz");
+  const Eigen::Vector4d q = vector<4>(rotation);
   // A person may type 0.7071: normalize, and refuse only what is no rotation at all.
   if (std::abs(q.norm() - 1.0) > 1e-3) rotation.fail("is not a unit quaternion");
   result.X_LC.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
-  for (const Item& corner : item.at("outline_m").array()) {
-    result.outline.push_back(corner.vector<2>());
+  for (const JsonValue& corner : item.at("outline_m").items()) {
+    result.outline.push_back(vector<2>(corner));
   }
   if (const auto surface = item.find("surface_m")) {
-    for (const Item& point : surface->array()) result.surface.push_back(point.vector<3>());
+    for (const JsonValue& point : surface->items()) result.surface.push_back(vector<3>(point));
     if (result.surface.empty()) surface->fail("is empty; leave it out where the pad is flat");
   }
   if (const auto clip = item.find("clip")) {
-    clip->require_fields({"kind", "thickness_m"});
+    clip->require_members({"kind"}, {"thickness_m"});
     const std::string kind = clip->at("kind").name();
     const std::string expected = result.surface.empty() ? "prism" : "offset";
     if (kind != "prism" && kind != "offset") {
@@ -193,27 +101,27 @@ SidecarPad pad(const Item& item) {
   return result;
 }
 
-SidecarPalm palm(const Item& item) {
-  item.require_fields({"link", "center_m", "direction", "pad"});
+SidecarPalm palm(const JsonValue& item) {
+  item.require_members({"link", "center_m", "direction"}, {"pad"});
   SidecarPalm result;
-  result.link = item.at("link").name();
-  result.center_H = item.at("center_m").vector<3>();
-  const Item direction = item.at("direction");
-  result.direction_H = direction.vector<3>();
+  result.link = name(item.at("link"));
+  result.center_H = vector<3>(item.at("center_m"));
+  const JsonValue direction = item.at("direction");
+  result.direction_H = vector<3>(direction);
   if (result.direction_H.norm() == 0.0) direction.fail("is zero");
   result.direction_H.normalize();
-  if (const auto its_pad = item.find("pad")) result.pad = its_pad->name();
+  if (const auto its_pad = item.find("pad")) result.pad = name(*its_pad);
   return result;
 }
 
-SidecarCoupling coupling(const Item& item) {
-  item.require_fields({"joint", "leader", "ratio", "offset", "breakaway"});
+SidecarCoupling coupling(const JsonValue& item) {
+  item.require_members({"joint", "leader"}, {"ratio", "offset", "breakaway"});
   SidecarCoupling result;
-  result.joint = item.at("joint").name();
-  result.leader = item.at("leader").name();
+  result.joint = name(item.at("joint"));
+  result.leader = name(item.at("leader"));
   if (const auto ratio = item.find("ratio")) result.ratio = ratio->number();
   if (const auto offset = item.find("offset")) result.offset = offset->number();
-  if (const auto breakaway = item.find("breakaway")) result.breakaway = breakaway->boolean();
+  if (const auto breakaway = item.find("breakaway")) result.breakaway = breakaway->flag();
   return result;
 }
 
@@ -288,15 +196,9 @@ nlohmann::ordered_json list_of(const Items& items) {
 }  // namespace
 
 Sidecar parse_sidecar(const std::string& text, const std::string& file) {
-  json document;
-  try {
-    document = json::parse(text);
-  } catch (const json::exception& error) {
-    throw IoError(file + ": not JSON: " + base::json_fault(error.what()));
-  }
-  const Item root(document, file, "");
-  root.require_fields({"format", "hand", "description", "conventions", "fingers", "pads", "palm",
-                       "closing", "couplings", "exclusions"});
+  const auto root = JsonValue::parsed<base::InvalidInput>(text, file);
+  root.require_members({}, {"format", "hand", "description", "conventions", "fingers", "pads",
+                            "palm", "closing", "couplings", "exclusions"});
   // A person who writes down a coupling or two need not write what this is: the file's name says.
   if (const auto format = root.find("format")) check_format(*format);
 
@@ -304,29 +206,29 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   if (const auto description = root.find("description")) sidecar.description = description->text();
   if (const auto fingers = root.find("fingers")) {
     sidecar.fingers.emplace();
-    for (const Item& item : fingers->array()) sidecar.fingers->push_back(finger(item));
+    for (const JsonValue& item : fingers->items()) sidecar.fingers->push_back(finger(item));
   }
   if (const auto pads = root.find("pads")) {
     sidecar.pads.emplace();
-    for (const Item& item : pads->array()) sidecar.pads->push_back(pad(item));
+    for (const JsonValue& item : pads->items()) sidecar.pads->push_back(pad(item));
   }
   if (const auto its_palm = root.find("palm")) sidecar.palm = palm(*its_palm);
   if (const auto closing = root.find("closing")) {
     sidecar.closing.emplace();
-    for (const auto& [joint, item] : closing->entries()) {
+    for (const auto& [joint, item] : closing->members()) {
       const double sign = item.number();
       if (sign != -1.0 && sign != 0.0 && sign != 1.0) item.fail("is none of -1, 0, 1");
-      (*sidecar.closing)[joint] = static_cast<int>(sign);
+      (*sidecar.closing)[checked(joint, item)] = static_cast<int>(sign);
     }
   }
   if (const auto couplings = root.find("couplings")) {
     sidecar.couplings.emplace();
-    for (const Item& item : couplings->array()) sidecar.couplings->push_back(coupling(item));
+    for (const JsonValue& item : couplings->items()) sidecar.couplings->push_back(coupling(item));
   }
   if (const auto exclusions = root.find("exclusions")) {
     sidecar.exclusions.emplace();
-    for (const Item& item : exclusions->array()) {
-      const std::vector<std::string> pair = item.names();
+    for (const JsonValue& item : exclusions->items()) {
+      const std::vector<std::string> pair = names(item);
       if (pair.size() != 2) item.fail("is not a pair of links");
       sidecar.exclusions->emplace_back(pair[0], pair[1]);
     }
@@ -354,7 +256,7 @@ std::string sidecar_text(const Sidecar& sidecar, const std::string& hand,
     for (const auto& [a, b] : *sidecar.exclusions) root["exclusions"].push_back({a, b});
   }
   // The name of a hand may be that of a file, whose bytes are anything.
-  return root.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+  return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace graspfit::hands::internal

@@ -307,7 +307,7 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   CHECK_THAT(refusal(path, "{\"unread\": " + deep + good.substr(1).insert(0, ",")),
              Contains("bad.json: line 1, column 75: nests deeper than 64 levels"));
-  CHECK_THAT(refusal(path, "[]"), Contains("/: is not an object"));
+  CHECK_THAT(refusal(path, "[]"), Contains("/: is [], must be an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
   CHECK_THAT(refusal(path, replaced(good, "\"version\": 4", "\"version\": 1")),
              Contains("/version: is 1; this program reads version 4"));
@@ -319,14 +319,14 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(refusal(path, replaced(good, "\"alpha\": 0.1", "\"alpha\": 1e999")),
              Contains("bad.json"));
   CHECK_THAT(refusal(path, replaced(good, "\"stop\": \"wall-clock\"", "\"stop\": 3")),
-             Contains("/results/stop: is not a text"));
+             Contains("/results/stop: is 3, must be a text"));
   CHECK_THAT(refusal(path, replaced(good, "\"no way in\": ", "\"no way out\": ")),
              Contains("/results/statistics/outcomes/no way out: is not an outcome"));
   CHECK_THAT(refusal(path, replaced(good, "\"alpha\": 0.1", "\"alpha\": -0.1")),
              Contains("/planner/options: ") && Contains("alpha"));
   CHECK_THAT(
       refusal(path, replaced(good, "\"rotation_wxyz\": [", "\"rotation_wxyz\": [2, ", "\"X_OH\"")),
-      Contains("/results/grasps/0/X_OH/rotation_wxyz: has 5 numbers, not 4"));
+      Contains("/results/grasps/0/X_OH/rotation_wxyz: has 5 of 4 numbers"));
   CHECK_THAT(refusal(path, replaced(good, "\"voxel_size_m\": ", "\"voxel_size_m\": -")),
              Contains("/planner/used/voxel_size_m: is -") && Contains("must be > 0"));
   CHECK_THAT(
@@ -335,10 +335,10 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   // Only options and raw scores may be infinite, only a target may lack its finger.
   CHECK_THAT(refusal(path, replaced(good, "\"area_m2\": ", "\"area_m2\": \"infinity\", \"was\": ",
                                     "\"results\"")),
-             Contains("/contacts/0/area_m2: is not a number"));
+             Contains("/contacts/0/area_m2: is \"infinity\", must be a number"));
   CHECK_THAT(
       refusal(path, replaced(good, "\"finger\": ", "\"finger\": null, \"was\": ", "\"results\"")),
-      Contains("/contacts/0/finger: is not a text"));
+      Contains("/contacts/0/finger: is null, must be a text"));
   const std::string hash = sample_file(folder.path() / "ball.off").hand.sidecar_sha256;
   CHECK_THAT(refusal(path, replaced(good, hash, std::string(64, 'f'))), Contains("sidecar"));
 }

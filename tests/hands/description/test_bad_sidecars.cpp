@@ -27,7 +27,7 @@ TEST_CASE("What is wrong in a sidecar is named by its place and value", "[hands]
       {R"("name": "graspfit hand sidecar")", R"("name": "hand")", {"format"}},
       {R"("closing")", R"("closings")", {"closings"}},
       {R"("swing_joint")", R"("swing")", {"fingers", "swing"}},
-      {R"("clip": {"kind")", R"("clip": {"sort")", {"pads[0].clip", "sort"}},
+      {R"("clip": {"kind")", R"("clip": {"sort")", {"pads/0/clip", "sort"}},
       {R"("tip_pad": "one_pad")", R"("tip_pad": "pad")", {"one", "pad"}},
       {R"("links": ["left"])", R"("links": ["lefty"])", {"one", "lefty"}},
       {R"("links": ["left"])", R"("links": [])", {"one", "links"}},

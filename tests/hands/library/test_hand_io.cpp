@@ -297,13 +297,14 @@ TEST_CASE("A bad sidecar gives one line with the file and the item", "[hands][ha
                                 "pinch.graspfit.json", about);
   };
   check_refused<IoError>(write_hand(folder, kUrdf, "{\"format\": "), "pinch.graspfit.json",
-                         "not JSON: parse error at line 1");
-  check_refused<IoError>(write_hand(folder, kUrdf, ""), "pinch.graspfit.json", "not JSON");
+                         "is not JSON: parse error at line 1");
+  check_refused<IoError>(write_hand(folder, kUrdf, ""), "pinch.graspfit.json", "is not JSON");
   check_refused<InvalidInput>(write_hand(folder, kUrdf, "[]"), "pinch.graspfit.json",
-                              "not an object");
-  bad("\"version\": 1", "\"version\": 2", "format: version is not 1");
-  bad("graspfit hand sidecar", "another", "format: name is not");
-  bad("\"closing\"", "\"closings\"", "unknown field closings");
+                              "/: is [], must be an object");
+  bad("\"version\": 1", "\"version\": 2", "/format: version is not 1");
+  bad("graspfit hand sidecar", "another", "/format: name is not");
+  bad("\"closing\"", "\"closings\"",
+      "/closings: is not a member that is known here; there are format, ");
 }
 
 TEST_CASE("Names and values in a sidecar are checked against the description", "[hands][hand_io]") {
@@ -317,17 +318,18 @@ TEST_CASE("Names and values in a sidecar are checked against the description", "
       "finger left: the description has no movable joint named slid");
   bad("\"joints\": [\"slide\"]", "\"joints\": [\"mount\"]", "no movable joint named mount");
   bad("[\"left\", \"left_tip\"]", "[\"left\", \"tip\"]", "no link named tip");
-  bad("[\"left\", \"left_tip\"]", "\"left\"", "fingers[0].links: is not a list");
+  bad("[\"left\", \"left_tip\"]", "\"left\"", "/fingers/0/links: is \"left\", must be an array");
   bad("\"finger\": \"left\"", "\"finger\": \"middle\"", "pad left_pad: no finger named middle");
   bad("\"link\": \"left_tip\"", "\"link\": \"right\"", "its link right is none of finger left");
   bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 1, 0]",
-      "pads[0].frame.rotation_wxyz: is not a unit quaternion");
+      "/pads/0/frame/rotation_wxyz: is not a unit quaternion");
   bad("[0.7071, 0, 0.7071, 0]", "[1, 0, 0]", "has 3 of 4 numbers");
-  bad("[0.01, 0, 0]", "[0.01, \"0\", 0]", "pads[0].frame.translation_m[1]: is not a number");
-  bad("\"direction\": [0, 0, 2]", "\"direction\": [0, 0, 0]", "palm.direction: is zero");
-  bad("\"slide\": -1", "\"slide\": 3", "closing.slide: is none of -1, 0, 1");
+  bad("[0.01, 0, 0]", "[0.01, \"0\", 0]",
+      "/pads/0/frame/translation_m/1: is \"0\", must be a number");
+  bad("\"direction\": [0, 0, 2]", "\"direction\": [0, 0, 0]", "/palm/direction: is zero");
+  bad("\"slide\": -1", "\"slide\": 3", "/closing/slide: is none of -1, 0, 1");
   bad("\"slide\": -1", "\"shut\": 1", "closing: the description has no movable joint named shut");
-  bad("[[\"base\", \"left\"]]", "[[\"base\"]]", "exclusions[0]: is not a pair");
+  bad("[[\"base\", \"left\"]]", "[[\"base\"]]", "/exclusions/0: is not a pair");
   bad("\"couplings\": []", "\"couplings\": [{\"joint\": \"slide\", \"leader\": \"turn\"}]",
       "cycle");
   bad("\"name\": \"right\"", "\"name\": \"left\"", "two fingers named left");
@@ -352,8 +354,8 @@ TEST_CASE("A curved pad is read, and one that is not convex is refused with its 
   const auto bad = [&](const std::string& fields, const std::string& about) {
     check_refused<InvalidInput>(curved(fields), "pinch.graspfit.json", about);
   };
-  bad(R"("surface_m": [])", "pads[0].surface_m: is empty");
-  bad(R"("surface_m": [[0, 0]])", "pads[0].surface_m[0]: has 2 of 3 numbers");
+  bad(R"("surface_m": [])", "/pads/0/surface_m: is empty");
+  bad(R"("surface_m": [[0, 0]])", "/pads/0/surface_m/0: has 2 of 3 numbers");
   bad(R"("surface_m": [[0, 0, -0.001]])", "surface point 0 lies behind the pad's plane");
   bad(R"("surface_m": [[0.02, 0, 0.001]])", "surface point 0 lies beside the outline");
   bad(R"("surface_m": [[0.008, 0, 0.003], [0, 0, 0.001], [-0.008, 0, 0.003]])",

@@ -9,10 +9,10 @@
 #include <set>
 
 #include "config/axis_label.hpp"
-#include "config/config_node.hpp"
 #include "config/object_axis.hpp"
 #include "config/placed_axis.hpp"
 #include "graspfit/base/json_bounds.hpp"
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/base/sha256.hpp"
@@ -22,7 +22,7 @@ namespace graspfit::sweep {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::ConfigNode;
+using base::JsonValue;
 using internal::find_value;
 using internal::is_label;
 using internal::labels_text;
@@ -43,7 +43,7 @@ struct Draft {
   std::vector<PlacedAxis> axes;
 };
 
-void read_settings(const ConfigNode& node, Draft& draft) {
+void read_settings(const JsonValue& node, Draft& draft) {
   for (const auto& [key, value] : node.members()) {
     draft.settings[key] = SortedJson(value.json());
     draft.setting_places[key] = value.place();
@@ -62,7 +62,7 @@ PlacedAxis* find_axis(Draft& draft, const std::string& name) {
   return found == draft.axes.end() ? nullptr : &*found;
 }
 
-void apply_quick(const ConfigNode& quick, Draft& draft) {
+void apply_quick(const JsonValue& quick, Draft& draft) {
   quick.require_members({}, {"axes", "settings", "seeds"});
   if (quick.has("seeds")) {
     PlacedAxis* const seeds = find_axis(draft, "seed");
@@ -359,15 +359,14 @@ ExperimentConfig read_config(const Experiment& experiment, const fs::path& file,
   config.file = file.string();
   const std::string text = base::read_json_file(file);
   config.sha256 = base::sha256_hex(text);
-  const ConfigNode::Json json = internal::parsed_config(config.file, text);
-  const ConfigNode root(config.file, json);
+  const JsonValue root = internal::parsed_config(config.file, text);
   root.require_members({"experiment", "question", "cell", "seed", "axes"},
                        {"seeds", "settings", "quick"});
-  if (root.at("experiment").text() != experiment.slug) {
+  if (root.at("experiment").name() != experiment.slug) {
     root.at("experiment").fail("is not " + experiment.slug);
   }
-  config.question = root.at("question").text();
-  config.cell = root.at("cell").text();
+  config.question = root.at("question").name();
+  config.cell = root.at("cell").name();
 
   Draft draft;
   draft.file = config.file;

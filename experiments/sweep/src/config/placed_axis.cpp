@@ -10,23 +10,25 @@
 #include "config/axis_label.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/json_bounds.hpp"
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/base/number_text.hpp"
 
 namespace graspfit::sweep::internal {
 
 namespace fs = std::filesystem;
+using base::JsonValue;
 using SortedJson = nlohmann::json;
 
 namespace {
 
-AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
+AxisValue read_axis_value(const std::string& axis, const JsonValue& node) {
   AxisValue value;
   SortedJson settings = SortedJson::object();
   if (node.json().is_object()) {
-    value.label = node.at("name").text();
+    value.label = node.at("name").name();
     for (const auto& [key, member] : node.members()) {
-      if (key == "note") member.text();
+      if (key == "note") member.name();
       if (key != "name" && key != "note") settings[key] = SortedJson(member.json());
     }
   } else {
@@ -45,9 +47,9 @@ AxisValue read_axis_value(const std::string& axis, const ConfigNode& node) {
 }
 
 /// Keeps the values with these labels, in their old order.
-void keep_values(const std::vector<ConfigNode>& labels, PlacedAxis& placed) {
+void keep_values(const std::vector<JsonValue>& labels, PlacedAxis& placed) {
   std::set<std::size_t> kept;
-  for (const ConfigNode& label : labels) {
+  for (const JsonValue& label : labels) {
     const std::string name =
         label.json().is_primitive() ? plain_label(SortedJson(label.json())) : "";
     const std::optional<std::size_t> index = find_value(placed.axis, name);
@@ -67,22 +69,22 @@ void keep_values(const std::vector<ConfigNode>& labels, PlacedAxis& placed) {
 
 /// {"values_of": SLUG, "only": [labels]}: the values of the axis `name` in the configuration of
 /// another experiment in `folder`.
-std::vector<AxisValue> values_of(const ConfigNode& item, const std::string& name,
+std::vector<AxisValue> values_of(const JsonValue& item, const std::string& name,
                                  const fs::path& folder) {
   item.require_members({"values_of"}, {"only"});
-  const ConfigNode slug = item.at("values_of");
-  if (!is_label(slug.text())) slug.fail("is not the name of an experiment");
-  const fs::path file = folder / (slug.text() + ".json");
+  const JsonValue slug = item.at("values_of");
+  if (!is_label(slug.name())) slug.fail("is not the name of an experiment");
+  const fs::path file = folder / (slug.name() + ".json");
   std::error_code error;
   if (!fs::is_regular_file(file, error)) slug.fail("has no configuration beside this one");
-  const ConfigNode::Json json = parsed_config(file.string(), base::read_json_file(file));
+  const JsonValue root = parsed_config(file.string(), base::read_json_file(file));
   PlacedAxis other;
   other.axis.name = name;
-  for (const ConfigNode& value : ConfigNode(file.string(), json).at("axes").at(name).items()) {
+  for (const JsonValue& value : root.at("axes").at(name).some_items()) {
     other.axis.values.push_back(read_axis_value(name, value));
     other.places.push_back(value.place());
   }
-  if (item.has("only")) keep_values(item.at("only").items(), other);
+  if (item.has("only")) keep_values(item.at("only").some_items(), other);
   return other.axis.values;
 }
 
@@ -108,10 +110,10 @@ std::optional<std::size_t> find_value(const Axis& axis, const std::string& label
   return static_cast<std::size_t>(found - axis.values.begin());
 }
 
-void pick_values(const ConfigNode& picks, PlacedAxis& placed) {
+void pick_values(const JsonValue& picks, PlacedAxis& placed) {
   PlacedAxis own;
-  std::vector<ConfigNode> labels;
-  for (const ConfigNode& pick : picks.items()) {
+  std::vector<JsonValue> labels;
+  for (const JsonValue& pick : picks.some_items()) {
     if (!pick.json().is_object()) {
       labels.push_back(pick);
       continue;
@@ -129,22 +131,18 @@ void pick_values(const ConfigNode& picks, PlacedAxis& placed) {
   placed.is_picked = true;
 }
 
-ConfigNode::Json parsed_config(const std::string& file, const std::string& text) {
-  try {
-    return ConfigNode::Json::parse(text);
-  } catch (const ConfigNode::Json::exception& error) {
-    throw base::IoError(file + ": is not JSON: " + base::json_fault(error.what()));
-  }
+base::JsonValue parsed_config(const std::string& file, const std::string& text) {
+  return JsonValue::parsed<base::InvalidInput>(text, file);
 }
 
-PlacedAxis read_axis(const std::string& name, const ConfigNode& node, const fs::path& folder) {
+PlacedAxis read_axis(const std::string& name, const JsonValue& node, const fs::path& folder) {
   if (!is_label(name) || name == "seed") {
     node.fail("no axis can be named \"" + name + "\"; \"seeds\" makes the axis seed");
   }
   PlacedAxis placed;
   placed.axis.name = name;
   std::set<std::string> labels;
-  for (const ConfigNode& item : node.items()) {
+  for (const JsonValue& item : node.some_items()) {
     std::vector<AxisValue> values;
     if (item.json().is_object() && item.has("values_of")) {
       values = values_of(item, name, folder);
@@ -162,7 +160,7 @@ PlacedAxis read_axis(const std::string& name, const ConfigNode& node, const fs::
   return placed;
 }
 
-PlacedAxis seed_axis(const ConfigNode& node) {
+PlacedAxis seed_axis(const JsonValue& node) {
   constexpr std::uint64_t kMostSeeds = 100000;
   const std::uint64_t count = node.unsigned_integer();
   if (count < 1 || count > kMostSeeds) {

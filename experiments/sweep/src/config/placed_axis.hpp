@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/config_node.hpp"
+#include "graspfit/base/json_value.hpp"
 #include "graspfit/sweep/parameter_sweep.hpp"
 
 namespace graspfit::sweep::internal {
@@ -27,18 +27,18 @@ std::string labels_text(const Axis& axis, const std::string& unknown);
 /// The place of the value of an axis with that label; empty if there is none.
 std::optional<std::size_t> find_value(const Axis& axis, const std::string& label);
 
-/// The JSON of a configuration. @throws IoError: file and place.
-ConfigNode::Json parsed_config(const std::string& file, const std::string& text);
+/// The root of a configuration. @throws IoError: file and place.
+base::JsonValue parsed_config(const std::string& file, const std::string& text);
 
 /// An axis of a configuration in `folder`, where `{"values_of": SLUG, "only": [labels]}` are values
 /// of another configuration there.
-PlacedAxis read_axis(const std::string& name, const ConfigNode& node,
+PlacedAxis read_axis(const std::string& name, const base::JsonValue& node,
                      const std::filesystem::path& folder);
 
 /// The axis seed from a number of seeds.
-PlacedAxis seed_axis(const ConfigNode& node);
+PlacedAxis seed_axis(const base::JsonValue& node);
 
 /// What `quick` has of an axis: values by their labels, in their old order, then its own.
-void pick_values(const ConfigNode& picks, PlacedAxis& placed);
+void pick_values(const base::JsonValue& picks, PlacedAxis& placed);
 
 }  // namespace graspfit::sweep::internal
