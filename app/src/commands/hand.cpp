@@ -16,7 +16,7 @@
 namespace graspfit::app {
 namespace {
 
-const char* const kUsage =
+const char* const kHandUsage =
     "Usage: graspfit hand COMMAND ... | --help\n"
     "\n"
     "Hands: the shipped ones, and anybody's own. HAND is the name of a shipped hand or the file "
@@ -39,27 +39,29 @@ const char* const kUsage =
     "\n"
     "graspfit hand COMMAND --help lists a command's options with their defaults and units.\n";
 
-constexpr std::array<NamedCommand, 5> kCommands = {{{"list", run_hand_list},
-                                                    {"show", run_hand_show},
-                                                    {"check", run_hand_check},
-                                                    {"derive", run_hand_derive},
-                                                    {"export", run_hand_export}}};
+constexpr std::array<NamedCommand, 5> kHandCommands = {{{"list", run_hand_list},
+                                                        {"show", run_hand_show},
+                                                        {"check", run_hand_check},
+                                                        {"derive", run_hand_derive},
+                                                        {"export", run_hand_export}}};
 
-Command list_command() {
+Command hand_list_command() {
   return {"hand list", "", "Lists the shipped hands with what they have and where they are.\n",
           option_group("Options"), ""};
 }
 
 }  // namespace
 
-bool is_hand_command(const std::string& name) { return find_command(kCommands, name) != nullptr; }
+bool is_hand_command(const std::string& name) {
+  return find_command(kHandCommands, name) != nullptr;
+}
 
 ExitCode run_hand(const std::vector<std::string>& arguments) {
-  return run_command(kCommands, "hand", kUsage, arguments);
+  return run_command(kHandCommands, "hand", kHandUsage, arguments);
 }
 
 ExitCode run_hand_list(const std::vector<std::string>& arguments) {
-  const Command command = list_command();
+  const Command command = hand_list_command();
   const Flags flags(command, arguments);
   if (flags.wants_help()) {
     std::fputs(help_text(command).c_str(), stdout);

@@ -14,6 +14,7 @@
 #include "settings/last_used.hpp"
 
 namespace graspfit::experiments::internal {
+namespace hold_cell_parts {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -277,8 +278,10 @@ constexpr const char* kGroupAxis = "grip";
 constexpr const char* kAllGroups = "all";
 
 }  // namespace
+}  // namespace hold_cell_parts
 
 std::vector<sweep::Column> margin_columns() {
+  using namespace hold_cell_parts;
   std::vector<sweep::Column> columns = {
       {"margins", "1", "grasps, the first found, whose margins were searched for"}};
   for (const char* const margin : kMarginColumns) {
@@ -300,6 +303,7 @@ std::size_t column_index(const std::vector<sweep::Column>& columns, const std::s
 
 std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> cells_by_grip(
     const sweep::ParameterSweep& sweep, const std::vector<sweep::FinishedCell>& cells) {
+  using namespace hold_cell_parts;
   std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> groups = {
       {kAllGroups, {}}};
   for (const sweep::FinishedCell& cell : cells) groups[0].second.push_back(&cell);
@@ -316,6 +320,7 @@ std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> cel
 }
 
 sweep::Experiment hold_experiment(const std::string& slug) {
+  using namespace hold_cell_parts;
   return {.slug = slug,
           .columns = columns(),
           .timings = timings(),

@@ -14,6 +14,7 @@
 #include "graspfit/sweep/setting_value.hpp"
 
 namespace graspfit::experiments::internal {
+namespace method_table_parts {
 namespace {
 
 constexpr std::size_t kGraspsKept = 10;
@@ -230,8 +231,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace method_table_parts
 
 sweep::Experiment method_experiment(const std::string& slug, const MethodTableAxes& axes) {
+  using namespace method_table_parts;
   sweep::Experiment experiment;
   experiment.slug = slug;
   experiment.columns = columns();

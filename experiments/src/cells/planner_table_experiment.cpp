@@ -4,6 +4,7 @@
 #include "graspfit/experiments/planning_settings.hpp"
 
 namespace graspfit::experiments::internal {
+namespace planner_table_experiment_parts {
 namespace {
 
 constexpr std::size_t kGraspsKept = 10;  // Per cell: what the goals of these tables speak of.
@@ -19,8 +20,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace planner_table_experiment_parts
 
 sweep::Experiment planner_table_experiment(const std::string& slug) {
+  using namespace planner_table_experiment_parts;
   return {
       .slug = slug,
       .columns = planning_columns(),

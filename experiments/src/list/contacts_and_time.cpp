@@ -16,6 +16,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace contacts_and_time_parts {
 namespace {
 
 /// N' with a column of its own among the timings; the last one stands for more, too.
@@ -141,8 +142,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace contacts_and_time_parts
 
 sweep::Experiment contacts_and_time() {
+  using namespace contacts_and_time_parts;
   return {.slug = "contacts_and_time",
           .columns = columns(),
           .timings = timings(),

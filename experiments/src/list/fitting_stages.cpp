@@ -21,6 +21,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace fitting_stages_parts {
 namespace {
 
 /// Where the loop is stopped, in shares of its iterations.
@@ -172,8 +173,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace fitting_stages_parts
 
 sweep::Experiment fitting_stages() {
+  using namespace fitting_stages_parts;
   return {.slug = "fitting_stages",
           .columns = columns(),
           .timings = planning_timings(),

@@ -16,6 +16,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace force_closure_parts {
 namespace {
 
 /// What the experiment reads beside the planner's settings.
@@ -150,8 +151,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace force_closure_parts
 
 sweep::Experiment force_closure() {
+  using namespace force_closure_parts;
   return {.slug = "force_closure",
           .columns = columns(),
           .timings = timings(),

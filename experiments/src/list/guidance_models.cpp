@@ -21,6 +21,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace guidance_models_parts {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -135,8 +136,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }
 
 }  // namespace
+}  // namespace guidance_models_parts
 
 sweep::Experiment guidance_models() {
+  using namespace guidance_models_parts;
   return {
       .slug = "guidance_models",
       .columns = columns(),

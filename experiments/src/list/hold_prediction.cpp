@@ -14,6 +14,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace hold_prediction_parts {
 namespace {
 
 std::vector<sweep::Column> summary_columns() {
@@ -122,8 +123,10 @@ std::vector<sweep::ResultRow> summarize(const std::vector<sweep::Column>& detail
 }
 
 }  // namespace
+}  // namespace hold_prediction_parts
 
 sweep::Experiment hold_prediction() {
+  using namespace hold_prediction_parts;
   sweep::Experiment experiment = hold_experiment("hold_prediction");
   experiment.summaries.push_back(
       {"summary", summary_columns(),

@@ -17,6 +17,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace hold_rates_parts {
 namespace {
 
 std::vector<sweep::Column> summary_columns() {
@@ -73,8 +74,10 @@ sweep::ResultRow summary_row(const std::string& grip,
 }
 
 }  // namespace
+}  // namespace hold_rates_parts
 
 sweep::Experiment hold_rates() {
+  using namespace hold_rates_parts;
   sweep::Experiment experiment = hold_experiment("hold_rates");
   experiment.summaries.push_back(
       {"summary", summary_columns(),

@@ -17,6 +17,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace measured_contacts_parts {
 namespace {
 
 /// One contact of the set: where on the ball, and how it lies on its pad.
@@ -162,8 +163,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }
 
 }  // namespace
+}  // namespace measured_contacts_parts
 
 sweep::Experiment measured_contacts() {
+  using namespace measured_contacts_parts;
   return {.slug = "measured_contacts",
           .columns = columns(),
           .settings = own_settings(),

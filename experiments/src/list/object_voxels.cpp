@@ -21,6 +21,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace object_voxels_parts {
 namespace {
 
 using geometry::VoxelClass;
@@ -189,8 +190,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
 }
 
 }  // namespace
+}  // namespace object_voxels_parts
 
 sweep::Experiment object_voxels() {
+  using namespace object_voxels_parts;
   return {.slug = "object_voxels",
           .columns = columns(),
           .timings = timings(),

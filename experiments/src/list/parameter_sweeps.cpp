@@ -13,6 +13,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace parameter_sweeps_parts {
 namespace {
 
 std::vector<sweep::Column> own_settings() {
@@ -47,8 +48,10 @@ sweep::CellResult run(const sweep::Cell& cell) {
 }
 
 }  // namespace
+}  // namespace parameter_sweeps_parts
 
 sweep::Experiment parameter_sweeps() {
+  using namespace parameter_sweeps_parts;
   std::vector<sweep::Column> columns = {
       {"parameter", "", "the setting that is varied; all others have defaults"},
       {"value", "", "its value, in the unit that describe states"}};

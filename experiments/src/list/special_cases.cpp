@@ -15,6 +15,7 @@
 #include "list/experiment_list.hpp"
 
 namespace graspfit::experiments::internal {
+namespace special_cases_parts {
 namespace {
 
 constexpr std::array kModes = {"pinch", "grip", "power"};
@@ -153,8 +154,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace special_cases_parts
 
 sweep::Experiment special_cases() {
+  using namespace special_cases_parts;
   return {.slug = "special_cases",
           .columns = columns(),
           .timings = planning_timings(),

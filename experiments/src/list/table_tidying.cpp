@@ -27,6 +27,7 @@
 #include "settings/table_settings.hpp"
 
 namespace graspfit::experiments::internal {
+namespace table_tidying_parts {
 namespace {
 
 using geometry::RigidTransform;
@@ -289,8 +290,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
 }
 
 }  // namespace
+}  // namespace table_tidying_parts
 
 sweep::Experiment table_tidying() {
+  using namespace table_tidying_parts;
   return {.slug = "table_tidying",
           .columns = columns(),
           .timings = timings(),
