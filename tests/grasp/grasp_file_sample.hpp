@@ -175,15 +175,15 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
           false, true};
     }
     if (i == 3) {
-      measured.wrench = {0.0625, 0.5, true, 6, {}};
-      measured.wrench.convention.tool = contact::WrenchTool::GraspIt;
-      measured.wrench.convention.reference_point_O = Eigen::Vector3d(0.1, 0.2, 0.3);
-      measured.wrench.convention.options = {.num_cone_edges = 6,
-                                            .friction = 0.7,
-                                            .torque_scale = 0.05,
-                                            .force_scaling = contact::ForceScaling::UnitEdge,
-                                            .force_limit = 2.0,
-                                            .outside = contact::OutsideValue::MinusOne};
+      measured.wrench = contact::WrenchQuality{0.0625, 0.5, true, 6, {}};
+      measured.wrench->convention.tool = contact::WrenchTool::GraspIt;
+      measured.wrench->convention.reference_point_O = Eigen::Vector3d(0.1, 0.2, 0.3);
+      measured.wrench->convention.options = {.num_cone_edges = 6,
+                                             .friction = 0.7,
+                                             .torque_scale = 0.05,
+                                             .force_scaling = contact::ForceScaling::UnitEdge,
+                                             .force_limit = 2.0,
+                                             .outside = contact::OutsideValue::MinusOne};
       measured.penetration.surroundings_touched = true;
       measured.targets.contacts[1].is_palm = true;
       measured.targets.contacts[1].finger.reset();

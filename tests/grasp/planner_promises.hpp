@@ -71,7 +71,8 @@ inline std::string all_fields(const Grasp& grasp) {
     vector(grasp.squeeze->forces_O.reshaped());
     out << grasp.squeeze->residual << ' ' << grasp.squeeze->is_balanced << '\n';
   }
-  out << grasp.wrench.epsilon << ' ' << grasp.wrench.volume << ' ' << grasp.wrench.rank << '\n';
+  out << grasp.epsilon() << ' ' << (grasp.wrench ? grasp.wrench->volume : 0.0) << ' '
+      << (grasp.wrench ? grasp.wrench->rank : 0) << '\n';
   out << grasp.targets.seeds_tried << '\n';
   for (const auto& target : grasp.targets.contacts) {
     vector(target.point_O);
@@ -378,7 +379,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     compare("m2", g.quality.m2, again.quality.m2);
     compare("m3", g.quality.m3, again.quality.m3);
     compare("m", g.quality.m, again.quality.m);
-    compare("epsilon", g.wrench.epsilon, again.wrench.epsilon);
+    compare("epsilon", g.epsilon(), again.epsilon());
     compare("regularity", g.quality.regularity, again.quality.regularity);
     compare("centroid distance", g.quality.centroid_distance, again.quality.centroid_distance);
     if (g.has_all_contacts != again.has_all_contacts) wrong("has_all_contacts, measured again");

@@ -144,16 +144,18 @@ SampleScene sample_scene() {
   squeeze.residual = 0.012;
   squeeze.is_balanced = true;
   valid.squeeze = squeeze;
-  valid.wrench.epsilon = 0.1234;
-  valid.wrench.is_force_closure = true;
-  valid.wrench.convention.options.torque_scale = kBallRadius;
+  valid.wrench.emplace();
+  valid.wrench->epsilon = 0.1234;
+  valid.wrench->is_force_closure = true;
+  valid.wrench->convention.options.torque_scale = kBallRadius;
   valid.iterations = 61;
 
   grasp::Grasp penetrating = grasp_at(0.12, 3);
   // As of two contacts that are opposite each other but for rounding.
-  penetrating.wrench.epsilon = 1e-17;
-  penetrating.wrench.is_force_closure = true;
-  penetrating.wrench.convention.options.torque_scale = kBallRadius;
+  penetrating.wrench.emplace();
+  penetrating.wrench->epsilon = 1e-17;
+  penetrating.wrench->is_force_closure = true;
+  penetrating.wrench->convention.options.torque_scale = kBallRadius;
   penetrating.quality.m1 = 0.6;
   penetrating.quality.m2 = 1.0;
   penetrating.quality.m3 = 1.0;

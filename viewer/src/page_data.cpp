@@ -116,12 +116,11 @@ Json squeeze(const hands::HandModel& hand, const std::optional<contact::Squeeze>
   return json;
 }
 
-/// Nothing where it was not measured, which leaves the torque scale unset.
-Json wrench(const contact::WrenchQuality& wrench) {
-  if (std::isnan(wrench.convention.options.torque_scale)) return {};
-  return {{"epsilon", wrench.epsilon},
-          {"is_force_closure", wrench.is_force_closure},
-          {"convention", contact::describe(wrench.convention)}};
+Json wrench(const std::optional<contact::WrenchQuality>& wrench) {
+  if (!wrench) return {};
+  return {{"epsilon", wrench->epsilon},
+          {"is_force_closure", wrench->is_force_closure},
+          {"convention", contact::describe(wrench->convention)}};
 }
 
 Json grasps(const PageInput& input) {

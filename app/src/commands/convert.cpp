@@ -289,7 +289,7 @@ std::string table_of(const Source& source) {
   for (std::size_t i = 0; i < source.file.grasps.size(); ++i) {
     const grasp::Grasp& grasp = source.file.grasps[i];
     rows.push_back({std::to_string(i + 1), source.names[i], fixed_decimal(grasp.quality.m, 4),
-                    fixed_decimal(grasp.wrench.epsilon, 4), std::to_string(grasp.contacts.size()),
+                    fixed_decimal(grasp.epsilon(), 4), std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});

@@ -100,7 +100,7 @@ Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   const contact::ContactQuality& a = stored.quality;
   const contact::ContactQuality& b = computed.quality;
   comparison.m_difference = std::abs(a.m - b.m);
-  comparison.epsilon_difference = std::abs(stored.wrench.epsilon - computed.wrench.epsilon);
+  comparison.epsilon_difference = std::abs(stored.epsilon() - computed.epsilon());
   comparison.gap_difference =
       std::abs(grasp::largest_claimed_gap(stored) - grasp::largest_claimed_gap(computed));
   comparison.largest_difference =
@@ -135,8 +135,8 @@ std::string table_of(const std::vector<Comparison>& comparisons) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(comparison.stored.quality.m, 6),
                     fixed_decimal(grasp.quality.m, 6), fixed_decimal(grasp.quality.m1, 4),
                     fixed_decimal(grasp.quality.m2, 4), fixed_decimal(grasp.quality.m3, 4),
-                    fixed_decimal(comparison.stored.wrench.epsilon, 6),
-                    fixed_decimal(grasp.wrench.epsilon, 6), std::to_string(grasp.contacts.size()),
+                    fixed_decimal(comparison.stored.epsilon(), 6),
+                    fixed_decimal(grasp.epsilon(), 6), std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no",
@@ -185,7 +185,7 @@ std::string json_of(const std::vector<Comparison>& comparisons, double largest_m
            ", \"m2\": " + shortest_decimal(grasp.quality.m2) +
            ", \"m3\": " + shortest_decimal(grasp.quality.m3) +
            ", \"num_contacts\": " + std::to_string(grasp.contacts.size()) +
-           ", \"epsilon\": " + shortest_decimal(grasp.wrench.epsilon) +
+           ", \"epsilon\": " + shortest_decimal(grasp.epsilon()) +
            ", \"largest_claimed_gap_m\": " + shortest_decimal(grasp::largest_claimed_gap(grasp)) +
            ", \"largest_contact_gap_m\": " + shortest_decimal(grasp::largest_contact_gap(grasp)) +
            ", \"largest_penetration_m\": " + shortest_decimal(grasp::largest_penetration(grasp)) +

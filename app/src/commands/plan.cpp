@@ -99,7 +99,7 @@ std::string table_of(const grasp::GraspFile& file) {
   for (const grasp::Grasp& grasp : file.grasps) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
-                    fixed_decimal(grasp.quality.m3, 4), fixed_decimal(grasp.wrench.epsilon, 4),
+                    fixed_decimal(grasp.quality.m3, 4), fixed_decimal(grasp.epsilon(), 4),
                     std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),

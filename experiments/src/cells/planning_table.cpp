@@ -70,7 +70,7 @@ Measures measures_of(const Planned& planned) {
           .largest_radius;
   for (const grasp::Grasp& grasp : planned.result.grasps) {
     measures.m.push_back(grasp.quality.m);
-    measures.epsilon.push_back(grasp.wrench.epsilon);
+    measures.epsilon.push_back(grasp.epsilon());
     measures.num_contacts.push_back(static_cast<double>(grasp.contacts.size()));
     for (const contact::Contact& contact : grasp.contacts) {
       if (contact.is_target) measures.claimed_gaps.push_back(contact.gap);
@@ -192,7 +192,7 @@ void fill_planning_columns(const Planned& planned, sweep::ResultRow& row) {
   row.set("mean_m", field(mean(measures.m)));
   if (!grasps.empty()) {
     row.set("best_num_contacts", field(grasps.front().contacts.size()));
-    row.set("best_epsilon", grasps.front().wrench.epsilon);
+    row.set("best_epsilon", grasps.front().epsilon());
     row.set("largest_penetration_m", measures.largest_penetration);
   }
   row.set("mean_num_contacts", field(mean(measures.num_contacts)));
@@ -251,7 +251,7 @@ void fill_planning_timings(const Planned& planned, sweep::ResultRow& row) {
 
 bool is_closed(const grasp::Grasp& grasp) {
   constexpr double kRoundedEpsilon = 1e-9;  // far above the rounding of wrenches, 1e-16
-  return grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
+  return grasp.is_force_closure() && grasp.epsilon() > kRoundedEpsilon;
 }
 
 std::optional<double> largest(const std::vector<double>& values) {

@@ -83,7 +83,7 @@ std::vector<sweep::Column> timings() {
 }
 
 /// GraspIt! says −1 where there is no closure; in means and medians that is 0.
-double epsilon_of(const grasp::Grasp& grasp) { return std::max(0.0, grasp.wrench.epsilon); }
+double epsilon_of(const grasp::Grasp& grasp) { return std::max(0.0, grasp.epsilon()); }
 
 /// Fills the columns of a sample. Returns the attempts that it took: up to its last grasp, or all
 /// if it is not full.

@@ -56,10 +56,10 @@ std::string row(const GraspFile& file, const Grasp& grasp, std::size_t rank) {
 
   std::string cells = std::to_string(rank);
   for (double value : {quality.m, quality.m1, quality.m2, quality.m3, quality.regularity,
-                       quality.centroid_distance, grasp.wrench.epsilon}) {
+                       quality.centroid_distance, grasp.epsilon()}) {
     cells += ',' + shortest_decimal(value);
   }
-  cells += flag_cell(grasp.wrench.is_force_closure);
+  cells += flag_cell(grasp.is_force_closure());
   cells += ',' + std::to_string(grasp.contacts.size());
   cells += ',' + std::to_string(quality.stable_pairs.size());
   for (double value :

@@ -90,9 +90,8 @@ class GraspReader {
     }
     internal::quality_fields(at, grasp.quality);
     grasp.quality.stable_pairs = read_stable_pairs(node.at("stable_pairs"), grasp.contacts.size());
-    if (!node.at("wrench").is_null()) {
-      at.group("wrench", grasp.wrench, internal::wrench_fields);
-      // Only of what was measured does a file have a wrench, and that has a scale.
+    at.optional_group("wrench", grasp.wrench, internal::wrench_fields);
+    if (grasp.wrench) {
       node.at("wrench").at("convention").at("torque_scale_m").positive_number();
     }
     at(grasp.ideal_m, "ideal_m");

@@ -153,15 +153,6 @@ Json squeeze_json(const hands::HandModel& hand, const std::optional<contact::Squ
   return json;
 }
 
-/// Null where it was not measured, which leaves the torque scale unset.
-Json wrench_json(const contact::WrenchQuality& wrench) {
-  if (std::isnan(wrench.convention.options.torque_scale)) return nullptr;
-  Json json;
-  JsonWriter at(json);
-  internal::wrench_fields(at, wrench);
-  return json;
-}
-
 Json stable_pairs_json(const std::vector<contact::StablePair>& pairs) {
   Json json = Json::array();
   for (const contact::StablePair& pair : pairs) {
@@ -183,7 +174,7 @@ Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t ra
   at(largest_penetration(grasp), "largest_penetration_m");
   at(largest_contact_gap(grasp), "largest_contact_gap_m");
   at(largest_claimed_gap(grasp), "largest_claimed_gap_m");
-  json["wrench"] = wrench_json(grasp.wrench);
+  at.optional_group("wrench", grasp.wrench, internal::wrench_fields);
   json.update(configuration_json(hand, grasp.configuration));
   at.list(grasp.contacts, "contacts", internal::contact_fields);
   at.group("penetration", grasp.penetration, internal::penetration_fields);

@@ -36,16 +36,19 @@ struct Grasp {
   TargetContacts targets;
   std::vector<contact::Contact> contacts;
   contact::ContactQuality quality;
-  contact::WrenchQuality wrench;  ///< In GraspIt!'s convention at the planner's friction.
-  double ideal_m = 0.0;           ///< M of the targets themselves (A36).
+  /// In GraspIt!'s convention at the planner's friction; none where nothing touches.
+  std::optional<contact::WrenchQuality> wrench;
+  double ideal_m = 0.0;  ///< M of the targets themselves (A36).
   GraspPenetration penetration;
   bool has_all_contacts = false;  ///< Every requested finger/palm has a contact; of a refined grasp
                                   ///< one with a gap of at most RefinementOptions::largest_gap.
-  std::int64_t attempt =
-      -1;  ///< Number of the attempt that made it; seeds it together with the run's seed.
+  std::int64_t attempt = 0;       ///< Number of the one that made it; seeds it with the run's seed.
   int iterations = 0;             ///< Of the adjustment loop.
   int refinement_iterations = 0;  ///< Of refinement; 0 without.
 
+  /// Of the contacts that touch; without any nothing is withstood.
+  double epsilon() const { return wrench ? wrench->epsilon : 0.0; }
+  bool is_force_closure() const { return wrench && wrench->is_force_closure; }
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
   /// Usable, penetrates nothing on the true meshes, and every requested finger/palm has contact.
