@@ -1,6 +1,7 @@
 #include "graspfit/base/json_bounds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <system_error>
 
@@ -36,8 +37,13 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-void require_bounded_json(std::string_view text, const std::string& name) {
+void require_bounded_json(std::string_view text, const std::string& name,
+                          std::size_t most_members) {
   require_bounded_size(text.size(), name);
+  const auto refuse = [&](std::size_t at, const std::string& what) {
+    throw IoError(name + ": " + place_text(text, at) + ": " + what);
+  };
+  std::array<std::size_t, kDeepestJson + 1> num_members{};  // of what is open, by depth
   int depth = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
     const char c = text[at];
@@ -45,9 +51,13 @@ void require_bounded_json(std::string_view text, const std::string& name) {
       at = end_of_string(text, at);
     } else if (c == '[' || c == '{') {
       if (++depth > kDeepestJson) {
-        throw IoError(name + ": " + place_text(text, at) + ": nests deeper than " +
-                      std::to_string(kDeepestJson) + " levels, which is as deep as JSON is read");
+        refuse(at, "nests deeper than " + std::to_string(kDeepestJson) +
+                       " levels, which is as deep as JSON is read");
       }
+      num_members[depth] = 0;
+    } else if (c == ':' && depth > 0 && ++num_members[depth] > most_members) {
+      refuse(at, "an object has more than " + std::to_string(most_members) +
+                     " members, which is as many as are read");
     } else if (c == ']' || c == '}') {
       --depth;  // below zero it is no JSON, and the parser stops there
     }

@@ -45,6 +45,7 @@ JsonValue::JsonValue(const Json& root, Fault fault, std::string place)
 
 JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
                             void (*raise)(const std::string& message)) {
+  require_bounded_json(text, file, kMostOrderedMembers);
   auto document = std::make_shared<Document>();
   try {
     document->root = Json::parse(text);
@@ -52,7 +53,7 @@ JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
     throw IoError(file + ": is not JSON: " + json_fault(error.what()));
   }
   document->fault = [file, raise](const std::string& place, const std::string& what) {
-    raise(file + ": " + (place.empty() ? "/" : place) + ": " + what);
+    raise(in_one_line(file) + ": " + (place.empty() ? "/" : place) + ": " + what);
   };
   return {document, &document->root, ""};
 }

@@ -58,6 +58,23 @@ TEST_CASE("Brackets in JSON strings do not nest, and escaped quotes do not end a
   CHECK(refusal("[\"\\") == "accepted");
 }
 
+TEST_CASE("An object may have so many members and not one more", "[base][json_bounds]") {
+  const auto refusal_of = [](const std::string& text) -> std::string {
+    try {
+      require_bounded_json(text, "a.json", 2);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(refusal_of(R"({"a": 1, "b": {"c:": ":", "d": [1, 2, 3]}, )") == "accepted");
+  CHECK(refusal_of(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}])") == "accepted");
+  CHECK(
+      refusal_of("{\"a\": 1,\n \"b\": {}, \"c\": 3}") ==
+      "a.json: line 2, column 15: an object has more than 2 members, which is as many as are read");
+  CHECK(refusal_of(":::") == "accepted");  // no object, and no JSON
+}
+
 TEST_CASE("A JSON file that is too large is refused before it is read", "[geometry][json_bounds]") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "large.json";

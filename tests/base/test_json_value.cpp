@@ -105,6 +105,7 @@ TEST_CASE("What is no JSON is an IoError that names the file", "[base][json_valu
   CHECK_THROWS_AS(parsed("{"), IoError);
   try {
     parsed("{\"a\": 1,}");
+    FAIL("accepted");
   } catch (const IoError& error) {
     CHECK(std::string(error.what()).starts_with("a.json: is not JSON: parse error at line 1"));
   }

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "graspfit/base/path_text.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"

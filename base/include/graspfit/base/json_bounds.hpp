@@ -15,11 +15,17 @@ constexpr int kDeepestJson = 64;
 /// takes up to some twenty times as much.
 constexpr std::size_t kLargestJson = std::size_t{256} << 20;
 
-/// Refuses a text that no parser of JSON should build a tree from: longer than `kLargestJson` or
-/// nested deeper than `kDeepestJson`. Brackets inside of strings do not count. What is no JSON is
-/// left for the parser to find: up to its first error, this counts as a parser nests.
+/// How many members an object may have where their order is kept, which takes time by the square of
+/// their number. What this project writes has some hundred at most.
+constexpr std::size_t kMostOrderedMembers = 10000;
+
+/// Refuses a text that no parser of JSON should build a tree from: longer than `kLargestJson`,
+/// nested deeper than `kDeepestJson`, or with an object of more than `most_members`. What is inside
+/// of strings does not count. What is no JSON is left for the parser to find: up to its first
+/// error, this counts as a parser does.
 /// @throws IoError "<name>: line 3, column 70: nests deeper than 64 levels, ...".
-void require_bounded_json(std::string_view text, const std::string& name);
+void require_bounded_json(std::string_view text, const std::string& name,
+                          std::size_t most_members = kLargestJson);
 
 /// The text of a JSON file that anybody may have written: every such file is read by this.
 /// @throws IoError if it cannot be read, or is refused by `require_bounded_json`; one that is too

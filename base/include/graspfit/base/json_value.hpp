@@ -19,14 +19,16 @@ namespace graspfit::base {
 class JsonValue {
  public:
   using Json = nlohmann::ordered_json;
-  /// Throws. `place` is a JSON pointer, `what` says what is wrong there; both are of one line.
+  /// Throws. `place` is that of the root and a JSON pointer from there, `what` says what is wrong
+  /// there; both are of one line.
   using Fault = std::function<void(const std::string& place, const std::string& what)>;
 
   /// The root of a document of its own; `place` stands before the places of all its values.
   JsonValue(const Json& root, Fault fault, std::string place = "");
 
   /// The root of a file with this text, which messages call `file`. Its faults are thrown as
-  /// `Exception`. @throws IoError "<file>: is not JSON: ...".
+  /// `Exception`. @throws IoError "<file>: is not JSON: ..." or if
+  /// `require_bounded_json` refuses it, with at most `kMostOrderedMembers` in an object.
   template <class Exception>
   static JsonValue parsed(const std::string& text, const std::string& file) {
     return parsed(text, file, [](const std::string& message) { throw Exception(message); });
