@@ -135,7 +135,8 @@ class Evaluate(program.ProgramTest):
         self.assert_refused("evaluate", self.folder / "no.json", says="no.json")
         self.assert_refused("evaluate", self.object, says="not JSON")
         self.assert_refused("evaluate", self.write("empty.json", ""), says="not JSON")
-        self.assert_refused("evaluate", self.write("list.json", "[1, 2]"), says="not an object")
+        self.assert_refused("evaluate", self.write("list.json", "[1, 2]"),
+                            says="is [1,2], must be an object")
         deep = '{"a": ' + "[" * 100000 + "]" * 100000 + "}"
         self.assert_refused("evaluate", self.write("deep.json", deep),
                             says=["deep.json: line 1, column 70", "64 levels"])
