@@ -22,6 +22,7 @@ const char* const kUsage =
     "Plans grasps of an object with an articulated hand by hand-object geometric fitting.\n"
     "\n"
     "  graspfit plan OBJECT          grasps of a mesh: file, table, posed meshes, pictures\n"
+    "  graspfit options              all options of plan and of experiments, as a page\n"
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit hold GRASPS.json     tests in physics whether the grasps of a file hold\n"
@@ -39,15 +40,16 @@ void print_error(const std::string& command, const std::string& what) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-constexpr std::array<NamedCommand, 9> kCommands = {{{"plan", run_plan},
-                                                    {"inspect", run_inspect},
-                                                    {"evaluate", run_evaluate},
-                                                    {"hold", run_hold},
-                                                    {"convert", run_convert},
-                                                    {"motion", run_motion},
-                                                    {"shape", run_shape},
-                                                    {"hand", run_hand},
-                                                    {"experiment", run_experiment}}};
+constexpr std::array<NamedCommand, 10> kCommands = {{{"plan", run_plan},
+                                                     {"options", run_options},
+                                                     {"inspect", run_inspect},
+                                                     {"evaluate", run_evaluate},
+                                                     {"hold", run_hold},
+                                                     {"convert", run_convert},
+                                                     {"motion", run_motion},
+                                                     {"shape", run_shape},
+                                                     {"hand", run_hand},
+                                                     {"experiment", run_experiment}}};
 
 ExitCode run(const std::vector<std::string>& arguments) {
   if (!arguments.empty() && arguments[0] == "--version") {

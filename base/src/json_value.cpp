@@ -58,6 +58,8 @@ JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
   return {document, &document->root, ""};
 }
 
+JsonValue JsonValue::with_root(const Json& root) const { return {root, document_->fault}; }
+
 JsonValue JsonValue::child(const Json& json, const std::string& name) const {
   return {document_, &json, place_ + '/' + name};
 }

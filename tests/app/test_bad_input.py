@@ -212,7 +212,7 @@ class BadFlags(program.ProgramTest):
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
                      "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
-                     "reject", "guard-self", "pre-grasp-open-neutral", "attempt-choice"):
+                     "reject", "guard-self", "pre-grasp-open-neutral", "candidate-order", "keep"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

@@ -148,7 +148,7 @@ class Evaluate(program.ProgramTest):
 
         for keys, value, says in (
                 (("format",), "urdf", "graspfit-grasps"),
-                (("version",), 1, "version 4"),
+                (("version",), 1, "versions 4 and 5"),
                 (("hand", "description_sha256"), "0" * 64, "/hand"),
                 (("hand", "sidecar_sha256"), "0" * 64, "sidecar"),
                 (("hand", "links", 0, "mesh_sha256"), "0" * 64, "mesh of link"),

@@ -266,8 +266,8 @@ class GraspFile(program.ProgramTest):
         self.assertEqual(sum(statistics["outcomes"].values()), statistics["attempts"])
         self.assertIsNone(self.data["planner"]["options"]["wall_clock_limit_s"])
 
-    def test_every_reading_has_its_row_on_the_reproduction_page(self):
-        page = (program.SOURCE_DIR / "REPRODUCTION.md").read_text()
+    def test_every_reading_has_its_row_on_the_readings_page(self):
+        page = (program.SOURCE_DIR / "docs/readings.md").read_text()
         rows = {point for line in page.splitlines() if line.startswith("| A")
                 for point in line.split("|")[1].split()}
         of_tables = {"A38"}

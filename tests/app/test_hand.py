@@ -82,7 +82,7 @@ class Show(program.ProgramTest):
         self.assertEqual(joints[0][-3:], ["open", "half", "closed"])
         rows = {row[0]: row[1:] for row in joints[1:]}
         self.assertEqual(len(rows), 8)
-        # 140 degrees; the distal joint follows by one third [notes 22.1].
+        # 140 degrees; the distal joint follows by one third.
         self.assertEqual(rows["finger_1_proximal"][3:5], ["0.0000", "2.4435"])
         self.assertRegex(" ".join(rows["finger_1_distal"]), r"0\.3333 finger_1_proximal.* breakaway")
         self.assertEqual({row[0] for row in self.table(done.stdout, "fingers")[1:]},

@@ -49,6 +49,28 @@ class Plan(program.ProgramTest):
                 ply = (self.folder / planner / "guidance.ply").read_text()
                 self.assertIn(f"element vertex {len(lines) - 1}\n", ply)
 
+    def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
+        def options(*flags):
+            self.plan(*flags)
+            file = json.loads((self.folder / "out/grasps.json").read_text())
+            return file["planner"].get("preset"), file["planner"]["options"]
+
+        preset, strong = options("--preset", "strong", "--max-placements", "2")
+        self.assertEqual((preset, strong["kept_candidate"], strong["max_placements"]),
+                         ("strong", "strongest", 2))
+        preset, none = options()
+        self.assertEqual((preset, none["kept_candidate"]), (None, "first"))
+        # A default that is written out counts as well.
+        preset, fast = options("--preset", "paper", "--pre-grasps", "yes", "--accept", "usable")
+        self.assertEqual((preset, fast["refine"], fast["pre_grasps"], fast["search"]),
+                         ("paper", False, True, "first"))
+        self.assert_refused("plan", self.folder / "torus.off", "--preset", "stronk",
+                            says='--preset "stronk" is not one of paper|fast|strong; did you mean '
+                                 '"strong"?')
+        # It is read back and written again as it was.
+        done = program.run("evaluate", self.folder / "out/grasps.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_a_solid_that_differs_from_the_file_is_said_everywhere(self):
         # One face of the torus is missing: 1 of 512 pairs, about 14 mm wide, filled flat.
         vertices, faces = program.torus(sides=8, rings=16)
@@ -267,17 +289,52 @@ class Help(program.ProgramTest):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn("Usage: graspfit", done.stdout)
             self.assertLessEqual(max(map(len, done.stdout.splitlines())), 110)
-        done = program.run("plan", "--help")
+        done = program.run("plan", "--help-all")
         for text in ("[P]", "[R, A1]", "(=0.6)", "(=45)", "(=floor-median)", "Exit codes"):
             self.assertIn(text, done.stdout)
         done = program.run("--version")
         for library in ("graspfit", "CGAL", "Eigen", "assimp", "Boost", "compiler"):
             self.assertRegex(done.stdout, rf"(?m)^{library} +\S*\d+\.\d+|^{library} +\S+ \d+\.\d+")
 
+    def test_plan_s_first_help_has_presets_and_few_flags(self):
+        short, full = (set(re.findall(r"(?m)^  (--[a-z][a-z0-9-]+)", program.run("plan", flag).stdout))
+                       for flag in ("--help", "--help-all"))
+        self.assertLess(short, full)
+        self.assertLessEqual(len(short), 20)
+        self.assertGreater(len(full), 90)
+        text = program.run("plan", "--help").stdout
+        for part in ("--preset paper|fast|strong", "refine off", "max-placements 24", "--help-all"):
+            self.assertIn(part, " ".join(text.split()))
+        # Other commands have one help.
+        self.assertEqual(program.run("evaluate", "--help").stdout,
+                         program.run("evaluate", "--help-all").stdout)
+
+    def test_the_options_page_is_the_program_s(self):
+        done = program.run("options")
+        self.assertEqual(done.stdout, (program.SOURCE_DIR / "docs/options.md").read_text(),
+                         "run: graspfit options > docs/options.md")
+        listed = set(re.findall(r"(?m)^\| `([a-z0-9-]+)` \|", done.stdout)) - {"paper", "fast", "strong"}
+        flags = set(re.findall(r"(?m)^  --([a-z][a-z0-9-]+)", program.run("plan", "--help-all").stdout))
+        self.assertLess(listed, flags)
+        self.assertGreater(len(listed), 70)
+        # Every path is that of a key in a grasp file.
+        self.write_torus()
+        done = program.run("plan", self.folder / "torus.off", *FAST, "--out", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        options = json.loads((self.folder / "out/grasps.json").read_text())["planner"]["options"]
+        text = program.run("options").stdout
+        paths = re.findall(r"(?m)^\| `[a-z0-9-]+` \|(?: (?:\\\||[^|])+\|){2} `([\w.]+)` \|", text)
+        self.assertEqual(len(paths), len(listed))
+        for path in paths:
+            place = options
+            for key in path.split("."):
+                self.assertIn(key, place, path)
+                place = place[key]
+
     def test_readme_names_flags_and_commands_that_exist(self):
         page = (program.SOURCE_DIR / "app/README.md").read_text()
         section = page.partition("## What to ask of `plan`")[2].partition("\n## ")[0]
-        text = program.run("plan", "--help").stdout
+        text = program.run("plan", "--help-all").stdout
         for flag in set(re.findall(r"--[a-z][a-z0-9-]+", section)):
             self.assertRegex(text, rf"(?m)^  {flag}\b")
         for flag in ("--planner", "--gs-samples", "--ma-samples", "--missing-contact",
@@ -288,12 +345,12 @@ class Help(program.ProgramTest):
         for command in commands:
             self.assertIn(f"| `graspfit {command} ", page)
 
-    def test_reproduction_page_names_flags_and_fields_that_exist(self):
-        page = (program.SOURCE_DIR / "REPRODUCTION.md").read_text()
+    def test_readings_page_names_flags_and_fields_that_exist(self):
+        page = (program.SOURCE_DIR / "docs/readings.md").read_text()
         other_programs = r"`(?:graspfit (?!plan)|paper-figures/)[^`]*`"
         flags = set(re.findall(r"--[a-z][a-z0-9-]+", re.sub(other_programs, "", page))) - {"--help"}
         self.assertGreater(len(flags), 20)
-        text = program.run("plan", "--help").stdout
+        text = program.run("plan", "--help-all").stdout
         for flag in flags:
             self.assertRegex(text, rf"(?m)^  {flag}\b")
         headers = "".join(path.read_text() for path in program.SOURCE_DIR.glob(

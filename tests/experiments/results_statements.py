@@ -1,4 +1,4 @@
-"""What REPRODUCTION.md says of published tables, written from notebooks-data/*.csv and adopted grasp files.
+"""What REPRODUCTION.md and docs/paper-results.md say of published tables, written from notebooks-data/*.csv and adopted grasp files.
 
 One function per section yields sentences and rows of tables, each as it must stand in the page.
 """

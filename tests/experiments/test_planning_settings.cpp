@@ -84,6 +84,14 @@ TEST_CASE("The paper's angle keeps its bits on the way through degrees",
   CHECK(settings.options.quality.theta_max == grasp::PlannerOptions{}.quality.theta_max);
 }
 
+TEST_CASE("A preset is applied before the settings beside it", "[experiments][planning_settings]") {
+  // "keep" and "max-placements" come before "preset" in the file's order of names.
+  const grasp::PlannerOptions options =
+      settings_with(R"(, "max-placements": 3, "preset": "strong")").options;
+  CHECK(options.kept == grasp::KeptCandidate::Strongest);
+  CHECK(options.max_placements == 3);
+}
+
 TEST_CASE("Settings that cannot be used say which and what is allowed",
           "[experiments][planning_settings]") {
   const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
@@ -96,6 +104,7 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       {R"(, "approach": [0, 0, 0])", {"approach", "without length"}},
       {R"(, "missing-contact": "measured")", {"missing-contact", "turn refine off"}},
       {R"(, "size_m": 0)", {"size_m", "is 0, must be > 0"}},
+      {R"(, "preset": "weak")", {"preset", "is \"weak\", must be one of paper|fast|strong"}},
       {R"(, "size_axis": "w")", {"size_axis", "must be one of x|y|z"}},
       {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
       {R"(, "fingers": [])", {"fingers", "at least one value"}},

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The hands of the published Table 1 are closed on the object (A32): test_table1_state.py TABLES.
+"""The hands of the published Table 1 are closed on the object: test_table1_state.py TABLES.
 
 Medians over all grasps of a method: pads lie on the surface with a share of their area, and touch
 it to a fifth of a clip volume's depth. No link is in a full voxel, and none is deeper in the object

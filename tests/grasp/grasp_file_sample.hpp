@@ -66,7 +66,8 @@ inline grasp::PlannerOptions unusual_options() {
   options.targets.pool_spacing = 0.01;
   options.targets.palm_reach_tolerance = 0.02;
   options.target_draws = 3;
-  options.attempt_choice = grasp::AttemptChoice::Balanced;
+  options.candidate_order = grasp::CandidateOrder::Balance;
+  options.kept = grasp::KeptCandidate::Balanced;
   options.max_placements = 2;
   options.fitting.give_up_distance = 0.02;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;

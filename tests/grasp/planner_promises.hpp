@@ -26,9 +26,10 @@ namespace graspfit::testing {
 
 using Eigen::Vector3d;
 using grasp::Acceptance;
-using grasp::AttemptChoice;
 using grasp::AttemptOutcome;
+using grasp::CandidateOrder;
 using grasp::Grasp;
+using grasp::KeptCandidate;
 using grasp::PlannerOptions;
 using grasp::PlannerResult;
 using grasp::PlannerStop;
@@ -342,7 +343,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     if (with_itself.intersects != g.penetration.self_intersects) wrong("self_intersects");
     if (with_object.depth != g.penetration.object_depth) wrong("object_depth");
     if (with_itself.depth != g.penetration.self_depth) wrong("self_depth");
-    // Notes 25: penetration below one voxel; A40: overlap of fingers below the limit.
+    // Penetration is below one voxel, overlap of fingers below the limit.
     if (with_object.depth_bound >= voxel_size * std::sqrt(3.0)) {
       wrong("cuts ", with_object.depth, " into the object");
     }

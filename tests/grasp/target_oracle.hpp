@@ -104,7 +104,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
   if (targets.seeds_tried < (is_random ? 1 : 0) || targets.seeds_tried > options.max_seeds) {
     report("seeds tried: ", targets.seeds_tried);
   }
-  // A19: both limits grow by half once `relax_after_seeds` seeds have failed.
+  // Both limits grow by half once `relax_after_seeds` seeds have failed.
   const double relaxed = targets.seeds_tried > options.relax_after_seeds ? 1.5 : 1.0;
 
   std::set<int> patches;
@@ -146,7 +146,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
           report("targets ", i, " and ", j, ": angles ", at_i, " ", at_j);
         }
       }
-      if (j == 2) {  // with more targets not all edges can agree (A19)
+      if (j == 2) {  // with more targets not all edges can agree
         const double error = std::abs(length - first_edge) / first_edge;
         if (error > options.edge_tolerance_rel * relaxed + kRounding) {
           report("targets ", i, " and ", j, ": edge error ", error, " relaxed by ", relaxed);

@@ -102,8 +102,8 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
     : positional_name_(command.positional), second_positional_name_(command.second_positional) {
   po::options_description all;
   all.add(command.options);
-  all.add_options()("help,h", "")(kPositional, po::value<std::string>())(kSecondPositional,
-                                                                         po::value<std::string>());
+  all.add_options()("help,h", "")("help-all", "")(kPositional, po::value<std::string>())(
+      kSecondPositional, po::value<std::string>());
   po::positional_options_description positional;
   positional.add(kPositional, 1);
   if (!second_positional_name_.empty()) positional.add(kSecondPositional, 1);
@@ -223,14 +223,24 @@ std::vector<std::pair<std::string, double>> Flags::settings(const std::string& n
   return settings;
 }
 
-std::string help_text(const Command& command) {
+std::string help_text(const Command& command, bool is_short) {
+  po::options_description basics = option_group("Options");
+  for (const std::string& name : command.basics) {
+    for (const auto& option : command.options.options()) {
+      if (option->long_name() == name) basics.add(option);
+    }
+  }
   std::ostringstream text;
   text << "Usage: graspfit " << command.name
        << (command.positional.empty() ? "" : " " + command.positional)
        << (command.second_positional.empty() ? "" : " " + command.second_positional)
        << " [options]\n\n"
-       << command.summary << command.options
+       << command.summary << (is_short ? "\n" : "") << (is_short ? basics : command.options)
        << "\n  -h [ --help ]                       print this text\n";
+  if (!command.basics.empty()) {
+    text << "  --help-all                          all " << command.options.options().size()
+         << " options, by what they are about\n";
+  }
   if (!command.positional.empty()) {
     text
         << "  --                                  what follows is no option: a name may begin with "

@@ -22,6 +22,9 @@ struct Command {
   boost::program_options::options_description options;
   std::string epilog;                  ///< Printed after the options.
   std::string second_positional = "";  ///< A second argument without a flag, "OUT"; empty: none.
+  /// Of the options those that --help shows, in this order; --help-all shows all. Empty: so does
+  /// --help.
+  std::vector<std::string> basics = {};
 };
 
 /// A group of options under a caption, laid out for --help.
@@ -55,7 +58,8 @@ class Flags {
   /// @throws UsageError for unknown options, missing values, repeated options, too many arguments.
   Flags(const Command& command, const std::vector<std::string>& arguments);
 
-  bool wants_help() const { return has("help"); }
+  bool wants_help() const { return has("help") || wants_all_help(); }
+  bool wants_all_help() const { return has("help-all"); }
   /// The argument without a flag; it must be there.
   const std::string& positional() const;
   /// The second one; it must be there.
@@ -98,7 +102,7 @@ class Flags {
   boost::program_options::variables_map values_;
 };
 
-/// Usage, options with their defaults, exit codes.
-std::string help_text(const Command& command);
+/// Usage, options with their defaults, exit codes; `is_short`: only the basic options.
+std::string help_text(const Command& command, bool is_short = false);
 
 }  // namespace graspfit::app

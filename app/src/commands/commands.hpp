@@ -11,6 +11,7 @@ namespace graspfit::app {
 /// The commands. Each takes what stands after its name, prints results on standard output, and
 /// throws UsageError or a base::Error for what it cannot use.
 ExitCode run_plan(const std::vector<std::string>& arguments);
+ExitCode run_options(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_hold(const std::vector<std::string>& arguments);

@@ -23,6 +23,7 @@
 #include "input/hand_loading.hpp"
 #include "input/object_loading.hpp"
 #include "input/recorded_files.hpp"
+#include "output/grasp_text.hpp"
 #include "output/output_folder.hpp"
 #include "output/text_table.hpp"
 
@@ -289,7 +290,7 @@ std::string table_of(const Source& source) {
   for (std::size_t i = 0; i < source.file.grasps.size(); ++i) {
     const grasp::Grasp& grasp = source.file.grasps[i];
     rows.push_back({std::to_string(i + 1), source.names[i], fixed_decimal(grasp.quality.m, 4),
-                    fixed_decimal(grasp.epsilon(), 4), std::to_string(grasp.contacts.size()),
+                    epsilon_text(grasp, 4), std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});

@@ -13,6 +13,7 @@
 #include "graspfit/grasp/grasp_metric.hpp"
 #include "input/object_loading.hpp"
 #include "input/recorded_files.hpp"
+#include "output/grasp_text.hpp"
 #include "output/metric_report.hpp"
 #include "output/text_table.hpp"
 
@@ -135,8 +136,8 @@ std::string table_of(const std::vector<Comparison>& comparisons) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(comparison.stored.quality.m, 6),
                     fixed_decimal(grasp.quality.m, 6), fixed_decimal(grasp.quality.m1, 4),
                     fixed_decimal(grasp.quality.m2, 4), fixed_decimal(grasp.quality.m3, 4),
-                    fixed_decimal(comparison.stored.epsilon(), 6),
-                    fixed_decimal(grasp.epsilon(), 6), std::to_string(grasp.contacts.size()),
+                    epsilon_text(comparison.stored, 6),
+                    epsilon_text(grasp, 6), std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no",

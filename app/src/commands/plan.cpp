@@ -22,6 +22,7 @@
 #include "input/hold_flags.hpp"
 #include "input/object_loading.hpp"
 #include "input/planner_flags.hpp"
+#include "output/grasp_text.hpp"
 #include "output/no_grasp_advice.hpp"
 #include "output/output_folder.hpp"
 #include "output/pictures.hpp"
@@ -58,18 +59,21 @@ Command plan_command() {
       "plan", "OBJECT",
       "Plans grasps of OBJECT (OFF, OBJ, PLY, STL, glTF or GLB) with a hand.\n"
       "[P]: stated by the paper; [R]: a reading of what it leaves open, by its number in "
-      "REPRODUCTION.md.\n",
+      "docs/readings.md.\n",
       option_group(),
       "Lengths are meters and directions are in the object's own frame unless a flag's "
       "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
       "true meshes, every requested finger and\nthe palm, if requested, touches. epsilon: in "
-      "GraspIt!'s convention. gap_mm: the largest of a\nrequested contact.\n"};
+      "GraspIt!'s convention; open: the contacts\ndo not close. gap_mm: the largest of a requested contact.\n"};
   command.options.add(object_options())
       .add(surroundings_options())
       .add(planner_options())
       .add(score_map_options())
       .add(hold)
       .add(output);
+  command.basics = {"preset",    "hand",    "style",    "contacts", "fingers",      "approach",
+                    "mesh-unit", "longest", "table",    "count",    "max-attempts", "seed",
+                    "hold",      "out",     "pictures", "page",     "quiet"};
   return command;
 }
 
@@ -99,7 +103,7 @@ std::string table_of(const grasp::GraspFile& file) {
   for (const grasp::Grasp& grasp : file.grasps) {
     rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
-                    fixed_decimal(grasp.quality.m3, 4), fixed_decimal(grasp.epsilon(), 4),
+                    fixed_decimal(grasp.quality.m3, 4), epsilon_text(grasp, 4),
                     std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
@@ -260,7 +264,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   const Command command = plan_command();
   const Flags flags(command, arguments);
   if (flags.wants_help()) {
-    std::fputs(help_text(command).c_str(), stdout);
+    std::fputs(help_text(command, !flags.wants_all_help()).c_str(), stdout);
     return kSuccess;
   }
   grasp::PlannerOptions options = read_planner_flags(flags);
@@ -328,6 +332,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   grasp::GraspFile file =
       grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
   file.hold = std::move(hold);
+  if (flags.has("preset")) file.preset = flags.text("preset");
   if (out) write_files(file, object, around.surroundings, flags, *out, progress);
   progress.clear();
   if (!flags.has("quiet")) {

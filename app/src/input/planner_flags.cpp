@@ -5,8 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/grasp/planner_option_table.hpp"
+#include "graspfit/grasp/planner_presets.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -75,6 +77,34 @@ void add_flags(po::options_description& options, std::string_view group) {
   }
 }
 
+std::string preset_names(std::string_view separator) {
+  return base::list_text(grasp::planner_presets(), &grasp::PlannerPreset::name, separator);
+}
+
+/// "refine off" of a value of a preset.
+std::string flag_text(std::string_view name, const OptionValue& value) {
+  for (const PlannerOption& option : grasp::planner_option_table()) {
+    if (option.name != name) continue;
+    if (const bool* const is_yes = std::get_if<bool>(&value)) {
+      return std::string(name) + ' ' + std::string(*is_yes ? option.yes : option.no);
+    }
+  }
+  if (const auto* const number = std::get_if<std::int64_t>(&value)) {
+    return std::string(name) + ' ' + std::to_string(*number);
+  }
+  return std::string(name) + ' ' + std::get<std::string>(value);
+}
+
+/// "paper: the paper's grasps ... (refine off, guard voxels). fast: ...".
+std::string preset_description() {
+  std::string text = "options that go together, of which flags beside it change some.";
+  for (const grasp::PlannerPreset& preset : grasp::planner_presets()) {
+    text += ' ' + std::string(preset.name) + ": " + std::string(preset.meaning) + " (" +
+            preset_values_text(preset) + ").";
+  }
+  return text + " Without: the defaults below";
+}
+
 po::options_description flags_of(std::string_view group) {
   po::options_description options = option_group(std::string(group));
   add_flags(options, group);
@@ -83,10 +113,16 @@ po::options_description flags_of(std::string_view group) {
 
 }  // namespace
 
+std::string preset_values_text(const grasp::PlannerPreset& preset) {
+  return base::list_text(preset.values,
+                         [](const auto& value) { return flag_text(value.first, value.second); });
+}
+
 po::options_description score_map_options() { return flags_of(groups::kScores); }
 
 po::options_description planner_options() {
   po::options_description request = option_group(std::string(groups::kRequest));
+  add_option(request, "preset", preset_names("|"), std::nullopt, preset_description());
   add_option(request, "hand", "NAME|FILE", "barrett",
              "a shipped hand (graspfit hand list), or the description of any hand: URDF, MJCF or "
              "GraspIt! XML; what no sidecar beside it says is derived");
@@ -188,6 +224,12 @@ PlannerOptions read_planner_flags(const Flags& flags) {
                      std::to_string(flags.words("fingers").size()) + " named by --fingers");
   }
   PlannerOptions options;
+  if (flags.has("preset")) {
+    const std::string& name = flags.text("preset");
+    const grasp::PlannerPreset* const preset = grasp::preset_named(name);
+    if (preset == nullptr) fail_choice("preset", name, preset_names("|"));
+    grasp::apply_preset(options, *preset);
+  }
   read_flags(flags, "", options);
   options.seed = flags.unsigned_integer("seed");
   require_compatible_flags(flags, options);

@@ -4,6 +4,7 @@
 
 #include "cli/command_line.hpp"
 #include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/grasp/planner_presets.hpp"
 
 namespace graspfit::app {
 
@@ -19,5 +20,8 @@ void read_score_map_flags(const Flags& flags, grasp::PlannerOptions& options);
 
 /// What all planner flags say, validated. @throws UsageError, InvalidInput.
 grasp::PlannerOptions read_planner_flags(const Flags& flags);
+
+/// "refine off, guard voxels": what a preset sets, as flags.
+std::string preset_values_text(const grasp::PlannerPreset& preset);
 
 }  // namespace graspfit::app

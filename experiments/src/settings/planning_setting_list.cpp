@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/units.hpp"
 #include "graspfit/grasp/planner_option_table.hpp"
+#include "graspfit/grasp/planner_presets.hpp"
 
 namespace graspfit::experiments::internal {
 namespace {
@@ -19,6 +21,13 @@ Schema of_type(const char* type) { return {{"type", type}}; }
 Schema text() { return {{"type", "string"}, {"minLength", 1}}; }
 Schema three_numbers() {
   return {{"type", "array"}, {"items", of_type("number")}, {"minItems", 3}, {"maxItems", 3}};
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const grasp::PlannerPreset& preset : grasp::planner_presets())
+    names.emplace_back(preset.name);
+  return names;
 }
 
 std::vector<PlanningSetting> object_and_hand_settings() {
@@ -62,7 +71,16 @@ std::vector<PlanningSetting> object_and_hand_settings() {
        [](PlanningSettings& s, const JsonValue& v) { s.hand = v.name(); }},
       {{"table", "m", "a table: everything at or below this z of the object's frame is solid"},
        of_type("number"),
-       [](PlanningSettings& s, const JsonValue& v) { s.table_z_O = v.number(); }}};
+       [](PlanningSettings& s, const JsonValue& v) { s.table_z_O = v.number(); }},
+      {{kPresetSetting, "",
+        "options of the planner that go together; what else is set changes them"},
+       {{"enum", preset_names()}},
+       [](PlanningSettings& s, const JsonValue& v) {
+         const grasp::PlannerPreset* const preset = grasp::preset_named(v.name());
+         if (preset == nullptr)
+           v.refuse("must be one of " + base::list_text(preset_names(), {}, "|"));
+         grasp::apply_preset(s.options, *preset);
+       }}};
 }
 
 Schema schema_of(const PlannerOption& option) {

@@ -22,6 +22,9 @@ struct PlanningSetting {
   std::string fallback = "";  ///< Its value where it is not given, as text; empty: none.
 };
 
+/// Names a preset. It is applied before all other settings.
+inline constexpr const char* kPresetSetting = "preset";
+
 /// All settings of `planning_setting_names`, in that order.
 const std::vector<PlanningSetting>& planning_setting_list();
 

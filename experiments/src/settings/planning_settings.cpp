@@ -149,14 +149,19 @@ PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
                                    const std::vector<sweep::Column>& others) {
   const nlohmann::json json = nlohmann::json::parse(text);
   PlanningSettings settings;
-  for (const auto& [key, value] : json.items()) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  std::stable_partition(keys.begin(), keys.end(),
+                        [](const std::string& key) { return key == internal::kPresetSetting; });
+  for (const std::string& key : keys) {
+    const nlohmann::json& value = json.at(key);
     if (std::any_of(others.begin(), others.end(),
-                    [&, &name = key](const sweep::Column& other) { return other.name == name; })) {
+                    [&](const sweep::Column& other) { return other.name == key; })) {
       continue;
     }
-    const auto found = std::find_if(
-        planning_setting_list().begin(), planning_setting_list().end(),
-        [&, &name = key](const PlanningSetting& setting) { return setting.name.name == name; });
+    const auto found =
+        std::find_if(planning_setting_list().begin(), planning_setting_list().end(),
+                     [&](const PlanningSetting& setting) { return setting.name.name == key; });
     if (found == planning_setting_list().end()) fail_unknown(key, others);
     const base::JsonValue given = sweep::setting_value(key, value);
     const bool is_outside =

@@ -22,7 +22,7 @@ bool is_one_sided(const hands::HandModel& hand);
 
 /// The point that is placed before the targets and about which the hand turns: the palm center [P];
 /// of a one-sided hand the point at the palm center's height before the middle of the fingertips
-/// with targets, or the targets would lie behind the bases of its fingers [R, A28].
+/// with targets, or the targets would lie behind the bases of its fingers [R].
 Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
                               const std::vector<geometry::RigidTransform>& X_OL,
                               const TargetContacts& targets);
@@ -35,7 +35,7 @@ std::vector<int> closing_joints(const hands::HandModel& hand, const hands::Finge
 /// The hand open, its palm looking along `placement`, its turning point `distance` before the
 /// targets' centroid (its palm center before the palm's target, where there is one), the seed's
 /// finger turned to the seed and on by the placement's turn, the others swung to their targets. A
-/// thumb that swings by itself stands where the others' swings come closest to their targets (A28).
+/// thumb that swings by itself stands where the others' swings come closest to their targets.
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const PalmPlacement& placement, double distance);

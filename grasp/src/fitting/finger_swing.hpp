@@ -44,7 +44,7 @@ struct Look {
   auto operator<=>(const Look&) const = default;
 };
 
-/// The position of `leader` with the least sum of squared errors (A26): samples of its range, the
+/// The position of `leader` with the least sum of squared errors: samples of its range, the
 /// best one refined by golden section; the error has one minimum per turn of a finger.
 double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
                   const TargetContacts& targets, int leader, const std::vector<Look>& looks);
@@ -55,7 +55,7 @@ std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::Han
 
 /// Joint positions in which every finger that can swing around the palm looks at its assigned
 /// target as well as the joints allow; fingers that share a joint take the least sum of squared
-/// errors (A26). Other joints as in `configuration`.
+/// errors. Other joints as in `configuration`.
 Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const hands::HandConfiguration& configuration,
                               const TargetContacts& targets);

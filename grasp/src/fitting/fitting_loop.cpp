@@ -161,7 +161,7 @@ Vector3d FittingLoop::palm_direction() const {
 }
 
 /// The paper's initial configuration (section 7) read from the goal: its palm withdrawn along
-/// n_palm until the object is before it (A24), fingers open, swinging joints as at the goal. False
+/// n_palm until the object is before it, fingers open, swinging joints as at the goal. False
 /// if no distance is clear.
 bool FittingLoop::place() {
   const Vector3d direction = palm_direction();
@@ -213,7 +213,7 @@ void FittingLoop::approach() {
   advance(wanted, options_.small_step * voxel_size_);
 }
 
-/// The palm, if it is requested, onto the surface about `distance` before it (A39): on until its
+/// The palm, if it is requested, onto the surface about `distance` before it: on until its
 /// clip volume holds surface or the guard stops it, and then until it touches.
 void FittingLoop::seat_palm(double distance) {
   if (!has_palm_target_) return;
@@ -282,7 +282,7 @@ bool FittingLoop::touches(const Part& part) {
 }
 
 /// Steps 2 and 3: the palm toward where the fingertips will be at their targets. Once a finger
-/// touches, it stays (A29).
+/// touches, it stays.
 void FittingLoop::move_palm_to_goal() {
   if (is_palm_done_ || any_touching()) return;
   const Vector3d wanted = goal_.X_OH.translation() - state_.configuration().X_OH.translation();

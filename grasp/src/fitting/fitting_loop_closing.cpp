@@ -71,7 +71,7 @@ void FittingLoop::close_part(Part& part) {
   for (int halving = 0; halving <= options_.max_halvings; ++halving, step /= 2) {
     if (try_closing(part, step)) return;
   }
-  // Blocked at the tip means done; blocked farther back lets the joints beyond go on (A27).
+  // Blocked at the tip means done; blocked farther back lets the joints beyond go on.
   const bool is_tip = state_.blocking_link() == part.tip_link;
   if (is_tip || !next_stage(part)) {
     part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
@@ -111,7 +111,7 @@ bool FittingLoop::close_toward_goal(Part& part) {
 }
 
 /// Closes a joint by `step`. Where several fingers hang on it and one of them is stopped, the hand
-/// moves so that this one stays where it is and the others close, as far in all (A44).
+/// moves so that this one stays where it is and the others close, as far in all.
 bool FittingLoop::try_closing(const Part& part, double step) {
   const int joint = part.closing[part.stage];
   const double length = std::abs(step) * lever(joint);

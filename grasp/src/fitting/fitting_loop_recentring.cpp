@@ -1,4 +1,4 @@
-// The palm after the first contact (notes A29).
+// The palm after the first contact.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 /// the nearest is kept that the guard of voxels does not find too deep.
 void FittingLoop::recenter() {
   // A finger that hangs on the same joint as others would take them along: the hand gives way to
-  // these (A44).
+  // these.
   if (std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.is_shared; })) {
     return;
   }

@@ -10,8 +10,8 @@
 
 namespace graspfit::grasp::internal {
 
-/// A hand in motion among an object and its surroundings: which motions the guard of section 9 lets
-/// through, and how long the next one may be.
+/// A hand in motion among an object and its surroundings: which motions the guard of the paper's
+/// section 9 lets through, and how long the next one may be.
 class GuardedHand {
  public:
   GuardedHand(const GraspScene& scene, const FittingOptions& options);
@@ -36,7 +36,7 @@ class GuardedHand {
                                                      ///< count, other links, after the map.
   void accept();                                     ///< The motion under test.
 
-  /// Motion of the fastest point of `links` allowed now [m] (section 9, A30).
+  /// Motion of the fastest point of `links` allowed now [m] (paper section 9) [R].
   double allowed_motion(const std::vector<int>& links) const;
 
   /// Measures every link anew, so that `smallest_distance` is exact up to a large step.

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kDirectionsAroundAxis = 16;  // for two targets (A23)
+constexpr int kDirectionsAroundAxis = 16;  // for two targets
 constexpr int kPalmTurns = 8;              // about the palm's target, where the seed leaves it open
 // A seed nearer than this to the palm's axis says nothing about how the hand is turned [m].
 constexpr double kSeedOnAxis = 0.01;

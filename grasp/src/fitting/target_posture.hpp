@@ -33,7 +33,7 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
 /// targets: the largest angle between a fingertip pad's normal and its target's inward normal, plus
 /// the largest miss, 15 mm of it counting as one radian; and, where the palm has no target (against
 /// which fingers press), half the mean angle by which pairs of fingertips miss looking at each
-/// other. The pairs are those of the seed's finger with every other one, as in selection (A17); a
+/// other. The pairs are those of the seed's finger with every other one, as in selection; a
 /// pair's angle is the larger one between a pad's normal and the line to the other pad's contact
 /// point. Where pads lie flat their normals are those of the contacts, so that a set with small
 /// angles leaves stable pairs even if the fingertips land beside their targets: "the ideal grasp

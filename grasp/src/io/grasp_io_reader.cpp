@@ -205,16 +205,33 @@ HoldRecord read_hold(const JsonValue& node, std::size_t num_grasps) {
 
 }  // namespace
 
+namespace {
+
+/// A file of version 4 as one of version 5: `attempt_choice` was order and choice of candidates at
+/// once.
+JsonValue upgraded(const JsonValue& root) {
+  internal::Json json = root.json();
+  const JsonValue choice = root.at("planner").at("options").at("attempt_choice");
+  internal::Json& options = json["planner"]["options"];
+  options["candidate_order"] = choice.text() == "first" ? "pads" : "balance";
+  options["kept_candidate"] = choice.text();
+  return root.with_root(json);
+}
+
+}  // namespace
+
 GraspFile read_grasps(const std::filesystem::path& path) {
   base::require_no_replacement_mark(path);
-  const JsonValue root =
-      JsonValue::parsed<base::IoError>(base::read_json_file(path), path.string());
+  JsonValue root = JsonValue::parsed<base::IoError>(base::read_json_file(path), path.string());
   if (root.at("format").text() != "graspfit-grasps") {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
-  if (const std::int64_t version = root.at("version").integer();
-      version != internal::kGraspFileVersion) {
-    root.at("version").fail("is " + std::to_string(version) + "; this program reads version " +
+  const std::int64_t version = root.at("version").integer();
+  if (version == internal::kGraspFileVersion - 1) {
+    root = upgraded(root);
+  } else if (version != internal::kGraspFileVersion) {
+    root.at("version").fail("is " + std::to_string(version) + "; this program reads versions " +
+                            std::to_string(internal::kGraspFileVersion - 1) + " and " +
                             std::to_string(internal::kGraspFileVersion) + ": plan again");
   }
 
@@ -234,6 +251,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   const JsonValue planner = root.at("planner");
   JsonReader{planner}.group("options", file.options, internal::planner_rows);
   file.options.seed = planner.at("seed").unsigned_integer();
+  if (const auto preset = planner.find("preset")) file.preset = preset->name();
   try {
     file.options.validate();
   } catch (const base::InvalidInput& error) {

@@ -100,6 +100,7 @@ Json planner_json(const GraspFile& file) {
                            : method != nullptr ? method->title
                                                : "of another library: " + file.options.planner;
   Json json = {{"name", name}, {"version", file.version}, {"seed", file.options.seed}};
+  if (!file.preset.empty()) json["preset"] = file.preset;
   JsonWriter(json).group("options", file.options, internal::planner_rows);
   json["used"] = {{"fingers", file.fingers},
                   {"palm", file.palm},

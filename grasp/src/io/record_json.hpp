@@ -12,8 +12,8 @@ namespace graspfit::grasp::internal {
 
 using Json = nlohmann::ordered_json;
 
-/// The only version of grasp files that is written and read.
-inline constexpr std::int64_t kGraspFileVersion = 4;
+/// The version of grasp files that is written. The one before is read, too.
+inline constexpr std::int64_t kGraspFileVersion = 5;
 
 inline Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

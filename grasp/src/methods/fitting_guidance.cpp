@@ -126,12 +126,12 @@ class FittingGuidance : public GraspGuidance {
       if (sides.empty()) continue;
       num_judged += static_cast<int>(sides.size());
       if (options.target_draws == 1) return sides;
-      if (options.attempt_choice != AttemptChoice::First) {
+      if (options.candidate_order == CandidateOrder::Balance) {
         const int set_imbalance = imbalance(*selection.targets);
         for (TargetSide& side : sides) side.imbalance = set_imbalance;
       }
       std::stable_sort(sides.begin(), sides.end(), by_misfit);
-      if (options.attempt_choice == AttemptChoice::Strongest) {
+      if (options.kept == KeptCandidate::Strongest) {
         std::move(sides.begin(), sides.end(), std::back_inserter(best));
       } else if (best.empty() || by_misfit(sides.front(), best.front())) {
         best = std::move(sides);

@@ -1,5 +1,5 @@
 // The baseline MA of the paper's Table 1 [Przybylski, Asfour & Dillmann 2011], after facts read in
-// its first author's implementation (notes 17.2): hands are put around the balls of the medial axis
+// its first author's implementation: hands are put around the balls of the medial axis
 // by the symmetry of their neighborhoods. Balls come from shrinking instead of a power crust [R].
 //
 // Twice: `ma` backs a colliding hand off by at most 5 steps of 3 mm and then closes it wherever it

@@ -1,5 +1,5 @@
 // The baseline GS of the paper's Table 1, read from its words: the paper chooses "desirable target
-// contacts ... rather than randomly selecting target contacts as in GS" (notes 16.3, gs-targets). A
+// contacts ... rather than randomly selecting target contacts as in GS". A
 // reconstruction [R]. Targets are drawn at random among surface samples, one set per attempt; hands
 // are fitted to them, closed and measured as to the paper's own.
 #include <algorithm>

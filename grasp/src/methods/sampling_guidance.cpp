@@ -1,6 +1,6 @@
 // The baseline GS of the paper's Table 1: surface samples with normals guide the hand. A
 // reconstruction [R]: the paper says that much, and the work it cites could not be identified with
-// certainty (notes 16). A sample is drawn at random; the palm looks against its normal, turned at
+// certainty. A sample is drawn at random; the palm looks against its normal, turned at
 // random, at the sample, where it may touch, or a little before it; the hand backs off until it is
 // clear and closes.
 #include <algorithm>

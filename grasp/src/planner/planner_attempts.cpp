@@ -17,8 +17,8 @@
 namespace graspfit::grasp::internal {
 namespace {
 
-constexpr double kHighQuality = 0.6;  // of M (A36)
-constexpr double kIdealShare = 0.5;   // of the targets' own M (A36)
+constexpr double kHighQuality = 0.6;  // of M
+constexpr double kIdealShare = 0.5;   // of the targets' own M
 // More than refinement may exceed its largest turn by [rad].
 constexpr double kAngleSlack = 1e-6;
 
@@ -203,13 +203,13 @@ std::size_t PlannerAttempts::best_with_way_in(std::vector<AttemptResult>& tried)
 /// An accepted grasp before any other, then the later stage, then what the choice asks for.
 PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result) const {
   StartRank rank{result.is_accepted, stage_of(result.outcome), false, 0.0};
-  switch (options_.attempt_choice) {
-    case AttemptChoice::First:
+  switch (options_.kept) {
+    case KeptCandidate::First:
       break;
-    case AttemptChoice::Balanced:
+    case KeptCandidate::Balanced:
       std::get<3>(rank) = -squeeze_residual(result);
       break;
-    case AttemptChoice::Strongest:
+    case KeptCandidate::Strongest:
       std::get<2>(rank) = is_balanced(result);
       std::get<3>(rank) = strength(result, scene_, options_.squeeze_friction);
       break;
@@ -219,12 +219,12 @@ PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result)
 
 /// Whether no further start can be kept instead of this one.
 bool PlannerAttempts::is_enough(const AttemptResult& result) const {
-  switch (options_.attempt_choice) {
-    case AttemptChoice::First:
+  switch (options_.kept) {
+    case KeptCandidate::First:
       return result.is_accepted;
-    case AttemptChoice::Balanced:
+    case KeptCandidate::Balanced:
       return result.is_accepted && is_balanced(result);
-    case AttemptChoice::Strongest:
+    case KeptCandidate::Strongest:
       break;
   }
   return false;
@@ -278,7 +278,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     const base::Stopwatch watch(result.timings.measure_s);
     grasp = with_all_measures(scene_, std::move(grasp));
   }
-  if (options_.attempt_choice != AttemptChoice::First) add_squeeze(grasp, result);
+  if (options_.kept != KeptCandidate::First) add_squeeze(grasp, result);
   // A start that cut something may have been turned before refinement.
   const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle &&
                            are_scores_high(grasp.contacts);

@@ -48,19 +48,24 @@ class Listing {
     if (!row.name.empty()) options.push_back(option_of<Value>(row));
   }
   template <class Options, class Rows>
-  void group(std::string_view, const Options& within, const Rows& rows) {
+  void group(std::string_view key, const Options& within, const Rows& rows) {
+    const std::string outer = within_;
+    within_ += std::string(key) + '.';
     rows(*this, within);
+    within_ = outer;
   }
   template <class Options, class Rows>
-  void optional_group(std::string_view, const std::optional<Options>&, const Rows& rows) {
-    const Options defaults;
-    rows(*this, defaults);
+  void optional_group(std::string_view key, const std::optional<Options>&, const Rows& rows) {
+    group(key, Options{}, rows);
   }
 
  private:
+  std::string within_;  // the path of the struct at hand, "fitting."
+
   template <class Value>
-  static PlannerOption option_of(const OptionRow& row) {
+  PlannerOption option_of(const OptionRow& row) const {
     PlannerOption option{row};
+    option.path = within_ + std::string(row.key);
     if constexpr (std::is_enum_v<Value>) {
       option.kind = OptionKind::Choice;
       for (const auto& named : named_values<Value>()) option.choices.emplace_back(named.name);

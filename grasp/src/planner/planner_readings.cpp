@@ -31,16 +31,11 @@ bool is_about_targets(std::string_view number) {
 }
 
 /// What an attempt does beyond taking one set, after "N sets".
-std::string choice_reading(AttemptChoice choice) {
-  switch (choice) {
-    case AttemptChoice::First:
-      break;
-    case AttemptChoice::Balanced:
-      return ", those that balance first";
-    case AttemptChoice::Strongest:
-      return ", of whose sides the strongest grasp is kept";
-  }
-  return "";
+std::string choice_reading(const PlannerOptions& options) {
+  const bool is_balance_first = options.candidate_order == CandidateOrder::Balance;
+  return std::string(is_balance_first ? ", those that balance first" : "") +
+         (options.kept == KeptCandidate::Strongest ? ", of whose sides the strongest grasp is kept"
+                                                   : "");
 }
 
 std::string text(std::string_view name) { return std::string(name); }
@@ -99,8 +94,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
                   " seeds per set; the second of three or more from all; fitted: the flattest for "
                   "the fingertip pads of " +
-                  std::to_string(options.target_draws) + " sets" +
-                  choice_reading(options.attempt_choice)},
+                  std::to_string(options.target_draws) + " sets" + choice_reading(options)},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23",

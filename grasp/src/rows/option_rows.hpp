@@ -300,15 +300,22 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                             "target sets drawn per attempt; the one that suits the fingertips' "
                             "directions best is fitted; 1: the paper's random set",
                             "R"});
-  at(options.attempt_choice,
-     {"attempt_choice", kAny, "attempt-choice", "", kTargets,
-      "which of the sides an attempt tries is kept: the first that is accepted; the first accepted "
-      "one whose squeeze balances, target sets that balance at squeeze-friction first; or, of "
-      "sides of all sets drawn, the one with the largest epsilon at squeeze-friction",
+  at(options.candidate_order,
+     {"candidate_order", kAny, "candidate-order", "", kTargets,
+      "which of an attempt's candidates (sides of target sets) go first: those on whose targets "
+      "the "
+      "fingertip pads would lie flattest; or those whose targets balance at squeeze-friction",
       "R"});
+  at(options.kept, {"kept_candidate", kAny, "keep", "", kTargets,
+                    "which of an attempt's candidates is kept: the first that is accepted; the "
+                    "first accepted one "
+                    "whose squeeze balances; or, of the sides of all sets drawn, the one with the "
+                    "largest epsilon "
+                    "at squeeze-friction",
+                    "R"});
   at(options.max_placements, {"max_placements", at_least(1), "max-placements", "1", kTargets,
                               "sides that are fitted, those that suit the fingertips best first: "
-                              "of one target set, with attempt-choice strongest of all sets drawn",
+                              "of one target set, with keep strongest of all sets drawn",
                               "R", "A23"});
   at(options.approach_O, {"approach_O", kAny, "approach", "", kRequest,
                           "wanted direction of the palm, toward the object, in the object's frame",

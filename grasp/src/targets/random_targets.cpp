@@ -95,7 +95,7 @@ class GreedySearch {
     for (const double distance : distances) {
       if (distance < options_.min_separation) return std::nullopt;
       const double error = std::abs(distance - first_edge) / first_edge;
-      // The hard cut is for the triangle; with more targets not all edges can agree (A19).
+      // The hard cut is for the triangle; with more targets not all edges can agree.
       if (chosen_.size() == 2 && error > options_.edge_tolerance_rel * relaxation_) {
         return std::nullopt;
       }

@@ -181,7 +181,7 @@ struct RankedTargets::Impl {
     }
   }
 
-  /// Whether the third's edges are too different from the first (A19).
+  /// Whether the third's edges are too different from the first.
   bool is_triangle_off(std::int32_t seed, std::int32_t second, std::int32_t third) const {
     const double first_edge = rules.distance(seed, second);
     for (const std::int32_t other : {seed, second}) {

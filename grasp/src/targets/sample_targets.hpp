@@ -8,7 +8,7 @@
 
 namespace graspfit::grasp::internal {
 
-/// Target sets drawn at random from surface samples (notes 16.3, gs-targets).
+/// Target sets drawn at random from surface samples: the paper's words on GS read literally.
 class SampleTargets {
  public:
   /// Refers to object and distances. @throws InvalidInput as `TargetSelector`.

@@ -44,7 +44,7 @@ TEST_CASE(
     "A gripper whose targets are off the object's middle moves over and touches on both sides",
     "[grasp][hand_fitting]") {
   // Targets whose middle is `off` beside the middle of a box 40 mm wide: one jaw meets the box 2
-  // `off` before the other, and the hand has to give way by `off` (notes A44).
+  // `off` before the other, and the hand has to give way by `off`.
   const Scene scene(geometry::box({0.04, 0.08, 0.03}), "parallel_gripper", 2);
   for (const double off : {0.0, 0.004, -0.004, 0.012}) {
     CAPTURE(off);

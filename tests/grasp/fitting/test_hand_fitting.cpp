@@ -347,7 +347,7 @@ TEST_CASE("The hand starts open, over the middle of the targets, clear of the ob
       // Where the fingertips reach their targets best; the thumb's base is nearer to the palm
       // center than the others' by 25 mm, so not quite over the middle.
       CHECK(from_targets.head<2>().norm() < 0.025);
-      // Beyond the ball's pole by the clearance at least (A24); the icosphere's pole may be lower
+      // Beyond the ball's pole by the clearance at least; the icosphere's pole may be lower
       // than the sphere's by 1 − cos of half an edge.
       CHECK(-side * from_targets.z() > 0.05 * 0.99 + clearance - 1e-9);
       CHECK_FALSE(scene.collision

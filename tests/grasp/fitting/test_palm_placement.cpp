@@ -109,7 +109,7 @@ TEST_CASE("Two targets have sixteen palm directions around their axis", "[grasp]
       CHECK(angles[i + 1] - angles[i] == Approx(2.0 * kPi / 16.0).epsilon(1e-9));
     }
 
-    // With an approach, those nearest to it first (A23).
+    // With an approach, those nearest to it first.
     const Vector3d approach(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const auto approached = grasp::palm_placements(scene.object, targets, approach, kPi / 2.0);
     REQUIRE_FALSE(approached.empty());

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "grasp/grasp_file_sample.hpp"
+#include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
@@ -295,6 +296,28 @@ TEST_CASE("Numbers of a grasp file are as short as they can be", "[grasp][grasp_
   CHECK_THAT(json, Contains("\"score\": \"infinity\""));
 }
 
+TEST_CASE("Files of version 4 are read: their one choice was order and choice of candidates",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const std::string now = grasp::to_json(sample_file(folder.path() / "ball.off"));
+  const fs::path path = folder.path() / "old.json";
+  for (const auto& [choice, order, kept] :
+       {std::tuple("first", grasp::CandidateOrder::Pads, grasp::KeptCandidate::First),
+        std::tuple("balanced", grasp::CandidateOrder::Balance, grasp::KeptCandidate::Balanced),
+        std::tuple("strongest", grasp::CandidateOrder::Balance, grasp::KeptCandidate::Strongest)}) {
+    CAPTURE(choice);
+    std::string old = replaced(now, "\"version\": 5", "\"version\": 4");
+    old = replaced(old, "\"candidate_order\": \"balance\"",
+                   "\"attempt_choice\": \"" + std::string(choice) + '"');
+    old = replaced(old, "\"kept_candidate\": \"balanced\",", "");
+    base::write_file_atomically(path, old);
+    const grasp::GraspFile file = grasp::read_grasps(path);
+    CHECK(file.options.candidate_order == order);
+    CHECK(file.options.kept == kept);
+    CHECK(file.grasps.size() == sample_file(folder.path() / "ball.off").grasps.size());
+  }
+}
+
 TEST_CASE("A file that is not a grasp file is refused with the place and the reason",
           "[grasp][grasp_io]") {
   const TemporaryFolder folder;
@@ -310,8 +333,8 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
              Contains("bad.json: line 1, column 75: nests deeper than 64 levels"));
   CHECK_THAT(refusal(path, "[]"), Contains("/: is [], must be an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
-  CHECK_THAT(refusal(path, replaced(good, "\"version\": 4", "\"version\": 1")),
-             Contains("/version: is 1; this program reads version 4"));
+  CHECK_THAT(refusal(path, replaced(good, "\"version\": 5", "\"version\": 1")),
+             Contains("/version: is 1; this program reads versions 4 and 5"));
   CHECK_THAT(refusal(path, replaced(good, "\"outside\": \"minus-one\"", "\"outside\": \"far\"")),
              Contains("/results/grasps/0/wrench/convention/outside: is \"far\"") &&
                  Contains("zero|minus-one|signed"));

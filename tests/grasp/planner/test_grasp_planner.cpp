@@ -156,9 +156,11 @@ TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and l
   std::size_t num_grasps_preferring = 0;
   for (const geometry::TriangleMesh& mesh :
        {geometry::ball(0.045), geometry::box({0.06, 0.08, 0.1}), geometry::torus(0.05, 0.02)}) {
-    options.attempt_choice = AttemptChoice::First;
+    options.candidate_order = CandidateOrder::Pads;
+    options.kept = KeptCandidate::First;
     const PlannerResult any = Run(mesh, options).plan();
-    options.attempt_choice = AttemptChoice::Balanced;
+    options.candidate_order = CandidateOrder::Balance;
+    options.kept = KeptCandidate::Balanced;
     const Run run(mesh, options);
     const PlannerResult balanced = run.plan();
     CHECK(broken_promises(run, balanced) == kNothing);
@@ -191,7 +193,8 @@ TEST_CASE("Attempts that keep the strongest grasp keep the one that trying all s
         contact::epsilon_quality(contact::grasp_wrench_space(touching, convention)));
   };
   PlannerOptions options = collecting(Acceptance::Valid, 1000, 4);
-  options.attempt_choice = AttemptChoice::Strongest;
+  options.candidate_order = CandidateOrder::Balance;
+  options.kept = KeptCandidate::Strongest;
   std::int64_t num_stronger = 0;
   for (const geometry::TriangleMesh& mesh :
        {geometry::ball(0.045), geometry::box({0.06, 0.08, 0.1})}) {

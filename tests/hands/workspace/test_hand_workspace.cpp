@@ -316,12 +316,12 @@ TEST_CASE("Tip distances of the Barrett hand are those of its kinematics",
       CHECK(range.smallest == searched.smallest);
       CHECK(range.largest == searched.largest);
 
-      // Opposed tips meet (notes 22.1).
+      // Opposed tips meet.
       CHECK(range.smallest >= 0.0);
       CHECK(range.smallest < 0.030);
 
       // Published: at full opening a tip reaches 162.8 mm from the palm's axis, opposed tips are
-      // about 325 mm apart (notes 22.1). With the thumb: sqrt(25² + 325.6²) = 326.6 mm. Fingers 1
+      // about 325 mm apart. With the thumb: sqrt(25² + 325.6²) = 326.6 mm. Fingers 1
       // and 2, whose bases are 50 mm apart, at spread 90°: 375.6 mm. The pad's center lies on the
       // distal link of 56 mm, 26.8 mm from its joint and 6.8 mm off its axis, so within
       // sqrt(29.2² + 6.8²) < 30 mm of the tip point: at most 60 mm less than the tips, and not more
@@ -424,7 +424,7 @@ TEST_CASE("A human thumb meets every finger, and spans what a hand of its length
 }
 
 TEST_CASE("Grippers grasp from nothing to their stroke", "[hands][hand_workspace]") {
-  // Robotiq 2F-85: stroke 85 mm; Franka hand: 2 × 40 mm (notes 22.3).
+  // Robotiq 2F-85: stroke 85 mm; Franka hand: 2 × 40 mm.
   for (const auto& [name, stroke] :
        {std::pair{"parallel_gripper", 0.085}, std::pair{"franka_gripper", 0.080}}) {
     CAPTURE(name);

@@ -34,6 +34,9 @@ class JsonValue {
     return parsed(text, file, [](const std::string& message) { throw Exception(message); });
   }
 
+  /// The root of another tree whose faults are told as those of this document.
+  JsonValue with_root(const Json& root) const;
+
   const Json& json() const { return *json_; }
   const std::string& place() const { return place_; }
 

@@ -12,7 +12,7 @@ namespace graspfit::geometry {
 
 /// How the pieces inside one voxel are averaged.
 enum class PatchAveraging {
-  AreaWeighted,  ///< Pieces count by their area (notes A6).
+  AreaWeighted,  ///< Pieces count by their area.
   Plain,         ///< Every piece counts alike (the paper's words).
 };
 

@@ -50,7 +50,7 @@ struct LatticeOptions {
 };
 
 /// A lattice with `resolution` voxels along the longest extent of `box`, the box centered in it,
-/// grown by the margin on each side (paper section 3; notes A8).
+/// grown by the margin on each side (paper section 3).
 /// @throws DegenerateGeometry if the box is empty or has no extent.
 /// @throws InvalidInput if it would hold more than 2^31 − 1 voxels.
 VoxelLattice lattice_around(const Eigen::AlignedBox3d& box, const LatticeOptions& options);

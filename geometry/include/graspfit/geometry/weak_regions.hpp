@@ -12,8 +12,8 @@
 
 namespace graspfit::geometry {
 
-/// What counts as fragile (house recipe, notes 19.3; the paper leaves it to an analysis of its
-/// own).
+/// What counts as fragile: a recipe of this library [R], since the paper leaves it to an analysis
+/// of its own.
 struct WeakRegionOptions {
   double weak_thickness = 0.006;  ///< [m], > 0. An absolute length, since fragility is; 6 mm
                                   ///< makes the ears of a 9 cm bunny weak, not of a 30 cm one.

@@ -25,7 +25,7 @@ using internal::CutFace;
 using internal::FacesInVolume;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel (A34).
+constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel.
 
 /// What is known of pads beyond the pieces of surface in their clip volumes.
 struct Scene {

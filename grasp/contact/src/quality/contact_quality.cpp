@@ -16,7 +16,7 @@ using base::InvalidInput;
 using Eigen::Vector3d;
 
 constexpr double kCentimetersPerMeter = 100.0;
-constexpr double kCoincident = 1e-9;  // [m] Closer points have no line between them (notes 20).
+constexpr double kCoincident = 1e-9;  // [m] Closer points have no line between them.
 
 void check_context(const QualityContext& context) {
   base::require(context.normalizing_radius > 0.0 && std::isfinite(context.normalizing_radius),
@@ -189,8 +189,8 @@ ContactQuality contact_quality(std::span<const Contact> contacts, const QualityC
     SustainabilityTerm term;
     term.strength = strength(contact);
     if (options.units == MeasureUnits::Normalized) {
-      // Rough surface can have more area inside the clip volume than the pad has (A9: both in [0,
-      // 1]).
+      // Rough surface can have more area inside the clip volume than the pad has; both terms are
+      // shares.
       term.boundary_distance =
           std::min(1.0, contact.pad_boundary_distance / hands::largest_boundary_distance(pad));
       term.area = std::min(1.0, contact.area / hands::pad_area(pad));

@@ -11,9 +11,9 @@ namespace graspfit::grasp {
 
 /// Where the surface points come from along whose normals a hand approaches.
 enum class ApproachSource {
-  Surface,  ///< Drawn uniformly by area (notes 16.3).
+  Surface,  ///< Drawn uniformly by area.
   BoxRays,  ///< First hits of rays cast inward from a grid on a box around the object, which leaves
-            ///< out what lies in concavities (notes 16.2).
+            ///< out what lies in concavities.
 };
 
 /// Surface samples that guide a hand (the baseline GS of the paper's Table 1). All [R]: the paper

@@ -7,15 +7,15 @@
 
 namespace graspfit::grasp {
 
-/// How raw scores become comparable with the threshold 0.6 (notes A1, the most important
-/// ambiguity).
+/// How raw scores become comparable with the threshold 0.6: the paper does not say, and
+/// nothing else that it leaves open matters as much.
 enum class ScoreNormalization {
   FloorMedian,  ///< x floored at 0.05, 1/x, mean filter, min(1, score / (1.25 · median)) [R].
   Max,  ///< Divided by the largest score, x floored at 0.05 so that planes do not give infinity.
   Raw,  ///< As the formula stands; unbounded (infinite on planes).
 };
 
-/// Signed or unsigned distances to the oriented plane (notes A2).
+/// Signed or unsigned distances to the oriented plane.
 enum class PlaneDistance {
   Unsigned,    ///< Mean of |distance|.
   SignedMean,  ///< |mean of signed distance| [R, after the paper's "oriented plane" and its Fig.
@@ -24,14 +24,13 @@ enum class PlaneDistance {
 
 /// Parameters of the contact score map (paper section 5).
 struct ScoreOptions {
-  int neighborhood = 5;      ///< Edge of the cubic window in voxels, odd, in [3, 63] [P].
-  double gamma_deg = 180.0;  ///< Normalizer of the mean normal angle, > 0 [P].
-  double length_voxels =
-      5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 (A3) [R].
-  ScoreNormalization normalization = ScoreNormalization::FloorMedian;  ///< A1.
-  PlaneDistance plane_distance = PlaneDistance::SignedMean;            ///< A2.
-  int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included (A5); [0, 31].
-  int mean_filter_passes = 1;   ///< In [0, 1000] (A5).
+  int neighborhood = 5;        ///< Edge of the cubic window in voxels, odd, in [3, 63] [P].
+  double gamma_deg = 180.0;    ///< Normalizer of the mean normal angle, > 0 [P].
+  double length_voxels = 5.0;  ///< L: normalizer of the mean plane distance in voxels, > 0 [R].
+  ScoreNormalization normalization = ScoreNormalization::FloorMedian;  ///< [R]
+  PlaneDistance plane_distance = PlaneDistance::SignedMean;            ///< [R]
+  int mean_filter_radius = 1;   ///< Voxels: 1 is a 3×3×3 window, self included; [0, 31].
+  int mean_filter_passes = 1;   ///< In [0, 1000].
   double floor = 0.05;          ///< Smallest C_d/L + C_a/gamma (FloorMedian, Max), > 0.
   double median_factor = 1.25;  ///< Score 1 at this multiple of the median (FloorMedian), > 0.
   void validate() const;        ///< Throws InvalidInput naming the field and its value.
@@ -46,7 +45,7 @@ struct ContactScoreMap {
 };
 
 /// The paper's contact score map. Neighbors are all other partial voxels with a normal in the
-/// window, connected or not (A4): the far side of a thin part is what marks it as thin. A patch
+/// window, connected or not: the far side of a thin part is what marks it as thin. A patch
 /// without a normal or without neighbors scores 0, after the mean filter too, and counts as 0 in
 /// the mean of others. The median of FloorMedian is taken over the scored ones, after the mean
 /// filter.

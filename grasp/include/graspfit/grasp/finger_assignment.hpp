@@ -6,7 +6,7 @@
 
 namespace graspfit::grasp {
 
-/// Assigns targets to fingers (A21, A22): the seed to the first of them, the others by the
+/// Assigns targets to fingers: the seed to the first of them, the others by the
 /// permutation with the least angular error around the palm axis. A target of the palm stays it.
 /// @throws InvalidInput unless there is one target for every part, the palm's (if any) last.
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,

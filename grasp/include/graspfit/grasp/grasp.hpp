@@ -38,7 +38,7 @@ struct Grasp {
   contact::ContactQuality quality;
   /// In GraspIt!'s convention at the planner's friction; none where nothing touches.
   std::optional<contact::WrenchQuality> wrench;
-  double ideal_m = 0.0;  ///< M of the targets themselves (A36).
+  double ideal_m = 0.0;  ///< M of the targets themselves.
   GraspPenetration penetration;
   bool has_all_contacts = false;  ///< Every requested finger/palm has a contact; of a refined grasp
                                   ///< one with a gap of at most RefinementOptions::largest_gap.

@@ -64,6 +64,7 @@ struct GraspFile {
   hands::HandModel hand;                      ///< As loaded again from the files recorded.
   std::vector<std::string> link_mesh_sha256;  ///< One per link, of its mesh files one after the
                                               ///< other; empty text where it has none.
+  std::string preset;  ///< That `options` come from, before what was set beside it; empty: none.
   PlannerOptions options;
   std::string version = library_version();  ///< Of the library that planned.
   std::vector<std::string> fingers;         ///< Requested, the thumb first; what `options` came to.

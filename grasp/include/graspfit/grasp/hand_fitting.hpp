@@ -13,7 +13,7 @@ namespace graspfit::grasp {
 enum class GraspStyle {
   Precision,  ///< Targets go to the fingertips.
   Power,      ///< Targets go to the fingertips and the palm; the palm is brought to the surface
-              ///< first and links behind the tips are closed onto it (A39).
+              ///< first and links behind the tips are closed onto it.
 };
 
 /// What a motion of the hand must not do (paper section 9).
@@ -25,7 +25,7 @@ enum class PenetrationGuard {
            ///< intersect, decided exactly [R].
 };
 
-/// When a closing part has touched (notes A32).
+/// When a closing part has touched.
 enum class ContactState {
   Closed,  ///< When its next motion would enter what the guard keeps free, or take its surface out
            ///< of its clip volume: fingers "stop their movements by touching the object surface"
@@ -35,7 +35,7 @@ enum class ContactState {
                ///< of the paper [R].
 };
 
-/// What the palm does once a finger touches (notes A29).
+/// What the palm does once a finger touches.
 enum class PalmAfterContact {
   Frozen,     ///< It stays: a shift would drag the finger.
   Recentred,  ///< Once the fingers have closed it goes on in small steps that bring the mean of the
@@ -43,23 +43,21 @@ enum class PalmAfterContact {
               ///< contacts come nearer to targets.
 };
 
-/// Parameters of the fitting loop (paper sections 7–9; notes A23–A32).
+/// Parameters of the fitting loop (paper sections 7–9).
 struct FittingOptions {
-  double clearance =
-      0.02;  ///< Between the object and the palm at the start [m], in [0, 10] (A24) [R].
+  double clearance = 0.02;  ///< Between the object and the palm at the start [m], in [0, 10] [R].
   double large_step_at = 2.0;  ///< d_min from which large steps are taken [voxels] [P: "e.g. 2"].
   double large_step_limit =
-      8.0;  ///< Largest motion of the fastest point in a large step [voxels] (A30) [R].
-  double small_step =
-      0.2;               ///< Motion of the fastest point in a small step [voxels], > 0 (A30) [R].
-  int max_halvings = 5;  ///< Of a step that would penetrate (A30) [R].
+      8.0;                   ///< Largest motion of the fastest point in a large step [voxels] [R].
+  double small_step = 0.2;   ///< Motion of the fastest point in a small step [voxels], > 0 [R].
+  int max_halvings = 5;      ///< Of a step that would penetrate [R].
   int max_iterations = 400;  ///< Of the loop, ≥ 1.
   double sample_spacing =
       0.5;  ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
   PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
-  ContactState contact_state = ContactState::Closed;  ///< A32.
+  ContactState contact_state = ContactState::Closed;  ///< [P]
   double closing_tolerance = 1e-5;  ///< Motion at which closing ends where it is to touch [m], > 0.
-  PalmAfterContact palm_after_contact = PalmAfterContact::Recentred;  ///< A29 [R].
+  PalmAfterContact palm_after_contact = PalmAfterContact::Recentred;  ///< [R]
   /// Whether links must not run into each other either, exclusions of the model left out [R].
   /// Without: fingers close through each other, and refinement has to part them. Links that meet
   /// where the loop starts are let go on.
@@ -75,7 +73,7 @@ enum class FittingStop {
   InitialCollision,  ///< No starting pose clear of the object was found.
   BlockedFinger,  ///< A part with a target was stopped by the object, or by the surroundings, where
                   ///< its pad does not touch.
-  MissedContact,  ///< A part with a target reached its limits without touching (A31).
+  MissedContact,  ///< A part with a target reached its limits without touching.
   IterationLimit,  ///< Work budget used up.
 };
 
@@ -100,7 +98,7 @@ struct FittingResult {
 /// first, without the object, and steps 2 to 5 move toward it: the palm along n_palm to where the
 /// tips' centroid will be over that of the targets, then fingers by all their joints together, then
 /// on by proximal joints and, where a link behind the tip is stopped, by the distal ones. For power
-/// grasps (A39): the palm first, until its clip volume holds surface or the guard stops it; then
+/// grasps: the palm first, until its clip volume holds surface or the guard stops it; then
 /// each finger, one without a target too, by its proximal joint until stopped, then by the next. An
 /// attempt ends early when a part has stopped farther than `give_up_distance` from the object.
 ///

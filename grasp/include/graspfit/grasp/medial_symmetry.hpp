@@ -20,7 +20,7 @@ enum class SymmetryKind {
 };
 
 /// Parameters of the baseline MA [Przybylski, Asfour & Dillmann 2011]; values from its first
-/// author's published implementation (notes 17.2) unless marked [R].
+/// author's published implementation unless marked [R].
 struct MedialSymmetryOptions {
   int samples = 1000;  ///< Surface points that get a ball, in [1, 10⁶] [R]: there all vertices.
   double min_object_angle_deg = 120.0;  ///< Balls with smaller ones go, in [0, 180].

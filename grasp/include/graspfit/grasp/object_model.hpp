@@ -24,11 +24,11 @@ inline constexpr int kRoomVoxels = 8;
 /// How an object is prepared for planning.
 struct ObjectModelOptions {
   int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
-  /// Room around the object [m] (A8), ≥ 0; empty: `kRoomVoxels`, whatever the hand.
+  /// Room around the object [m], ≥ 0; empty: `kRoomVoxels`, whatever the hand.
   std::optional<double> margin = {};
-  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
+  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   ScoreOptions score = {};
-  std::optional<geometry::WeakRegionOptions> weak = {};  ///< Looked for where given (A37).
+  std::optional<geometry::WeakRegionOptions> weak = {};  ///< Looked for where given.
   base::ContentCache weak_cache = {};  ///< Where weak regions of earlier runs are kept.
   void validate() const;               ///< Throws InvalidInput naming the field and its value.
 };
@@ -38,7 +38,7 @@ struct ObjectModelOptions {
 struct ObjectModel {
   geometry::MeshQuery query;                    ///< The mesh with its box tree.
   geometry::MassProperties mass;                ///< Center of mass at uniform density.
-  double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m] (A11).
+  double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m].
   geometry::VoxelGrid grid;                     ///< The object and some room around it.
   std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.

@@ -52,9 +52,12 @@ template <>
 inline constexpr std::array kNames<SearchRule> = {NamedValue{SearchRule::Best, "best"},
                                                   NamedValue{SearchRule::First, "first"}};
 template <>
-inline constexpr std::array kNames<AttemptChoice> = {
-    NamedValue{AttemptChoice::First, "first"}, NamedValue{AttemptChoice::Balanced, "balanced"},
-    NamedValue{AttemptChoice::Strongest, "strongest"}};
+inline constexpr std::array kNames<CandidateOrder> = {
+    NamedValue{CandidateOrder::Pads, "pads"}, NamedValue{CandidateOrder::Balance, "balance"}};
+template <>
+inline constexpr std::array kNames<KeptCandidate> = {
+    NamedValue{KeptCandidate::First, "first"}, NamedValue{KeptCandidate::Balanced, "balanced"},
+    NamedValue{KeptCandidate::Strongest, "strongest"}};
 template <>
 inline constexpr std::array kNames<PenetrationGuard> = {
     NamedValue{PenetrationGuard::Voxels, "voxels"}, NamedValue{PenetrationGuard::Meshes, "meshes"}};

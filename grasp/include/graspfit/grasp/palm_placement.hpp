@@ -18,7 +18,7 @@ struct PalmPlacement {
   std::optional<double> palm_room = {};
 };
 
-/// Candidate palm placements for a set of targets (A23): ± the normal of the target triangle; 16
+/// Candidate palm placements for a set of targets: ± the normal of the target triangle; 16
 /// around the axis for two targets; the least-squares plane's normals for more than three; where
 /// the last target is the palm's, against the normal of that alone, in eight turns about it if the
 /// seed lies on the palm's axis (within 10 mm) and so leaves them open. Those with more room first

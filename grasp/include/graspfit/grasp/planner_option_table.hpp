@@ -33,6 +33,7 @@ using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::v
 /// An option of `PlannerOptions` that people set.
 struct PlannerOption : OptionRow {
   OptionKind kind = OptionKind::Number;
+  std::string path = "";  ///< Of its key among the options of a grasp file: "fitting.clearance_m".
   std::vector<std::string> choices = {};  ///< Of a choice.
   std::string fallback = "";              ///< Its default as text; empty: it is not set.
 

@@ -27,7 +27,7 @@ enum class Acceptance {
 };
 
 /// Which usable grasps are rejected, so that the next attempt draws new targets: the validation of
-/// the paper's section 6.5, which leaves open how much is too much (notes A36).
+/// the paper's section 6.5, which leaves open how much is too much.
 enum class Rejection {
   None,
   Deviation,  ///< A requested contact farther from its target as drawn than
@@ -36,7 +36,7 @@ enum class Rejection {
               ///< M < 0.6. Selects by M itself.
 };
 
-/// When the planner stops looking (notes A36).
+/// When the planner stops looking.
 enum class SearchRule {
   Best,   ///< Use all attempts and return the best accepted grasps: the paper's generate, evaluate,
           ///< select.
@@ -44,26 +44,31 @@ enum class SearchRule {
           ///< grasps.
 };
 
-/// What becomes of a hand that has closed while a requested part does not touch (notes A31).
+/// What becomes of a hand that has closed while a requested part does not touch.
 enum class MissingContact {
   Fails,     ///< The attempt has failed: a formed grasp needs them all [P: its stop condition].
   Measured,  ///< The contacts that there are count; M > 0 makes it usable. Without refinement only:
              ///< refined grasps have all their contacts. For tables over all attempts with M > 0.
 };
 
-/// Which of the starts that one attempt has is kept: each a side of a set of targets from which a
-/// hand is fitted [R]. The first two know one set per attempt.
-enum class AttemptChoice {
-  First,      ///< The first whose grasp is accepted. Sets on which the pads would lie flattest.
+/// Which of an attempt's candidates go first, and on which of the target sets drawn: each is a side
+/// of a set, from which a hand is fitted [R].
+enum class CandidateOrder {
+  Pads,     ///< Those on whose targets the fingertip pads would lie flattest.
+  Balance,  ///< Those whose targets balance one another (within the squeeze's largest residual) at
+            ///< `squeeze_friction`, then those that do at `friction`; among equals as `Pads`.
+};
+
+/// Which of an attempt's candidates is kept [R]. The first two know those of one target set.
+enum class KeptCandidate {
+  First,      ///< The first whose grasp is accepted.
   Balanced,   ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
-              ///< grasp of least residual. Of the sets drawn those go first whose targets balance
-              ///< one another (within the squeeze's largest residual) at `squeeze_friction`, then
-              ///< those that do at `friction`.
+              ///< grasp of least residual.
   Strongest,  ///< All are tried; of the accepted grasps the strongest one with a balanced squeeze,
               ///< else the strongest: largest ε, signed, within cones of `squeeze_friction`, of the
               ///< contacts that touch (with refinement: within its largest gap), torques over the
-              ///< object's largest radius. The sides of all sets drawn are starts, in the order of
-              ///< `Balanced`; of a ranked search those of its next set.
+              ///< object's largest radius. The sides of all sets drawn are candidates; of a ranked
+              ///< search those of its next set.
 };
 
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
@@ -82,41 +87,41 @@ struct PlannerOptions {
   int count = 1;  ///< Grasps to collect (K), ≥ 1.
   std::uint64_t seed = 1;
   SearchRule search = SearchRule::Best;
-  int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time (A20, A36).
+  int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time.
   /// Steps of fitting and refinement of all attempts together, ≥ 1: the attempt with which their
-  /// sum, taken in the order of attempts, reaches it is the last; empty: no such budget (A36).
+  /// sum, taken in the order of attempts, reaches it is the last; empty: no such budget.
   std::optional<std::int64_t> max_iterations;
   Acceptance acceptance = Acceptance::Valid;
   MissingContact missing_contact = MissingContact::Fails;
   Rejection rejection = Rejection::None;      ///< [R]: which grasps are good the measures say.
   std::optional<double> largest_deviation;    ///< Of a contact from its target [m], > 0; empty: the
-                                              ///< width of a fingertip pad (A36).
+                                              ///< width of a fingertip pad.
   std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
                                               ///< by targets' sides and by every grasp accepted.
   double approach_angle =
-      std::numbers::pi /
-      2;  ///< Largest angle of the palm direction from it [rad], in (0, π] (A23).
+      std::numbers::pi / 2;  ///< Largest angle of the palm direction from it [rad], in (0, π].
   std::optional<double>
       wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
   int resolution = 30;     ///< Voxels along the object's longest extent [P].
-  std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm) (A33).
-  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A6, A34.
+  std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm).
+  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   std::optional<contact::CountedPads> counted_pads;  ///< Empty: in power grasps all [P: proximal
                                                      ///< links are encouraged to touch], else those
-                                                     ///< of fingertips and palm (A35) [R].
+                                                     ///< of fingertips and palm [R].
   contact::ContactPieces contact_pieces = contact::ContactPieces::Joined;
   ScoreOptions score;
   /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
-  /// for and S = 1 everywhere (A37).
+  /// for and S = 1 everywhere.
   std::optional<geometry::WeakRegionOptions> weak = geometry::WeakRegionOptions{};
   TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
   /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, the side with more room first.
   int target_draws = 32;
-  AttemptChoice attempt_choice = AttemptChoice::First;
+  CandidateOrder candidate_order = CandidateOrder::Pads;
+  KeptCandidate kept = KeptCandidate::First;
   int max_placements = 4;  ///< Sides that are fitted, ≥ 1: of one target set, the flattest first
-                           ///< (A23) [R], of which three and more targets have two, two have
+                           ///< [R], of which three and more targets have two, two have
                            ///< sixteen; of all sets drawn where the strongest grasp is kept.
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
@@ -127,7 +132,7 @@ struct PlannerOptions {
   RefinementOptions refinement;
   double self_overlap =
       0.001;  ///< Without refinement: overlap of links of different fingers that a formed grasp may
-              ///< have before it is rejected as a self-collision [m], ≥ 0 (A40) [R].
+              ///< have before it is rejected as a self-collision [m], ≥ 0 [R].
   /// Every contact's score must exceed it, in [0, 1), whether the pad had a target or not; empty:
   /// only the scores of targets count, as the paper states it [R].
   std::optional<double> contact_score_threshold;
@@ -142,10 +147,10 @@ struct PlannerOptions {
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
 
-/// The planner's rule for clip volumes (A33).
+/// The planner's rule for clip volumes.
 double clip_thickness(const PlannerOptions& options, double voxel_size);
 
-/// The planner's rule for deviations from targets (A36) [m].
+/// The planner's rule for deviations from targets [m].
 double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand);
 
 /// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
@@ -160,7 +165,7 @@ contact::ContactEstimationOptions contact_estimation(const PlannerOptions& optio
 /// all contacts do.
 std::optional<double> bearing_gap(const PlannerOptions& options);
 
-/// What `options` ask of `hand`, the thumb first where it is among the fingers (A22).
+/// What `options` ask of `hand`, the thumb first where it is among the fingers.
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
 
 }  // namespace graspfit::grasp

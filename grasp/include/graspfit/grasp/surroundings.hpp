@@ -10,7 +10,7 @@
 
 namespace graspfit::grasp {
 
-/// What stands around the object and must not be touched, in the object frame O (A45).
+/// What stands around the object and must not be touched, in the object frame O.
 struct Surroundings {
   std::optional<double> table_z_O;             ///< Everything at or below z = this is solid [m].
   std::vector<geometry::MeshQuery> obstacles;  ///< Closed solids in O.

@@ -17,8 +17,8 @@ namespace graspfit::grasp {
 
 /// Fingers and palm that must touch.
 struct RequestedParts {
-  std::vector<int> fingers;  ///< Of the hand, the seed's first (the thumb where it is among them,
-                             ///< A22).
+  std::vector<int> fingers;  ///< Of the hand, the seed's first (the thumb where it is among
+                             ///< them).
   bool palm = false;
   int size() const { return static_cast<int>(fingers.size()) + (palm ? 1 : 0); }
 };
@@ -29,7 +29,7 @@ enum class TargetSearch {
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
 };
 
-/// Which earlier targets a new one of a finger must form a stable pair with (notes A17).
+/// Which earlier targets a new one of a finger must form a stable pair with.
 enum class PairRule {
   Seed,      ///< With the seed (the thumb's target) [R].
   AllPairs,  ///< With every earlier target (the literal reading). Below a cone of 45° no five
@@ -41,30 +41,28 @@ enum class PairRule {
 inline constexpr int kMostParts = 6;
 
 /// What a contact in the middle of its pad has of the pad's largest boundary distance, and the
-/// share of a pad that meets the surface then: the terms of the ideal M (A10, A36, A48) [R].
+/// share of a pad that meets the surface then: the terms of the ideal M [R].
 inline constexpr double kIdealBoundaryDistance = 1.0;
 inline constexpr double kIdealArea = 0.3;
 
-/// Parameters of target selection (paper section 6; notes A17–A20, A47, A48).
+/// Parameters of target selection (paper section 6).
 struct TargetOptions {
   double score_threshold = 0.6;  ///< Every target's score must exceed it, in [0, 1) [P].
   double theta_max =
       std::numbers::pi / 4;             ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
-  PairRule pair_rule = PairRule::Seed;  ///< A17.
-  double edge_tolerance_rel = 0.25;  ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 (A19) [R].
-  double centroid_limit_rel =
-      0.6;  ///< Largest distance of the centroid of the fingers' targets from the
-            ///< center of mass over the normalizing radius (A19) [R].
+  PairRule pair_rule = PairRule::Seed;  ///< [R]
+  double edge_tolerance_rel = 0.25;     ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 [R].
+  double centroid_limit_rel = 0.6;  ///< Largest distance of the centroid of the fingers' targets
+                                    ///< from the center of mass over the normalizing radius [R].
   /// Weight in the rank of the angles between the lines of stable pairs and the normals, as a share
-  /// of theta_max, ≥ 0. 0: not ranked by angles (A19) [R]; 1 puts them beside edges and centroid.
+  /// of theta_max, ≥ 0. 0: not ranked by angles [R]; 1 puts them beside edges and centroid.
   double angle_weight = 0.0;
-  double pool_fraction =
-      0.2;               ///< Share of the ranked candidates drawn from, in (0, 1] (A19, A20) [R].
-  int pool_minimum = 5;  ///< Candidates drawn from at least, if there are so many (A20) [R].
-  int max_seeds = 200;  ///< Seeds tried per set, ≥ 1 (A20) [R]; an attempt that has a set draws no
+  double pool_fraction = 0.2;  ///< Share of the ranked candidates drawn from, in (0, 1] [R].
+  int pool_minimum = 5;        ///< Candidates drawn from at least, if there are so many [R].
+  int max_seeds = 200;  ///< Seeds tried per set, ≥ 1 [R]; an attempt that has a set draws no
                         ///< more once its draws together have tried as many.
   int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
-                               ///< (A19) [R]. The ranked search never relaxes them.
+                               ///< [R]. The ranked search never relaxes them.
   double min_separation =
       0.0;  ///< Between targets of different parts [m], ≥ 0; the planner sets one pad width.
   /// Of all places of the pool in one cube of this size [m] whose normals have the same largest
@@ -73,8 +71,8 @@ struct TargetOptions {
   double pool_spacing = 0.0;
   TargetSearch search = TargetSearch::Random;
   bool exclude_weak = true;  ///< No targets on weak features, where the object model knows them
-                             ///< (notes 19.3) [R].
-  /// How strongly a random set with a large ideal M is preferred, ≥ 0 (A48): of up to
+                             ///< [R].
+  /// How strongly a random set with a large ideal M is preferred, ≥ 0: of up to
   /// `ideal_m_draws` complete sets one is drawn with probability ∝ M^bias. 0: the first set, M is
   /// not used [R].
   double ideal_m_bias = 0.0;
@@ -141,7 +139,7 @@ struct PalmReach {
   std::vector<std::optional<hands::TipReach>> tips;
 };
 
-/// How far apart parts of a hand can be, computed once per hand (A18).
+/// How far apart parts of a hand can be, computed once per hand.
 struct PartDistances {
   hands::TipDistances tip_to_tip;                      ///< `[a][b]`, as `hands::HandWorkspace`.
   std::vector<hands::DistanceRange> palm_to_tip = {};  ///< Per finger, as `hands::HandWorkspace`.
@@ -156,7 +154,7 @@ PartDistances part_distances(const hands::HandModel& hand, const RequestedParts&
 std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
                                           const std::vector<int>& fingers = {});
 
-/// M of the targets themselves: every contact in the middle of its pad (A36, A48). `fingers` as of
+/// M of the targets themselves: every contact in the middle of its pad. `fingers` as of
 /// `contacts_at`. @throws InvalidInput as `contact::ideal_quality`.
 double ideal_m(const ObjectModel& object, const TargetContacts& targets,
                const IdealMeasure& measure, const std::vector<int>& fingers = {});

@@ -33,7 +33,7 @@ struct ContactPad {
   /// That upper side's facets as half-spaces with normal z > 0, what `surface_planes` makes of
   /// outline and surface; the reader does so. Empty: the pad is flat.
   std::vector<geometry::HalfSpace> planes;
-  /// Explicit thickness of the clip volume [m]; empty: the planner's rule (notes A33).
+  /// Explicit thickness of the clip volume [m]; empty: the planner's rule.
   std::optional<double> clip_thickness;
 };
 

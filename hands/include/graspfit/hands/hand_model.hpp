@@ -20,7 +20,7 @@ struct Coupling {
   double ratio = 1.0;   ///< [rad/rad], [m/m] or mixed.
   double offset = 0.0;  ///< [rad] or [m].
   /// True where a clutch frees the leader when its link is blocked, and this joint goes on closing
-  /// alone up to its own limit (Barrett's TorqueSwitch; notes 22.1).
+  /// alone up to its own limit (Barrett's TorqueSwitch).
   bool breakaway = false;
 };
 
@@ -124,7 +124,7 @@ struct HandModel {
 void validate(const HandModel& model);
 
 /// Upper bound of the distance of any point of the hand from the palm center over all
-/// configurations [m]: sum of chain lengths. Sizes the interaction volume (notes A8).
+/// configurations [m]: sum of chain lengths. Sizes the interaction volume.
 double largest_reach(const HandModel& model);
 
 }  // namespace graspfit::hands

@@ -28,7 +28,7 @@ using TipDistances = std::vector<std::vector<DistanceRange>>;
 struct HandWorkspace {
   /// Between the tip pads' contact points of two fingers, where a pad's surface is over the origin
   /// of its frame (the origin itself, if it is flat): symmetric, zero on the diagonal and for
-  /// fingers without a tip pad (notes A18). The hand may touch itself.
+  /// fingers without a tip pad. The hand may touch itself.
   TipDistances tip_to_tip;
   /// Palm center to a finger's tip pad; zero without one. The hand may touch itself.
   std::vector<DistanceRange> palm_to_tip;

@@ -13,7 +13,7 @@
 
 namespace graspfit::contact {
 
-/// Which pads can have contacts (notes A35).
+/// Which pads can have contacts.
 enum class CountedPads {
   All,          ///< Those of every link: fingers may touch with any part.
   TipsAndPalm,  ///< Fingertips and palm [P: "a clip volume for each finger/palm"].
@@ -30,8 +30,8 @@ enum class ContactPieces {
 /// Parameters of contact estimation (paper section 10).
 struct ContactEstimationOptions {
   double clip_thickness = 0.0;  ///< Of clip volumes whose pad states none [m], > 0. The planner's
-                                ///< rule: max(0.5 voxel, 1 mm) (A33).
-  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< A34.
+                                ///< rule: max(0.5 voxel, 1 mm).
+  geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   CountedPads pads = CountedPads::All;
   ContactPieces pieces = ContactPieces::Joined;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
@@ -68,7 +68,7 @@ std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L,
 
 /// Contacts of all pads of the hand that count, in pad order; those of one pad in the order of
 /// their first faces, each with the gap between the pad and its own faces. Contacts without a
-/// target count, too (A35).
+/// target count, too.
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
                                        const std::vector<geometry::RigidTransform>& X_OL,
                                        const geometry::MeshQuery& object,

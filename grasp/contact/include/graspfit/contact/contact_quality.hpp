@@ -11,28 +11,28 @@
 
 namespace graspfit::contact {
 
-/// Units of d and A in M1 and of D in M3 (notes A9–A11).
+/// Units of d and A in M1 and of D in M3.
 enum class MeasureUnits {
   Normalized,  ///< d over the pad's largest d and A over its area, both cut at 1 (rough surface can
                ///< have more area than the pad); D over the normalizing radius.
   Centimeters,  ///< d, D in cm, A in cm².
 };
 
-/// Definition of the regularity R (notes 18.3–18.4).
+/// Definition of the regularity R.
 enum class Regularity {
   Combined,   ///< Square root of angle and edge regularity.
   AngleOnly,  ///< 1 − Q, the shape index [Park & Starr 1992; Roa & Suárez 2015].
   EdgeOnly,   ///< Shortest over longest edge.
 };
 
-/// Which centroid D is measured from (notes A15).
+/// Which centroid D is measured from.
 enum class HullCentroid {
   Measure,   ///< Of the hull's area or volume.
   Vertices,  ///< Mean of the hull's vertices.
 };
 
-/// Parameters of the paper's measure M (section 4). Defaults are the paper's values [P] and the
-/// notes' readings [R].
+/// Parameters of the paper's measure M (section 4). Defaults are the paper's values [P] and,
+/// where the paper is silent, the readings recommended [R]; all are weighed in docs/readings.md.
 struct QualityOptions {
   double alpha = 2.0;  ///< Weight of contact area against boundary distance, ≥ 0 [P].
   double beta = 0.3;   ///< Weight of the centroid distance, ≥ 0 [P].
@@ -41,11 +41,11 @@ struct QualityOptions {
   double w3 = 0.5;     ///< Exponent of M3, ≥ 0 [P].
   double theta_max =
       std::numbers::pi / 4;  ///< Friction cone half-angle [rad], in (0, π/2); 45° [P].
-  MeasureUnits units = MeasureUnits::Normalized;  ///< [R] A9–A11.
-  Regularity regularity = Regularity::Combined;   ///< [R] A13.
-  HullCentroid centroid = HullCentroid::Measure;  ///< [R] A15.
+  MeasureUnits units = MeasureUnits::Normalized;  ///< [R]
+  Regularity regularity = Regularity::Combined;   ///< [R]
+  HullCentroid centroid = HullCentroid::Measure;  ///< [R]
   /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; the
-  /// planner sets 0.1 voxel (notes 18.4).
+  /// planner sets 0.1 voxel.
   double merge_distance = 0.0;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
@@ -53,8 +53,7 @@ struct QualityOptions {
 /// What of the object and the hand M depends on.
 struct QualityContext {
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
-  double normalizing_radius =
-      0.0;  ///< Half the diagonal of the object's bounding box [m] (A11), > 0.
+  double normalizing_radius = 0.0;  ///< Half the diagonal of the object's bounding box [m], > 0.
   const hands::HandModel* hand = nullptr;  ///< For pad areas and largest d; not null.
 };
 
@@ -76,7 +75,7 @@ struct SustainabilityTerm {
 struct ContactQuality {
   double m1 = 0.0;
   double m2 = 0.0;
-  double m3 = 0.0;                        ///< May be negative; M is then 0 (A12).
+  double m3 = 0.0;                        ///< May be negative; M is then 0.
   double m = 0.0;                         ///< 0: unusable.
   double regularity = 0.0;                ///< R in (0, 1]; 0 if there are fewer than two contacts.
   double centroid_distance = 0.0;         ///< D [m].
@@ -88,7 +87,7 @@ struct ContactQuality {
 };
 
 /// M1, M2, M3 and M of a set of contacts (paper section 4). Pairs are formed between contacts of
-/// different fingers only; the palm is a finger of its own (A16).
+/// different fingers only; the palm is a finger of its own.
 ///
 /// m = 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0,
 /// whatever the exponents. Independent of the order of contacts and of rigid motions up to
@@ -100,7 +99,7 @@ ContactQuality contact_quality(std::span<const Contact> contacts, const QualityC
 
 /// The same from target contacts alone (no pads): d and A taken as given terms for every contact,
 /// in [0, 1], as shares of the pad's largest d and of its area. Used for the ideal M of a target
-/// set (A36, A48).
+/// set.
 ///
 /// The hand may be null in normalized units; in centimeters the shares are of the contact's pad, or
 /// else of its finger's tip pad. @throws InvalidInput as `contact_quality`, and if two contacts
@@ -109,7 +108,7 @@ ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityCon
                              double boundary_distance_rel, double area_rel,
                              const QualityOptions& options = {});
 
-/// The line between two contacts against both cones (paper section 4.2; notes 20): the mean angle
+/// The line between two contacts against both cones (paper section 4.2): the mean angle
 /// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9
 /// m.
 ///
@@ -136,7 +135,7 @@ class StablePairTest {
   double cos_theta_max_;
 };
 
-/// R of the hull of `points` by notes 18.4, in [1e-3, 1]: 1 for regular polygons and polyhedra.
+/// R of the hull of `points`, in [1e-3, 1] [R]: 1 for regular polygons and polyhedra.
 ///
 ///     N < 2                                       0 (undefined)
 ///     N = 2                                       1

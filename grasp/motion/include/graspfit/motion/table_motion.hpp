@@ -23,7 +23,7 @@ struct SceneObject {
 };
 
 /// What stays the same while a hand moves objects about on a table: hand, objects, the table. In W
-/// everything at or below z = 0 is solid (A45).
+/// everything at or below z = 0 is solid.
 class TableScene {
  public:
   /// @throws InvalidInput for two objects of one name.
