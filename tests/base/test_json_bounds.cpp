@@ -71,7 +71,7 @@ TEST_CASE("An object may have so many members and not one more", "[base][json_bo
   CHECK(refusal_of(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}])") == "accepted");
   CHECK(
       refusal_of("{\"a\": 1,\n \"b\": {}, \"c\": 3}") ==
-      "a.json: line 2, column 15: an object has more than 2 members, which is as many as are read");
+      "a.json: line 2, column 14: an object has more than 2 members, which is as many as are read");
   CHECK(refusal_of(":::") == "accepted");  // no object, and no JSON
 }
 

@@ -64,7 +64,8 @@ Command plan_command() {
       "Lengths are meters and directions are in the object's own frame unless a flag's "
       "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
       "true meshes, every requested finger and\nthe palm, if requested, touches. epsilon: in "
-      "GraspIt!'s convention; open: the contacts\ndo not close. gap_mm: the largest of a requested contact.\n"};
+      "GraspIt!'s convention; open: the contacts\ndo not close. gap_mm: the largest of a requested "
+      "contact.\n"};
   command.options.add(object_options())
       .add(surroundings_options())
       .add(planner_options())

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <fstream>
 
+#include "files/input_file.hpp"
 #include "graspfit/base/atomic_file_writer.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/sha256.hpp"
-#include "input_file.hpp"
 
 namespace graspfit::base {
 

@@ -10,7 +10,7 @@
 #include <new>
 #include <span>
 
-#include "input_file.hpp"
+#include "files/input_file.hpp"
 
 namespace graspfit::base {
 
