@@ -22,7 +22,7 @@ const char* const kUsage =
     "Plans grasps of an object with an articulated hand by hand-object geometric fitting.\n"
     "\n"
     "  graspfit plan OBJECT          grasps of a mesh: file, table, posed meshes, pictures\n"
-    "  graspfit options              all options of plan and of experiments, as a page\n"
+    "  graspfit options              all options of the planner, as a page\n"
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit hold GRASPS.json     tests in physics whether the grasps of a file hold\n"

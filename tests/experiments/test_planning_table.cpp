@@ -11,16 +11,15 @@ using namespace graspfit;
 using namespace graspfit::experiments;
 
 TEST_CASE("Closure that only rounding makes does not count", "[experiments][planning_table]") {
-  using graspfit::experiments::internal::is_closed;
   graspfit::grasp::Grasp grasp;
   grasp.wrench.emplace();
   grasp.wrench->epsilon = -1.0;
-  CHECK_FALSE(is_closed(grasp));
+  CHECK_FALSE(grasp.is_closed());
   grasp.wrench->is_force_closure = true;
   grasp.wrench->epsilon = 1e-17;
-  CHECK_FALSE(is_closed(grasp));
+  CHECK_FALSE(grasp.is_closed());
   grasp.wrench->epsilon = 1e-3;
-  CHECK(is_closed(grasp));
+  CHECK(grasp.is_closed());
 }
 
 TEST_CASE("A cell's hand keeps above its table", "[experiments][planning_table]") {

@@ -192,6 +192,7 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
     if (!measured.contacts.empty()) measured.contacts[0].weak = i == 2;
     file.grasps.push_back(measured);
   }
+  file.preset = "strong";
   return file;
 }
 

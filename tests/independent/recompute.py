@@ -124,8 +124,8 @@ class Scene:
     """Object, surroundings and hand of a grasp file."""
 
     def __init__(self, record, folder):
-        if record["version"] != 5:
-            raise ValueError(f"is of version {record['version']}, not 5")
+        if record["version"] not in (4, 5):
+            raise ValueError(f"is of version {record['version']}, not 4 or 5")
         self.record, self.folder = record, folder
         self.options = record["planner"]["options"]
         self.used = record["planner"]["used"]

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands/experiment_commands.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/grasp/planner_presets.hpp"
 #include "graspfit/sweep/data_files.hpp"
 #include "graspfit/sweep/data_needs.hpp"
 #include "output/text_table.hpp"
@@ -49,18 +51,28 @@ std::string value_text(const Json& value) {
   return '[' + base::list_text(value, value_text) + ']';
 }
 
-/// What a setting is in the cells of an experiment: "axis resolution" where an axis sets it, else
-/// the value for all cells, else the planner's; "-" where there is none.
+/// What a setting is where these are given: its own value, or that of the preset among them.
+std::optional<std::string> value_among(const Json& settings, const std::string& name) {
+  if (settings.contains(name)) return value_text(settings.at(name));
+  if (!settings.contains("preset")) return std::nullopt;
+  const auto* const preset = grasp::preset_named(settings.at("preset").get<std::string>());
+  for (const auto& [option, value] : preset->values) {
+    if (option == name) return grasp::value_text(value);
+  }
+  return std::nullopt;
+}
+
+/// What a setting is in the cells of an experiment: "axis resolution" where an axis sets it, itself
+/// or by a preset, else the value for all cells, else the planner's; "-" where there is none.
 std::string value_in(const ExperimentConfig& config, const std::string& name,
                      const std::string& fallback) {
   for (const sweep::Axis& axis : config.sweep.axes) {
     for (const sweep::AxisValue& value : axis.values) {
-      if (Json::parse(value.settings).contains(name)) return "axis " + axis.name;
+      if (value_among(Json::parse(value.settings), name)) return "axis " + axis.name;
     }
   }
-  const Json settings = Json::parse(config.sweep.settings);
-  if (settings.contains(name)) return value_text(settings.at(name));
-  return fallback.empty() ? "-" : fallback;
+  const auto value = value_among(Json::parse(config.sweep.settings), name);
+  return value ? *value : fallback.empty() ? "-" : fallback;
 }
 
 std::string settings_text(const Experiment& experiment, const ExperimentConfig& config) {

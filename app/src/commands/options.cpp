@@ -39,6 +39,8 @@ std::string cell(std::string_view text) {
 }
 
 std::string values_text(const PlannerOption& option) {
+  if (option.name == "palm") return "flags --palm and --no-palm; setting true|false";
+  if (option.name == "weak-thickness-mm") return "> 0; none: flag --no-weak, setting 0";
   switch (option.kind) {
     case OptionKind::Number:
       return option.range.text();

@@ -89,10 +89,7 @@ std::string flag_text(std::string_view name, const OptionValue& value) {
       return std::string(name) + ' ' + std::string(*is_yes ? option.yes : option.no);
     }
   }
-  if (const auto* const number = std::get_if<std::int64_t>(&value)) {
-    return std::string(name) + ' ' + std::to_string(*number);
-  }
-  return std::string(name) + ' ' + std::get<std::string>(value);
+  return std::string(name) + ' ' + grasp::value_text(value);
 }
 
 /// "paper: the paper's grasps ... (refine off, guard voxels). fast: ...".
@@ -102,7 +99,7 @@ std::string preset_description() {
     text += ' ' + std::string(preset.name) + ": " + std::string(preset.meaning) + " (" +
             preset_values_text(preset) + ").";
   }
-  return text + " Without: the defaults below";
+  return text + " Without: the defaults";
 }
 
 po::options_description flags_of(std::string_view group) {

@@ -5,7 +5,7 @@
 namespace graspfit::app {
 
 std::string epsilon_text(const grasp::Grasp& grasp, int decimals) {
-  return grasp.is_force_closure() ? fixed_decimal(grasp.epsilon(), decimals) : "open";
+  return grasp.is_closed() ? fixed_decimal(grasp.epsilon(), decimals) : "open";
 }
 
 }  // namespace graspfit::app

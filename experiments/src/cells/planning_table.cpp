@@ -81,7 +81,7 @@ Measures measures_of(const Planned& planned) {
     measures.largest_penetration =
         std::max(measures.largest_penetration, grasp::largest_penetration(grasp));
     if (grasp.penetration.is_any()) ++measures.num_penetrating;
-    if (is_closed(grasp)) ++measures.num_closed;
+    if (grasp.is_closed()) ++measures.num_closed;
     if (grasp.squeeze && is_balanced(planned, grasp, torque_scale)) ++measures.num_balanced;
   }
   return measures;
@@ -249,11 +249,6 @@ void fill_planning_timings(const Planned& planned, sweep::ResultRow& row) {
   row.set("pre_grasp_s", timings.pre_grasp_s);
 }
 
-bool is_closed(const grasp::Grasp& grasp) {
-  constexpr double kRoundedEpsilon = 1e-9;  // far above the rounding of wrenches, 1e-16
-  return grasp.is_force_closure() && grasp.epsilon() > kRoundedEpsilon;
-}
-
 std::optional<double> largest(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
   return *std::max_element(values.begin(), values.end());
@@ -297,11 +292,11 @@ void write_best_grasps(const std::filesystem::path& folder, const Planned& plann
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw base::IoError(folder.string() + ": " + error.message());
-  grasp::write_grasps(
-      folder / "grasps.json",
-      grasp::make_grasp_file(planned.object_file->record, *planned.hand, planned.settings.options,
-                             planned.object, best,
-                             {.table_z_O = planned.settings.table_z_O, .obstacles = {}}));
+  grasp::GraspFile file = grasp::make_grasp_file(
+      planned.object_file->record, *planned.hand, planned.settings.options, planned.object, best,
+      {.table_z_O = planned.settings.table_z_O, .obstacles = {}});
+  file.preset = planned.settings.preset;
+  grasp::write_grasps(folder / "grasps.json", file);
 }
 
 }  // namespace graspfit::experiments::internal

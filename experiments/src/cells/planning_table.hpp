@@ -36,10 +36,6 @@ void fill_planning_columns(const Planned& planned, sweep::ResultRow& row);
 std::vector<sweep::Column> planning_timings();
 void fill_planning_timings(const Planned& planned, sweep::ResultRow& row);
 
-/// Whether a grasp has force closure with an epsilon above 1e-9. Two contacts opposite each other
-/// have it, too, as their wrenches are rounded, with an epsilon of 1e-17: they count as open.
-bool is_closed(const grasp::Grasp& grasp);
-
 /// Empty without any.
 std::optional<double> largest(const std::vector<double>& values);
 /// The middle of some numbers, mean of the middle two; empty without any.

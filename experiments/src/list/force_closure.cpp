@@ -95,7 +95,7 @@ std::int64_t fill(const std::string& prefix, const std::vector<const grasp::Gras
   for (const grasp::Grasp* grasp : sample) {
     epsilons.push_back(epsilon_of(*grasp));
     ms.push_back(grasp->quality.m);
-    if (is_closed(*grasp)) ++closed;
+    if (grasp->is_closed()) ++closed;
   }
   const std::int64_t attempts =
       is_full ? sample.back()->attempt + 1 : planned.result.statistics.attempts;

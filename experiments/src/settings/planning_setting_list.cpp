@@ -80,6 +80,7 @@ std::vector<PlanningSetting> object_and_hand_settings() {
          if (preset == nullptr)
            v.refuse("must be one of " + base::list_text(preset_names(), {}, "|"));
          grasp::apply_preset(s.options, *preset);
+         s.preset = v.name();
        }}};
 }
 

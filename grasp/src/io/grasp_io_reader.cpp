@@ -212,6 +212,9 @@ namespace {
 JsonValue upgraded(const JsonValue& root) {
   internal::Json json = root.json();
   const JsonValue choice = root.at("planner").at("options").at("attempt_choice");
+  if (!value_named<KeptCandidate>(choice.text())) {
+    choice.refuse("must be one of " + names_of<KeptCandidate>());
+  }
   internal::Json& options = json["planner"]["options"];
   options["candidate_order"] = choice.text() == "first" ? "pads" : "balance";
   options["kept_candidate"] = choice.text();

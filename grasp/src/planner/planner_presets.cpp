@@ -1,7 +1,9 @@
 #include "graspfit/grasp/planner_presets.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
+#include <variant>
 
 namespace graspfit::grasp {
 namespace {
@@ -19,12 +21,12 @@ OptionValue named(const char* value) { return std::string(value); }
 const std::vector<PlannerPreset>& planner_presets() {
   static const std::vector<PlannerPreset> presets = {
       {"paper",
-       "the paper's grasps, at the level of voxels: M of the contacts that come about, without "
-       "exact contact and without a way there",
+       "the paper's method as far as it states it, at the level of voxels: grasps with M > 0, "
+       "without exact contact and without a way there",
        {{"refine", false},
         {"guard", named("voxels")},
         {"accept", named("usable")},
-        {"missing-contact", named("measured")},
+        {"reject", named("deviation")},
         {"pre-grasps", false}}},
       {"fast", "the first valid grasps", {{"search", named("first")}}},
       {"strong",
@@ -38,6 +40,12 @@ const std::vector<PlannerPreset>& planner_presets() {
 const PlannerPreset* preset_named(std::string_view name) {
   const auto found = find_by_name(planner_presets(), name);
   return found == planner_presets().end() ? nullptr : &*found;
+}
+
+std::string value_text(const OptionValue& value) {
+  if (const bool* const is_yes = std::get_if<bool>(&value)) return *is_yes ? "true" : "false";
+  if (const auto* const number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
+  return std::get<std::string>(value);
 }
 
 void apply_preset(PlannerOptions& options, const PlannerPreset& preset) {

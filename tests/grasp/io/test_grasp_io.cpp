@@ -77,6 +77,7 @@ TEST_CASE("A grasp file read again holds the same values", "[grasp][grasp_io]") 
   CHECK(read.palm == written.palm);
   CHECK(read.statistics.duplicates == written.statistics.duplicates);
   CHECK(read.statistics.refinement_iterations == written.statistics.refinement_iterations);
+  CHECK(read.preset == "strong");
   CHECK(read.options.seed == written.options.seed);
   CHECK(read.options.approach_O == written.options.approach_O);
   CHECK(read.options.max_iterations == written.options.max_iterations);

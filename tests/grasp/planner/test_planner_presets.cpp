@@ -49,10 +49,15 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   CHECK_FALSE(paper.pre_grasps);
   CHECK(paper.fitting.guard == PenetrationGuard::Voxels);
   CHECK(paper.acceptance == Acceptance::Usable);
-  CHECK(paper.missing_contact == MissingContact::Measured);
+  CHECK(paper.rejection == Rejection::Deviation);
+  CHECK(paper.missing_contact == MissingContact::Fails);
+  CHECK(preset_named("paper")->values.size() == 5);
   CHECK(options_of("fast").search == SearchRule::First);
   CHECK(options_of("fast").kept == KeptCandidate::First);
   const PlannerOptions strong = options_of("strong");
+  CHECK(strong.candidate_order == CandidateOrder::Balance);
+  CHECK(preset_named("strong")->values.size() == 3);
+  CHECK(preset_named("fast")->values.size() == 1);
   CHECK(strong.kept == KeptCandidate::Strongest);
   CHECK(strong.max_placements == 24);
   CHECK(strong.search == SearchRule::Best);

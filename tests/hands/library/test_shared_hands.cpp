@@ -339,7 +339,7 @@ TEST_CASE("GraspIt!'s own files give back the couplings that the URDFs beside th
   const HandModel five = hands::read_hand_model(*human);
   CHECK(five.fingers.size() == 5);
   CHECK(five.num_intrinsic_dof() == 20);
-  // Approach direction (0, -1, 0) from (-130, -15, 0) mm.
+  // As GraspIt! has it: approach direction (0, -1, 0) from (-130, -15, 0) mm.
   CHECK((five.palm.direction_H - Vector3d(0, -1, 0)).norm() < 1e-12);
   // The file's own point is not read; the derived center lies beside it on the palm.
   CHECK((five.palm.center_H - Vector3d(-0.130, -0.015, 0)).norm() < 0.012);

@@ -37,13 +37,14 @@ struct PlanningSettings {
   ObjectSettings object;
   std::string hand;  ///< A shipped one, or a description in the data folder (has a '/').
   std::optional<double> table_z_O;  ///< Everything at or below this z is solid [m].
+  std::string preset;  ///< That `options` come from, before what else is set; empty: none.
   grasp::PlannerOptions options;
 };
 
 /// Names of all settings with their units and meanings:
 ///
 ///     file, packaged or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
-///     rotation_deg, hand
+///     rotation_deg, hand, preset
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.

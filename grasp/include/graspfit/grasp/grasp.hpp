@@ -49,6 +49,9 @@ struct Grasp {
   /// Of the contacts that touch; without any nothing is withstood.
   double epsilon() const { return wrench ? wrench->epsilon : 0.0; }
   bool is_force_closure() const { return wrench && wrench->is_force_closure; }
+  /// Force closure by more than the rounding of wrenches, about 1e-16, which decides by itself
+  /// where contacts face each other exactly.
+  bool is_closed() const { return is_force_closure() && wrench->epsilon > 1e-9; }
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
   /// Usable, penetrates nothing on the true meshes, and every requested finger/palm has contact.

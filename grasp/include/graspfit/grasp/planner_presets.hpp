@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -22,7 +23,11 @@ const std::vector<PlannerPreset>& planner_presets();
 /// The preset of that name; null if there is none.
 const PlannerPreset* preset_named(std::string_view name);
 
-/// Sets the options of a preset.
+/// "strongest", "24", "true": a value of a preset as a setting has it.
+std::string value_text(const OptionValue& value);
+
+/// Sets the options of a preset. Precondition: it is one of `planner_presets`, or its values are as
+/// `set_option` wants them.
 void apply_preset(PlannerOptions& options, const PlannerPreset& preset);
 
 }  // namespace graspfit::grasp

@@ -124,7 +124,8 @@ struct HandModel {
 void validate(const HandModel& model);
 
 /// Upper bound of the distance of any point of the hand from the palm center over all
-/// configurations [m]: sum of chain lengths. Sizes the interaction volume.
+/// configurations [m]: sum of chain lengths. It bounds from how far
+/// a hand may have to come.
 double largest_reach(const HandModel& model);
 
 }  // namespace graspfit::hands
