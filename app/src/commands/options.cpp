@@ -1,9 +1,13 @@
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/planner_presets.hpp"
 #include "input/planner_flags.hpp"
 
@@ -25,10 +29,13 @@ constexpr const char* kHead =
     "[readings.md](readings.md).\n";
 
 Command options_command() {
+  auto options = option_group("Options");
+  add_option(options, "schema", "FILE", std::nullopt,
+             "print instead this schema of grasp files, with the options as they are now");
   return {"options", "",
           "Prints all options of the planner as a Markdown page: names, defaults, units, ranges, "
           "meanings.\n",
-          option_group("Options"), ""};
+          std::move(options), ""};
 }
 
 /// Cells of Markdown tables are separated by |.
@@ -70,9 +77,7 @@ std::string default_text(const PlannerOption& option) {
 std::string meaning_text(const PlannerOption& option) {
   std::string text(option.meaning);
   if (!option.is_setting) text += "; not a setting of experiments";
-  if (option.source.empty()) return text;
-  return text + " [" + std::string(option.source) + (option.reading.empty() ? "" : ", ") +
-         std::string(option.reading) + ']';
+  return text + option.source_text();
 }
 
 std::string preset_rows() {
@@ -104,6 +109,11 @@ ExitCode run_options(const std::vector<std::string>& arguments) {
   const Flags flags(command, arguments);
   if (flags.wants_help()) {
     std::fputs(help_text(command).c_str(), stdout);
+    return kSuccess;
+  }
+  if (flags.has("schema")) {
+    const std::string& file = flags.text("schema");
+    std::fputs(grasp::with_option_schema(base::read_file(file), file).c_str(), stdout);
     return kSuccess;
   }
   std::string page = kHead + preset_rows();

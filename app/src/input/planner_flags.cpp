@@ -48,9 +48,7 @@ base::NumberRange range_of(const PlannerOption& option) {
 std::string description_of(const PlannerOption& option) {
   std::string text(option.meaning);
   if (option.is_number()) text += ", " + range_of(option).text();
-  if (option.source.empty()) return text;
-  return text + " [" + std::string(option.source) + (option.reading.empty() ? "" : ", ") +
-         std::string(option.reading) + ']';
+  return text + option.source_text();
 }
 
 /// The palm's flag is a switch, and so is its opposite.

@@ -207,6 +207,44 @@ HoldRecord read_hold(const JsonValue& node, std::size_t num_grasps) {
 
 namespace {
 
+/// Sets options from the members of a JSON object. Those that it lacks keep their defaults; members
+/// that are no options are refused.
+class OptionReader {
+ public:
+  explicit OptionReader(JsonValue node) : node_(std::move(node)) {}
+
+  template <class Options, class Rows>
+  void read(Options& options, const Rows& rows) {
+    rows(*this, options);
+    node_.require_members({}, keys_);
+  }
+
+  template <class Value>
+  void operator()(Value& value, const OptionRow& row) {
+    if (is_given(row.key)) JsonReader{node_}(value, row);
+  }
+  template <class Options, class Rows>
+  void group(std::string_view key, Options& within, const Rows& rows) {
+    if (is_given(key)) OptionReader(node_.at(keys_.back())).read(within, rows);
+  }
+  template <class Options, class Rows>
+  void optional_group(std::string_view key, std::optional<Options>& within, const Rows& rows) {
+    if (!is_given(key)) return;
+    const JsonValue given = node_.at(keys_.back());
+    within.reset();
+    if (!given.is_null()) OptionReader(given).read(within.emplace(), rows);
+  }
+
+ private:
+  bool is_given(std::string_view key) {
+    keys_.emplace_back(key);
+    return node_.has(keys_.back());
+  }
+
+  JsonValue node_;
+  std::vector<std::string> keys_;
+};
+
 /// A file of version 4 as one of version 5: `attempt_choice` was order and choice of candidates at
 /// once.
 JsonValue upgraded(const JsonValue& root) {
@@ -218,6 +256,7 @@ JsonValue upgraded(const JsonValue& root) {
   internal::Json& options = json["planner"]["options"];
   options["candidate_order"] = choice.text() == "first" ? "pads" : "balance";
   options["kept_candidate"] = choice.text();
+  options.erase("attempt_choice");
   return root.with_root(json);
 }
 
@@ -252,7 +291,7 @@ GraspFile read_grasps(const std::filesystem::path& path) {
   file.link_mesh_sha256 = recorded_hand.link_mesh_sha256;
 
   const JsonValue planner = root.at("planner");
-  JsonReader{planner}.group("options", file.options, internal::planner_rows);
+  OptionReader(planner.at("options")).read(file.options, internal::planner_rows);
   file.options.seed = planner.at("seed").unsigned_integer();
   if (const auto preset = planner.find("preset")) file.preset = preset->name();
   try {

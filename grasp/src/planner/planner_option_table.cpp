@@ -134,6 +134,11 @@ bool PlannerOption::has_choice(std::string_view text) const {
 
 std::string PlannerOption::choices_text() const { return base::list_text(choices, {}, "|"); }
 
+std::string PlannerOption::source_text() const {
+  if (source.empty()) return "";
+  return " [" + std::string(source) + (reading.empty() ? "" : ", ") + std::string(reading) + ']';
+}
+
 const std::vector<PlannerOption>& planner_option_table() {
   static const std::vector<PlannerOption> table = [] {
     Listing listing;

@@ -6,8 +6,8 @@
 
 /// \file
 /// Every option of the planner, once: its row. Of these rows come the checks of ranges, the options
-/// of grasp files, the flags of the program with their help, and the settings of experiments with
-/// their schema. `grasps.schema.json` is kept by hand.
+/// of grasp files with their schema, the flags of the program with their help, and the settings of
+/// experiments with theirs.
 ///
 /// Each function names the fields of one struct, in the order of grasp files, to a visitor:
 /// `at(field, row)` for a field, `at.group(key, struct, rows)` for a struct within, and
@@ -47,12 +47,13 @@ constexpr auto score_rows = [](auto& at, auto& score) {
 };
 
 // The structs of geometry and contact (weak features with their rays, squeeze, measure) check
-// themselves, without the planner: what rows say of their ranges is for flags and settings.
+// themselves, without the planner: what rows say of their ranges is for flags, settings and
+// schemas.
 
 constexpr auto shape_diameter_rows = [](auto& at, auto& rays) {
-  at(rays.num_rays, OptionRow{"num_rays"});
-  at(rays.cone_angle_deg, OptionRow{"cone_angle_deg"});
-  at(rays.trim_deviations, OptionRow{"trim_deviations"});
+  at(rays.num_rays, {"num_rays", between(1, 10000)});
+  at(rays.cone_angle_deg, {"cone_angle_deg", between(0, 179)});
+  at(rays.trim_deviations, {.key = "trim_deviations", .range = above(0), .may_be_infinite = true});
 };
 
 constexpr auto weak_rows = [](auto& at, auto& weak) {
@@ -60,9 +61,9 @@ constexpr auto weak_rows = [](auto& at, auto& weak) {
                            "slender features thinner than this are fragile: S = 0 in M1; "
                            "experiments say 0 where none are looked for",
                            "P; what is fragile: R", "A37"});
-  at(weak.min_length_ratio, OptionRow{"min_length_ratio"});
-  at(weak.voxels_per_thickness, OptionRow{"voxels_per_thickness"});
-  at(weak.max_resolution, OptionRow{"max_resolution"});
+  at(weak.min_length_ratio, {"min_length_ratio", at_least(0)});
+  at(weak.voxels_per_thickness, {"voxels_per_thickness", between(4, 32)});
+  at(weak.max_resolution, {"max_resolution", between(16, 512)});
   at.group("shape_diameter", weak.shape_diameter, shape_diameter_rows);
 };
 
@@ -211,8 +212,8 @@ constexpr auto squeeze_rows = [](auto& at, auto& squeeze) {
                           "sum of the normal forces of all contacts in the squeeze, in newtons"});
   at(squeeze.stiffness, {"stiffness_N_m_per_rad", above(0), "squeeze-stiffness", "N m/rad", kForces,
                          "of revolute joints under position control, in N m/rad"});
-  at(squeeze.slide_stiffness, OptionRow{"slide_stiffness_N_per_m"});
-  at(squeeze.largest_residual, OptionRow{"largest_residual"});
+  at(squeeze.slide_stiffness, {"slide_stiffness_N_per_m", above(0)});
+  at(squeeze.largest_residual, {"largest_residual", at_least(0)});
 };
 
 constexpr auto distinct_rows = [](auto& at, auto& distinct) {
@@ -235,7 +236,7 @@ constexpr auto quality_rows = [](auto& at, auto& quality) {
   at(quality.w2, {"w2", at_least(0), "w2", "1", kMeasure, "exponent of M2", "P"});
   at(quality.w3, {"w3", at_least(0), "w3", "1", kMeasure, "exponent of M3", "P"});
   at(quality.theta_max, {"theta_max_rad", kAcute, "theta-max-deg", "deg", kTargets,
-                         "half-angle of the friction cones of targets and measure, in degrees",
+                         "half-angle of the friction cones of targets and measure",
                          "P; one angle for both: R", "A47"});
   at(quality.units, {"units", kAny, "measure-units", "", kMeasure,
                      "of boundary distances, areas and centroid distance", "R", "A9 A10 A11"});
@@ -244,7 +245,7 @@ constexpr auto quality_rows = [](auto& at, auto& quality) {
   at(quality.centroid,
      {"centroid", kAny, "centroid", "", kMeasure,
       "centroid of the contacts' hull: of its area or volume, or of its corners", "R", "A15"});
-  at(quality.merge_distance, OptionRow{"merge_distance_m"});
+  at(quality.merge_distance, {"merge_distance_m", at_least(0)});
 };
 
 constexpr auto planner_rows = [](auto& at, auto& options) {

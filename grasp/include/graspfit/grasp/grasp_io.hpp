@@ -108,9 +108,15 @@ UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands
 /// Reads a grasp file and the hand it names; checks the hashes of the hand's files. A hand that is
 /// not where the record says is looked for relative to the grasp file, then beside it, then among
 /// the shipped hands by the name of its description.
-/// @throws IoError (file, JSON path, what) for malformed files, other versions (1 is refused: its
-/// grasps lack what is measured today), hash mismatch.
+/// Options that the file lacks, as those that are newer than it, have their defaults, which are what
+/// was done before there was an option.
+/// @throws IoError (file, JSON path, what) for malformed files, versions before 4 (their grasps lack
+/// what is measured today), options that there are not, hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);
+
+/// `schema`, the text of `grasps.schema.json`, with the options that the planner has now. `file` is
+/// what messages call it. @throws IoError if it is no JSON or has no `/$defs/options`.
+std::string with_option_schema(const std::string& schema, const std::string& file);
 
 /// One row per grasp, units in the column names (`grasps.csv`).
 std::string to_csv(const GraspFile& file);

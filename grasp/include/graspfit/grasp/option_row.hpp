@@ -34,6 +34,7 @@ struct OptionRow {
   bool is_setting = true;         ///< Whether experiments may have it.
   std::string_view yes = "yes";   ///< What the values of its flag are called, if it is yes or no.
   std::string_view no = "no";
+  bool may_be_infinite = false;  ///< A number, in grasp files.
 };
 
 /// The number of a field, in SI units, from one in `unit`: "mm" and "deg" are converted.

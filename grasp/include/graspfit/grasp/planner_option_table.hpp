@@ -40,6 +40,7 @@ struct PlannerOption : OptionRow {
   bool is_number() const { return kind == OptionKind::Number || kind == OptionKind::Integer; }
   bool has_choice(std::string_view text) const;
   std::string choices_text() const;  ///< "a|b|c".
+  std::string source_text() const;   ///< " [R, A36]" to stand after the meaning; may be empty.
 };
 
 /// All options that have a name, in the order of grasp files.
