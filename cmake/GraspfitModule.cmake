@@ -1,6 +1,6 @@
 # Functions that every module's CMakeLists.txt uses:
 #
-#   graspfit_add_module(name HEADERS ... ROOMS ... SOURCES ... PUBLIC ... PRIVATE ...)
+#   graspfit_add_module(name HEADERS ... FOLDERS ... SOURCES ... PUBLIC ... PRIVATE ...)
 #   graspfit_target_defaults(target)      warnings, for programs and tests
 #   graspfit_install_package()            once, at the end of the root CMakeLists.txt
 
@@ -29,15 +29,15 @@ function(graspfit_target_defaults target)
 endfunction()
 
 # In a unity build, the sources of one folder are one batch.
-function(graspfit_unity_rooms target)
+function(graspfit_unity_folders target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)
     if(IS_ABSOLUTE ${source})
       continue()  # generated
     endif()
     cmake_path(GET source PARENT_PATH folder)
-    string(MAKE_C_IDENTIFIER "${folder}" room)
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${room}")
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
   endforeach()
 endfunction()
 
@@ -45,16 +45,17 @@ endfunction()
 # installed package.
 #
 #   HEADERS   public headers, relative to the module's folder: include/graspfit/<name>/x.hpp
-#   ROOMS     folders below src/, each of one topic, in the order of who may include whom: a room
-#             knows those before it (tests/house/check_rooms.py). A unity build compiles it at once
-#   SOURCES   src/<room>/*.cpp, with their private headers beside them: "room/x.hpp"
+#   FOLDERS   folders below src/, each of one topic, in the order of who may include whom: one
+#             knows those before it (tests/repository/check_folders.py). A unity build compiles it
+#             at once
+#   SOURCES   src/<folder>/*.cpp, with their private headers beside them: "folder/x.hpp"
 #   PUBLIC    libraries that the public headers show
 #   PRIVATE   libraries that only sources use; their flags and headers do not reach users
 #
 # The headers are a file set: they are installed, and <name>_header_check compiles each one alone
 # with nothing but what a user of the library would have.
 function(graspfit_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;ROOMS;SOURCES;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;FOLDERS;SOURCES;PUBLIC;PRIVATE")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "graspfit_add_module(${name}): unknown argument ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -71,7 +72,7 @@ function(graspfit_add_module name)
   target_sources(${target}
     PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_HEADERS}
     PRIVATE ${arg_SOURCES})
-  graspfit_unity_rooms(${target} ${arg_SOURCES})
+  graspfit_unity_folders(${target} ${arg_SOURCES})
   target_include_directories(${target} PRIVATE src)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 

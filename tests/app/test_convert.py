@@ -345,7 +345,7 @@ class Imported(ConvertTest):
             self.assertEqual(grasp["joints"], ours["joints"])
             for a, b in zip(grasp["X_OH"]["rotation_wxyz"], ours["X_OH"]["rotation_wxyz"]):
                 self.assertAlmostEqual(a, b, delta=1e-15)
-            for key in ("m", "m1", "m2", "m3", "largest_claimed_gap_m"):
+            for key in ("m", "m1", "m2", "m3", "largest_requested_gap_m"):
                 self.assertAlmostEqual(grasp[key], ours[key], delta=1e-9)
             self.assertAlmostEqual(grasp["wrench"]["epsilon"], ours["wrench"]["epsilon"], delta=1e-9)
             self.assertEqual(grasp["valid"], ours["valid"])

@@ -60,7 +60,7 @@ class Evaluate(program.ProgramTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         for group in ("the paper's measure", "wrench space", "contacts", "penetration"):
             self.assertIn("\n" + group + "\n", done.stdout)
-        self.assertIn("house: torques about (", done.stdout)
+        self.assertIn("graspfit: torques about (", done.stdout)
 
         rows = list(csv.DictReader(io.StringIO(self.evaluate(self.file, "--csv").stdout)))
         report = json.loads(self.evaluate(self.file, "--json").stdout)["grasps"]
@@ -148,7 +148,7 @@ class Evaluate(program.ProgramTest):
 
         for keys, value, says in (
                 (("format",), "urdf", "graspfit-grasps"),
-                (("version",), 1, "versions 4 and 5"),
+                (("version",), 1, "versions 4 to 6"),
                 (("hand", "description_sha256"), "0" * 64, "/hand"),
                 (("hand", "sidecar_sha256"), "0" * 64, "sidecar"),
                 (("hand", "links", 0, "mesh_sha256"), "0" * 64, "mesh of link"),

@@ -72,7 +72,7 @@ class Hold(PhysicsTest):
             self.assertEqual(one["failed_at_s"] is not None, one["stage"] == "load")
         self.assertEqual(results["stages"][grasp["stage"]], 1)
         # A grasp holds just when its margin is above the protocol's force, but for the bisection.
-        force = data["protocol"]["knobs"]["force_N"]
+        force = data["protocol"]["parameters"]["force_N"]
         if not 0.95 * force < grasp["margin"]["force_N"] < 1.05 * force:
             self.assertEqual(grasp["held"], grasp["margin"]["force_N"] > force)
 
@@ -110,23 +110,23 @@ class Hold(PhysicsTest):
         # A kilonewton tears anything out of a hand; limits that nothing reaches are kept by all.
         _, data = self.hold("--set", "force_N=1000", out="strong")
         self.assertEqual(data["results"]["stages"]["held"], 0)
-        self.assertIn("force_N", data["protocol"]["changed_knobs"])
+        self.assertIn("force_N", data["protocol"]["changed_parameters"])
         _, data = self.hold("--set", "largest_shift_m=1e6", "--set", "largest_turn_rad=4",
                             "--set", "largest_penetration_m=1", out="lenient")
         self.assertEqual(data["results"]["stages"]["held"], 2)
 
-    def test_every_knob_is_written_and_can_be_set(self):
+    def test_every_parameter_is_written_and_can_be_set(self):
         _, data = self.hold("--squeeze", "extrapolation", "--step", "0.002", "--set",
                             "hand_solimp=0.6,0.98,0.0002", "--set", "multi_point_contacts=no",
                             "--protocol", "dexonomy-hard", "--grasp", "1")
         protocol = data["protocol"]
         self.assertEqual(protocol["name"], "dexonomy-hard")
-        self.assertEqual(protocol["knobs"]["squeeze"], "extrapolation")
-        self.assertEqual(protocol["knobs"]["step_s"], 0.002)
-        self.assertEqual(protocol["knobs"]["sliding_friction"], 0.3)
-        self.assertEqual(protocol["knobs"]["hand_solimp"], [0.6, 0.98, 0.0002])
-        self.assertIs(protocol["knobs"]["multi_point_contacts"], False)
-        self.assertEqual(set(protocol["changed_knobs"]),
+        self.assertEqual(protocol["parameters"]["squeeze"], "extrapolation")
+        self.assertEqual(protocol["parameters"]["step_s"], 0.002)
+        self.assertEqual(protocol["parameters"]["sliding_friction"], 0.3)
+        self.assertEqual(protocol["parameters"]["hand_solimp"], [0.6, 0.98, 0.0002])
+        self.assertIs(protocol["parameters"]["multi_point_contacts"], False)
+        self.assertEqual(set(protocol["changed_parameters"]),
                          {"squeeze", "step_s", "hand_solimp", "multi_point_contacts",
                           "hold_time_s", "approach_time_s", "squeeze_time_s"})
 
@@ -137,15 +137,15 @@ class Hold(PhysicsTest):
         html = (self.folder / "held/replay_002.html").read_text()
         text = html.split('<script type="application/json" id="data">')[1].split("</script>")[0]
         replay = json.loads(text)
-        knobs = data["protocol"]["knobs"]
-        start = knobs["approach_time_s"] + knobs["squeeze_time_s"]
+        parameters = data["protocol"]["parameters"]
+        start = parameters["approach_time_s"] + parameters["squeeze_time_s"]
         for verdict, shown in zip(data["results"]["grasps"][1]["directions"], replay["directions"]):
             self.assertEqual(shown["name"], verdict["load"])
             self.assertEqual(shown["largest_shift"], verdict["largest_shift_m"])
             # The frames are those of the test: at its checks they stand where it says.
             at_checks = [
                 shift for t, shift in zip(shown["times"], shown["shifts"])
-                if t > start + 1e-6 and abs(remainder(t - start, knobs["check_interval_s"])) < 1e-6
+                if t > start + 1e-6 and abs(remainder(t - start, parameters["check_interval_s"])) < 1e-6
                 and (verdict["failed_at_s"] is None or t - start < verdict["failed_at_s"] + 1e-6)
             ]
             if verdict["stage"] in ("held", "load") and at_checks:
@@ -166,7 +166,7 @@ class BadFlags(PhysicsTest):
                 (("--protocol", "harsh"), ["harsh", "dexgraspbench-100g"]),
                 (("--squeeze", "hard"), ["hard", "forces|extrapolation|none"]),
                 (("--set", "mass=1"), ["mass", "object_mass_kg"]),
-                (("--set", "force_N"), ["KNOB=VALUE"]),
+                (("--set", "force_N"), ["PARAMETER=VALUE"]),
                 (("--set", "force_N=much"), ["force_N", "much"]),
                 (("--set", "hand_solref=1"), ["hand_solref", "2 numbers"]),
                 (("--set", "multi_point_contacts=1"), ["multi_point_contacts", "yes"]),

@@ -123,7 +123,7 @@ class Plan(program.ProgramTest):
         self.assertEqual([link["used_mesh_file"] for link in file["hand"]["links"]],
                          sorted(meshes)[:-1])
         self.assertRegex(lines[3], r"grasps in \d+ attempts \(.*\): ")
-        for column in ("m", "epsilon", "largest_claimed_gap_m", "largest_penetration_m", "palm_x_m",
+        for column in ("m", "epsilon", "largest_requested_gap_m", "largest_penetration_m", "palm_x_m",
                        "palm_qw", "pre_grasp_clearance_m", "squeeze_residual"):
             self.assertIn(column, header)
         for joint in file["hand"]["joints"]:

@@ -39,7 +39,7 @@ TEST_CASE("Values are what their text says", "[base][json_value]") {
   CHECK(root.at("t").text().empty());
   CHECK(root.at("list").numbers<2>() == std::array{1.0, 2.5});
   CHECK(root.at("a").at("b").texts() == std::vector<std::string>{"x", "y"});
-  CHECK(root.at("a").at("b").items()[1].place() == "/a/b/1");
+  CHECK(root.at("a").at("b").items()[1].location() == "/a/b/1");
   CHECK(root.members().front().first == "z");  // the order of the file
   CHECK(root.has("none"));
   CHECK_FALSE(root.find("none"));

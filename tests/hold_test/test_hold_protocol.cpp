@@ -47,7 +47,7 @@ TEST_CASE("Published numbers stand in the protocols", "[hold_test]") {
   CHECK(weak.largest_shift == 0.02);
 }
 
-TEST_CASE("A bad knob is refused by name", "[hold_test]") {
+TEST_CASE("A bad parameter is refused by name", "[hold_test]") {
   struct Case {
     const char* field;
     void (*set)(HoldProtocol&);

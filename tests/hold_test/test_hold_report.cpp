@@ -72,7 +72,7 @@ TEST_CASE("A report has a row of the same width for every grasp, whatever stage 
   CHECK(grasps[1]["margin"]["force_N"] == 2.5);
   CHECK(grasps[1]["directions"][5]["load"] == "-z");
   CHECK(grasps[1]["directions"][5]["largest_shift_m"] == 0.005);
-  CHECK(data["protocol"]["knobs"]["force_N"] == 1.0);
+  CHECK(data["protocol"]["parameters"]["force_N"] == 1.0);
   CHECK(hold_test::to_json(report) == hold_test::to_json(report));
 }
 

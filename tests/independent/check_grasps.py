@@ -277,16 +277,16 @@ def check_poses(X_OL, stored, found, where):
         found.equal("pose", f"{where}X_OL of {name}", max(apart), 0.0)
 
 
-def check_claims(scene, grasp, contacts, quality, found):
+def check_requested(scene, grasp, contacts, quality, found):
     """What follows from contacts and penetration: gaps of requested parts, usable, valid."""
     requested = set(scene.used["fingers"]) | ({"palm"} if scene.used["palm"] else set())
-    claimed = {c["pad"] for c in grasp["contacts"] if c["target"]}
-    gaps = [contacts[name].gap for name in claimed]
+    requested = {c["pad"] for c in grasp["contacts"] if c["target"]}
+    gaps = [contacts[name].gap for name in requested]
     found.equal("gap", "largest_contact_gap_m", max(c.gap for c in contacts.values()),
                 grasp["largest_contact_gap_m"])
-    found.equal("gap", "largest_claimed_gap_m", max(gaps, default=0.0),
-                grasp["largest_claimed_gap_m"])
-    touching = {scene.hand.pads[name].finger for name in claimed}
+    found.equal("gap", "largest_requested_gap_m", max(gaps, default=0.0),
+                grasp["largest_requested_gap_m"])
+    touching = {scene.hand.pads[name].finger for name in requested}
     near = not scene.options["refine"] or (
         max(gaps, default=0.0) <= scene.options["refinement"]["largest_gap_m"])
     found.require(f"has_all_contacts: {sorted(touching)} of {sorted(requested)}, gaps {gaps}",
@@ -313,10 +313,10 @@ def check_grasp(scene, grasp):
     if contacts is not None:
         plain = [c.contact for c in contacts.values()]
         quality = check_measure(scene, grasp, plain, found)
-        gap = check_claims(scene, grasp, contacts, quality, found)
+        gap = check_requested(scene, grasp, contacts, quality, found)
         epsilon = check_wrench(scene, grasp["wrench"], touching(scene, contacts), found)
         check_squeeze(scene, grasp, contacts, found)
-        row |= {"gap_mm": 1e3 * gap, "gap_file": 1e3 * grasp["largest_claimed_gap_m"],
+        row |= {"gap_mm": 1e3 * gap, "gap_file": 1e3 * grasp["largest_requested_gap_m"],
                 "area_mm2": 1e6 * sum(contact.area for contact in plain),
                 "area_file": 1e6 * sum(c["area_m2"] for c in grasp["contacts"]),
                 "M": quality.m, "M_file": grasp["m"]}

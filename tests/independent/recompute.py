@@ -124,8 +124,11 @@ class Scene:
     """Object, surroundings and hand of a grasp file."""
 
     def __init__(self, record, folder):
-        if record["version"] not in (4, 5):
-            raise ValueError(f"is of version {record['version']}, not 4 or 5")
+        if record["version"] not in (4, 5, 6):
+            raise ValueError(f"is of version {record['version']}, not 4 to 6")
+        if record["version"] < 6:
+            for grasp in record["results"]["grasps"]:
+                grasp["largest_requested_gap_m"] = grasp.pop("largest_claimed_gap_m")
         self.record, self.folder = record, folder
         self.options = record["planner"]["options"]
         self.used = record["planner"]["used"]

@@ -15,8 +15,8 @@
 namespace graspfit::testing {
 
 using geometry::RigidTransform;
-using motion::Encounter;
-using motion::MotionStretch;
+using motion::Collision;
+using motion::MotionSegment;
 using motion::SceneObject;
 using motion::TableScene;
 
@@ -32,12 +32,12 @@ inline RigidTransform at(const Eigen::Vector3d& place, double turn_about_z = 0.0
   return X;
 }
 
-/// Whether `samples` + 1 places of a stretch, evenly spaced, are without overlap; exact tests only.
-inline std::optional<Encounter> sampled_overlap(const TableScene& scene,
+/// Whether `samples` + 1 places of a segment, evenly spaced, are without overlap; exact tests only.
+inline std::optional<Collision> sampled_overlap(const TableScene& scene,
                                                 const std::vector<RigidTransform>& X_WO,
-                                                const MotionStretch& stretch, int samples) {
+                                                const MotionSegment& segment, int samples) {
   for (int i = 0; i <= samples; ++i) {
-    if (auto met = motion::find_overlap(scene, X_WO, stretch, static_cast<double>(i) / samples))
+    if (auto met = motion::find_overlap(scene, X_WO, segment, static_cast<double>(i) / samples))
       return met;
   }
   return std::nullopt;

@@ -44,7 +44,7 @@ struct HeldBlock {
 
   HandConfiguration holding(const RigidTransform& X_WO) const { return {X_WO * hold.X_OH, hold.q}; }
 
-  MotionStretch carry(MotionPhase phase, const RigidTransform& from,
+  MotionSegment carry(MotionPhase phase, const RigidTransform& from,
                       const RigidTransform& to) const {
     return {phase, kBlock, holding(from), holding(to), from, to};
   }
@@ -62,20 +62,20 @@ TEST_CASE("A block that is carried past a wall keeps the known distance and no m
   const HeldBlock held({0.2, 0.02, 0.01});
   const double gap = 0.007;
   const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({0.0, 0.02 + gap, 0.187})};
-  const MotionStretch past =
+  const MotionSegment past =
       held.carry(MotionPhase::Transport, at({-0.3, 0, 0.2}), at({0.3, 0, 0.2}));
   for (const double share : {0.3, 0.5, 0.61}) {
     CHECK(clearance_at(held.scene, X_WO, past, share).object == Approx(gap).epsilon(1e-9));
   }
-  CHECK_FALSE(find_encounter(held.scene, X_WO, past, 0.0));
+  CHECK_FALSE(find_collision(held.scene, X_WO, past, 0.0));
   double nearest = gap;
   for (int i = 0; i <= 600; ++i) {
     nearest = std::min(nearest, clearance_at(held.scene, X_WO, past, i / 600.0).hand);
   }
   CHECK(nearest == Approx(0.0045).epsilon(1e-6));  // the jaws, 2.5 mm wider than the block
   // A proof is given up after 500 distances, so that it needs some room on a long way.
-  CHECK_FALSE(find_encounter(held.scene, X_WO, past, nearest - 0.003));
-  const auto met = find_encounter(held.scene, X_WO, past, gap + 1e-6);
+  CHECK_FALSE(find_collision(held.scene, X_WO, past, nearest - 0.003));
+  const auto met = find_collision(held.scene, X_WO, past, gap + 1e-6);
   REQUIRE(met);
   CHECK(met->second == "wall");
 }
@@ -83,17 +83,17 @@ TEST_CASE("A block that is carried past a wall keeps the known distance and no m
 TEST_CASE("A motion through a wall thinner than any step is refused", "[grasp][table_motion]") {
   const HeldBlock held({0.5, 1e-4, 0.5});
   const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({0, 0, 0.3})};
-  const MotionStretch through =
+  const MotionSegment through =
       held.carry(MotionPhase::Transport, at({0, -0.2, 0.3}), at({0, 0.2, 0.3}));
   CHECK_FALSE(find_overlap(held.scene, X_WO, through, 0.0));
   CHECK_FALSE(find_overlap(held.scene, X_WO, through, 1.0));
-  CHECK(find_encounter(held.scene, X_WO, through, 0.0));
+  CHECK(find_collision(held.scene, X_WO, through, 0.0));
   // The empty hand does not pass either.
-  MotionStretch empty = through;
+  MotionSegment empty = through;
   empty.phase = MotionPhase::Reach;
   empty.object = kBlock;
   empty.X_WO_from = empty.X_WO_to = at({0.8, 0, 0.02});
-  CHECK(find_encounter(held.scene, X_WO, empty, 0.0));
+  CHECK(find_collision(held.scene, X_WO, empty, 0.0));
 }
 
 TEST_CASE("A turn is refused whose corner passes into a wall", "[grasp][table_motion]") {
@@ -102,12 +102,12 @@ TEST_CASE("A turn is refused whose corner passes into a wall", "[grasp][table_mo
   const HeldBlock held({0.01, 0.3, 0.01});
   const RigidTransform from = at({0, 0, 0.2}, -0.25 * std::numbers::pi);
   const RigidTransform to = at({0, 0, 0.2}, 0.5 * std::numbers::pi - 0.1);
-  const MotionStretch turn = held.carry(MotionPhase::Transport, from, to);
+  const MotionSegment turn = held.carry(MotionPhase::Transport, from, to);
   const auto wall_at = [](double distance) {
     return std::vector<RigidTransform>{at({0, 0, 0}), at({distance + 0.005, 0, 0.187})};
   };
   const double corner = std::hypot(0.02, 0.01);
-  CHECK(find_encounter(held.scene, wall_at(corner - 1e-5), turn, 0.0));
+  CHECK(find_collision(held.scene, wall_at(corner - 1e-5), turn, 0.0));
   MotionClearance nearest{1.0, 1.0};
   for (int i = 0; i <= 2000; ++i) {
     const MotionClearance here = clearance_at(held.scene, wall_at(0.05), turn, i / 2000.0);
@@ -122,15 +122,15 @@ TEST_CASE("An object rests where it is lifted and placed, and nowhere else",
   const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({1, 1, 1})};
   const RigidTransform down = at({0, 0, 0.015});
   const RigidTransform up = at({0, 0, 0.1});
-  CHECK_FALSE(find_encounter(held.scene, X_WO, held.carry(MotionPhase::Lift, down, up), 0.0));
-  CHECK_FALSE(find_encounter(held.scene, X_WO, held.carry(MotionPhase::Place, up, down), 0.0));
+  CHECK_FALSE(find_collision(held.scene, X_WO, held.carry(MotionPhase::Lift, down, up), 0.0));
+  CHECK_FALSE(find_collision(held.scene, X_WO, held.carry(MotionPhase::Place, up, down), 0.0));
   const auto dragged =
-      find_encounter(held.scene, X_WO, held.carry(MotionPhase::Transport, down, up), 0.0);
+      find_collision(held.scene, X_WO, held.carry(MotionPhase::Transport, down, up), 0.0);
   REQUIRE(dragged);
   CHECK(dragged->text() == "block and table");
   // Into the table, by more than rounding.
   const RigidTransform below = at({0, 0, 0.015 - 2e-9});
-  CHECK(find_encounter(held.scene, X_WO, held.carry(MotionPhase::Place, up, below), 0.0));
+  CHECK(find_collision(held.scene, X_WO, held.carry(MotionPhase::Place, up, below), 0.0));
 }
 
 TEST_CASE("An approach may touch what it approaches, a reach may not", "[grasp][table_motion]") {
@@ -139,18 +139,18 @@ TEST_CASE("An approach may touch what it approaches, a reach may not", "[grasp][
   const std::vector<RigidTransform> X_WO = {X_WB, at({1, 1, 1})};
   HandConfiguration open = held.holding(X_WB);
   open.q.setConstant(0.035);
-  MotionStretch approach{MotionPhase::Approach, kBlock, open, held.holding(X_WB), X_WB, X_WB};
-  CHECK_FALSE(find_encounter(held.scene, X_WO, approach, 0.0));
-  MotionStretch release = approach;
+  MotionSegment approach{MotionPhase::Approach, kBlock, open, held.holding(X_WB), X_WB, X_WB};
+  CHECK_FALSE(find_collision(held.scene, X_WO, approach, 0.0));
+  MotionSegment release = approach;
   release.phase = MotionPhase::Release;
   std::swap(release.from, release.to);
-  CHECK_FALSE(find_encounter(held.scene, X_WO, release, 0.0));
+  CHECK_FALSE(find_collision(held.scene, X_WO, release, 0.0));
   approach.phase = MotionPhase::Reach;
-  CHECK(find_encounter(held.scene, X_WO, approach, 0.001));
+  CHECK(find_collision(held.scene, X_WO, approach, 0.001));
   // Two millimeters into the block is no touch.
   approach.phase = MotionPhase::Approach;
   approach.to.q.setConstant(0.018);
-  CHECK(find_encounter(held.scene, X_WO, approach, 0.0));
+  CHECK(find_collision(held.scene, X_WO, approach, 0.0));
 }
 
 TEST_CASE("A hand that stays where it is keeps its distance, or does not",
@@ -160,31 +160,31 @@ TEST_CASE("A hand that stays where it is keeps its distance, or does not",
   std::vector<RigidTransform> X_WO = {at({2, 2, 0.015}), at({1, 0, 0.2})};
   HandConfiguration hand = held.holding(at({0, 0, 0.5}));
   const auto resting = [&] {
-    return MotionStretch{MotionPhase::Reach, kBlock, hand, hand, X_WO[kBlock], X_WO[kBlock]};
+    return MotionSegment{MotionPhase::Reach, kBlock, hand, hand, X_WO[kBlock], X_WO[kBlock]};
   };
   CHECK(largest_travel(held.scene, resting()) < 1e-15);
   // One millimeter over the table.
   hand.X_OH.translation().z() -= clearance_at(held.scene, X_WO, resting(), 0.0).hand - 0.001;
   CHECK(clearance_at(held.scene, X_WO, resting(), 0.0).hand == Approx(0.001).epsilon(1e-9));
-  CHECK_FALSE(find_encounter(held.scene, X_WO, resting(), 0.0005));
-  const auto met = find_encounter(held.scene, X_WO, resting(), 0.003);
+  CHECK_FALSE(find_collision(held.scene, X_WO, resting(), 0.0005));
+  const auto met = find_collision(held.scene, X_WO, resting(), 0.003);
   REQUIRE(met);
   CHECK(met->second == "table");
   // The same beside the wall, high over the table.
   hand.X_OH.translation().z() += 0.3;
   const double gap = clearance_at(held.scene, X_WO, resting(), 0.0).hand;
   X_WO[kWall].translation().x() -= 1.0;
-  CHECK(find_encounter(held.scene, X_WO, resting(), 0.0));  // in the wall
+  CHECK(find_collision(held.scene, X_WO, resting(), 0.0));  // in the wall
   X_WO[kWall].translation().x() += 1.0;
   X_WO[kWall].translation().z() = 5.0;
-  CHECK_FALSE(find_encounter(held.scene, X_WO, resting(), 0.5 * gap));
+  CHECK_FALSE(find_collision(held.scene, X_WO, resting(), 0.5 * gap));
   // And with the block in hand.
   const RigidTransform X_WB = at({0, 0, 0.5});
   X_WO[kWall] = at({0.02 + 0.002 + 0.025, 0, 0.5 - 0.013 - 0.2});
-  const MotionStretch carried = held.carry(MotionPhase::Transport, X_WB, X_WB);
+  const MotionSegment carried = held.carry(MotionPhase::Transport, X_WB, X_WB);
   CHECK(clearance_at(held.scene, X_WO, carried, 0.0).object == Approx(0.002).epsilon(1e-9));
-  CHECK(find_encounter(held.scene, X_WO, carried, 0.003));
-  CHECK_FALSE(find_encounter(held.scene, X_WO, carried, 0.001));
+  CHECK(find_collision(held.scene, X_WO, carried, 0.003));
+  CHECK_FALSE(find_collision(held.scene, X_WO, carried, 0.001));
 }
 
 TEST_CASE("The end of an approach may be near the object alone, not the table",
@@ -194,7 +194,7 @@ TEST_CASE("The end of an approach may be near the object alone, not the table",
   const RigidTransform X_WB = at({0, 0.3, 0.015});
   const std::vector<RigidTransform> X_WO = {X_WB, at({1, 1, 1})};
   HandConfiguration high = held.holding(at({0, 0, 0.3}));
-  MotionStretch approach{MotionPhase::Approach, kBlock, high, high, X_WB, X_WB};
+  MotionSegment approach{MotionPhase::Approach, kBlock, high, high, X_WB, X_WB};
   const double height = held.scene.height_of_link(
       held.scene.hand().fingers[0].links.back(),
       hands::forward_kinematics(
@@ -202,15 +202,15 @@ TEST_CASE("The end of an approach may be near the object alone, not the table",
           high)[static_cast<std::size_t>(held.scene.hand().fingers[0].links.back())],
       1.0);
   approach.to.X_OH.translation().z() -= height - 0.0001;
-  CHECK_FALSE(find_encounter(held.scene, X_WO, approach, 0.0));
+  CHECK_FALSE(find_collision(held.scene, X_WO, approach, 0.0));
   approach.to.X_OH.translation().z() -= 0.000104;
-  const auto met = find_encounter(held.scene, X_WO, approach, 0.0);
+  const auto met = find_collision(held.scene, X_WO, approach, 0.0);
   REQUIRE(met);
   CHECK(met->second == "table");
-  MotionStretch release = approach;
+  MotionSegment release = approach;
   release.phase = MotionPhase::Release;
   std::swap(release.from, release.to);
-  CHECK(find_encounter(held.scene, X_WO, release, 0.0));
+  CHECK(find_collision(held.scene, X_WO, release, 0.0));
 }
 
 TEST_CASE("Hulls of objects are those of their surfaces", "[grasp][table_motion]") {
@@ -222,22 +222,22 @@ TEST_CASE("Hulls of objects are those of their surfaces", "[grasp][table_motion]
   CHECK(scene.height_of_object(0, at({0, 0, 0.02})) == Approx(0.0).margin(1e-15));
 }
 
-TEST_CASE("Ends of a stretch are kept to the last digit, and what is carried stays in the hand",
+TEST_CASE("Ends of a segment are kept to the last digit, and what is carried stays in the hand",
           "[grasp][table_motion]") {
   const HeldBlock held({0.01, 0.01, 0.01});
   RigidTransform to = at({0.2, -0.1, 0.4});
   to.linear() = Eigen::AngleAxisd(2.0, Vector3d(0.48, 0.6, 0.64)).toRotationMatrix();
-  const MotionStretch stretch = held.carry(MotionPhase::Transport, at({0, 0, 0.2}), to);
-  CHECK(state_at(held.scene, stretch, 1.0).X_WO.matrix() == to.matrix());
-  CHECK(state_at(held.scene, stretch, 1.0).hand.X_OH.matrix() == stretch.to.X_OH.matrix());
-  CHECK(state_at(held.scene, stretch, 0.0).X_WO.matrix() == stretch.X_WO_from.matrix());
+  const MotionSegment segment = held.carry(MotionPhase::Transport, at({0, 0, 0.2}), to);
+  CHECK(state_at(held.scene, segment, 1.0).X_WO.matrix() == to.matrix());
+  CHECK(state_at(held.scene, segment, 1.0).hand.X_OH.matrix() == segment.to.X_OH.matrix());
+  CHECK(state_at(held.scene, segment, 0.0).X_WO.matrix() == segment.X_WO_from.matrix());
   for (const double share : {0.1, 0.5, 0.999999}) {
-    const MotionState state = state_at(held.scene, stretch, share);
+    const MotionState state = state_at(held.scene, segment, share);
     CHECK((state.X_WO.inverse() * state.hand.X_OH).isApprox(held.hold.X_OH, 1e-14));
     CHECK(state.X_WO.translation().isApprox(
         (1 - share) * Vector3d(0, 0, 0.2) + share * to.translation(), 1e-14));
   }
-  CHECK(largest_travel(held.scene, stretch) > to.translation().norm() - 0.2);
+  CHECK(largest_travel(held.scene, segment) > to.translation().norm() - 0.2);
 }
 
 TEST_CASE("What is proven free is free wherever it is looked at, and what is free is proven",
@@ -257,22 +257,22 @@ TEST_CASE("What is proven free is free wherever it is looked at, and what is fre
       return X;
     };
     const bool carries = trial % 2 == 0;
-    MotionStretch stretch = held.carry(MotionPhase::Transport, somewhere(), somewhere());
+    MotionSegment segment = held.carry(MotionPhase::Transport, somewhere(), somewhere());
     if (!carries) {
-      stretch.phase = MotionPhase::Reach;
-      stretch.X_WO_from = stretch.X_WO_to = X_WO[kBlock];
-      stretch.to.q.setConstant(0.04);
+      segment.phase = MotionPhase::Reach;
+      segment.X_WO_from = segment.X_WO_to = X_WO[kBlock];
+      segment.to.q.setConstant(0.04);
     }
-    const bool is_free = !find_encounter(held.scene, X_WO, stretch, clearance);
-    const double travel = largest_travel(held.scene, stretch);
+    const bool is_free = !find_collision(held.scene, X_WO, segment, clearance);
+    const double travel = largest_travel(held.scene, segment);
     const int parts = static_cast<int>(std::ceil(travel / 0.001));
     double nearest = 1.0;
     bool overlaps = false;
     for (int i = 0; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
-      const MotionClearance here = clearance_at(held.scene, X_WO, stretch, share);
+      const MotionClearance here = clearance_at(held.scene, X_WO, segment, share);
       nearest = std::min({nearest, here.hand, here.object});
-      overlaps = overlaps || find_overlap(held.scene, X_WO, stretch, share);
+      overlaps = overlaps || find_overlap(held.scene, X_WO, segment, share);
     }
     if (is_free) {
       CHECK(nearest > clearance - 1e-9);

@@ -44,16 +44,16 @@ TableScene two_blocks() {
                      testing::scene_object("blue", geometry::box({0.05, 0.04, 0.06}))});
 }
 
-/// Each stretch begins where the last one ends, the first and last at home.
+/// Each segment begins where the last one ends, the first and last at home.
 void check_chain(const PlannedMove& move, const PickAndPlaceOptions& options) {
-  REQUIRE(move.stretches.size() >= 7);
-  CHECK(move.stretches.front().from.X_OH.matrix() == options.home.X_OH.matrix());
-  CHECK(move.stretches.back().to.X_OH.matrix() == options.home.X_OH.matrix());
-  CHECK(move.stretches.front().X_WO_from.matrix() == move.X_WO_from.matrix());
-  CHECK(move.stretches.back().X_WO_to.matrix() == move.X_WO_to.matrix());
-  for (std::size_t i = 0; i + 1 < move.stretches.size(); ++i) {
-    const MotionStretch& a = move.stretches[i];
-    const MotionStretch& b = move.stretches[i + 1];
+  REQUIRE(move.segments.size() >= 7);
+  CHECK(move.segments.front().from.X_OH.matrix() == options.home.X_OH.matrix());
+  CHECK(move.segments.back().to.X_OH.matrix() == options.home.X_OH.matrix());
+  CHECK(move.segments.front().X_WO_from.matrix() == move.X_WO_from.matrix());
+  CHECK(move.segments.back().X_WO_to.matrix() == move.X_WO_to.matrix());
+  for (std::size_t i = 0; i + 1 < move.segments.size(); ++i) {
+    const MotionSegment& a = move.segments[i];
+    const MotionSegment& b = move.segments[i + 1];
     CHECK(a.to.X_OH.isApprox(b.from.X_OH, 1e-12));
     CHECK(a.to.q == b.from.q);
     CHECK(a.X_WO_to.matrix() == b.X_WO_from.matrix());
@@ -65,10 +65,10 @@ void check_chain(const PlannedMove& move, const PickAndPlaceOptions& options) {
 void check_free(const TableScene& scene, std::vector<RigidTransform> X_WO,
                 const std::vector<PlannedMove>& moves) {
   for (const PlannedMove& move : moves) {
-    for (const MotionStretch& stretch : move.stretches) {
-      const int samples = static_cast<int>(std::ceil(largest_travel(scene, stretch) / 0.0005));
-      const auto met = testing::sampled_overlap(scene, X_WO, stretch, std::max(samples, 1));
-      INFO(phase_name(stretch.phase) << (met ? ": " + met->text() : ""));
+    for (const MotionSegment& segment : move.segments) {
+      const int samples = static_cast<int>(std::ceil(largest_travel(scene, segment) / 0.0005));
+      const auto met = testing::sampled_overlap(scene, X_WO, segment, std::max(samples, 1));
+      INFO(phase_name(segment.phase) << (met ? ": " + met->text() : ""));
       CHECK_FALSE(met);
     }
     X_WO[static_cast<std::size_t>(move.object)] = move.X_WO_to;
@@ -96,7 +96,7 @@ TEST_CASE("A block is picked up, turned over and put down at its goal", "[grasp]
   // Half open fingers would stand around the object when the palm withdraws.
   CHECK(attempt.move->grasp.pre_grasp->opening == 1.0);
   check_free(scene, start, {*attempt.move});
-  CHECK(attempt.stretches_tried == attempt.move->stretches_tried);
+  CHECK(attempt.segments_tried == attempt.move->segments_tried);
 }
 
 TEST_CASE("A move is refused with its reason where there is none", "[grasp][pick_and_place]") {
@@ -334,9 +334,9 @@ TEST_CASE("Motion files are the same bytes for the same table and are read back"
   CHECK(poses[1][1].matrix() == poses[0][1].matrix());
   base::write_file_atomically(path, to_json(read));
   const MotionFile twice = read_motion(path);
-  for (std::size_t i = 0; i < read.moves[0].stretches.size(); ++i) {
-    const MotionStretch& once = read.moves[0].stretches[i];
-    const MotionStretch& again = twice.moves[0].stretches[i];
+  for (std::size_t i = 0; i < read.moves[0].segments.size(); ++i) {
+    const MotionSegment& once = read.moves[0].segments[i];
+    const MotionSegment& again = twice.moves[0].segments[i];
     CHECK(once.phase == again.phase);
     CHECK((once.to.X_OH.matrix() - again.to.X_OH.matrix()).norm() < 1e-14);
     CHECK((once.X_WO_to.matrix() - again.X_WO_to.matrix()).norm() < 1e-14);
@@ -416,9 +416,9 @@ TEST_CASE("A motion file that contradicts itself, its hand or its objects is ref
     }
     return std::string("accepted");
   };
-  // Stretches share their keyframes: what one is changed to, the next begins with.
-  const auto moved = [](MotionFile & changed, std::size_t at_move, std::size_t stretch) -> auto& {
-    return changed.moves[at_move].stretches[stretch];
+  // Segments share their keyframes: what one is changed to, the next begins with.
+  const auto moved = [](MotionFile & changed, std::size_t at_move, std::size_t segment) -> auto& {
+    return changed.moves[at_move].segments[segment];
   };
   using testing::Contains;
   CHECK(refusal([](MotionFile&) {}) == "accepted");

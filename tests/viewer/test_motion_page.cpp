@@ -30,9 +30,9 @@ TEST_CASE("A motion's frames are as near as asked for and belong to one phase ea
   const auto data = nlohmann::json::parse(viewer::motion_scene_json(input));
   int frames = 1;
   for (const auto& move : input.file.moves) {
-    for (const auto& stretch : move.stretches) {
+    for (const auto& segment : move.segments) {
       frames += static_cast<int>(
-          std::max(4.0, std::ceil(motion::largest_travel(input.scene, stretch) / 0.02)));
+          std::max(4.0, std::ceil(motion::largest_travel(input.scene, segment) / 0.02)));
     }
   }
   CHECK(data["num_frames"] == frames);

@@ -549,8 +549,8 @@ class ReplayInBrowser(PageInBrowser):
 
     def test_protocol_is_listed(self):
         self.browser.find_element(By.CSS_SELECTOR, "#right summary").click()
-        self.assertIn("force_N 1", self.text("knobs"))
-        self.assertIn("check_interval_s 0.1", self.text("knobs"))
+        self.assertIn("force_N 1", self.text("parameters"))
+        self.assertIn("check_interval_s 0.1", self.text("parameters"))
 
 
 class MotionInBrowser(PageInBrowser):

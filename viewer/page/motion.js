@@ -140,11 +140,11 @@ function makeControls() {
 
 // What the page may claim: only what was found when it was made.
 const kFindings = {
-  free: 'Every straight stretch between two keyframes was proven free of collisions, not sampled: ' +
+  free: 'Every straight segment between two keyframes was proven free of collisions, not sampled: ' +
       'of hand, carried object, standing objects and table nothing touches anything else, and on ' +
       'the way to the object, through the air and back everything keeps ' +
       `${millimeters(data.proven_clearance, 1)} mm.`,
-  not_free: 'Not all of it is free of collisions: at least one stretch between two keyframes ' +
+  not_free: 'Not all of it is free of collisions: at least one segment between two keyframes ' +
       'touches something, keeps less than ' + `${millimeters(data.proven_clearance, 1)} mm` +
       ' where it should, or could not be proven to. "graspfit motion" names each.',
   not_checked: 'Whether it is free of collisions was not checked when this page was made.',

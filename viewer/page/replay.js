@@ -243,7 +243,7 @@ function showVerdict() {
     play(false);
     showFrame(passed.at);
   });
-  const knobs = protocol.knobs.map(([name, value]) => element('tr', {},
+  const parameters = protocol.parameters.map(([name, value]) => element('tr', {},
       element('td', {}, name), element('td', {}, Array.isArray(value) ? value.join(', ') : String(value))));
   panel.replaceChildren(
       element('h2', {}, 'The grasp'),
@@ -257,7 +257,7 @@ function showVerdict() {
           'squeezed pose, before it since the planned one. Red: the limit.'),
       element('details', {}, element('summary', {}, `Protocol ${protocol.name}`),
           element('p', {className: 'soft'}, protocol.source),
-          element('table', {id: 'knobs'}, element('tbody', {}, ...knobs))));
+          element('table', {id: 'parameters'}, element('tbody', {}, ...parameters))));
 }
 
 function updateNow() {

@@ -51,13 +51,13 @@ std::string_view name_of(MotionCheck check) {
   return "";
 }
 
-/// Frames of a stretch on which a point travels that far [m].
+/// Frames of a segment on which a point travels that far [m].
 int num_frames(double travel, double frame_step) {
   constexpr double kFewest = 4.0;  // so that a short approach can be seen
   constexpr double kMost = 1e5;
   const double frames = std::max(kFewest, std::ceil(travel / frame_step));
   if (!(frames <= kMost)) {
-    throw base::InvalidInput("motion_scene_json: a stretch of " + base::shortest_decimal(travel) +
+    throw base::InvalidInput("motion_scene_json: a segment of " + base::shortest_decimal(travel) +
                              " m in frames of " + base::shortest_decimal(frame_step) +
                              " m has more than 100000 frames");
   }
@@ -92,13 +92,13 @@ class Frames {
 Json add_move(const MotionInput& input, const motion::RecordedMove& move,
               const std::vector<RigidTransform>& X_WO, Frames& frames) {
   Json phases = Json::array();
-  for (const motion::MotionStretch& stretch : move.stretches) {
-    const int parts = num_frames(motion::largest_travel(input.scene, stretch), input.frame_step);
+  for (const motion::MotionSegment& segment : move.segments) {
+    const int parts = num_frames(motion::largest_travel(input.scene, segment), input.frame_step);
     for (int i = 1; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
-      frames.add(X_WO, move.object, motion::state_at(input.scene, stretch, share));
+      frames.add(X_WO, move.object, motion::state_at(input.scene, segment, share));
     }
-    phases.push_back({{"name", motion::phase_name(stretch.phase)}, {"last", frames.count() - 1}});
+    phases.push_back({{"name", motion::phase_name(segment.phase)}, {"last", frames.count() - 1}});
   }
   return phases;
 }
@@ -110,7 +110,7 @@ std::string motion_scene_json(const MotionInput& input) {
   const motion::MotionFile& file = input.file;
   const auto poses = motion::object_poses(file);
   Frames frames(input.scene);
-  const motion::MotionStretch& start = file.moves.front().stretches.front();
+  const motion::MotionSegment& start = file.moves.front().segments.front();
   frames.add(poses.front(), file.moves.front().object, motion::state_at(input.scene, start, 0.0));
   Json moves = Json::array();
   for (std::size_t k = 0; k < file.moves.size(); ++k) {

@@ -9,7 +9,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hold_test/hold_batch.hpp"
-#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_parameters.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
 #include "hand_data.hpp"
 #include "page_template.hpp"
@@ -129,11 +129,11 @@ Json direction_json(const ReplayInput& input, std::size_t d) {
 
 Json protocol_json(const hold_test::HoldProtocol& protocol) {
   const bool is_lift = protocol.load == hold_test::HoldLoad::Lift;
-  Json knobs = Json::array();
-  for (const std::string& name : hold_test::knob_names()) {
+  Json parameters = Json::array();
+  for (const std::string& name : hold_test::parameter_names()) {
     const Json value = std::visit([](const auto& held) { return Json(held); },
-                                  hold_test::knob_value(protocol, name));
-    knobs.push_back({name, value});
+                                  hold_test::parameter_value(protocol, name));
+    parameters.push_back({name, value});
   }
   return {{"name", protocol.name},
           {"source", protocol.source},
@@ -143,7 +143,7 @@ Json protocol_json(const hold_test::HoldProtocol& protocol) {
           {"approach_time", protocol.approach_time},
           {"largest_shift", protocol.largest_shift},
           {"largest_turn", protocol.largest_turn},
-          {"knobs", knobs}};
+          {"parameters", parameters}};
 }
 
 }  // namespace

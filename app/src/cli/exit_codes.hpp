@@ -11,7 +11,7 @@ enum ExitCode : int {
   kBadInput = 2,       ///< A file or a flag that cannot be used; one line says why.
   kNoGrasp = 3,        ///< `plan` found no grasp; the line says how the attempts ended.
   kDiffers = 4,  ///< `evaluate` or `experiment verify` found other results than those on file;
-                 ///< `motion` found a stretch that is not free of collisions.
+                 ///< `motion` found a segment that is not free of collisions.
   kInterrupted = 128,  ///< Plus the signal's number: 130 for Ctrl-C, whether the work was broken
                        ///< off or, by `plan`, finished with what had been found.
 };

@@ -291,7 +291,7 @@ std::string table_of(const Source& source) {
     const grasp::Grasp& grasp = source.file.grasps[i];
     rows.push_back({std::to_string(i + 1), source.names[i], fixed_decimal(grasp.quality.m, 4),
                     epsilon_text(grasp, 4), std::to_string(grasp.contacts.size()),
-                    fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
+                    fixed_decimal(1000.0 * grasp::largest_requested_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});
   }

@@ -45,7 +45,7 @@ Command evaluate_command() {
   add_object_flag(command.options);
   add_option(command.options, "metrics", "NAME,...", "all",
              "metrics to print, of those below; all or none");
-  add_option(command.options, "convention", grasp::names_of<contact::WrenchTool>(), "house",
+  add_option(command.options, "convention", grasp::names_of<contact::WrenchTool>(), "graspfit",
              "whose wrench convention metrics are in");
   add_switch(command.options, "json", "print JSON instead of tables");
   add_switch(command.options, "csv", "print metrics as CSV, a row per grasp and metric");
@@ -71,7 +71,7 @@ struct Comparison {
   grasp::Grasp computed;
   double m_difference = 0.0;
   double epsilon_difference = 0.0;
-  double gap_difference = 0.0;      ///< Of the largest claimed one [m].
+  double gap_difference = 0.0;      ///< Of the largest requested one [m].
   double largest_difference = 0.0;  ///< Over those, M1, M2, M3 and, if as many, contact points [m].
   bool has_same_contacts = false;   ///< As many, on the same pads.
   bool has_same_answers = false;    ///< What makes a grasp valid, but for M.
@@ -103,7 +103,7 @@ Comparison compare(const grasp::Grasp& stored, const grasp::Grasp& computed) {
   comparison.m_difference = std::abs(a.m - b.m);
   comparison.epsilon_difference = std::abs(stored.epsilon() - computed.epsilon());
   comparison.gap_difference =
-      std::abs(grasp::largest_claimed_gap(stored) - grasp::largest_claimed_gap(computed));
+      std::abs(grasp::largest_requested_gap(stored) - grasp::largest_requested_gap(computed));
   comparison.largest_difference =
       std::max({comparison.m_difference, std::abs(a.m1 - b.m1), std::abs(a.m2 - b.m2),
                 std::abs(a.m3 - b.m3), comparison.epsilon_difference, comparison.gap_difference});
@@ -138,7 +138,7 @@ std::string table_of(const std::vector<Comparison>& comparisons) {
                     fixed_decimal(grasp.quality.m2, 4), fixed_decimal(grasp.quality.m3, 4),
                     epsilon_text(comparison.stored, 6), epsilon_text(grasp, 6),
                     std::to_string(grasp.contacts.size()),
-                    fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
+                    fixed_decimal(1000.0 * grasp::largest_requested_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no",
                     shortest_decimal(comparison.largest_difference)});
@@ -187,7 +187,8 @@ std::string json_of(const std::vector<Comparison>& comparisons, double largest_m
            ", \"m3\": " + shortest_decimal(grasp.quality.m3) +
            ", \"num_contacts\": " + std::to_string(grasp.contacts.size()) +
            ", \"epsilon\": " + shortest_decimal(grasp.epsilon()) +
-           ", \"largest_claimed_gap_m\": " + shortest_decimal(grasp::largest_claimed_gap(grasp)) +
+           ", \"largest_requested_gap_m\": " +
+           shortest_decimal(grasp::largest_requested_gap(grasp)) +
            ", \"largest_contact_gap_m\": " + shortest_decimal(grasp::largest_contact_gap(grasp)) +
            ", \"largest_penetration_m\": " + shortest_decimal(grasp::largest_penetration(grasp)) +
            ", \"surroundings_touched\": " +

@@ -46,7 +46,7 @@ Command hold_command() {
       "hold", "GRASPS.json",
       "Tests in physics (MuJoCo) whether the grasps of a file hold: the hand closes from the "
       "pre-grasp,\nsqueezes, and the object is pulled, under a named protocol that is written down "
-      "with every knob.\n",
+      "with every parameter.\n",
       option_group(),
       "Held: under every load the object stays within the protocol's largest shift and turn at "
       "every check.\nOtherwise the stage says where it was lost: rejected (too deep at the "
@@ -185,8 +185,9 @@ std::string rate_text(const hold_test::HoldReport& report) {
             " %)";
   }
   text += " under " + report.protocol.name;
-  for (const std::string& knob : report.changed_knobs) {
-    text += (&knob == &report.changed_knobs.front() ? " with another " : ", ") + knob;
+  for (const std::string& parameter : report.changed_parameters) {
+    text +=
+        (&parameter == &report.changed_parameters.front() ? " with another " : ", ") + parameter;
   }
   std::string lost;
   for (const auto stage : {hold_test::HoldStage::Load, hold_test::HoldStage::Approach,
@@ -233,7 +234,7 @@ hold_test::HoldReport make_report(const Flags& flags, const Request& request, co
   report.object_sha256 = bench.file.object.sha256;
   report.hand_name = bench.file.hand.name;
   report.protocol = request.protocol;
-  report.changed_knobs = hold_test::changed_knobs(request.protocol);
+  report.changed_parameters = hold_test::changed_parameters(request.protocol);
   report.decomposition = request.pieces;
   report.object = hold_test::pieces_report(bench.file.object.file, bench.object.shape);
   for (std::size_t i = 0; i < bench.hand.links.size(); ++i) {

@@ -32,7 +32,7 @@ Command motion_command() {
       "motion", "MOTION.json",
       "Checks the motion of a hand that moves objects about on a table, and shows it.\n",
       option_group("Options"),
-      "Every stretch between two keyframes is proven free of collisions anew, and looked at by "
+      "Every segment between two keyframes is proven free of collisions anew, and looked at by "
       "exact\ntests on frames between which no point moves by more than --step-mm. Exit code 4: "
       "one is not.\n"};
   add_option(command.options, "meshes", "DIR", std::nullopt,
@@ -60,18 +60,18 @@ struct CheckedMove {
   std::vector<std::string> findings;                        ///< "lift: bunny and mug".
 };
 
-/// Stretches that keep the file's clearance; the others touch something by their nature.
+/// Segments that keep the file's clearance; the others touch something by their nature.
 bool keeps_clearance(motion::MotionPhase phase) {
   return phase == motion::MotionPhase::Reach || phase == motion::MotionPhase::Transport ||
          phase == motion::MotionPhase::Retreat;
 }
 
-/// Frames of a stretch on which a point travels that far, beside its start.
+/// Frames of a segment on which a point travels that far, beside its start.
 int num_frames(double travel, double step) {
   constexpr double kMost = 1e6;
   const double frames = std::max(1.0, std::ceil(travel / step));
   if (!(frames <= kMost)) {
-    throw base::InvalidInput("a stretch of " + base::shortest_decimal(travel) +
+    throw base::InvalidInput("a segment of " + base::shortest_decimal(travel) +
                              " m has more than 1000000 frames; a larger --step-mm makes fewer");
   }
   return static_cast<int>(frames);
@@ -80,26 +80,26 @@ int num_frames(double travel, double step) {
 CheckedMove checked(const motion::TableScene& scene, const std::vector<RigidTransform>& X_WO,
                     const motion::RecordedMove& move, double clearance, double step) {
   CheckedMove result;
-  for (const motion::MotionStretch& stretch : move.stretches) {
-    const std::string phase = motion::phase_name(stretch.phase);
+  for (const motion::MotionSegment& segment : move.segments) {
+    const std::string phase = motion::phase_name(segment.phase);
     // Poses of a file are rounded, at most by this much.
     constexpr double kRounding = 1e-12;
     const double wanted =
-        keeps_clearance(stretch.phase) ? std::max(0.0, clearance - kRounding) : 0.0;
-    if (const auto met = motion::find_encounter(scene, X_WO, stretch, wanted)) {
+        keeps_clearance(segment.phase) ? std::max(0.0, clearance - kRounding) : 0.0;
+    if (const auto met = motion::find_collision(scene, X_WO, segment, wanted)) {
       result.findings.push_back(phase + ": not proven free, " + met->text());
     }
-    const double travel = motion::largest_travel(scene, stretch);
+    const double travel = motion::largest_travel(scene, segment);
     const int parts = num_frames(travel, step);
     bool has_overlap = false;
     for (int i = 0; i <= parts; ++i) {
       const double share = static_cast<double>(i) / parts;
-      const motion::MotionClearance here = motion::clearance_at(scene, X_WO, stretch, share);
+      const motion::MotionClearance here = motion::clearance_at(scene, X_WO, segment, share);
       result.hand = std::min(result.hand, here.hand);
       result.object = std::min(result.object, here.object);
       ++result.frames;
       if (has_overlap) continue;
-      if (const auto met = motion::find_overlap(scene, X_WO, stretch, share)) {
+      if (const auto met = motion::find_overlap(scene, X_WO, segment, share)) {
         has_overlap = true;
         result.findings.push_back(phase + ": overlap of " + met->text());
       }
@@ -117,7 +117,7 @@ bool check(const viewer::MotionInput& input, double step, ProgressBar& progress)
   const motion::MotionFile& file = input.file;
   const auto poses = motion::object_poses(file);
   std::vector<std::vector<std::string>> rows = {
-      {"move", "object", "M", "stretches", "frames", "hand_clear_mm", "object_clear_mm", "free"}};
+      {"move", "object", "M", "segments", "frames", "hand_clear_mm", "object_clear_mm", "free"}};
   std::vector<std::string> findings;
   for (std::size_t k = 0; k < file.moves.size(); ++k) {
     const motion::RecordedMove& move = file.moves[k];
@@ -126,7 +126,7 @@ bool check(const viewer::MotionInput& input, double step, ProgressBar& progress)
                   "checking " + name);
     const CheckedMove found = checked(input.scene, poses[k], move, file.clearance, step);
     rows.push_back({std::to_string(k + 1), name, fixed_decimal(move.grasp_m, 4),
-                    std::to_string(move.stretches.size()), std::to_string(found.frames),
+                    std::to_string(move.segments.size()), std::to_string(found.frames),
                     millimeters(found.hand), millimeters(found.object),
                     found.findings.empty() ? "yes" : "no"});
     for (const std::string& what : found.findings) {

@@ -106,7 +106,7 @@ std::string table_of(const grasp::GraspFile& file) {
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
                     fixed_decimal(grasp.quality.m3, 4), epsilon_text(grasp, 4),
                     std::to_string(grasp.contacts.size()),
-                    fixed_decimal(1000.0 * grasp::largest_claimed_gap(grasp), 4),
+                    fixed_decimal(1000.0 * grasp::largest_requested_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
                     grasp.is_valid() ? "yes" : "no"});
   }

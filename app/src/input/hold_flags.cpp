@@ -6,7 +6,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/base/number_text.hpp"
-#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_parameters.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
 
 namespace graspfit::app {
@@ -21,21 +21,21 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
   return text;
 }
 
-/// A flag that changes a knob.
-struct KnobChange {
+/// A flag that changes a parameter.
+struct ParameterChange {
   std::string flag;  ///< As it was given: "--set step_s=0.001".
-  std::string knob;
+  std::string parameter;
   std::string value;
 };
 
-void apply(const KnobChange& change, hold_test::HoldProtocol& protocol) {
-  const std::vector<std::string> names = hold_test::knob_names();
+void apply(const ParameterChange& change, hold_test::HoldProtocol& protocol) {
+  const std::vector<std::string> names = hold_test::parameter_names();
   try {
-    hold_test::set_knob(protocol, change.knob, change.value);
+    hold_test::set_parameter(protocol, change.parameter, change.value);
   } catch (const base::InvalidInput& error) {
-    const bool is_known = std::find(names.begin(), names.end(), change.knob) != names.end();
+    const bool is_known = std::find(names.begin(), names.end(), change.parameter) != names.end();
     throw UsageError(change.flag + ": " + error.what() +
-                     (is_known ? "" : base::did_you_mean(change.knob, names)));
+                     (is_known ? "" : base::did_you_mean(change.parameter, names)));
   }
 }
 
@@ -52,12 +52,13 @@ std::string fault_of(const hold_test::HoldProtocol& protocol) {
 }
 
 /// Blames the first change that alone makes the protocol unusable, else all of them.
-void require_usable(const hold_test::HoldProtocol& named, const std::vector<KnobChange>& changes,
+void require_usable(const hold_test::HoldProtocol& named,
+                    const std::vector<ParameterChange>& changes,
                     const hold_test::HoldProtocol& protocol) {
   const std::string fault = fault_of(protocol);
   if (fault.empty()) return;
   std::string all;
-  for (const KnobChange& change : changes) {
+  for (const ParameterChange& change : changes) {
     hold_test::HoldProtocol alone = named;
     apply(change, alone);
     if (const std::string own = fault_of(alone); !own.empty()) {
@@ -80,10 +81,11 @@ po::options_description hold_protocol_options() {
       "grasp as the pre-grasp is before it, or none; without it the protocol's");
   add_option(options, "step", "SECONDS", std::nullopt,
              "of the simulation, from 0.00001; without it the protocol's");
-  add_repeatable_option(options, "set", "KNOB=VALUE",
-                        "another value for a knob of the protocol, several numbers separated by "
-                        "commas; may be given several times. Knobs: " +
-                            joined(hold_test::knob_names(), ", "));
+  add_repeatable_option(
+      options, "set", "PARAMETER=VALUE",
+      "another value for a parameter of the protocol, several numbers separated by "
+      "commas; may be given several times. Parameters: " +
+          joined(hold_test::parameter_names(), ", "));
   return options;
 }
 
@@ -98,7 +100,7 @@ hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
   const hold_test::HoldProtocol named = hold_protocol_named("protocol", flags.text("protocol"));
   hold_test::HoldProtocol protocol = named;
-  std::vector<KnobChange> changes;
+  std::vector<ParameterChange> changes;
   if (flags.has("squeeze")) {
     const std::string& rule = flags.text("squeeze");
     changes.push_back({"--squeeze " + rule, "squeeze", rule});
@@ -111,11 +113,11 @@ hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {
   for (const std::string& setting : flags.texts("set")) {
     const std::size_t sign = setting.find('=');
     if (sign == std::string::npos || sign == 0) {
-      throw UsageError("--set \"" + setting + "\" is not KNOB=VALUE");
+      throw UsageError("--set \"" + setting + "\" is not PARAMETER=VALUE");
     }
     changes.push_back({"--set " + setting, setting.substr(0, sign), setting.substr(sign + 1)});
   }
-  for (const KnobChange& change : changes) apply(change, protocol);
+  for (const ParameterChange& change : changes) apply(change, protocol);
   require_usable(named, changes, protocol);
   return protocol;
 }

@@ -8,7 +8,7 @@
 
 namespace graspfit::app {
 
-/// The flags that choose a hold protocol and change its knobs.
+/// The flags that choose a hold protocol and change its parameters.
 boost::program_options::options_description hold_protocol_options();
 
 /// The protocol of that name. @throws UsageError that names the flag and the protocols.

@@ -38,10 +38,10 @@ std::string in_one_line(std::string text) {
 
 }  // namespace
 
-JsonValue::JsonValue(const Json& root, Fault fault, std::string place)
+JsonValue::JsonValue(const Json& root, Fault fault, std::string location)
     : document_(std::make_shared<const Document>(Document{root, std::move(fault)})),
       json_(&document_->root),
-      place_(std::move(place)) {}
+      location_(std::move(location)) {}
 
 JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
                             void (*raise)(const std::string& message)) {
@@ -52,8 +52,8 @@ JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
   } catch (const Json::exception& error) {
     throw IoError(file + ": is not JSON: " + json_fault(error.what()));
   }
-  document->fault = [file, raise](const std::string& place, const std::string& what) {
-    raise(in_one_line(file) + ": " + (place.empty() ? "/" : place) + ": " + what);
+  document->fault = [file, raise](const std::string& location, const std::string& what) {
+    raise(in_one_line(file) + ": " + (location.empty() ? "/" : location) + ": " + what);
   };
   return {document, &document->root, ""};
 }
@@ -61,11 +61,11 @@ JsonValue JsonValue::parsed(const std::string& text, const std::string& file,
 JsonValue JsonValue::with_root(const Json& root) const { return {root, document_->fault}; }
 
 JsonValue JsonValue::child(const Json& json, const std::string& name) const {
-  return {document_, &json, place_ + '/' + name};
+  return {document_, &json, location_ + '/' + name};
 }
 
 void JsonValue::fail(const std::string& what) const {
-  document_->fault(in_one_line(place_), in_one_line(what));
+  document_->fault(in_one_line(location_), in_one_line(what));
   throw std::logic_error("a fault of JSON was not thrown");
 }
 

@@ -44,7 +44,7 @@ std::string outcome_column(grasp::AttemptOutcome outcome) {
 struct Measures {
   std::vector<double> m;
   std::vector<double> epsilon;
-  std::vector<double> claimed_gaps;
+  std::vector<double> requested_gaps;
   std::vector<double> num_contacts;
   std::vector<double> target_distances;  ///< Of targets whose parts have a contact.
   double largest_penetration = 0.0;
@@ -73,7 +73,7 @@ Measures measures_of(const Planned& planned) {
     measures.epsilon.push_back(grasp.epsilon());
     measures.num_contacts.push_back(static_cast<double>(grasp.contacts.size()));
     for (const contact::Contact& contact : grasp.contacts) {
-      if (contact.is_target) measures.claimed_gaps.push_back(contact.gap);
+      if (contact.is_target) measures.requested_gaps.push_back(contact.gap);
     }
     for (const double distance : grasp::target_distances(grasp)) {
       if (std::isfinite(distance)) measures.target_distances.push_back(distance);
@@ -201,8 +201,8 @@ void fill_planning_columns(const Planned& planned, sweep::ResultRow& row) {
   row.set("balanced_share", field(share(measures.num_balanced, grasps.size())));
   row.set("num_penetrating", field(measures.num_penetrating));
   row.set("mean_target_distance_m", field(mean(measures.target_distances)));
-  row.set("mean_gap_m", field(mean(measures.claimed_gaps)));
-  row.set("largest_gap_m", field(largest(measures.claimed_gaps)));
+  row.set("mean_gap_m", field(mean(measures.requested_gaps)));
+  row.set("largest_gap_m", field(largest(measures.requested_gaps)));
   row.set("duplicates", statistics.duplicates);
   for (const grasp::AttemptOutcome outcome : kOutcomes) {
     const auto found = statistics.outcomes.find(outcome);

@@ -54,7 +54,7 @@ std::vector<sweep::Column> columns() {
       {"moves_tried", "1", "moves planned, failures included"},
       {"planner_attempts", "1", "target sets fitted for them"},
       {"grasps_tried", "1", "valid grasps tried"},
-      {"stretches_tried", "1", "straight stretches of motion tried"},
+      {"segments_tried", "1", "straight segments of motion tried"},
       {"unmoved", "", "objects that stay short of their goals, and why"}};
 }
 
@@ -62,7 +62,7 @@ std::vector<sweep::Column> details() {
   return {{"move", "1", "number of the move, from 1; empty for an object that is not moved"},
           {"object", "", "the one that is moved"},
           {"phase", "", "reach, approach, lift, transport, place, release or retreat"},
-          {"stretches", "1", "straight stretches of this phase"},
+          {"segments", "1", "straight segments of this phase"},
           {"frames", "1", "frames measured"},
           {"travel_m", "m", "upper bound of the way of the fastest point"},
           {"hand_clearance_m", "m",
@@ -76,8 +76,8 @@ std::vector<sweep::Column> details() {
           {"num_contacts", "1", "N' of the move's grasp"},
           {"planner_attempts", "1", "target sets fitted for the move"},
           {"grasps_tried", "1", "grasps tried for the move, the one taken included"},
-          {"stretches_tried", "1", "stretches tried for the move"},
-          {"failures", "", "why earlier grasps and stretches of the move were refused"}};
+          {"segments_tried", "1", "segments tried for the move"},
+          {"failures", "", "why earlier grasps and segments of the move were refused"}};
 }
 
 std::vector<sweep::Column> timings() {
@@ -120,16 +120,16 @@ Table load_table(const TableSettings& settings) {
           std::move(start), std::move(goal)};
 }
 
-/// What the frames of some stretches show.
+/// What the frames of some segments show.
 struct Measured {
-  std::int64_t stretches = 0;
+  std::int64_t segments = 0;
   std::int64_t frames = 0;
   double travel = 0.0;
   motion::MotionClearance clearance{kInfinity, kInfinity};
   std::int64_t overlaps = 0;
 
   void add(const Measured& other) {
-    stretches += other.stretches;
+    segments += other.segments;
     frames += other.frames;
     travel += other.travel;
     clearance.hand = std::min(clearance.hand, other.clearance.hand);
@@ -139,24 +139,24 @@ struct Measured {
 };
 
 Measured measure(const motion::TableScene& scene, const std::vector<RigidTransform>& X_WO,
-                 const motion::MotionStretch& stretch, double step) {
+                 const motion::MotionSegment& segment, double step) {
   Measured measured;
-  measured.stretches = 1;
-  measured.travel = motion::largest_travel(scene, stretch);
+  measured.segments = 1;
+  measured.travel = motion::largest_travel(scene, segment);
   const double frames = std::max(1.0, std::ceil(measured.travel / step));
   // Written so that NaN fails.
   if (!(frames <= 1e6)) {
-    throw base::InvalidInput("a stretch of " + base::shortest_decimal(measured.travel) +
+    throw base::InvalidInput("a segment of " + base::shortest_decimal(measured.travel) +
                              " m has more than 1000000 frames; a larger frame_step_mm makes "
                              "fewer");
   }
   const auto parts = static_cast<std::int64_t>(frames);
   for (std::int64_t i = 0; i <= parts; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(parts);
-    const motion::MotionClearance here = motion::clearance_at(scene, X_WO, stretch, share);
+    const motion::MotionClearance here = motion::clearance_at(scene, X_WO, segment, share);
     measured.clearance.hand = std::min(measured.clearance.hand, here.hand);
     measured.clearance.object = std::min(measured.clearance.object, here.object);
-    if (motion::find_overlap(scene, X_WO, stretch, share)) ++measured.overlaps;
+    if (motion::find_overlap(scene, X_WO, segment, share)) ++measured.overlaps;
     ++measured.frames;
   }
   return measured;
@@ -176,15 +176,15 @@ std::vector<sweep::ResultRow> move_rows(const Table& table, const motion::Tidyin
     const motion::PlannedMove& move = result.moves[k];
     for (const motion::MotionPhase phase : kPhases) {
       Measured measured;
-      for (const motion::MotionStretch& stretch : move.stretches) {
-        if (stretch.phase == phase) measured.add(measure(table.scene, X_WO, stretch, step));
+      for (const motion::MotionSegment& segment : move.segments) {
+        if (segment.phase == phase) measured.add(measure(table.scene, X_WO, segment, step));
       }
       all.add(measured);
       sweep::ResultRow row(details());
       row.set("move", field(k + 1));
       row.set("object", table.scene.object(move.object).name);
       row.set("phase", std::string(motion::phase_name(phase)));
-      row.set("stretches", measured.stretches);
+      row.set("segments", measured.segments);
       row.set("frames", measured.frames);
       row.set("travel_m", measured.travel);
       row.set("hand_clearance_m", measured.clearance.hand);
@@ -194,7 +194,7 @@ std::vector<sweep::ResultRow> move_rows(const Table& table, const motion::Tidyin
       row.set("num_contacts", field(move.grasp.contacts.size()));
       row.set("planner_attempts", move.planner_attempts);
       row.set("grasps_tried", static_cast<std::int64_t>(move.grasps_tried));
-      row.set("stretches_tried", static_cast<std::int64_t>(move.stretches_tried));
+      row.set("segments_tried", static_cast<std::int64_t>(move.segments_tried));
       row.set("failures", move.refusals);
       rows.push_back(std::move(row));
     }
@@ -249,7 +249,7 @@ void fill_row(const Table& table, const motion::TidyingResult& result,
   row.set("moves_tried", static_cast<std::int64_t>(result.moves_tried));
   row.set("planner_attempts", result.planner_attempts);
   row.set("grasps_tried", static_cast<std::int64_t>(result.grasps_tried));
-  row.set("stretches_tried", static_cast<std::int64_t>(result.stretches_tried));
+  row.set("segments_tried", static_cast<std::int64_t>(result.segments_tried));
   row.set("unmoved", unmoved);
 }
 

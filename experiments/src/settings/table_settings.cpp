@@ -46,7 +46,7 @@ PlanningSettings object_settings(const sweep::Cell& cell, const nlohmann::json& 
     return planning_settings(merged.dump(), cell.seed, table_setting_names());
   } catch (const sweep::SettingError& error) {
     if (value.has(error.key()))
-      throw sweep::SettingError(value.place() + '/' + error.key(), error.what());
+      throw sweep::SettingError(value.location() + '/' + error.key(), error.what());
     throw;
   }
 }

@@ -229,7 +229,7 @@ class Merger {
       for (std::size_t b = a + 1; b < pieces_.size(); ++b) add_pair(a, b);
     }
     while (!pairs_.empty()) {
-      for (Pair& pair : pairs_) look_at(pair, limit);
+      for (Pair& pair : pairs_) evaluate(pair, limit);
       const auto best =
           std::min_element(pairs_.begin(), pairs_.end(),
                            [](const Pair& a, const Pair& b) { return a.depth < b.depth; });
@@ -263,7 +263,7 @@ class Merger {
     if (boxes_[a].exteriorDistance(boxes_[b]) <= decomposer_.reach()) pairs_.push_back({a, b});
   }
 
-  void look_at(Pair& pair, double limit) const {
+  void evaluate(Pair& pair, double limit) const {
     if (pair.is_known || pair.depth > limit) return;
     const std::vector<Vector3d>& points_a = pieces_[pair.a].hull.mesh.vertices;
     const std::vector<Vector3d>& points_b = pieces_[pair.b].hull.mesh.vertices;

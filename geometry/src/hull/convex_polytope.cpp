@@ -140,8 +140,8 @@ double distance_within_span(const PolytopeData& data, const Eigen::Ref<const Vec
   double nearest = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < count; ++f) {
     const SideValue side = scaled.side(f);
-    ranges.emplace_back(-(side.value + side.bound) * data.stretches[f],
-                        -(side.value - side.bound) * data.stretches[f]);
+    ranges.emplace_back(-(side.value + side.bound) * data.distance_factors[f],
+                        -(side.value - side.bound) * data.distance_factors[f]);
     nearest = std::min(nearest, ranges.back().second);
   }
   double distance = std::numeric_limits<double>::infinity();

@@ -133,7 +133,7 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
 
   PointsOfSum points(dimension);
   bounds.upper = std::numeric_limits<double>::infinity();
-  const auto look = [&](const VectorXd& direction) {
+  const auto add_support = [&](const VectorXd& direction) {
     const Support farthest = support(rounded, direction);
     if (farthest.value < bounds.upper) {
       bounds.upper = farthest.value;
@@ -142,8 +142,8 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
     return points.add(farthest.point);
   };
   for (Index j = 0; j < dimension; ++j) {
-    look(VectorXd::Unit(dimension, j));
-    look(-VectorXd::Unit(dimension, j));
+    add_support(VectorXd::Unit(dimension, j));
+    add_support(-VectorXd::Unit(dimension, j));
   }
   for (;;) {
     const ConvexPolytope hull(points.columns());
@@ -158,8 +158,8 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
       // Out of the hull's span, either way.
       const MatrixXd centered = points.columns().colwise() - points.columns().col(0);
       const MatrixXd basis = Eigen::FullPivHouseholderQR<MatrixXd>(centered).matrixQ();
-      has_grown = look(basis.rightCols(1));
-      has_grown = look(-basis.rightCols(1)) || has_grown;
+      has_grown = add_support(basis.rightCols(1));
+      has_grown = add_support(-basis.rightCols(1)) || has_grown;
     } else {
       std::vector<Index> nearest(static_cast<std::size_t>(hull.num_facets()));
       std::iota(nearest.begin(), nearest.end(), Index{0});
@@ -170,7 +170,7 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
       int added = 0;
       for (const Index facet : nearest) {
         if (added == kPointsPerRound || hull.offsets()[facet] >= bounds.upper) break;
-        if (look(hull.normals().col(facet))) ++added;
+        if (add_support(hull.normals().col(facet))) ++added;
       }
       has_grown = added > 0;
     }

@@ -317,7 +317,7 @@ void measure_in_space(PolytopeData& data) {
   data.measure /= std::abs(on_axes.determinant());
   data.normals.resize(data.dimension(), data.facets.cols());
   data.offsets.resize(data.facets.cols());
-  data.stretches.resize(data.facets.cols());
+  data.distance_factors.resize(data.facets.cols());
   VectorXd gradient(rank);
   for (Index f = 0; f < data.facets.cols(); ++f) {
     gradient = data.gradients.col(f);
@@ -330,7 +330,7 @@ void measure_in_space(PolytopeData& data) {
       gradient = on_axes.transpose() * gradient;
     }
     const double length = gradient.stableNorm();
-    data.stretches[f] = 1.0 / length;
+    data.distance_factors[f] = 1.0 / length;
     gradient /= length;
     if (is_full) {
       data.normals.col(f) = gradient;

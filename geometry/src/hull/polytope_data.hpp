@@ -29,8 +29,8 @@ struct PolytopeData {
   bool has_scaled_points = true;                  ///< without rounding
   Eigen::MatrixXd directions;  ///< dimension × rank, orthonormal; the identity at full rank
   Eigen::MatrixXd gradients;  ///< rank × facets: side value = gradient · (x − corner 0), scaled
-  Eigen::VectorXd unit_bounds;  ///< of the error of that value, per length of x − corner 0
-  Eigen::VectorXd stretches;    ///< distance = −value · stretch
+  Eigen::VectorXd unit_bounds;       ///< of the error of that value, per length of x − corner 0
+  Eigen::VectorXd distance_factors;  ///< distance = −value · factor
 
   int dimension() const { return static_cast<int>(points.rows()); }
 };

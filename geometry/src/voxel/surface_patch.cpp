@@ -37,7 +37,7 @@ class PatchProjection {
         start = name.piece;
       }
     }
-    look(start);
+    visit(start);
     for (const CutPieceName& name : names) {
       if (name.piece == start) continue;
       // Too far if the centroid is farther than radius and best distance together. A radius too
@@ -47,7 +47,7 @@ class PatchProjection {
       const double reach = r_squared + squared_ + 2.0 * std::sqrt(r_squared * squared_);
       if (r_squared > kLeastRadius && (piece.centroid - point_).squaredNorm() > reach * kRadiusRoom)
         continue;
-      look(name.piece);
+      visit(name.piece);
     }
     return best_;
   }
@@ -55,18 +55,18 @@ class PatchProjection {
  private:
   static constexpr float kLeastRadius = 0x1p-120F;
 
-  void look(std::int32_t piece) {
+  void visit(std::int32_t piece) {
     if (all_.is_whole(piece)) {
-      look(piece, corners(mesh_, static_cast<std::size_t>(all_.pieces[piece].face)));
+      visit(piece, corners(mesh_, static_cast<std::size_t>(all_.pieces[piece].face)));
       return;
     }
     const auto polygon = all_.polygon(piece);
     for (std::size_t i = 2; i < polygon.size(); ++i) {
-      look(piece, {polygon[0], polygon[i - 1], polygon[i]});
+      visit(piece, {polygon[0], polygon[i - 1], polygon[i]});
     }
   }
 
-  void look(std::int32_t piece, const std::array<Eigen::Vector3d, 3>& triangle) {
+  void visit(std::int32_t piece, const std::array<Eigen::Vector3d, 3>& triangle) {
     const Eigen::Vector3d candidate = internal::closest_on_triangle(point_, triangle);
     const double squared = (candidate - point_).squaredNorm();
     if (piece_ < 0 || squared < squared_ ||

@@ -111,17 +111,17 @@ VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
         while (!open.empty()) {
           const Run run = open.back();
           open.pop_back();
-          const auto look = [&](int nj, int nk) {
+          const auto join = [&](int nj, int nk) {
             if (nj < 0 || nj >= ny || nk < 0 || nk >= nz) return;
             const char* const next = is_seen.data() + lattice.index({0, nj, nk});
             for (int n = run.first; n <= run.last; ++n) {
               if (!next[n]) n = take(n, nj, nk);
             }
           };
-          look(run.j - 1, run.k);
-          look(run.j + 1, run.k);
-          look(run.j, run.k - 1);
-          look(run.j, run.k + 1);
+          join(run.j - 1, run.k);
+          join(run.j + 1, run.k);
+          join(run.j, run.k - 1);
+          join(run.j, run.k + 1);
         }
       }
     }

@@ -38,7 +38,7 @@ void YamlNode::fail(const std::string& what) const {
   const YAML::Mark mark = node_.Mark();
   const std::string line = mark.is_null() ? "" : "line " + std::to_string(mark.line + 1) + ": ";
   throw base::IoError(
-      in_one_line(*file_ + ": " + line + (place_.empty() ? "/" : place_) + ": " + what));
+      in_one_line(*file_ + ": " + line + (location_.empty() ? "/" : location_) + ": " + what));
 }
 
 std::vector<std::pair<std::string, YamlNode>> YamlNode::members() const {
@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::members() const {
     if (!member.first.IsScalar()) fail("has a key that is not a text");
     const std::string& key = member.first.Scalar();
     if (!keys.insert(key).second) fail("has " + key + " twice");
-    nodes.emplace_back(key, YamlNode(file_, member.second, place_ + '/' + key));
+    nodes.emplace_back(key, YamlNode(file_, member.second, location_ + '/' + key));
   }
   return nodes;
 }
@@ -63,7 +63,7 @@ std::optional<YamlNode> YamlNode::find(const std::string& key) const {
 
 YamlNode YamlNode::at(const std::string& key) const {
   if (const std::optional<YamlNode> found = find(key)) return *found;
-  YamlNode(file_, node_, place_ + '/' + key).fail("is missing");
+  YamlNode(file_, node_, location_ + '/' + key).fail("is missing");
 }
 
 std::string YamlNode::text() const {
@@ -89,7 +89,7 @@ Eigen::Vector3d YamlNode::vector3() const {
   if (!node_.IsSequence() || node_.size() != 3) fail("is not a list of three numbers");
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) {
-    v[i] = YamlNode(file_, node_[i], place_ + '/' + std::to_string(i)).number();
+    v[i] = YamlNode(file_, node_[i], location_ + '/' + std::to_string(i)).number();
   }
   return v;
 }

@@ -32,12 +32,12 @@ class YamlNode {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  YamlNode(std::shared_ptr<const std::string> file, YAML::Node node, std::string place)
-      : file_(std::move(file)), node_(std::move(node)), place_(std::move(place)) {}
+  YamlNode(std::shared_ptr<const std::string> file, YAML::Node node, std::string location)
+      : file_(std::move(file)), node_(std::move(node)), location_(std::move(location)) {}
 
   std::shared_ptr<const std::string> file_;
   YAML::Node node_;
-  std::string place_;
+  std::string location_;
 };
 
 }  // namespace graspfit::exchange::internal

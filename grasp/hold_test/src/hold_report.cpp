@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graspfit/base/number_text.hpp"
-#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_parameters.hpp"
 #include "io/json_text.hpp"
 
 namespace graspfit::hold_test {
@@ -46,19 +46,19 @@ Json conventions() {
        "the solid; inward_deviation_m: how far the solid's surface is from the nearest piece"}};
 }
 
-Json knob_json(const KnobValue& value) {
+Json parameter_json(const ParameterValue& value) {
   return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
 Json protocol_json(const HoldReport& report) {
-  Json knobs = Json::object();
-  for (const std::string& name : knob_names()) {
-    knobs[name] = knob_json(knob_value(report.protocol, name));
+  Json parameters = Json::object();
+  for (const std::string& name : parameter_names()) {
+    parameters[name] = parameter_json(parameter_value(report.protocol, name));
   }
   return {{"name", report.protocol.name},
           {"source", report.protocol.source},
-          {"changed_knobs", report.changed_knobs},
-          {"knobs", knobs}};
+          {"changed_parameters", report.changed_parameters},
+          {"parameters", parameters}};
 }
 
 Json pieces_json(const PiecesReport& pieces) {
@@ -156,11 +156,11 @@ PiecesReport pieces_report(const std::string& name, const geometry::ConvexDecomp
           .is_within_deviation = shape.is_within_deviation};
 }
 
-std::vector<std::string> changed_knobs(const HoldProtocol& protocol) {
+std::vector<std::string> changed_parameters(const HoldProtocol& protocol) {
   const HoldProtocol shipped = hold_protocol(protocol.name);
   std::vector<std::string> changed;
-  for (const std::string& name : knob_names()) {
-    if (knob_value(protocol, name) != knob_value(shipped, name)) changed.push_back(name);
+  for (const std::string& name : parameter_names()) {
+    if (parameter_value(protocol, name) != parameter_value(shipped, name)) changed.push_back(name);
   }
   return changed;
 }

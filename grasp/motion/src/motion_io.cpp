@@ -33,7 +33,7 @@ constexpr std::string_view kShapePrefix = "shape ";
 
 Json joints_json(const Eigen::VectorXd& q) { return std::vector<double>(q.begin(), q.end()); }
 
-/// Where a stretch begins or ends.
+/// Where a segment begins or ends.
 Json keyframe_json(const hands::HandConfiguration& hand, const RigidTransform& X_WO) {
   return {{"X_WH", grasp::internal::to_json(hand.X_OH)},
           {"q", joints_json(hand.q)},
@@ -41,18 +41,18 @@ Json keyframe_json(const hands::HandConfiguration& hand, const RigidTransform& X
 }
 
 Json move_json(const MotionFile& file, const RecordedMove& move) {
-  Json stretches = Json::array();
-  for (const MotionStretch& stretch : move.stretches) {
-    Json entry = {{"phase", phase_name(stretch.phase)}};
-    entry.update(keyframe_json(stretch.to, stretch.X_WO_to));
-    stretches.push_back(std::move(entry));
+  Json segments = Json::array();
+  for (const MotionSegment& segment : move.segments) {
+    Json entry = {{"phase", phase_name(segment.phase)}};
+    entry.update(keyframe_json(segment.to, segment.X_WO_to));
+    segments.push_back(std::move(entry));
   }
-  const MotionStretch& first = move.stretches.front();
+  const MotionSegment& first = move.segments.front();
   return {{"object", file.objects.at(static_cast<std::size_t>(move.object)).name},
           {"grasp_m", move.grasp_m},
           {"num_contacts", move.num_contacts},
           {"from", keyframe_json(first.from, first.X_WO_from)},
-          {"to", stretches}};
+          {"to", segments}};
 }
 
 int object_index(const JsonValue& node, const std::vector<MotionObject>& objects) {
@@ -88,18 +88,18 @@ bool are_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).norm() <= kSame;
 }
 
-/// What a stretch says of the object must be true of the phase that it calls itself.
-void require_possible(const JsonValue& end, const MotionStretch& stretch) {
-  const std::string phase = phase_name(stretch.phase);
-  if (!is_carrying(stretch.phase)) {
-    if (are_same(stretch.X_WO_from, stretch.X_WO_to)) return;
+/// What a segment says of the object must be true of the phase that it calls itself.
+void require_possible(const JsonValue& end, const MotionSegment& segment) {
+  const std::string phase = phase_name(segment.phase);
+  if (!is_carrying(segment.phase)) {
+    if (are_same(segment.X_WO_from, segment.X_WO_to)) return;
     end.at("X_WO").fail("is not where the object stood, which no hand carries in phase " + phase);
   }
-  if (!are_same(stretch.from.q, stretch.to.q)) {
+  if (!are_same(segment.from.q, segment.to.q)) {
     end.at("q").fail("is not as before, and joints do not move in phase " + phase);
   }
-  if (!are_same(stretch.X_WO_from.inverse() * stretch.from.X_OH,
-                stretch.X_WO_to.inverse() * stretch.to.X_OH)) {
+  if (!are_same(segment.X_WO_from.inverse() * segment.from.X_OH,
+                segment.X_WO_to.inverse() * segment.to.X_OH)) {
     end.at("X_WH").fail("is not the hand's place against the object, which it keeps in phase " +
                         phase);
   }
@@ -112,7 +112,7 @@ struct Whereabouts {
 };
 
 /// A move must begin where things are.
-void require_there(const JsonValue& from, const MotionStretch& first, const Whereabouts& now) {
+void require_there(const JsonValue& from, const MotionSegment& first, const Whereabouts& now) {
   if (!are_same(first.X_WO_from, now.X_WO[first.object])) {
     from.at("X_WO").fail("is not where the object stands then");
   }
@@ -135,16 +135,16 @@ RecordedMove read_move(const JsonValue& node, const MotionFile& file, Whereabout
     const JsonValue phase = after.at("phase");
     const auto value = phase_named(phase.text());
     if (!value) phase.fail("is \"" + phase.text() + "\", which is no phase of a motion");
-    move.stretches.push_back({*value, move.object, hand_at(before, file.joints.size()),
-                              hand_at(after, file.joints.size()), pose(before.at("X_WO")),
-                              pose(after.at("X_WO"))});
-    if (move.stretches.size() == 1) require_there(before, move.stretches.front(), now);
-    require_possible(after, move.stretches.back());
+    move.segments.push_back({*value, move.object, hand_at(before, file.joints.size()),
+                             hand_at(after, file.joints.size()), pose(before.at("X_WO")),
+                             pose(after.at("X_WO"))});
+    if (move.segments.size() == 1) require_there(before, move.segments.front(), now);
+    require_possible(after, move.segments.back());
     before = after;
   }
-  if (move.stretches.empty()) node.at("to").fail("is empty");
-  now.hand = move.stretches.back().to;
-  now.X_WO[move.object] = move.stretches.back().X_WO_to;
+  if (move.segments.empty()) node.at("to").fail("is empty");
+  now.hand = move.segments.back().to;
+  now.X_WO[move.object] = move.segments.back().X_WO_to;
   return move;
 }
 
@@ -168,7 +168,7 @@ void require_joints(const MotionFile& file, const hands::HandModel& hand) {
   }
   for (std::size_t m = 0; m < file.moves.size(); ++m) {
     const std::string move = "/moves/" + std::to_string(m);
-    const std::vector<MotionStretch>& stretches = file.moves[m].stretches;
+    const std::vector<MotionSegment>& segments = file.moves[m].segments;
     const auto check = [&](const hands::HandConfiguration& configuration, const std::string& at) {
       try {
         hands::validate(hand, configuration);
@@ -176,9 +176,9 @@ void require_joints(const MotionFile& file, const hands::HandModel& hand) {
         throw base::IoError(move + at + "/q: " + error.what());
       }
     };
-    if (!stretches.empty()) check(stretches.front().from, "/from");
-    for (std::size_t s = 0; s < stretches.size(); ++s) {
-      check(stretches[s].to, "/to/" + std::to_string(s));
+    if (!segments.empty()) check(segments.front().from, "/from");
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+      check(segments[s].to, "/to/" + std::to_string(s));
     }
   }
 }
@@ -220,7 +220,7 @@ MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> o
   }
   for (const PlannedMove& move : result.moves) {
     file.moves.push_back({move.object, move.grasp.quality.m,
-                          static_cast<int>(move.grasp.contacts.size()), move.stretches});
+                          static_cast<int>(move.grasp.contacts.size()), move.segments});
   }
   file.unmoved = result.unmoved;
   return file;
@@ -320,7 +320,7 @@ std::vector<std::vector<RigidTransform>> object_poses(const MotionFile& file) {
   for (const MotionObject& object : file.objects) X_WO.push_back(object.X_WO_start);
   std::vector<std::vector<RigidTransform>> poses = {X_WO};
   for (const RecordedMove& move : file.moves) {
-    X_WO.at(static_cast<std::size_t>(move.object)) = move.stretches.back().X_WO_to;
+    X_WO.at(static_cast<std::size_t>(move.object)) = move.segments.back().X_WO_to;
     poses.push_back(X_WO);
   }
   return poses;

@@ -65,16 +65,16 @@ class MoveSearch {
       if (planned.grasps.empty()) note_no_grasp(planned.statistics);
       for (const grasp::Grasp& grasp : planned.grasps) {
         ++attempt_.grasps_tried;
-        if (auto stretches = whole_way(grasp)) {
+        if (auto segments = whole_way(grasp)) {
           attempt_.move = PlannedMove{object_,
                                       X_WO_start_,
                                       X_WO_goal_,
                                       grasp,
                                       approach_W,
-                                      std::move(*stretches),
+                                      std::move(*segments),
                                       attempt_.planner_attempts,
                                       attempt_.grasps_tried,
-                                      attempt_.stretches_tried,
+                                      attempt_.segments_tried,
                                       attempt_.reason()};
           return attempt_;
         }
@@ -84,7 +84,7 @@ class MoveSearch {
   }
 
  private:
-  using Way = std::vector<MotionStretch>;
+  using Way = std::vector<MotionSegment>;
 
   bool is_goal_free() {
     const SceneObject& moved = scene_.object(object_);
@@ -172,11 +172,11 @@ class MoveSearch {
                         std::to_string(statistics.attempts) + " attempts" + why];
   }
 
-  /// Whether a stretch is free; else the reason is counted.
-  bool is_free(const MotionStretch& stretch, double clearance) {
-    ++attempt_.stretches_tried;
-    const auto met = find_encounter(scene_, X_WO_, stretch, clearance);
-    if (met) ++attempt_.failures[std::string(phase_name(stretch.phase)) + ": " + met->text()];
+  /// Whether a segment is free; else the reason is counted.
+  bool is_free(const MotionSegment& segment, double clearance) {
+    ++attempt_.segments_tried;
+    const auto met = find_collision(scene_, X_WO_, segment, clearance);
+    if (met) ++attempt_.failures[std::string(phase_name(segment.phase)) + ": " + met->text()];
     return !met;
   }
 
@@ -185,12 +185,12 @@ class MoveSearch {
     return {X_WO * (X_WO_start_.inverse() * at_start.X_OH), at_start.q};
   }
 
-  MotionStretch free_hand(MotionPhase phase, const HandConfiguration& from,
+  MotionSegment free_hand(MotionPhase phase, const HandConfiguration& from,
                           const HandConfiguration& to, const RigidTransform& X_WO) const {
     return {phase, object_, from, to, X_WO, X_WO};
   }
 
-  MotionStretch carry(MotionPhase phase, const HandConfiguration& grasp, const RigidTransform& from,
+  MotionSegment carry(MotionPhase phase, const HandConfiguration& grasp, const RigidTransform& from,
                       const RigidTransform& to) const {
     return {phase, object_, carried(grasp, from), carried(grasp, to), from, to};
   }
@@ -200,8 +200,8 @@ class MoveSearch {
     const HandConfiguration& open = grasp.pre_grasp->configuration;
     const HandConfiguration hold_at_goal = carried(hold, X_WO_goal_);
     const HandConfiguration open_at_goal = carried(open, X_WO_goal_);
-    const MotionStretch approach = free_hand(MotionPhase::Approach, open, hold, X_WO_start_);
-    const MotionStretch release =
+    const MotionSegment approach = free_hand(MotionPhase::Approach, open, hold, X_WO_start_);
+    const MotionSegment release =
         free_hand(MotionPhase::Release, hold_at_goal, open_at_goal, X_WO_goal_);
     if (!is_free(approach, 0.0) || !is_free(release, 0.0)) return std::nullopt;
     auto carrying = carry_way(hold);
@@ -223,8 +223,8 @@ class MoveSearch {
     for (const double height : options_.lifts) {
       const RigidTransform up = raised(X_WO_start_, height);
       const RigidTransform over = raised(X_WO_goal_, height);
-      const MotionStretch lift = carry(MotionPhase::Lift, hold, X_WO_start_, up);
-      const MotionStretch place = carry(MotionPhase::Place, hold, over, X_WO_goal_);
+      const MotionSegment lift = carry(MotionPhase::Lift, hold, X_WO_start_, up);
+      const MotionSegment place = carry(MotionPhase::Place, hold, over, X_WO_goal_);
       if (!is_free(lift, 0.0) || !is_free(place, 0.0)) continue;
       for (const std::vector<RigidTransform>& stops : transports(up, over)) {
         Way way = {lift};
@@ -256,7 +256,7 @@ class MoveSearch {
   /// From home to a pre-grasp (Reach) or from there to home (Retreat), with the object at `X_WO`.
   std::optional<Way> between_home_and(const HandConfiguration& open, MotionPhase phase,
                                       const RigidTransform& X_WO) {
-    const auto stretch = [&](const HandConfiguration& outer, const HandConfiguration& inner) {
+    const auto segment = [&](const HandConfiguration& outer, const HandConfiguration& inner) {
       const bool is_outward = phase == MotionPhase::Retreat;
       return is_outward ? free_hand(phase, inner, outer, X_WO)
                         : free_hand(phase, outer, inner, X_WO);
@@ -265,14 +265,14 @@ class MoveSearch {
       HandConfiguration behind = open;
       behind.X_OH.translation() -=
           withdrawal * (open.X_OH.linear() * scene_.hand().palm.direction_H);
-      const MotionStretch last = stretch(behind, open);
+      const MotionSegment last = segment(behind, open);
       if (!is_free(last, options_.clearance)) continue;
       std::vector<double> heights = {0.0};
       heights.insert(heights.end(), options_.lifts.begin(), options_.lifts.end());
       for (const double height : heights) {
         const HandConfiguration above{raised(behind.X_OH, height), behind.q};
-        Way way = {stretch(options_.home, above), last};
-        if (height > 0.0) way.insert(way.begin() + 1, stretch(above, behind));
+        Way way = {segment(options_.home, above), last};
+        if (height > 0.0) way.insert(way.begin() + 1, segment(above, behind));
         const bool is_way_free = std::all_of(way.begin(), way.end() - 1, [&](const auto& part) {
           return is_free(part, options_.clearance);
         });

@@ -54,7 +54,7 @@ geometry::TriangleMesh hull_mesh(const geometry::TriangleMesh& mesh) {
   return result;
 }
 
-/// The stretch touches the handled object with the hand at one of its ends.
+/// The segment touches the handled object with the hand at one of its ends.
 bool is_touching(MotionPhase phase) {
   return phase == MotionPhase::Approach || phase == MotionPhase::Release;
 }
@@ -64,11 +64,11 @@ bool is_resting(MotionPhase phase) {
   return phase == MotionPhase::Lift || phase == MotionPhase::Place;
 }
 
-/// Bounds of how far the points of every body go on a stretch.
+/// Bounds of how far the points of every body go on a segment.
 class Travel {
  public:
-  Travel(const TableScene& scene, const MotionStretch& stretch)
-      : way_(scene.hand(), stretch.from, stretch.to), is_carrying_(is_carrying(stretch.phase)) {
+  Travel(const TableScene& scene, const MotionSegment& segment)
+      : way_(scene.hand(), segment.from, segment.to), is_carrying_(is_carrying(segment.phase)) {
     const std::size_t num_links = scene.hand().links.size();
     if (!is_carrying_) {
       for (std::size_t link = 0; link < num_links; ++link) {
@@ -76,13 +76,13 @@ class Travel {
       }
       return;
     }
-    const SceneObject& object = scene.object(stretch.object);
+    const SceneObject& object = scene.object(segment.object);
     const Vector3d& pivot_O = object.center_of_mass_O;
-    const double path = (stretch.X_WO_to * pivot_O - stretch.X_WO_from * pivot_O).norm();
-    const double turn = grasp::internal::turn_between(stretch.X_WO_from, stretch.X_WO_to);
+    const double path = (segment.X_WO_to * pivot_O - segment.X_WO_from * pivot_O).norm();
+    const double turn = grasp::internal::turn_between(segment.X_WO_from, segment.X_WO_to);
     object_ = path + turn * geometry::largest_radius(object.surface_O.mesh(), pivot_O);
-    const auto X_WL = hands::forward_kinematics(scene.hand(), stretch.from);
-    const Vector3d pivot_W = stretch.X_WO_from * pivot_O;
+    const auto X_WL = hands::forward_kinematics(scene.hand(), segment.from);
+    const Vector3d pivot_W = segment.X_WO_from * pivot_O;
     for (std::size_t link = 0; link < num_links; ++link) {
       const Vector3d pivot_L = X_WL[link].inverse() * pivot_W;
       links_.push_back(path +
@@ -104,14 +104,14 @@ class Travel {
   double object_ = 0.0;
 };
 
-/// Everything at one place of a stretch.
+/// Everything at one place of a segment.
 struct Posed {
   MotionState state;
   std::vector<RigidTransform> X_WL;
 };
 
-Posed posed(const TableScene& scene, const MotionStretch& stretch, double share) {
-  Posed result{state_at(scene, stretch, share), {}};
+Posed posed(const TableScene& scene, const MotionSegment& segment, double share) {
+  Posed result{state_at(scene, segment, share), {}};
   result.X_WL = hands::forward_kinematics(scene.hand(), result.state.hand);
   return result;
 }
@@ -129,26 +129,26 @@ const std::string& link_name(const TableScene& scene, int link) {
   return scene.hand().links[link].name;
 }
 
-/// Proves a stretch free, or finds two bodies for which it cannot.
-class StretchProof {
+/// Proves a segment free, or finds two bodies for which it cannot.
+class SegmentProof {
  public:
-  StretchProof(const TableScene& scene, std::span<const RigidTransform> X_WO,
-               const MotionStretch& stretch, double clearance)
+  SegmentProof(const TableScene& scene, std::span<const RigidTransform> X_WO,
+               const MotionSegment& segment, double clearance)
       : scene_(scene),
         X_WO_(X_WO),
-        stretch_(stretch),
+        segment_(segment),
         clearance_(clearance),
-        travel_(scene, stretch),
-        only_translates_(is_carrying(stretch.phase) &&
-                         stretch.X_WO_from.linear() == stretch.X_WO_to.linear()),
+        travel_(scene, segment),
+        only_translates_(is_carrying(segment.phase) &&
+                         segment.X_WO_from.linear() == segment.X_WO_to.linear()),
         links_(solid_links(scene)) {}
 
-  std::optional<Encounter> operator()() {
+  std::optional<Collision> operator()() {
     for (const int link : links_) {
-      if (!is_link_over_table(link)) return Encounter{link_name(scene_, link), "table"};
+      if (!is_link_over_table(link)) return Collision{link_name(scene_, link), "table"};
     }
-    if (is_carrying(stretch_.phase) && !is_object_over_table()) {
-      return Encounter{scene_.object(stretch_.object).name, "table"};
+    if (is_carrying(segment_.phase) && !is_object_over_table()) {
+      return Collision{scene_.object(segment_.object).name, "table"};
     }
     for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
       if (auto found = with_object(other)) return found;
@@ -163,9 +163,9 @@ class StretchProof {
   /// which the hand touches, which counts as the way's end.
   bool stay_apart(double travel, double clearance, double tolerance,
                   const Distance& distance) const {
-    const bool is_backward = stretch_.phase == MotionPhase::Release;
+    const bool is_backward = segment_.phase == MotionPhase::Release;
     return grasp::internal::are_apart_on_way(travel, tolerance, [&](double share, double enough) {
-      const Posed at = posed(scene_, stretch_, is_backward ? 1.0 - share : share);
+      const Posed at = posed(scene_, segment_, is_backward ? 1.0 - share : share);
       return std::clamp(distance(at, enough + clearance) - clearance, 0.0, enough);
     });
   }
@@ -189,31 +189,31 @@ class StretchProof {
     };
     if (!only_translates_) return stay_apart(travel_.link(link), clearance_, 0.0, height);
     const double enough = clearance_ + 1.0;
-    return height(posed(scene_, stretch_, 0.0), enough) > clearance_ &&
-           height(posed(scene_, stretch_, 1.0), enough) > clearance_;
+    return height(posed(scene_, segment_, 0.0), enough) > clearance_ &&
+           height(posed(scene_, segment_, 1.0), enough) > clearance_;
   }
 
   bool is_object_over_table() const {
     const auto height = [&](const Posed& at, double) {
-      return std::max(0.0, scene_.height_of_object(stretch_.object, at.state.X_WO));
+      return std::max(0.0, scene_.height_of_object(segment_.object, at.state.X_WO));
     };
     if (!only_translates_) return stay_apart(travel_.object(), clearance_, 0.0, height);
-    const double start = scene_.height_of_object(stretch_.object, stretch_.X_WO_from);
-    const double end = scene_.height_of_object(stretch_.object, stretch_.X_WO_to);
-    if (is_resting(stretch_.phase)) return std::min(start, end) >= -kRestTolerance;
+    const double start = scene_.height_of_object(segment_.object, segment_.X_WO_from);
+    const double end = scene_.height_of_object(segment_.object, segment_.X_WO_to);
+    if (is_resting(segment_.phase)) return std::min(start, end) >= -kRestTolerance;
     return std::min(start, end) > clearance_;
   }
 
-  std::optional<Encounter> with_object(int other) const {
-    const bool is_handled = other == stretch_.object;
-    if (is_handled && is_carrying(stretch_.phase)) return std::nullopt;
+  std::optional<Collision> with_object(int other) const {
+    const bool is_handled = other == segment_.object;
+    if (is_handled && is_carrying(segment_.phase)) return std::nullopt;
     const auto index = static_cast<std::size_t>(other);
-    const RigidTransform X_OW = (is_handled ? stretch_.X_WO_from : X_WO_[index]).inverse();
+    const RigidTransform X_OW = (is_handled ? segment_.X_WO_from : X_WO_[index]).inverse();
     const SceneObject& object = scene_.object(other);
-    const double tolerance = is_handled && is_touching(stretch_.phase) ? kTouchTolerance : 0.0;
+    const double tolerance = is_handled && is_touching(segment_.phase) ? kTouchTolerance : 0.0;
     const auto is_apart = [&](const geometry::MeshQuery& body, double travel, const auto& X_WB) {
       for (const double end : {0.0, 1.0}) {
-        const RigidTransform X_OB = X_OW * X_WB(posed(scene_, stretch_, end));
+        const RigidTransform X_OB = X_OW * X_WB(posed(scene_, segment_, end));
         if (geometry::do_intersect(object.surface_O, body, X_OB)) return false;
       }
       geometry::ProximitySeed seed;
@@ -224,18 +224,18 @@ class StretchProof {
     for (const int link : links_) {
       const auto X_WL = [&](const Posed& at) { return at.X_WL[link]; };
       if (is_apart(*scene_.collision().link_solid(link), travel_.link(link), X_WL)) continue;
-      return Encounter{link_name(scene_, link), object.name};
+      return Collision{link_name(scene_, link), object.name};
     }
-    if (!is_carrying(stretch_.phase)) return std::nullopt;
-    const SceneObject& carried = scene_.object(stretch_.object);
+    if (!is_carrying(segment_.phase)) return std::nullopt;
+    const SceneObject& carried = scene_.object(segment_.object);
     if (is_apart(carried.surface_O, travel_.object(),
                  [](const Posed& at) { return at.state.X_WO; })) {
       return std::nullopt;
     }
-    return Encounter{carried.name, object.name};
+    return Collision{carried.name, object.name};
   }
 
-  std::optional<Encounter> among_links() const {
+  std::optional<Collision> among_links() const {
     for (const int a : links_) {
       for (const int b : links_) {
         if (b <= a || scene_.hand().is_excluded(a, b)) continue;
@@ -249,7 +249,7 @@ class StretchProof {
                                   *scene_.collision().link_solid(b), X_WA.inverse() * X_WB, enough,
                                   0.0, seed);
         });
-        if (!is_apart) return Encounter{link_name(scene_, a), link_name(scene_, b)};
+        if (!is_apart) return Collision{link_name(scene_, a), link_name(scene_, b)};
       }
     }
     return std::nullopt;
@@ -257,7 +257,7 @@ class StretchProof {
 
   const TableScene& scene_;
   std::span<const RigidTransform> X_WO_;
-  const MotionStretch& stretch_;
+  const MotionSegment& segment_;
   double clearance_;
   Travel travel_;
   bool only_translates_;
@@ -308,50 +308,50 @@ std::optional<MotionPhase> phase_named(std::string_view name) {
 
 bool is_carrying(MotionPhase phase) { return is_resting(phase) || phase == MotionPhase::Transport; }
 
-MotionState state_at(const TableScene& scene, const MotionStretch& stretch, double share) {
-  if (!is_carrying(stretch.phase)) {
-    return {grasp::interpolated(stretch.from, stretch.to, share), stretch.X_WO_from};
+MotionState state_at(const TableScene& scene, const MotionSegment& segment, double share) {
+  if (!is_carrying(segment.phase)) {
+    return {grasp::interpolated(segment.from, segment.to, share), segment.X_WO_from};
   }
-  if (share == 0.0) return {stretch.from, stretch.X_WO_from};
-  if (share == 1.0) return {stretch.to, stretch.X_WO_to};
+  if (share == 0.0) return {segment.from, segment.X_WO_from};
+  if (share == 1.0) return {segment.to, segment.X_WO_to};
   // The object as a hand without joints whose palm frame is at the center of mass.
-  const Eigen::Translation3d center(scene.object(stretch.object).center_of_mass_O);
+  const Eigen::Translation3d center(scene.object(segment.object).center_of_mass_O);
   const HandConfiguration pivot =
-      grasp::interpolated({stretch.X_WO_from * center, Eigen::VectorXd()},
-                          {stretch.X_WO_to * center, Eigen::VectorXd()}, share);
-  MotionState state{stretch.from, pivot.X_OH * center.inverse()};
-  state.hand.X_OH = state.X_WO * (stretch.X_WO_from.inverse() * stretch.from.X_OH);
+      grasp::interpolated({segment.X_WO_from * center, Eigen::VectorXd()},
+                          {segment.X_WO_to * center, Eigen::VectorXd()}, share);
+  MotionState state{segment.from, pivot.X_OH * center.inverse()};
+  state.hand.X_OH = state.X_WO * (segment.X_WO_from.inverse() * segment.from.X_OH);
   return state;
 }
 
-double largest_travel(const TableScene& scene, const MotionStretch& stretch) {
-  return Travel(scene, stretch).largest();
+double largest_travel(const TableScene& scene, const MotionSegment& segment) {
+  return Travel(scene, segment).largest();
 }
 
-std::optional<Encounter> find_encounter(const TableScene& scene,
+std::optional<Collision> find_collision(const TableScene& scene,
                                         std::span<const RigidTransform> X_WO,
-                                        const MotionStretch& stretch, double clearance) {
-  return StretchProof(scene, X_WO, stretch, clearance)();
+                                        const MotionSegment& segment, double clearance) {
+  return SegmentProof(scene, X_WO, segment, clearance)();
 }
 
 MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTransform> X_WO,
-                             const MotionStretch& stretch, double share) {
-  const Posed at = posed(scene, stretch, share);
-  const bool carries = is_carrying(stretch.phase);
+                             const MotionSegment& segment, double share) {
+  const Posed at = posed(scene, segment, share);
+  const bool carries = is_carrying(segment.phase);
   MotionClearance nearest{grasp::internal::kInfinity, grasp::internal::kInfinity};
   const std::vector<int> links = solid_links(scene);
   for (const int link : links) {
     const RigidTransform& X_WL = at.X_WL[link];
     nearest.hand = std::min(nearest.hand, scene.height_of_link(link, X_WL, nearest.hand));
   }
-  if (carries && !is_resting(stretch.phase)) {
-    nearest.object = std::max(0.0, scene.height_of_object(stretch.object, at.state.X_WO));
+  if (carries && !is_resting(segment.phase)) {
+    nearest.object = std::max(0.0, scene.height_of_object(segment.object, at.state.X_WO));
   }
   for (std::size_t other = 0; other < scene.objects().size(); ++other) {
-    const bool is_handled = static_cast<int>(other) == stretch.object;
-    if (is_handled && (carries || is_touching(stretch.phase))) continue;
+    const bool is_handled = static_cast<int>(other) == segment.object;
+    if (is_handled && (carries || is_touching(segment.phase))) continue;
     const geometry::MeshQuery& surface = scene.objects()[other].surface_O;
-    const RigidTransform X_OW = (is_handled ? stretch.X_WO_from : X_WO[other]).inverse();
+    const RigidTransform X_OW = (is_handled ? segment.X_WO_from : X_WO[other]).inverse();
     const auto approach = [&](const geometry::MeshQuery& body, const RigidTransform& X_WB,
                               double& least) {
       const RigidTransform X_OB = X_OW * X_WB;
@@ -362,45 +362,45 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
     for (const int link : links) {
       approach(*scene.collision().link_solid(link), at.X_WL[link], nearest.hand);
     }
-    if (carries) approach(scene.object(stretch.object).surface_O, at.state.X_WO, nearest.object);
+    if (carries) approach(scene.object(segment.object).surface_O, at.state.X_WO, nearest.object);
   }
   return nearest;
 }
 
-std::optional<Encounter> find_overlap(const TableScene& scene, std::span<const RigidTransform> X_WO,
-                                      const MotionStretch& stretch, double share) {
-  const Posed at = posed(scene, stretch, share);
-  const bool carries = is_carrying(stretch.phase);
+std::optional<Collision> find_overlap(const TableScene& scene, std::span<const RigidTransform> X_WO,
+                                      const MotionSegment& segment, double share) {
+  const Posed at = posed(scene, segment, share);
+  const bool carries = is_carrying(segment.phase);
   const auto X_WB = [&](int link) { return at.X_WL[link]; };
   const std::vector<int> links = solid_links(scene);
   for (const int a : links) {
     if (scene.height_of_link(a, X_WB(a), 1.0) <= 0.0) {
-      return Encounter{link_name(scene, a), "table"};
+      return Collision{link_name(scene, a), "table"};
     }
     for (const int b : links) {
       if (b <= a || scene.hand().is_excluded(a, b)) continue;
       if (geometry::do_intersect(*scene.collision().link_solid(a), *scene.collision().link_solid(b),
                                  X_WB(a).inverse() * X_WB(b))) {
-        return Encounter{link_name(scene, a), link_name(scene, b)};
+        return Collision{link_name(scene, a), link_name(scene, b)};
       }
     }
   }
-  if (carries && scene.height_of_object(stretch.object, at.state.X_WO) < -kRestTolerance) {
-    return Encounter{scene.object(stretch.object).name, "table"};
+  if (carries && scene.height_of_object(segment.object, at.state.X_WO) < -kRestTolerance) {
+    return Collision{scene.object(segment.object).name, "table"};
   }
   for (std::size_t other = 0; other < scene.objects().size(); ++other) {
-    const bool is_handled = static_cast<int>(other) == stretch.object;
+    const bool is_handled = static_cast<int>(other) == segment.object;
     const SceneObject& object = scene.objects()[other];
     const RigidTransform X_OW = (is_handled ? at.state.X_WO : X_WO[other]).inverse();
     for (const int link : links) {
       if (scene.collision().link_intersects(object.surface_O, link, X_OW * X_WB(link))) {
-        return Encounter{link_name(scene, link), object.name};
+        return Collision{link_name(scene, link), object.name};
       }
     }
     if (!carries || is_handled) continue;
-    const SceneObject& carried = scene.object(stretch.object);
+    const SceneObject& carried = scene.object(segment.object);
     if (geometry::do_intersect(object.surface_O, carried.surface_O, X_OW * at.state.X_WO)) {
-      return Encounter{carried.name, object.name};
+      return Collision{carried.name, object.name};
     }
   }
   return std::nullopt;

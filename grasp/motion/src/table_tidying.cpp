@@ -113,7 +113,7 @@ class TidyingSearch {
     MoveAttempt attempt =
         is_known ? known->attempt : plan_move(scene_, at_, object, X_WO_to, options_.move);
     if (!is_known && !attempt.move) refused_.push_back({at_, object, X_WO_to, attempt});
-    result_.stretches_tried += attempt.stretches_tried;
+    result_.segments_tried += attempt.segments_tried;
     result_.planner_attempts += attempt.planner_attempts;
     result_.grasps_tried += attempt.grasps_tried;
     reason = attempt.reason();

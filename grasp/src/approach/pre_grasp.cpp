@@ -26,7 +26,7 @@ constexpr int kMostSteps = 1000;
 struct LinkPair {
   int a;
   int b;
-  geometry::ProximitySeed seed;  ///< Faces near each other at the last look.
+  geometry::ProximitySeed seed;  ///< Faces near each other when last measured.
 };
 
 /// A link, to be kept from object and surroundings.
@@ -177,7 +177,7 @@ class PreGraspSearch {
   }
 
   /// Lower bound of the distance of two surfaces, up to `enough`; starts from the faces that were
-  /// near at the last look.
+  /// near when last measured.
   static double clearance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                           const RigidTransform& X_AB, double enough,
                           geometry::ProximitySeed& seed) {

@@ -36,22 +36,22 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
   // what; and a finger's error on its own group's targets alone.
   const hands::HandConfiguration start =
       internal::aligned_open_hand(hand, assigned, placement, hands::largest_reach(hand));
-  std::map<std::vector<internal::Look>, double> known;
-  const auto error_of = [&](std::optional<int> leader, std::vector<internal::Look> looks) {
-    if (const auto found = known.find(looks); found != known.end()) return found->second;
+  std::map<std::vector<internal::FingerTarget>, double> known;
+  const auto error_of = [&](std::optional<int> leader, std::vector<internal::FingerTarget> pairs) {
+    if (const auto found = known.find(pairs); found != known.end()) return found->second;
     double error = 0.0;
     hands::HandConfiguration swung = start;
     if (leader) {
-      swung.q[*leader] = internal::best_swing(hand, start, assigned, *leader, looks);
+      swung.q[*leader] = internal::best_swing(hand, start, assigned, *leader, pairs);
       hands::apply_couplings(hand, swung.q);
     }
-    for (const internal::Look& look : looks) {
-      if (look.target == 0) continue;  // the hand was turned to the seed
-      const double e = internal::AzimuthOfFinger(hand, look.finger)
-                           .error(swung, assigned.contacts[look.target].point_O);
+    for (const internal::FingerTarget& pair : pairs) {
+      if (pair.target == 0) continue;  // the hand was turned to the seed
+      const double e = internal::AzimuthOfFinger(hand, pair.finger)
+                           .error(swung, assigned.contacts[pair.target].point_O);
       error += e * e;
     }
-    known[std::move(looks)] = error;
+    known[std::move(pairs)] = error;
     return error;
   };
   std::vector<int> best = order;
@@ -59,8 +59,8 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
   do {
     assign();
     double error = 0.0;
-    for (const auto& [leader, looks] : internal::looks_by_leader(hand, assigned)) {
-      error += error_of(leader, looks);
+    for (const auto& [leader, pairs] : internal::pairs_by_leader(hand, assigned)) {
+      error += error_of(leader, pairs);
     }
     if (error < best_error) {
       best_error = error;

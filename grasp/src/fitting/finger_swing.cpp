@@ -41,19 +41,20 @@ double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
 }
 
 double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
-                  const TargetContacts& targets, int leader, const std::vector<Look>& looks) {
+                  const TargetContacts& targets, int leader,
+                  const std::vector<FingerTarget>& pairs) {
   constexpr int kCoarse = 18;
   constexpr int kRefine = 20;  // the range shrinks by 0.618 each
   constexpr double kGolden = 0.61803398874989485;
   std::vector<AzimuthOfFinger> azimuths;
-  for (const Look& look : looks) azimuths.emplace_back(hand, look.finger);
+  for (const FingerTarget& pair : pairs) azimuths.emplace_back(hand, pair.finger);
   hands::HandConfiguration trial = configuration;
   const auto error_at = [&](double position) {
     trial.q[leader] = position;
     hands::apply_couplings(hand, trial.q);
     double sum = 0.0;
     for (std::size_t i = 0; i < looks.size(); ++i) {
-      const double error = azimuths[i].error(trial, targets.contacts[looks[i].target].point_O);
+      const double error = azimuths[i].error(trial, targets.contacts[pairs[i].target].point_O);
       sum += error * error;
     }
     return sum;
@@ -93,25 +94,25 @@ double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& 
   return 0.5 * (a + b);
 }
 
-std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
-                                                                const TargetContacts& targets) {
-  std::map<std::optional<int>, std::vector<Look>> looks;
+std::map<std::optional<int>, std::vector<FingerTarget>> pairs_by_leader(
+    const hands::HandModel& hand, const TargetContacts& targets) {
+  std::map<std::optional<int>, std::vector<FingerTarget>> pairs;
   for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
     if (targets.contacts[t].is_palm) continue;
     const int finger = *targets.contacts[t].finger;
     std::optional<int> leader = hand.fingers[finger].swing_joint;
     if (leader) leader = hands::leader_of(hand, *leader);
-    looks[leader].push_back({finger, static_cast<int>(t)});
+    pairs[leader].push_back({finger, static_cast<int>(t)});
   }
-  return looks;
+  return pairs;
 }
 
 Eigen::VectorXd aligned_swing(const hands::HandModel& hand,
                               const hands::HandConfiguration& configuration,
                               const TargetContacts& targets) {
   Eigen::VectorXd q = configuration.q;
-  for (const auto& [leader, looks] : looks_by_leader(hand, targets)) {
-    if (leader) q[*leader] = best_swing(hand, configuration, targets, *leader, looks);
+  for (const auto& [leader, pairs] : pairs_by_leader(hand, targets)) {
+    if (leader) q[*leader] = best_swing(hand, configuration, targets, *leader, pairs);
   }
   hands::apply_couplings(hand, q);
   return q;

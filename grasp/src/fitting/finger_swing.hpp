@@ -38,20 +38,21 @@ class AzimuthOfFinger {
 };
 
 /// A finger and the target that it is to look at.
-struct Look {
+struct FingerTarget {
   int finger = 0;
   int target = 0;
-  auto operator<=>(const Look&) const = default;
+  auto operator<=>(const FingerTarget&) const = default;
 };
 
 /// The position of `leader` with the least sum of squared errors: samples of its range, the
 /// best one refined by golden section; the error has one minimum per turn of a finger.
 double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
-                  const TargetContacts& targets, int leader, const std::vector<Look>& looks);
+                  const TargetContacts& targets, int leader,
+                  const std::vector<FingerTarget>& pairs);
 
 /// Fingers with targets by the independent joint that swings them; those that do not swing first.
-std::map<std::optional<int>, std::vector<Look>> looks_by_leader(const hands::HandModel& hand,
-                                                                const TargetContacts& targets);
+std::map<std::optional<int>, std::vector<FingerTarget>> pairs_by_leader(
+    const hands::HandModel& hand, const TargetContacts& targets);
 
 /// Joint positions in which every finger that can swing around the palm looks at its assigned
 /// target as well as the joints allow; fingers that share a joint take the least sum of squared

@@ -12,8 +12,8 @@ namespace {
 using geometry::RigidTransform;
 
 /// Marks the contacts of `pad` as targets; whether one of them is near enough.
-bool claim(std::vector<contact::Contact>& contacts, int pad,
-           const std::optional<double>& largest_gap) {
+bool mark_requested(std::vector<contact::Contact>& contacts, int pad,
+                    const std::optional<double>& largest_gap) {
   bool is_any_near = false;
   for (contact::Contact& contact : contacts) {
     if (contact.pad != pad) continue;
@@ -36,7 +36,7 @@ Grasp internal::with_contacts(const MeasuringScene& scene,
                                               scene.object, scene.contact_options, scene.weak);
   grasp.has_all_contacts = true;
   for (const int pad : requested_pads(hand, requested)) {
-    const bool has_contact = claim(grasp.contacts, pad, scene.largest_gap);
+    const bool has_contact = mark_requested(grasp.contacts, pad, scene.largest_gap);
     grasp.has_all_contacts = grasp.has_all_contacts && has_contact;
   }
   grasp.quality =

@@ -63,7 +63,7 @@ std::string row(const GraspFile& file, const Grasp& grasp, std::size_t rank) {
   cells += ',' + std::to_string(grasp.contacts.size());
   cells += ',' + std::to_string(quality.stable_pairs.size());
   for (double value :
-       {largest_contact_gap(grasp), largest_claimed_gap(grasp), largest_penetration(grasp)}) {
+       {largest_contact_gap(grasp), largest_requested_gap(grasp), largest_penetration(grasp)}) {
     cells += ',' + shortest_decimal(value);
   }
   cells += flag_cell(is_palm_touching);
@@ -94,7 +94,7 @@ std::string row(const GraspFile& file, const Grasp& grasp, std::size_t rank) {
 std::string to_csv(const GraspFile& file) {
   std::string csv =
       "rank,m,m1,m2,m3,regularity,centroid_distance_m,epsilon,force_closure,num_contacts,"
-      "num_stable_pairs,largest_contact_gap_m,largest_claimed_gap_m,largest_penetration_m,"
+      "num_stable_pairs,largest_contact_gap_m,largest_requested_gap_m,largest_penetration_m,"
       "palm_touches,usable,valid,attempt";
   csv += pose_columns("") + joint_columns(file.hand, "");
   csv += ",pre_grasp_clearance_m,pre_grasp_opening,pre_grasp_retreat_m";

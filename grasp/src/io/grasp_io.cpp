@@ -86,7 +86,7 @@ double largest_contact_gap(const Grasp& grasp) {
   return gap;
 }
 
-double largest_claimed_gap(const Grasp& grasp) {
+double largest_requested_gap(const Grasp& grasp) {
   double gap = 0.0;
   for (const contact::Contact& contact : grasp.contacts) {
     if (contact.is_target) gap = std::max(gap, contact.gap);

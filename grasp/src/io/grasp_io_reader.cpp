@@ -245,18 +245,30 @@ class OptionReader {
   std::vector<std::string> keys_;
 };
 
-/// A file of version 4 as one of version 5: `attempt_choice` was order and choice of candidates at
-/// once.
-JsonValue upgraded(const JsonValue& root) {
+/// A file of an earlier version as one of this version. Version 4 had order and choice of
+/// candidates in one option, `attempt_choice`; up to version 5 the wrench convention of graspfit
+/// was "house".
+JsonValue upgraded(const JsonValue& root, std::int64_t version) {
   internal::Json json = root.json();
-  const JsonValue choice = root.at("planner").at("options").at("attempt_choice");
-  if (!value_named<KeptCandidate>(choice.text())) {
-    choice.refuse("must be one of " + names_of<KeptCandidate>());
+  if (version < 5) {
+    const JsonValue choice = root.at("planner").at("options").at("attempt_choice");
+    if (!value_named<KeptCandidate>(choice.text())) {
+      choice.refuse("must be one of " + names_of<KeptCandidate>());
+    }
+    internal::Json& options = json["planner"]["options"];
+    options["candidate_order"] = choice.text() == "first" ? "pads" : "balance";
+    options["kept_candidate"] = choice.text();
+    options.erase("attempt_choice");
   }
-  internal::Json& options = json["planner"]["options"];
-  options["candidate_order"] = choice.text() == "first" ? "pads" : "balance";
-  options["kept_candidate"] = choice.text();
-  options.erase("attempt_choice");
+  const std::vector<JsonValue> grasps = root.at("results").at("grasps").items();
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    const JsonValue wrench = grasps[i].at("wrench");
+    if (wrench.is_null()) continue;
+    const JsonValue tool = wrench.at("convention").at("tool");
+    if (!tool.is_text() || tool.text() != "house") continue;
+    json["results"]["grasps"][i]["wrench"]["convention"]["tool"] =
+        name_of(contact::WrenchTool::Graspfit);
+  }
   return root.with_root(json);
 }
 
@@ -269,13 +281,12 @@ GraspFile read_grasps(const std::filesystem::path& path) {
     root.at("format").fail("is \"" + root.at("format").text() + "\", not \"graspfit-grasps\"");
   }
   const std::int64_t version = root.at("version").integer();
-  if (version == internal::kGraspFileVersion - 1) {
-    root = upgraded(root);
-  } else if (version != internal::kGraspFileVersion) {
+  if (version < internal::kOldestGraspFileVersion || version > internal::kGraspFileVersion) {
     root.at("version").fail("is " + std::to_string(version) + "; this program reads versions " +
-                            std::to_string(internal::kGraspFileVersion - 1) + " and " +
+                            std::to_string(internal::kOldestGraspFileVersion) + " to " +
                             std::to_string(internal::kGraspFileVersion) + ": plan again");
   }
+  if (version < internal::kGraspFileVersion) root = upgraded(root, version);
 
   GraspFile file;
   file.object = read_object_record(root.at("object"));

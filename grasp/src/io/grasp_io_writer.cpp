@@ -62,7 +62,7 @@ Json conventions() {
        "normal; t1: n x (1, 0, 0), n x (0, 1, 0) where |n_x| >= 0.9, of length 1; t2 = n x t1; s: "
        "force_limit for unit-normal, over the length of e for unit-edge. Where the origin is "
        "outside: 0, -1, or (signed) minus its distance"},
-      {"largest_claimed_gap_m", "over the contacts with target true"},
+      {"largest_requested_gap_m", "over the contacts with target true"},
       {"touching",
        "of refined grasps contacts with a gap of at most options.refinement.largest_gap_m; of "
        "others all. wrench and squeeze are of these alone; m is of all contacts, as the paper has "
@@ -173,7 +173,7 @@ Json grasp_json(const hands::HandModel& hand, const Grasp& grasp, std::size_t ra
   at(grasp.ideal_m, "ideal_m");
   at(largest_penetration(grasp), "largest_penetration_m");
   at(largest_contact_gap(grasp), "largest_contact_gap_m");
-  at(largest_claimed_gap(grasp), "largest_claimed_gap_m");
+  at(largest_requested_gap(grasp), "largest_requested_gap_m");
   at.optional_group("wrench", grasp.wrench, internal::wrench_fields);
   json.update(configuration_json(hand, grasp.configuration));
   at.list(grasp.contacts, "contacts", internal::contact_fields);

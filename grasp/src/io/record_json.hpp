@@ -12,8 +12,9 @@ namespace graspfit::grasp::internal {
 
 using Json = nlohmann::ordered_json;
 
-/// The version of grasp files that is written. The one before is read, too.
-inline constexpr std::int64_t kGraspFileVersion = 5;
+/// The version of grasp files that is written, and the oldest one that is read.
+inline constexpr std::int64_t kGraspFileVersion = 6;
+inline constexpr std::int64_t kOldestGraspFileVersion = 4;
 
 inline Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 

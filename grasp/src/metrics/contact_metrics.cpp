@@ -70,7 +70,7 @@ std::vector<GraspMetric> contact_metrics() {
                   }),
       of_contacts("contact_gap_max", "m", "largest gap of a contact", BetterValue::Smaller,
                   largest_gap)};
-  metrics.push_back({.name = "claimed_gap_max",
+  metrics.push_back({.name = "requested_gap_max",
                      .group = "contacts",
                      .unit = "m",
                      .meaning = "largest gap of the contacts that were asked for",

@@ -88,7 +88,7 @@ double strength(const AttemptResult& result, const MeasuringScene& scene, double
     contacts = contact::touching_contacts(result.grasp->contacts, scene.bearing_gap);
   if (contacts.empty()) return -std::numeric_limits<double>::infinity();
   contact::WrenchConvention convention = contact::wrench_convention(
-      contact::WrenchTool::House, scene.wrench_object, contacts, friction);
+      contact::WrenchTool::Graspfit, scene.wrench_object, contacts, friction);
   convention.options.outside = contact::OutsideValue::Signed;
   return contact::epsilon_quality(contact::grasp_wrench_space(contacts, convention));
 }
@@ -136,7 +136,7 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
       surroundings_(hand, surroundings),
       scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
-      claimed_pads_(requested_pads(hand, parts_)),
+      requested_pads_(requested_pads(hand, parts_)),
       largest_deviation_(largest_deviation(options_, hand)) {
   const PlanningMethod& method = methods.at(options_.planner);
   const base::Stopwatch watch(guidance_s_);
@@ -326,7 +326,7 @@ std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targ
     refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
   }
   const RefinementResult refined = refine_contacts(
-      {fitting_hand_, object_, surroundings_, scene_.contact_options}, claimed_pads_,
+      {fitting_hand_, object_, surroundings_, scene_.contact_options}, requested_pads_,
       targets.contacts.empty() ? nullptr : &targets, configuration, refinement);
   result.refinement_iterations += refined.iterations;
   configuration = refined.configuration;

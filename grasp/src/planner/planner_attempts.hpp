@@ -71,7 +71,7 @@ class PlannerAttempts {
   const FittingHand fitting_hand_;
   const SurroundingsCollision surroundings_;
   const MeasuringScene scene_;
-  std::vector<int> claimed_pads_;
+  std::vector<int> requested_pads_;
   const double largest_deviation_;  ///< From targets [m].
   std::unique_ptr<GraspGuidance> guidance_;
   double guidance_s_ = 0.0;

@@ -58,7 +58,7 @@ constexpr double kOpeningGrowth = 1.2;
 constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm
 
 /// A pad that must touch.
-struct Claim {
+struct PadRequest {
   int pad = 0;
   int link = 0;
   const TargetContact* target = nullptr;
@@ -71,7 +71,7 @@ struct Claim {
 /// One refinement.
 class Refinement {
  public:
-  Refinement(const GraspScene& scene, const std::vector<int>& claimed_pads,
+  Refinement(const GraspScene& scene, const std::vector<int>& requested_pads,
              const TargetContacts* targets, const RefinementOptions& options)
       : hand_(scene.hand),
         model_(scene.hand.model()),
@@ -81,7 +81,7 @@ class Refinement {
         least_(0.5 * options.least_distance),
         clearance_(scene.hand, scene.object, scene.surroundings),
         motion_(scene.hand.model(), options.largest_shift > 0.0, options.largest_turn > 0.0) {
-    for (const int pad : claimed_pads) claims_.push_back(claim_of(pad, targets));
+    for (const int pad : requested_pads) requests_.push_back(request_of(pad, targets));
   }
 
   RefinementResult run(const HandConfiguration& start) {
@@ -106,25 +106,26 @@ class Refinement {
     }
     result.configuration = configuration_;
     measure_gaps();
-    for (const Claim& claim : claims_) result.largest_gap = std::max(result.largest_gap, claim.gap);
+    for (const PadRequest& request : requests_)
+      result.largest_gap = std::max(result.largest_gap, request.gap);
     return result;
   }
 
  private:
-  Claim claim_of(int pad, const TargetContacts* targets) const {
+  PadRequest request_of(int pad, const TargetContacts* targets) const {
     base::require(pad >= 0 && pad < static_cast<int>(model_.pads.size()), "refine_contacts",
-                  "claimed pad", pad, "an index into the pads of hand " + model_.name);
-    Claim claim;
-    claim.pad = pad;
-    claim.link = model_.pads[pad].link;
-    if (!targets) return claim;
+                  "requested pad", pad, "an index into the pads of hand " + model_.name);
+    PadRequest request;
+    request.pad = pad;
+    request.link = model_.pads[pad].link;
+    if (!targets) return request;
     const std::optional<int>& finger = model_.pads[pad].finger;
     for (const TargetContact& target : targets->contacts) {
       const bool is_own = finger ? target.finger == finger && model_.fingers[*finger].tip_pad == pad
                                  : target.is_palm;
-      if (is_own) claim.target = &target;
+      if (is_own) request.target = &target;
     }
-    return claim;
+    return request;
   }
 
   void go_to(const HandConfiguration& configuration) {
@@ -202,36 +203,36 @@ class Refinement {
 
   /// False if a pad is farther than twice the reach.
   bool measure_gaps() {
-    for (Claim& claim : claims_) {
+    for (PadRequest& request : requests_) {
       const auto nearest =
-          geometry::nearest_points(object_.query, hand_.pad_surface(claim.pad), X_OL_[claim.link],
-                                   2.0 * options_.reach, claim.seed);
-      claim.gap = 2.0 * options_.reach;
+          geometry::nearest_points(object_.query, hand_.pad_surface(request.pad),
+                                   X_OL_[request.link], 2.0 * options_.reach, request.seed);
+      request.gap = 2.0 * options_.reach;
       if (!nearest) return false;
-      claim.gap = nearest->distance;
-      claim.seed = {nearest->face_a, nearest->face_b};
-      claim.point_O = nearest->point_on_b_A;
-      claim.normal_O = (nearest->point_on_b_A - nearest->point_on_a_A).normalized();
+      request.gap = nearest->distance;
+      request.seed = {nearest->face_a, nearest->face_b};
+      request.point_O = nearest->point_on_b_A;
+      request.normal_O = (nearest->point_on_b_A - nearest->point_on_a_A).normalized();
     }
     return true;
   }
 
   double largest_gap() const {
     double largest = 0.0;
-    for (const Claim& claim : claims_) largest = std::max(largest, claim.gap);
+    for (const PadRequest& request : requests_) largest = std::max(largest, request.gap);
     return largest;
   }
   double sum_of_gaps() const {
     double sum = 0.0;
-    for (const Claim& claim : claims_) sum += std::max(claim.gap, options_.wanted_gap);
+    for (const PadRequest& request : requests_) sum += std::max(request.gap, options_.wanted_gap);
     return sum;
   }
 
   bool all_touch() const {
     return largest_gap() <= options_.largest_gap &&
-           std::all_of(claims_.begin(), claims_.end(), [&](const Claim& claim) {
-             return contact::has_contact(model_, claim.pad,
-                                         hands::pad_pose(model_, claim.pad, X_OL_), object_.query,
+           std::all_of(requests_.begin(), requests_.end(), [&](const PadRequest& request) {
+             return contact::has_contact(model_, request.pad,
+                                         hands::pad_pose(model_, request.pad, X_OL_), object_.query,
                                          contact_options_);
            });
   }
@@ -262,57 +263,58 @@ class Refinement {
     return RefinementStop::Contact;
   }
 
-  /// Pads beside the claimed ones that nearly touch, one after the other: what is not brought to
+  /// Pads beside the requested ones that nearly touch, one after the other: what is not brought to
   /// touch within its steps, or takes another's contact, is given up.
   void bring_near_pads(int& iterations) {
     if (options_.near_pad_steps == 0) return;
-    const std::vector<Claim> claimed = claims_;
-    std::vector<Claim> near = near_pads();
-    for (Claim& pad : near) {
+    const std::vector<PadRequest> requested = requests_;
+    std::vector<PadRequest> near = near_pads();
+    for (PadRequest& pad : near) {
       const HandConfiguration touching = configuration_;
-      claims_.push_back(pad);
+      requests_.push_back(pad);
       int steps = 0;
       const RefinementStop stop = approach(steps, options_.near_pad_steps);
       iterations += steps;
       if (stop == RefinementStop::Contact && is_clear()) continue;
-      claims_.pop_back();
+      requests_.pop_back();
       go_to(touching);
     }
-    claims_ = claimed;
+    requests_ = requested;
     measure_gaps();
   }
 
-  /// Not claimed, with surface in their clip volumes and a gap; the smallest first.
-  std::vector<Claim> near_pads() const {
-    std::vector<Claim> near;
+  /// Not requested, with surface in their clip volumes and a gap; the smallest first.
+  std::vector<PadRequest> near_pads() const {
+    std::vector<PadRequest> near;
     for (int pad = 0; pad < static_cast<int>(model_.pads.size()); ++pad) {
-      const bool is_claimed = std::any_of(claims_.begin(), claims_.end(),
-                                          [&](const Claim& claim) { return claim.pad == pad; });
-      if (is_claimed || !contact::is_counted(model_, pad, contact_options_) ||
+      const bool is_requested =
+          std::any_of(requests_.begin(), requests_.end(),
+                      [&](const PadRequest& request) { return request.pad == pad; });
+      if (is_requested || !contact::is_counted(model_, pad, contact_options_) ||
           !contact::has_contact(model_, pad, hands::pad_pose(model_, pad, X_OL_), object_.query,
                                 contact_options_)) {
         continue;
       }
-      Claim claim = claim_of(pad, nullptr);
-      claim.gap =
-          contact::pad_gap(hand_.pad_surface(pad), X_OL_[claim.link], object_.query, options_.reach)
-              .value_or(options_.reach);
-      if (claim.gap > options_.largest_gap) near.push_back(claim);
+      PadRequest request = request_of(pad, nullptr);
+      request.gap = contact::pad_gap(hand_.pad_surface(pad), X_OL_[request.link], object_.query,
+                                     options_.reach)
+                        .value_or(options_.reach);
+      if (request.gap > options_.largest_gap) near.push_back(request);
     }
     std::stable_sort(near.begin(), near.end(),
-                     [](const Claim& a, const Claim& b) { return a.gap < b.gap; });
+                     [](const PadRequest& a, const PadRequest& b) { return a.gap < b.gap; });
     return near;
   }
 
   /// How far the pads are from their targets, and how far from lying flat there [m²].
   double squared_miss() const {
     double sum = 0.0;
-    for (const Claim& claim : claims_) {
-      if (!claim.target) continue;
-      const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
-      const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
-      sum += (claim.target->point_O - middle).squaredNorm() +
-             (kTiltLever * (pad_normal + claim.target->outward_normal_O)).squaredNorm();
+    for (const PadRequest& request : requests_) {
+      if (!request.target) continue;
+      const Vector3d middle = hands::pad_contact_point(model_, request.pad, X_OL_);
+      const Vector3d pad_normal = hands::pad_pose(model_, request.pad, X_OL_).linear().col(2);
+      sum += (request.target->point_O - middle).squaredNorm() +
+             (kTiltLever * (pad_normal + request.target->outward_normal_O)).squaredNorm();
     }
     return sum;
   }
@@ -320,7 +322,8 @@ class Refinement {
   /// Moves touching pads over the surface toward their targets; the nearest place where all touch
   /// stays.
   void slide(int& iterations) {
-    if (std::none_of(claims_.begin(), claims_.end(), [](const Claim& c) { return c.target; })) {
+    if (std::none_of(requests_.begin(), requests_.end(),
+                     [](const PadRequest& c) { return c.target; })) {
       return;
     }
     target_weight_ = tilt_weight_ = kSlideWeight;
@@ -367,17 +370,18 @@ class Refinement {
 
   VectorXd wanted_motion(double trust) {
     Vector3d pivot = Vector3d::Zero();
-    for (const Claim& claim : claims_) pivot += claim.point_O / static_cast<double>(claims_.size());
+    for (const PadRequest& request : requests_)
+      pivot += request.point_O / static_cast<double>(requests_.size());
     motion_.set(configuration_, X_OL_, pivot);
     const double room = std::clamp(kRoomPerGap * largest_gap(), options_.least_distance, kMostRoom);
     internal::ConstrainedRows rows;
     for (Index i = 0; i < motion_.size(); ++i) {
       rows.want(RowVectorXd::Unit(motion_.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
     }
-    for (const Claim& claim : claims_) {
-      const double wanted = std::max(options_.wanted_gap, room) - claim.gap;
-      rows.want(motion_.row(claim.link, claim.point_O, claim.normal_O), wanted, kGapWeight);
-      if (claim.target) draw_to_target(claim, trust, rows);
+    for (const PadRequest& request : requests_) {
+      const double wanted = std::max(options_.wanted_gap, room) - request.gap;
+      rows.want(motion_.row(request.link, request.point_O, request.normal_O), wanted, kGapWeight);
+      if (request.target) draw_to_target(request, trust, rows);
     }
     for (const NearPoints& near : near_) {
       RowVectorXd row = motion_.row(near.link, near.point_O, near.normal_O);
@@ -395,16 +399,17 @@ class Refinement {
   }
 
   /// The weak wishes: the pad's middle to the target, its normal against the surface's.
-  void draw_to_target(const Claim& claim, double trust, internal::ConstrainedRows& rows) const {
-    const Vector3d middle = hands::pad_contact_point(model_, claim.pad, X_OL_);
-    Vector3d way = claim.target->point_O - middle;
+  void draw_to_target(const PadRequest& request, double trust,
+                      internal::ConstrainedRows& rows) const {
+    const Vector3d middle = hands::pad_contact_point(model_, request.pad, X_OL_);
+    Vector3d way = request.target->point_O - middle;
     if (way.norm() > trust) way *= trust / way.norm();
-    const Vector3d outward = claim.target->outward_normal_O;
-    const Vector3d pad_normal = hands::pad_pose(model_, claim.pad, X_OL_).linear().col(2);
+    const Vector3d outward = request.target->outward_normal_O;
+    const Vector3d pad_normal = hands::pad_pose(model_, request.pad, X_OL_).linear().col(2);
     const Vector3d turn = pad_normal.cross(-outward);
     for (int axis = 0; axis < 3; ++axis) {
-      rows.want(motion_.row(claim.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
-      rows.want(kTiltLever * motion_.turn_row(claim.link, Vector3d::Unit(axis)),
+      rows.want(motion_.row(request.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
+      rows.want(kTiltLever * motion_.turn_row(request.link, Vector3d::Unit(axis)),
                 std::clamp(kTiltLever * turn[axis], -trust, trust), tilt_weight_);
     }
   }
@@ -437,7 +442,7 @@ class Refinement {
   const double least_;  ///< What a step must keep: half of what it aims at [m].
   internal::Clearance clearance_;
   internal::HandMotion motion_;
-  std::vector<Claim> claims_;
+  std::vector<PadRequest> requests_;
   HandConfiguration start_;
   HandConfiguration configuration_;
   LinkPoses X_OL_;
@@ -456,13 +461,13 @@ void RefinementOptions::validate() const {
                 least_distance, "at most wanted_gap_m");
 }
 
-RefinementResult refine_contacts(const GraspScene& scene, const std::vector<int>& claimed_pads,
+RefinementResult refine_contacts(const GraspScene& scene, const std::vector<int>& requested_pads,
                                  const TargetContacts* targets, const HandConfiguration& start,
                                  const RefinementOptions& options) {
   options.validate();
   scene.contact_options.validate();
   hands::validate(scene.hand.model(), start);
-  return Refinement(scene, claimed_pads, targets, options).run(start);
+  return Refinement(scene, requested_pads, targets, options).run(start);
 }
 
 }  // namespace graspfit::grasp

@@ -46,7 +46,7 @@ using DistanceOnWay = std::function<double(double share, double enough)>;
 
 /// Whether two bodies are surely apart on the whole way from share 0 to 1, by conservative
 /// advancement from both ends and by halves in between: a distance d at one share keeps bodies of
-/// relative speed v apart up to d / v before and after it. Over the last stretch, in which no point
+/// relative speed v apart up to d / v before and after it. Over the last segment, in which no point
 /// moves by more than `tolerance`, they may be as near as they like; without a tolerance, bodies
 /// that do not move are apart if they are apart where they stand.
 ///

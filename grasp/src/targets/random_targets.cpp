@@ -197,7 +197,7 @@ class GreedySearch {
   const TargetOptions& options_;
   base::Random& random_;
   std::vector<std::int32_t> chosen_;    ///< The set so far, seed first.
-  std::vector<std::int32_t> partners_;  ///< Places that form a stable pair with the seed.
+  std::vector<std::int32_t> partners_;  ///< Indices of those that form a stable pair with the seed.
   std::vector<FingerOrder> orders_;     ///< Ways to give the set so far to fingers.
   std::vector<Candidate> candidates_;
   std::array<double, kMostParts> distances_{};

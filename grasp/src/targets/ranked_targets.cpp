@@ -58,7 +58,7 @@ struct RankedTargets::Impl {
     const RankedSet set = queue.back();
     queue.pop_back();
     const std::size_t size = num_fingers + (rules.has_palm() ? 1 : 0);
-    const Places places(set.places.data(), size);
+    const PointIndices places(set.places.data(), size);
     return rules.as_targets(places, misfit_of(places), 0);
   }
 
@@ -275,7 +275,7 @@ struct RankedTargets::Impl {
     }
   }
 
-  void keep(Places places, std::optional<double> misfit) {
+  void keep(PointIndices places, std::optional<double> misfit) {
     RankedSet set;
     set.rank = rules.rank(places, misfit);
     if (is_over_limit(set.rank)) return;
@@ -291,7 +291,7 @@ struct RankedTargets::Impl {
   }
 
   /// Misfit of a set's palm, found again.
-  std::optional<double> misfit_of(Places places) {
+  std::optional<double> misfit_of(PointIndices places) {
     if (!rules.has_palm()) return std::nullopt;
     std::vector<FingerOrder> orders = TargetRules::seed_orders();
     std::array<double, kMostParts> distances{};
@@ -303,7 +303,7 @@ struct RankedTargets::Impl {
   }
 
   const Eigen::Vector3d& point(std::size_t k) const { return rules.pool()[chosen[k]].point_O; }
-  Places fingers() const { return {chosen.data(), num_fingers}; }
+  PointIndices fingers() const { return {chosen.data(), num_fingers}; }
 
   TargetRules rules;
   const std::size_t num_fingers;

@@ -44,7 +44,7 @@ double PalmAxes::azimuth(const Vector3d& v) const {
   return std::atan2(v.dot(up_H_), v.dot(right_H_));
 }
 
-PlaceFromPalm PalmAxes::place(const Vector3d& from_center_H) const {
+PointFromPalm PalmAxes::place(const Vector3d& from_center_H) const {
   return {ahead(from_center_H), aside(from_center_H), turn_of(azimuth(from_center_H))};
 }
 
@@ -107,7 +107,7 @@ void ReachableTurns::add(double ahead, double aside, double azimuth, double reac
   }
 }
 
-Turns ReachableTurns::at(const PlaceFromPalm& place) const {
+Turns ReachableTurns::at(const PointFromPalm& place) const {
   const double ahead = (place.ahead - first_ahead_) / kTableCell;
   const double aside = place.aside / kTableCell;
   if (ahead < 0.0 || ahead >= num_ahead_ || aside >= num_aside_) return {};

@@ -17,7 +17,7 @@ using Turns = std::bitset<kTurns>;
 
 /// A place as seen from the palm's center: ahead along its direction, aside of it, and which turn's
 /// width its azimuth falls into.
-struct PlaceFromPalm {
+struct PointFromPalm {
   double ahead = 0.0;  ///< [m]
   double aside = 0.0;  ///< [m], ≥ 0
   int azimuth = 0;     ///< In [0, kTurns).
@@ -28,7 +28,7 @@ struct PlaceFromPalm {
 class PalmAxes {
  public:
   explicit PalmAxes(const PalmReach& palm);
-  PlaceFromPalm place(const Eigen::Vector3d& from_center_H) const;
+  PointFromPalm place(const Eigen::Vector3d& from_center_H) const;
   const Eigen::Vector3d& center_H() const { return center_H_; }
   double ahead(const Eigen::Vector3d& v) const { return v.dot(ahead_H_); }
   double aside(const Eigen::Vector3d& v) const;
@@ -47,7 +47,7 @@ class ReachableTurns {
 
   /// Every turn k at which `hands::TipReach` has a visited cell within the tolerance of the cell
   /// that holds the place turned by k · 2π/kTurns, and others.
-  Turns at(const PlaceFromPalm& place) const;
+  Turns at(const PointFromPalm& place) const;
 
  private:
   /// Adds the azimuths near a visited cell to the table's cells near it.

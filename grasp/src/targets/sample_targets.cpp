@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kDrawsPerSeed = 100;
 
-std::vector<Place> places_of(const std::vector<geometry::SurfaceSample>& samples) {
-  std::vector<Place> places;
+std::vector<PoolPoint> places_of(const std::vector<geometry::SurfaceSample>& samples) {
+  std::vector<PoolPoint> places;
   for (const geometry::SurfaceSample& sample : samples) {
     places.push_back({sample.point, -sample.normal, std::nullopt});
   }
@@ -18,7 +18,8 @@ std::vector<Place> places_of(const std::vector<geometry::SurfaceSample>& samples
 }
 
 /// Whether fingers can have the first places as their targets; `orders` are the ways to.
-bool are_in_reach(const TargetRules& rules, Places fingers, std::vector<FingerOrder>& orders) {
+bool are_in_reach(const TargetRules& rules, PointIndices fingers,
+                  std::vector<FingerOrder>& orders) {
   orders = TargetRules::seed_orders();
   std::array<double, kMostParts> distances{};
   for (std::size_t i = 1; i < fingers.size(); ++i) {
@@ -50,7 +51,7 @@ TargetSelection SampleTargets::select(base::Random& random) const {
       for (std::size_t i = 0; i < num_parts; ++i) {
         drawn[i] = static_cast<std::int32_t>(random.index(rules_.pool().size()));
       }
-      const Places fingers(drawn.data(), rules_.num_fingers());
+      const PointIndices fingers(drawn.data(), rules_.num_fingers());
       if (!are_in_reach(rules_, fingers, orders)) continue;
       std::optional<double> palm_misfit;
       if (rules_.has_palm()) {

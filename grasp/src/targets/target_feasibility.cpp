@@ -64,7 +64,7 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
 }
 
 /// Keeps the best place per cell and main direction of the normal, in order.
-void thin(std::vector<Place>& pool, const ObjectModel& object, double spacing) {
+void thin(std::vector<PoolPoint>& pool, const ObjectModel& object, double spacing) {
   using Cell = std::tuple<double, double, double, int>;  // whole numbers, of any size
   std::map<Cell, std::size_t> best;
   for (std::size_t i = 0; i < pool.size(); ++i) {
@@ -80,13 +80,13 @@ void thin(std::vector<Place>& pool, const ObjectModel& object, double spacing) {
   std::vector<std::size_t> kept;
   for (const auto& [cell, place] : best) kept.push_back(place);
   std::sort(kept.begin(), kept.end());
-  std::vector<Place> thinned;
+  std::vector<PoolPoint> thinned;
   for (const std::size_t place : kept) thinned.push_back(pool[place]);
   pool = std::move(thinned);
 }
 
-std::vector<Place> pool_of(const ObjectModel& object, const TargetOptions& options) {
-  std::vector<Place> pool;
+std::vector<PoolPoint> pool_of(const ObjectModel& object, const TargetOptions& options) {
+  std::vector<PoolPoint> pool;
   const bool knows_weak = options.exclude_weak && !object.is_weak_patch.empty();
   for (std::size_t p = 0; p < object.patches.size(); ++p) {
     const geometry::SurfacePatch& patch = object.patches[p];
@@ -98,8 +98,8 @@ std::vector<Place> pool_of(const ObjectModel& object, const TargetOptions& optio
   return pool;
 }
 
-/// Places in ascending order, so that sums over a set do not depend, to the bit, on its order.
-std::array<std::int32_t, kMostParts> ascending(Places places) {
+/// Indices in ascending order, so that sums over a set do not depend, to the bit, on its order.
+std::array<std::int32_t, kMostParts> ascending(PointIndices places) {
   std::array<std::int32_t, kMostParts> sorted{};
   for (std::size_t size = 0; size < places.size(); ++size) {
     std::size_t at = size;
@@ -130,7 +130,7 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
 
 TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distances,
                          const RequestedParts& parts, const TargetOptions& options,
-                         std::vector<Place> pool)
+                         std::vector<PoolPoint> pool)
     : object_(object),
       distances_(distances),
       parts_(parts),
@@ -140,8 +140,8 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
   options.validate();
   check_parts(distances, parts, options);
   if (!parts.palm) return;
-  room_ = std::vector<std::atomic<Room>>(pool_.size());
-  for (auto& known : room_) known = Room::Unknown;
+  palm_space_ = std::vector<std::atomic<PalmSpace>>(pool_.size());
+  for (auto& known : palm_space_) known = PalmSpace::Unknown;
   palm_axes_.emplace(*distances.palm);
   for (const auto& tip : distances.palm->tips) {
     reachable_turns_.emplace_back();
@@ -155,8 +155,8 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
 }
 
 double TargetRules::angle_share(std::int32_t a, std::int32_t b) const {
-  const Place& at_a = pool_[a];
-  const Place& at_b = pool_[b];
+  const PoolPoint& at_a = pool_[a];
+  const PoolPoint& at_b = pool_[b];
   return contact::stable_pair_angle(at_a.point_O, at_a.inward_normal_O, at_b.point_O,
                                     at_b.inward_normal_O, options_.theta_max)
              .value_or(options_.theta_max) /
@@ -213,7 +213,7 @@ bool TargetRules::is_extendable(const std::vector<FingerOrder>& orders,
   return false;
 }
 
-double TargetRules::centroid_error(Places places) const {
+double TargetRules::centroid_error(PointIndices places) const {
   const auto sorted = ascending(places);
   Vector3d sum = Vector3d::Zero();
   for (std::size_t k = 0; k < places.size(); ++k) sum += pool_[sorted[k]].point_O;
@@ -221,7 +221,7 @@ double TargetRules::centroid_error(Places places) const {
          normalizing_radius();
 }
 
-double TargetRules::edge_error(Places fingers) const {
+double TargetRules::edge_error(PointIndices fingers) const {
   const std::size_t size = fingers.size();
   if (size < 3) return 0.0;
   const double first = distance(fingers[0], fingers[1]);
@@ -236,8 +236,8 @@ double TargetRules::edge_error(Places fingers) const {
   return sum / (n * (n - 1.0) / 2.0 - 1.0);
 }
 
-double TargetRules::rank(Places places, std::optional<double> palm_misfit) const {
-  const Places fingers = places.first(num_fingers());
+double TargetRules::rank(PointIndices places, std::optional<double> palm_misfit) const {
+  const PointIndices fingers = places.first(num_fingers());
   double rank = edge_error(fingers) + centroid_error(places) + palm_misfit.value_or(0.0);
   if (options_.angle_weight > 0.0) {
     double sum = 0.0;
@@ -253,9 +253,9 @@ double TargetRules::rank(Places places, std::optional<double> palm_misfit) const
 }
 
 bool TargetRules::has_room(std::int32_t palm) const {
-  const Room known = room_[palm].load(std::memory_order_relaxed);
-  if (known != Room::Unknown) return known == Room::Free;
-  const Place& place = pool_[palm];
+  const PalmSpace known = palm_space_[palm].load(std::memory_order_relaxed);
+  if (known != PalmSpace::Unknown) return known == PalmSpace::Free;
+  const PoolPoint& place = pool_[palm];
   const double squared_radius = distances_.palm->pad_radius * distances_.palm->pad_radius;
   const bool is_free = std::none_of(
       object_.patches.begin(), object_.patches.end(), [&](const geometry::SurfacePatch& patch) {
@@ -265,13 +265,13 @@ bool TargetRules::has_room(std::int32_t palm) const {
                offset.squaredNorm() - height * height < squared_radius;
       });
   // Whichever thread finds it finds the same.
-  room_[palm].store(is_free ? Room::Free : Room::Taken, std::memory_order_relaxed);
+  palm_space_[palm].store(is_free ? PalmSpace::Free : PalmSpace::Taken, std::memory_order_relaxed);
   return is_free;
 }
 
-std::optional<double> TargetRules::tip_misfit(Places fingers,
+std::optional<double> TargetRules::tip_misfit(PointIndices fingers,
                                               const std::vector<FingerOrder>& orders,
-                                              const Place& palm) const {
+                                              const PoolPoint& palm) const {
   const PalmReach& reach = *distances_.palm;
   if (reach.tips.empty()) return 0.0;
   // From the palm to the targets, in H but for the turn about the palm's direction.
@@ -282,7 +282,7 @@ std::optional<double> TargetRules::tip_misfit(Places fingers,
   for (std::size_t t = 0; t < fingers.size(); ++t) {
     pad_normal[t] = R_HO * pool_[fingers[t]].inward_normal_O;
     from_palm[t] = R_HO * (pool_[fingers[t]].point_O - palm.point_O);
-    const PlaceFromPalm place = palm_axes_->place(from_palm[t]);
+    const PointFromPalm place = palm_axes_->place(from_palm[t]);
     for (std::size_t f = 0; f < fingers.size(); ++f) {
       const auto& turns = reachable_turns_[parts_.fingers[f]];
       if (turns) reachable[t][f] = turns->at(place);
@@ -324,10 +324,10 @@ std::optional<double> TargetRules::tip_misfit(Places fingers,
   return best;
 }
 
-std::optional<double> TargetRules::palm_misfit(Places fingers,
+std::optional<double> TargetRules::palm_misfit(PointIndices fingers,
                                                const std::vector<FingerOrder>& orders,
                                                std::int32_t palm) const {
-  const Place& place = pool_[palm];
+  const PoolPoint& place = pool_[palm];
   std::array<double, kMostParts> distances{};
   for (std::size_t t = 0; t < fingers.size(); ++t) {
     const Vector3d from_palm = pool_[fingers[t]].point_O - place.point_O;
@@ -350,13 +350,13 @@ std::optional<double> TargetRules::palm_misfit(Places fingers,
   return *misfit / normalizing_radius();
 }
 
-TargetContacts TargetRules::as_targets(Places places, std::optional<double> palm_misfit,
+TargetContacts TargetRules::as_targets(PointIndices places, std::optional<double> palm_misfit,
                                        int seeds_tried) const {
   TargetContacts targets;
   targets.seeds_tried = seeds_tried;
   targets.rank = rank(places, palm_misfit);
   for (const std::int32_t index : places) {
-    const Place& place = pool_[index];
+    const PoolPoint& place = pool_[index];
     const double score = place.patch ? object_.scores.scores[*place.patch]
                                      : contact_score_at(object_, place.point_O).value_or(0.0);
     targets.contacts.push_back({place.point_O, -place.inward_normal_O, place.patch, score});

@@ -15,7 +15,7 @@
 namespace graspfit::grasp::internal {
 
 /// A place that may become a target.
-struct Place {
+struct PoolPoint {
   Eigen::Vector3d point_O;
   Eigen::Vector3d inward_normal_O;
   std::optional<std::int32_t> patch;  ///< Empty: not a patch's.
@@ -25,8 +25,8 @@ struct Place {
 /// 0 first.
 using FingerOrder = std::array<std::int8_t, kMostParts>;
 
-/// Places of a set: indices into `TargetRules::pool`, the seed first.
-using Places = std::span<const std::int32_t>;
+/// A set: indices into `TargetRules::pool`, the seed first.
+using PointIndices = std::span<const std::int32_t>;
 
 /// What may be a target, and which targets go together (paper section 6): the same for every way of
 /// searching. Several threads may ask at once.
@@ -37,11 +37,12 @@ class TargetRules {
               const RequestedParts& parts, const TargetOptions& options);
   /// With a pool of its own.
   TargetRules(const ObjectModel& object, const PartDistances& distances,
-              const RequestedParts& parts, const TargetOptions& options, std::vector<Place> pool);
+              const RequestedParts& parts, const TargetOptions& options,
+              std::vector<PoolPoint> pool);
 
   const TargetOptions& options() const { return options_; }
   /// Of patches: ascending by patch.
-  const std::vector<Place>& pool() const { return pool_; }
+  const std::vector<PoolPoint>& pool() const { return pool_; }
   const std::vector<int>& fingers() const { return parts_.fingers; }
   std::size_t num_fingers() const { return parts_.fingers.size(); }
   bool has_palm() const { return parts_.palm; }
@@ -73,19 +74,19 @@ class TargetRules {
                      std::span<const double> distances) const;
 
   /// Distance of the places' centroid from the center of mass over the normalizing radius.
-  double centroid_error(Places places) const;
+  double centroid_error(PointIndices places) const;
   /// Mean error of all edges but the first; 0 for two. Independent of the order of all but the
   /// first two, to the bit.
-  double edge_error(Places fingers) const;
+  double edge_error(PointIndices fingers) const;
   /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last place.
-  double rank(Places places, std::optional<double> palm_misfit) const;
+  double rank(PointIndices places, std::optional<double> palm_misfit) const;
 
   /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
   /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
-  std::optional<double> palm_misfit(Places fingers, const std::vector<FingerOrder>& orders,
+  std::optional<double> palm_misfit(PointIndices fingers, const std::vector<FingerOrder>& orders,
                                     std::int32_t palm) const;
 
-  TargetContacts as_targets(Places places, std::optional<double> palm_misfit,
+  TargetContacts as_targets(PointIndices places, std::optional<double> palm_misfit,
                             int seeds_tried) const;
 
  private:
@@ -93,18 +94,18 @@ class TargetRules {
   bool can_take(const FingerOrder& order, std::size_t size, int finger,
                 std::span<const double> distances) const;
   bool has_room(std::int32_t palm) const;
-  std::optional<double> tip_misfit(Places fingers, const std::vector<FingerOrder>& orders,
-                                   const Place& palm) const;
+  std::optional<double> tip_misfit(PointIndices fingers, const std::vector<FingerOrder>& orders,
+                                   const PoolPoint& palm) const;
 
   const ObjectModel& object_;
   const PartDistances& distances_;
   const RequestedParts parts_;
   const TargetOptions options_;
   const contact::StablePairTest stable_pairs_;
-  std::vector<Place> pool_;
-  enum class Room : signed char { Unknown, Free, Taken };
-  mutable std::vector<std::atomic<Room>> room_;  ///< Per place: for the palm.
-  std::vector<Eigen::Matrix3d> turns_H_;         ///< About the palm's direction.
+  std::vector<PoolPoint> pool_;
+  enum class PalmSpace : signed char { Unknown, Free, Taken };
+  mutable std::vector<std::atomic<PalmSpace>> palm_space_;  ///< Per place: for the palm.
+  std::vector<Eigen::Matrix3d> turns_H_;                    ///< About the palm's direction.
   std::optional<PalmAxes> palm_axes_;
   std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.
 };

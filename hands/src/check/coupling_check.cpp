@@ -69,8 +69,8 @@ bool are_mirrored(const JointTree& joints, int a, int b) {
 }
 
 /// The ends of fingers that move much less than the joint before them. Whether there are any.
-bool look_for_geared_ends(const JointTree& joints, const std::vector<std::pair<int, int>>& ends,
-                          Findings& findings) {
+bool report_geared_ends(const JointTree& joints, const std::vector<std::pair<int, int>>& ends,
+                        Findings& findings) {
   constexpr double kShortRange = 0.5;  // of the joint before
   bool is_any = false;
   for (const auto& [before, end] : ends) {
@@ -107,7 +107,7 @@ bool slide_like_jaws(const JointTree& joints, int a, int b) {
 }
 
 /// Independent joints on the palm that look like one drive. Whether there are any.
-bool look_for_twins(const JointTree& joints, Findings& findings) {
+bool report_twins(const JointTree& joints, Findings& findings) {
   bool is_any = false;
   const std::vector<int> on_root = joints.next(std::nullopt);
   for (std::size_t i = 0; i < on_root.size(); ++i) {
@@ -140,11 +140,11 @@ bool look_for_twins(const JointTree& joints, Findings& findings) {
 
 }  // namespace
 
-void look_for_lost_couplings(const JointTree& joints, Findings& findings) {
+void report_lost_couplings(const JointTree& joints, Findings& findings) {
   constexpr int kMostDrives = 20;
   const std::vector<std::pair<int, int>> ends = free_end_pairs(joints);
-  const bool has_geared_ends = look_for_geared_ends(joints, ends, findings);
-  const bool has_twins = look_for_twins(joints, findings);
+  const bool has_geared_ends = report_geared_ends(joints, ends, findings);
+  const bool has_twins = report_twins(joints, findings);
   const bool has_coupling =
       std::any_of(joints.tree().joints.begin(), joints.tree().joints.end(),
                   [](const Joint& joint) { return joint.coupling.has_value(); });

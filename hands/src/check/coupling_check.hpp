@@ -7,6 +7,6 @@ namespace graspfit::hands::internal {
 
 /// Says which joints that are independent look as if they should follow others: descriptions
 /// converted from other formats lose couplings.
-void look_for_lost_couplings(const JointTree& joints, Findings& findings);
+void report_lost_couplings(const JointTree& joints, Findings& findings);
 
 }  // namespace graspfit::hands::internal

@@ -34,8 +34,8 @@ using internal::rounded;
 // ----------------------------------------------------------------------------------------
 
 /// `has_geometry`: links whose description names a shape, whether or not it could be read.
-void look_for_missing_meshes(const JointTree& joints, const std::set<std::string>& has_geometry,
-                             Findings& findings) {
+void report_missing_meshes(const JointTree& joints, const std::set<std::string>& has_geometry,
+                           Findings& findings) {
   // Links that move as one: those of the root first.
   std::vector<std::optional<int>> bodies = {std::nullopt};
   for (int j = 0; j < joints.num_joints(); ++j) bodies.emplace_back(j);
@@ -59,7 +59,7 @@ void look_for_missing_meshes(const JointTree& joints, const std::set<std::string
   }
 }
 
-void look_at_inertia(const Link& link, Findings& findings) {
+void check_inertia(const Link& link, Findings& findings) {
   // Of the diagonal of the link's box; a solid box has 1/sqrt(12) = 0.29 of it, whatever its shape.
   constexpr double kSmallestGyration = 0.05;
   constexpr double kLargestGyration = 1.0;
@@ -92,11 +92,11 @@ void look_at_inertia(const Link& link, Findings& findings) {
   }
 }
 
-void look_at_masses(const HandModel& tree, Findings& findings) {
+void check_masses(const HandModel& tree, Findings& findings) {
   std::vector<std::string> without;
   std::size_t num_bodies = 0;
   for (const Link& link : tree.links) {
-    look_at_inertia(link, findings);
+    check_inertia(link, findings);
     if (link.mesh_L.faces.empty()) continue;
     ++num_bodies;
     if (!link.inertia || link.inertia->mass == 0.0) without.push_back(link.name);
@@ -112,7 +112,7 @@ void look_at_masses(const HandModel& tree, Findings& findings) {
 constexpr int kClosingSteps = 16;  // per range: under 10 degrees each
 
 /// Whether a joint's travel, all others open, takes the pad along where it looks or backward.
-void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
+void check_closing_joint(const HandModel& hand, int j, Findings& findings) {
   constexpr double kShortestTurn = 0.1;    // [rad]
   constexpr double kShortestSlide = 1e-3;  // [m]
   constexpr double kBackward = -0.5;       // of the path: more backward than sideways
@@ -153,7 +153,7 @@ void look_at_closing_joint(const HandModel& hand, int j, Findings& findings) {
 
 /// How near a finger's tip comes when it closes, over how near it is when open: to the palm's
 /// center line, the palm center, and the tips of the other fingers, which close too.
-void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& findings) {
+void check_closing_finger(const HandModel& hand, std::size_t f, Findings& findings) {
   constexpr double kNearer = 0.9;
   const Finger& finger = hand.fingers[f];
   const std::string item = "finger " + finger.name;
@@ -198,7 +198,7 @@ void look_at_closing_finger(const HandModel& hand, std::size_t f, Findings& find
 }
 
 /// Fingers that self-collision keeps open: whoever closes the hand finds them straight.
-void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
+void report_blocked_fingers(const HandModel& hand, Findings& findings) {
   constexpr double kStillOpen = 0.1;  // of the way
   const auto name = [&](int link) { return hand.links[link].name; };
   for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
@@ -214,7 +214,7 @@ void look_for_blocked_fingers(const HandModel& hand, Findings& findings) {
   }
 }
 
-void look_for_tips_that_never_meet(const HandModel& hand, Findings& findings) {
+void report_tips_that_never_meet(const HandModel& hand, Findings& findings) {
   if (hand.fingers.size() < 2) {
     findings.suspicious("", "one finger only: nothing to hold an object against but the palm");
     return;
@@ -240,7 +240,7 @@ void look_for_tips_that_never_meet(const HandModel& hand, Findings& findings) {
 // ---- The whole hand
 // -------------------------------------------------------------------------------
 
-void look_for_overlaps(const HandModel& hand, Findings& findings) {
+void report_overlaps(const HandModel& hand, Findings& findings) {
   const auto overlap =
       HandCollision(hand).against_self(forward_kinematics(hand, open_configuration(hand)));
   if (!overlap.intersects) return;
@@ -274,16 +274,16 @@ void tell_idle_joints(const HandModel& hand, Findings& findings) {
   if (!idle.empty()) findings.note("", "joints that belong to no finger: " + base::list_text(idle));
 }
 
-void look_at_whole(const HandModel& hand, Findings& findings) {
+void check_whole(const HandModel& hand, Findings& findings) {
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     if (hand.joints[j].closing_sign != 0 && !hand.joints[j].coupling) {
-      look_at_closing_joint(hand, static_cast<int>(j), findings);
+      check_closing_joint(hand, static_cast<int>(j), findings);
     }
   }
-  for (std::size_t f = 0; f < hand.fingers.size(); ++f) look_at_closing_finger(hand, f, findings);
-  look_for_tips_that_never_meet(hand, findings);
-  look_for_overlaps(hand, findings);
-  look_for_blocked_fingers(hand, findings);
+  for (std::size_t f = 0; f < hand.fingers.size(); ++f) check_closing_finger(hand, f, findings);
+  report_tips_that_never_meet(hand, findings);
+  report_overlaps(hand, findings);
+  report_blocked_fingers(hand, findings);
   tell_exclusions(hand, findings);
   tell_idle_joints(hand, findings);
 }
@@ -307,14 +307,14 @@ HandCheck check_hand(const std::filesystem::path& description_file) {
     for (const internal::DescribedLink& link : sources.description.links) {
       if (!link.visual.empty() || !link.collision.empty()) has_geometry.insert(link.name);
     }
-    look_for_missing_meshes(joints, has_geometry, findings);
-    look_at_masses(*sources.tree, findings);
-    if (!sources.sidecar.couplings) internal::look_for_lost_couplings(joints, findings);
+    report_missing_meshes(joints, has_geometry, findings);
+    check_masses(*sources.tree, findings);
+    if (!sources.sidecar.couplings) internal::report_lost_couplings(joints, findings);
   }
   const bool is_hand_sized = sources.tree && !findings.has_faults() &&
                              internal::extent_at_rest(*sources.tree) <= internal::kLargestHand;
   if (check.model && is_hand_sized) {
-    findings.attempt([&] { look_at_whole(*check.model, findings); });
+    findings.attempt([&] { check_whole(*check.model, findings); });
   } else if (check.model) {
     findings.note("", "how it closes is looked at once its lengths are meters");
   }

@@ -18,7 +18,7 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   const Body& body = bodies_[at(chain.bodies[number])];
   if (body.mesh.faces.empty()) return std::nullopt;
   // The nearest closing joint above says what drives it. What only an opposing joint moves faces
-  // nothing: its leading side looks away from the palm.
+  // nothing: its leading side faces away from the palm.
   std::optional<int> leader;
   for (std::size_t i = 0; i <= number; ++i) {
     const int candidate = leader_of(tree_, chain.joints[i]);
@@ -90,7 +90,7 @@ void Deriver::palm_direction() {
   }
   palm_center_ = base;
   palm_direction_ = facing_center_ - base;
-  if (!bodies_[0].mesh.faces.empty()) look_at_palm();
+  if (!bodies_[0].mesh.faces.empty()) check_palm();
   if (const auto resting = resting_direction()) {
     constexpr double kAgree = 0.64;  // cosine of 50°
     if (resting->dot(palm_direction_.normalized()) >= kAgree) palm_direction_ = *resting;
@@ -145,7 +145,7 @@ std::optional<Vector3d> Deriver::resting_direction() const {
   return best;
 }
 
-void Deriver::look_at_palm() {
+void Deriver::check_palm() {
   const MeshQuery palm(bodies_[0].mesh);
   Vector3d eye = facing_center_;
   const Vector3d away = (facing_center_ - palm_middle_).normalized();
@@ -153,35 +153,35 @@ void Deriver::look_at_palm() {
   for (int i = 0; i < 40 && palm.containment(eye) != geometry::Containment::Outside; ++i) {
     eye += step * away;
   }
-  constexpr int kNumLooks = 3000;
-  struct Look {
+  constexpr int kNumRays = 3000;
+  struct SeenPoint {
     Vector3d normal;
     double weight = 0.0;
   };
-  std::vector<Look> looks;
-  for (int i = 0; i < kNumLooks; ++i) {  // a spiral over the sphere: equal shares of view
-    const double z = 1.0 - 2.0 * (i + 0.5) / kNumLooks;
+  std::vector<SeenPoint> seen;
+  for (int i = 0; i < kNumRays; ++i) {  // a spiral over the sphere: equal shares of view
+    const double z = 1.0 - 2.0 * (i + 0.5) / kNumRays;
     const double turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
     const double r = std::sqrt(1.0 - z * z);
     const Vector3d ray(r * std::cos(turn), r * std::sin(turn), z);
     const auto hit = palm.first_hit(eye, ray);
     if (!hit) continue;
     const Vector3d normal = geometry::face_normal(palm.mesh(), at(hit->face));
-    if (normal.dot(ray) < 0.0) looks.push_back({normal, -normal.dot(ray)});
+    if (normal.dot(ray) < 0.0) seen.push_back({normal, -normal.dot(ray)});
   }
-  if (looks.empty()) return;
+  if (seen.empty()) return;
   // The normal with most of the view within kSameSide, then the mean of those.
   constexpr double kSameSide = 0.94;  // cosine of 20°
   const auto mean_around = [&](const Vector3d& normal) {
     Vector3d sum = Vector3d::Zero();
-    for (const Look& other : looks) {
+    for (const SeenPoint& other : seen) {
       if (other.normal.dot(normal) >= kSameSide) sum += other.weight * other.normal;
     }
     return sum;
   };
   Vector3d best = Vector3d::Zero();
-  for (std::size_t i = 0; i < looks.size(); i += std::max<std::size_t>(1, looks.size() / 300)) {
-    const Vector3d sum = mean_around(looks[i].normal);
+  for (std::size_t i = 0; i < seen.size(); i += std::max<std::size_t>(1, seen.size() / 300)) {
+    const Vector3d sum = mean_around(seen[i].normal);
     if (sum.norm() > best.norm()) best = sum;
   }
   palm_direction_ = best.normalized();

@@ -318,7 +318,7 @@ std::optional<FittedPad> bulging_pad(const MeshQuery& link, const std::vector<Me
   const Vector2d middle = centroid_of(outline_S);
   std::vector<Vector3d> points_S;
   for (const Vector2d& corner : outline_S) {
-    const Sample sample = look(link, others, R_LS, corner, box.top);
+    const Sample sample = probe(link, others, R_LS, corner, box.top);
     points_S.emplace_back(
         corner.x(), corner.y(),
         sample.is_hit ? sample.point.z() : -std::numeric_limits<double>::infinity());
@@ -405,7 +405,7 @@ FittedPad tidied(FittedPad pad) {
 std::optional<FittedPad> fit_pad(const MeshQuery& link, const std::vector<MeshQuery>& others,
                                  const PadSearch& search) {
   Eigen::Matrix3d R_LS = axes(search.direction, search.along);
-  // The second look is along the mean normal of what the first one found.
+  // The second search is along the mean normal of what the first one found.
   for (const bool is_last : {false, true}) {
     const SearchBox box = search_box(link, others, R_LS, search);
     const RayGrid grid = cast(link, others, R_LS, box);

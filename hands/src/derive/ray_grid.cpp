@@ -21,8 +21,8 @@ constexpr double kMaxStep = 1.2;   // [rad]: a steeper step between neighbors pa
 
 }  // namespace
 
-Sample look(const MeshQuery& link, const std::vector<MeshQuery>& others,
-            const Eigen::Matrix3d& R_LS, const Vector2d& place, double top) {
+Sample probe(const MeshQuery& link, const std::vector<MeshQuery>& others,
+             const Eigen::Matrix3d& R_LS, const Vector2d& place, double top) {
   const Vector3d origin_L = R_LS * Vector3d(place.x(), place.y(), top);
   const Vector3d ray_L = -R_LS.col(2);
   Sample sample;
@@ -75,7 +75,7 @@ RayGrid cast(const MeshQuery& link, const std::vector<MeshQuery>& others,
   grid.corner = box.box_S.center().head<2>() - 0.5 * grid.step * Vector2d(grid.nx, grid.ny);
   for (int y = 0; y < grid.ny; ++y) {
     for (int x = 0; x < grid.nx; ++x) {
-      grid.samples.push_back(look(link, others, R_LS, grid.center(x, y), box.top));
+      grid.samples.push_back(probe(link, others, R_LS, grid.center(x, y), box.top));
     }
   }
   return grid;

@@ -49,8 +49,8 @@ SearchBox search_box(const geometry::MeshQuery& link,
 
 /// The ray against z at a place of the search frame: what it meets of the link, if the others do
 /// not stand before it.
-Sample look(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,
-            const Eigen::Matrix3d& R_LS, const Eigen::Vector2d& place, double top);
+Sample probe(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,
+             const Eigen::Matrix3d& R_LS, const Eigen::Vector2d& place, double top);
 
 /// The rays over the box; no samples where it has no area.
 RayGrid cast(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,

@@ -93,7 +93,7 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
   // Faults of the tree leave limits and couplings that no configuration can have.
   if (sources.tree && !findings.has_faults()) {
     findings.attempt(
-        [&] { look_at_size(*sources.tree, sources.description.meters_per_unit, findings); });
+        [&] { check_size(*sources.tree, sources.description.meters_per_unit, findings); });
   }
   return sources;
 }

@@ -62,7 +62,7 @@ double extent_at_rest(const HandModel& tree) {
   return box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
 }
 
-void look_at_size(const HandModel& tree, double meters_per_unit, Findings& findings) {
+void check_size(const HandModel& tree, double meters_per_unit, Findings& findings) {
   const double extent = extent_at_rest(tree);
   if (extent == 0.0) return;
   // Written so that NaN fails.

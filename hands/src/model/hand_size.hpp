@@ -17,6 +17,6 @@ constexpr double kLargestHand = 1.0;
 /// hand of it, the finding names the factor, the unit, and where to write it. `tree` has surfaces
 /// and couplings; `meters_per_unit` is that of its description.
 /// @throws InvalidInput beyond 10 km: nothing that the hand is measured by has room for that.
-void look_at_size(const HandModel& tree, double meters_per_unit, Findings& findings);
+void check_size(const HandModel& tree, double meters_per_unit, Findings& findings);
 
 }  // namespace graspfit::hands::internal

@@ -92,7 +92,7 @@ TEST_CASE("Each tool's convention has its scale, origin and forces", "[grasp][wr
     int num_edges;
   };
   for (const Row& row : {
-           Row{House, 0.08, com, ForceScaling::UnitNormal, OutsideValue::Zero, 8},
+           Row{Graspfit, 0.08, com, ForceScaling::UnitNormal, OutsideValue::Zero, 8},
            Row{GraspIt, 0.08, com, ForceScaling::UnitNormal, OutsideValue::MinusOne, 8},
            Row{Simox, 0.05, com, ForceScaling::UnitEdge, OutsideValue::Zero, 8},
            Row{DexNet, 0.06, com, ForceScaling::UnitNormal, OutsideValue::Zero, 8},

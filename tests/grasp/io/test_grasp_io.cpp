@@ -297,6 +297,40 @@ TEST_CASE("Numbers of a grasp file are as short as they can be", "[grasp][grasp_
   CHECK_THAT(json, Contains("\"score\": \"infinity\""));
 }
 
+TEST_CASE("Files of version 5 are read: their convention of graspfit had another name",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const std::string now = grasp::to_json(sample_file(folder.path() / "ball.off"));
+  const fs::path path = folder.path() / "old.json";
+  const std::string named = replaced(now, "\"tool\": \"graspit\"", "\"tool\": \"house\"");
+  CHECK_THAT(refusal(path, named), Contains("/convention/tool: is \"house\""));
+  CHECK(refusal(path, replaced(named, "\"version\": 6", "\"version\": 5")) == "accepted");
+  const std::vector<grasp::Grasp> grasps = grasp::read_grasps(path).grasps;
+  CHECK(std::any_of(grasps.begin(), grasps.end(), [](const grasp::Grasp& grasp) {
+    return grasp.wrench && grasp.wrench->convention.tool == contact::WrenchTool::Graspfit;
+  }));
+}
+
+TEST_CASE("Options that a file lacks have their defaults, what is no option is refused",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const std::string now = grasp::to_json(sample_file(folder.path() / "ball.off"));
+  const fs::path path = folder.path() / "older.json";
+  CHECK_THAT(refusal(path, replaced(now, "\"alpha\": ", "\"alpah\": ")),
+             Contains("/planner/options/quality/alpah: is not a member that is known here") &&
+                 Contains("alpha"));
+  CHECK_THAT(refusal(path, replaced(now, "\"search\": \"", "\"serach\": \"")),
+             Contains("serach: is not a member"));
+  std::string without = replaced(now, "\"alpha\": 0.1,", "");
+  without = replaced(without, "\"candidate_order\": \"balance\",", "");
+  CHECK(refusal(path, without) == "accepted");
+  const grasp::PlannerOptions options = grasp::read_grasps(path).options;
+  CHECK(options.quality.alpha == grasp::PlannerOptions{}.quality.alpha);
+  CHECK(options.quality.alpha != 0.1);
+  CHECK(options.candidate_order == grasp::CandidateOrder::Pads);
+  CHECK(options.kept == grasp::KeptCandidate::Balanced);
+}
+
 TEST_CASE("Files of version 4 are read: their one choice was order and choice of candidates",
           "[grasp][grasp_io]") {
   const TemporaryFolder folder;
@@ -307,7 +341,7 @@ TEST_CASE("Files of version 4 are read: their one choice was order and choice of
         std::tuple("balanced", grasp::CandidateOrder::Balance, grasp::KeptCandidate::Balanced),
         std::tuple("strongest", grasp::CandidateOrder::Balance, grasp::KeptCandidate::Strongest)}) {
     CAPTURE(choice);
-    std::string old = replaced(now, "\"version\": 5", "\"version\": 4");
+    std::string old = replaced(now, "\"version\": 6", "\"version\": 4");
     old = replaced(old, "\"candidate_order\": \"balance\"",
                    "\"attempt_choice\": \"" + std::string(choice) + '"');
     old = replaced(old, "\"kept_candidate\": \"balanced\",", "");
@@ -334,8 +368,8 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
              Contains("bad.json: line 1, column 75: nests deeper than 64 levels"));
   CHECK_THAT(refusal(path, "[]"), Contains("/: is [], must be an object"));
   CHECK_THAT(refusal(path, "{}"), Contains("/format: is missing"));
-  CHECK_THAT(refusal(path, replaced(good, "\"version\": 5", "\"version\": 1")),
-             Contains("/version: is 1; this program reads versions 4 and 5"));
+  CHECK_THAT(refusal(path, replaced(good, "\"version\": 6", "\"version\": 1")),
+             Contains("/version: is 1; this program reads versions 4 to 6"));
   CHECK_THAT(refusal(path, replaced(good, "\"outside\": \"minus-one\"", "\"outside\": \"far\"")),
              Contains("/results/grasps/0/wrench/convention/outside: is \"far\"") &&
                  Contains("zero|minus-one|signed"));
@@ -377,7 +411,7 @@ TEST_CASE("The table has a row per grasp and a unit in every column that needs o
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   REQUIRE(lines.size() == 1 + file.grasps.size());
   for (const char* column :
-       {"largest_penetration_m", "epsilon", "largest_claimed_gap_m", "palm_touches",
+       {"largest_penetration_m", "epsilon", "largest_requested_gap_m", "palm_touches",
         "pre_grasp_clearance_m", "pre_grasp_palm_x_m", "squeeze_residual"}) {
     CHECK_THAT(lines[0], Contains(column));
   }

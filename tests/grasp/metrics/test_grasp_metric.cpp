@@ -25,7 +25,7 @@ using testing::unit_ball;
 namespace {
 
 GraspMetricInput input_of(const Contacts& contacts, double friction,
-                          WrenchTool tool = WrenchTool::House) {
+                          WrenchTool tool = WrenchTool::Graspfit) {
   return GraspMetricInput(
       {.contacts = contacts, .object = unit_ball(), .friction = friction, .tool = tool});
 }
@@ -109,9 +109,10 @@ TEST_CASE("A metric is in the convention that was asked for, and says so",
   const double mu = 0.5;
   const GraspMetric& epsilon = grasp_metrics().at("epsilon");
   const GraspMetricValue house = evaluate(epsilon, input_of(on_cube(), mu));
-  CHECK(house.convention ==
-        "house: torques about (0, 0, 0) m over 1 m, friction 0.5, 8 inscribed edges from normal x "
-        "e_x, L1, unit normal force, outside 0");
+  CHECK(
+      house.convention ==
+      "graspfit: torques about (0, 0, 0) m over 1 m, friction 0.5, 8 inscribed edges from normal x "
+      "e_x, L1, unit normal force, outside 0");
   // Half the longest extent of the ball is its radius: only the forces are shorter.
   const GraspMetricValue simox = evaluate(epsilon, input_of(on_cube(), mu, WrenchTool::Simox));
   CHECK(*simox.value == Approx(*house.value / std::hypot(1.0, mu)).epsilon(kRounding));
@@ -130,7 +131,7 @@ TEST_CASE("Metrics have no value where what they need is not there", "[grasp][gr
   for (const char* const name : {"m", "m1", "m2", "m3", "penetration", "penetrates"}) {
     CHECK_FALSE(value_of(name, contacts_only).has_value());
   }
-  CHECK_FALSE(value_of("claimed_gap_max", contacts_only).has_value());
+  CHECK_FALSE(value_of("requested_gap_max", contacts_only).has_value());
   const GraspMetricInput nothing = input_of({}, 0.5);
   for (const GraspMetric& metric : grasp_metrics().all()) {
     CAPTURE(metric.name);
@@ -179,7 +180,7 @@ TEST_CASE("Areas and gaps are those of the contacts", "[grasp][grasp_metric]") {
   CHECK(*value_of("contact_gap_mean", input) == Approx(0.0004).epsilon(kRounding));
   CHECK(*value_of("contact_gap_spread", input) == Approx(0.0011).epsilon(kRounding));
   CHECK(*value_of("contact_gap_max", input) == 0.0011);
-  CHECK(*value_of("claimed_gap_max", input) == 0.0004);
+  CHECK(*value_of("requested_gap_max", input) == 0.0004);
   CHECK(*value_of("num_contacts", input) == 4.0);
 }
 

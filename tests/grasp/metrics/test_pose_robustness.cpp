@@ -148,7 +148,7 @@ TEST_CASE("Metrics of robustness are these numbers at the default noise",
   CHECK_THAT(
       epsilon.convention,
       testing::StartsWith("100 poses, seed 1, Gaussian: 0.005 m and 0.08726646259971647 rad"));
-  CHECK_THAT(epsilon.convention, testing::Contains("house: torques about"));
+  CHECK_THAT(epsilon.convention, testing::Contains("graspfit: torques about"));
   CHECK_FALSE(evaluate(grasp_metrics().at("robust_usable_share"), input).value.has_value());
 }
 

@@ -184,7 +184,7 @@ TEST_CASE("Attempts that keep the strongest grasp keep the one that trying all s
       if (contact.gap <= run.options.refinement.largest_gap) touching.push_back(contact);
     }
     contact::WrenchConvention convention = contact::wrench_convention(
-        contact::WrenchTool::House,
+        contact::WrenchTool::Graspfit,
         contact::wrench_object(run.object.mesh(), run.object.mass.center_of_mass), touching,
         run.options.squeeze_friction);
     convention.options.outside = contact::OutsideValue::Signed;

@@ -19,12 +19,12 @@ namespace graspfit::base {
 class JsonValue {
  public:
   using Json = nlohmann::ordered_json;
-  /// Throws. `place` is that of the root and a JSON pointer from there, `what` says what is wrong
-  /// there; both are of one line.
-  using Fault = std::function<void(const std::string& place, const std::string& what)>;
+  /// Throws. `location` is that of the root and a JSON pointer from there, `what` says what is
+  /// wrong there; both are of one line.
+  using Fault = std::function<void(const std::string& location, const std::string& what)>;
 
-  /// The root of a document of its own; `place` stands before the places of all its values.
-  JsonValue(const Json& root, Fault fault, std::string place = "");
+  /// The root of a document of its own; `location` stands before the locations of all its values.
+  JsonValue(const Json& root, Fault fault, std::string location = "");
 
   /// The root of a file with this text, which messages call `file`. Its faults are thrown as
   /// `Exception`. @throws IoError "<file>: is not JSON: ..." or if
@@ -38,7 +38,7 @@ class JsonValue {
   JsonValue with_root(const Json& root) const;
 
   const Json& json() const { return *json_; }
-  const std::string& place() const { return place_; }
+  const std::string& location() const { return location_; }
 
   bool is_null() const;
   bool is_text() const;
@@ -84,8 +84,8 @@ class JsonValue {
 
  private:
   struct Document;
-  JsonValue(std::shared_ptr<const Document> document, const Json* json, std::string place)
-      : document_(std::move(document)), json_(json), place_(std::move(place)) {}
+  JsonValue(std::shared_ptr<const Document> document, const Json* json, std::string location)
+      : document_(std::move(document)), json_(json), location_(std::move(location)) {}
   static JsonValue parsed(const std::string& text, const std::string& file,
                           void (*raise)(const std::string& message));
   JsonValue child(const Json& json, const std::string& name) const;
@@ -93,7 +93,7 @@ class JsonValue {
 
   std::shared_ptr<const Document> document_;  ///< Keeps the tree alive that `json_` points into.
   const Json* json_;
-  std::string place_;
+  std::string location_;
 };
 
 }  // namespace graspfit::base

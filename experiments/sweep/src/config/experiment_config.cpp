@@ -39,14 +39,14 @@ constexpr std::array kObjectSources = {"file", "packaged", "shape"};
 struct Draft {
   std::string file;
   SortedJson settings = SortedJson::object();
-  std::map<std::string, std::string> setting_places;
+  std::map<std::string, std::string> setting_locations;
   std::vector<PlacedAxis> axes;
 };
 
 void read_settings(const JsonValue& node, Draft& draft) {
   for (const auto& [key, value] : node.members()) {
     draft.settings[key] = SortedJson(value.json());
-    draft.setting_places[key] = value.place();
+    draft.setting_locations[key] = value.location();
   }
 }
 
@@ -155,7 +155,7 @@ void apply_change(const AxisChange& change, Draft& draft) {
       throw base::InvalidInput("--set " + change.axis + ": \"" + text +
                                "\" is no value of that axis; " + labels_text(old->axis, text));
     }
-    changed.places.push_back("--set " + change.axis);
+    changed.locations.push_back("--set " + change.axis);
     if (!labels.insert(changed.axis.values.back().label).second) {
       throw base::InvalidInput("--set " + change.axis + ": \"" + text + "\" is given twice");
     }
@@ -198,7 +198,7 @@ void add_default_objects(Draft& draft) {
   for (AxisValue& object : internal::default_objects(has_sizes)) {
     if (find_value(placed->axis, object.label)) continue;
     values.push_back(std::move(object));
-    placed->places.push_back("default objects");
+    placed->locations.push_back("default objects");
   }
 }
 
@@ -219,7 +219,7 @@ std::string leave_out_missing_data(Draft& draft,
       if (lacks_data(values[i])) continue;
       labels += (labels.empty() ? "" : ", ") + values[i].label;
       remaining.axis.values.push_back(values[i]);
-      remaining.places.push_back(placed.places[i]);
+      remaining.locations.push_back(placed.locations[i]);
     }
     placed = std::move(remaining);
     text += (text.empty() ? "" : "; ") + placed.axis.name + " is " + labels + ", without " +
@@ -251,7 +251,7 @@ void apply_object_files(const Experiment& experiment, const ConfigRequest& reque
   for (AxisValue& value : internal::object_file_values(request.object_files, request.object_longest,
                                                        placed->axis.values)) {
     placed->axis.values.push_back(std::move(value));
-    placed->places.push_back("--object");
+    placed->locations.push_back("--object");
   }
 }
 
@@ -280,11 +280,11 @@ std::string place_of(const Draft& draft, const Cell& cell, const std::string& ke
     const Axis& axis = draft.axes[i].axis;
     const std::size_t index = find_value(axis, cell.labels[i]).value();
     if (!SortedJson::parse(axis.values[index].settings).contains(key)) continue;
-    const std::string& place = draft.axes[i].places[index];
+    const std::string& place = draft.axes[i].locations[index];
     return key == axis.name ? place : place + '/' + key;
   }
-  const auto found = draft.setting_places.find(key);
-  if (found != draft.setting_places.end()) return found->second;
+  const auto found = draft.setting_locations.find(key);
+  if (found != draft.setting_locations.end()) return found->second;
   return "cell " + cell.key + (key.empty() ? "" : ": " + key);
 }
 

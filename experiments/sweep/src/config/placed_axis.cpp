@@ -62,7 +62,7 @@ void keep_values(const std::vector<JsonValue>& labels, PlacedAxis& placed) {
   remaining.axis.name = placed.axis.name;
   for (const std::size_t index : kept) {
     remaining.axis.values.push_back(placed.axis.values[index]);
-    remaining.places.push_back(placed.places[index]);
+    remaining.locations.push_back(placed.locations[index]);
   }
   placed = std::move(remaining);
 }
@@ -82,7 +82,7 @@ std::vector<AxisValue> values_of(const JsonValue& item, const std::string& name,
   other.axis.name = name;
   for (const JsonValue& value : root.at("axes").at(name).some_items()) {
     other.axis.values.push_back(read_axis_value(name, value));
-    other.places.push_back(value.place());
+    other.locations.push_back(value.location());
   }
   if (item.has("only")) keep_values(item.at("only").some_items(), other);
   return other.axis.values;
@@ -123,11 +123,11 @@ void pick_values(const JsonValue& picks, PlacedAxis& placed) {
       pick.fail("is the second value named " + value.label);
     }
     own.axis.values.push_back(std::move(value));
-    own.places.push_back(pick.place());
+    own.locations.push_back(pick.location());
   }
   keep_values(labels, placed);
   std::move(own.axis.values.begin(), own.axis.values.end(), std::back_inserter(placed.axis.values));
-  std::move(own.places.begin(), own.places.end(), std::back_inserter(placed.places));
+  std::move(own.locations.begin(), own.locations.end(), std::back_inserter(placed.locations));
   placed.is_picked = true;
 }
 
@@ -154,7 +154,7 @@ PlacedAxis read_axis(const std::string& name, const JsonValue& node, const fs::p
         item.fail("is the second value named " + value.label);
       }
       placed.axis.values.push_back(std::move(value));
-      placed.places.push_back(item.place());
+      placed.locations.push_back(item.location());
     }
   }
   return placed;
@@ -171,7 +171,7 @@ PlacedAxis seed_axis(const JsonValue& node) {
   placed.axis.name = "seed";
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
     placed.axis.values.push_back({std::to_string(seed), "{}"});
-    placed.places.push_back(node.place());
+    placed.locations.push_back(node.location());
   }
   return placed;
 }

@@ -14,8 +14,8 @@ namespace graspfit::sweep::internal {
 /// An axis with where its values were written, for messages.
 struct PlacedAxis {
   Axis axis;
-  std::vector<std::string> places;  ///< One per value.
-  bool is_picked = false;           ///< By `quick` or the command line: asked for as it is.
+  std::vector<std::string> locations;  ///< One per value.
+  bool is_picked = false;              ///< By `quick` or the command line: asked for as it is.
 };
 
 /// The text of a number, text, true or false as a label.

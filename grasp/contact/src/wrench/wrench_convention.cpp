@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 
 std::string_view name_of_tool(WrenchTool tool) {
   switch (tool) {
-    case WrenchTool::House:
-      return "house";
+    case WrenchTool::Graspfit:
+      return "graspfit";
     case WrenchTool::GraspIt:
       return "GraspIt!";
     case WrenchTool::Simox:
@@ -101,7 +101,7 @@ WrenchConvention wrench_convention(WrenchTool tool, const WrenchObject& object,
                                    object.extents_O.z()};
   std::sort(extents.begin(), extents.end());
   switch (tool) {
-    case WrenchTool::House:
+    case WrenchTool::Graspfit:
       break;
     case WrenchTool::GraspIt:
       options.outside = OutsideValue::MinusOne;

@@ -108,10 +108,10 @@ UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands
 /// Reads a grasp file and the hand it names; checks the hashes of the hand's files. A hand that is
 /// not where the record says is looked for relative to the grasp file, then beside it, then among
 /// the shipped hands by the name of its description.
-/// Options that the file lacks, as those that are newer than it, have their defaults, which are what
-/// was done before there was an option.
-/// @throws IoError (file, JSON path, what) for malformed files, versions before 4 (their grasps lack
-/// what is measured today), options that there are not, hash mismatch.
+/// Options that the file lacks, as those that are newer than it, have their defaults, which are
+/// what was done before there was an option.
+/// @throws IoError (file, JSON path, what) for malformed files, versions before 4 (their grasps
+/// lack what is measured today), options that there are not, hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);
 
 /// `schema`, the text of `grasps.schema.json`, with the options that the planner has now. `file` is
@@ -131,7 +131,7 @@ Surroundings read_surroundings(const SurroundingsRecord& record,
 double largest_contact_gap(const Grasp& grasp);
 
 /// The same over the contacts that were asked for (`Contact::is_target`).
-double largest_claimed_gap(const Grasp& grasp);
+double largest_requested_gap(const Grasp& grasp);
 
 /// The deepest overlap found, with the object or of the hand with itself [m].
 double largest_penetration(const Grasp& grasp);

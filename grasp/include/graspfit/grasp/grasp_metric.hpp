@@ -35,7 +35,7 @@ struct GraspMetricFacts {
   std::optional<double> bearing_gap = std::nullopt;
   contact::WrenchObject object;  ///< Center of mass and scales.
   double friction = 0.4;         ///< Coulomb's μ of all wrench metrics, ≥ 0.
-  contact::WrenchTool tool = contact::WrenchTool::House;  ///< Whose wrench convention.
+  contact::WrenchTool tool = contact::WrenchTool::Graspfit;  ///< Whose wrench convention.
   const Grasp* grasp = nullptr;  ///< As measured, with these contacts: for penetration and M.
   const geometry::MeshQuery* surface = nullptr;  ///< Of the object: for pose robustness.
   /// For M where there is no `grasp`, and for pose robustness.

@@ -122,7 +122,7 @@ inline constexpr std::array kNames<TargetSearch> = {NamedValue{TargetSearch::Ran
                                                     NamedValue{TargetSearch::Ranked, "ranked"}};
 template <>
 inline constexpr std::array kNames<contact::WrenchTool> = {
-    NamedValue{contact::WrenchTool::House, "house"},
+    NamedValue{contact::WrenchTool::Graspfit, "graspfit"},
     NamedValue{contact::WrenchTool::GraspIt, "graspit"},
     NamedValue{contact::WrenchTool::Simox, "simox"},
     NamedValue{contact::WrenchTool::DexNet, "dex-net"},

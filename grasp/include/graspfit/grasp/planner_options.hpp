@@ -126,7 +126,7 @@ struct PlannerOptions {
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
   MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.
-  /// Whether claimed contacts are made real by exact queries after fitting [R]; without: the
+  /// Whether requested contacts are made real by exact queries after fitting [R]; without: the
   /// paper's voxel-level grasp.
   bool refine = true;
   RefinementOptions refinement;
@@ -161,7 +161,7 @@ contact::ContactEstimationOptions contact_estimation(const PlannerOptions& optio
                                                      double clip_thickness);
 
 /// The gap up to which contacts of planned grasps bear forces (ε, closure, min-weight, squeeze)
-/// [m]: of refined grasps the largest that a claimed pad may have. Empty at the level of voxels:
+/// [m]: of refined grasps the largest that a requested pad may have. Empty at the level of voxels:
 /// all contacts do.
 std::optional<double> bearing_gap(const PlannerOptions& options);
 

@@ -29,7 +29,7 @@ enum class AttemptOutcome {
   InitialCollision,
   BlockedFinger,
   MissedContact,
-  GapLeft,  ///< Refinement could not bring every claimed pad to touch.
+  GapLeft,  ///< Refinement could not bring every requested pad to touch.
   SelfCollision,
   Rejected,  ///< Usable, but not as `PlannerOptions::rejection` wants it.
   NoWayIn,   ///< No pre-grasp with a free way to the grasp.

@@ -11,7 +11,7 @@ namespace graspfit::viewer {
 /// What is known of a motion when it is shown.
 enum class MotionCheck {
   NotChecked,
-  Free,     ///< Every stretch was proven free of collisions.
+  Free,     ///< Every segment was proven free of collisions.
   NotFree,  ///< At least one is not, or could not be proven so.
 };
 
@@ -29,7 +29,7 @@ struct MotionInput {
 /// meshes, and in every frame the poses of all objects and links; moves and phases with their first
 /// and last frames. Same input, same bytes.
 /// @throws InvalidInput if there is no move, scene and file differ in their objects or joints, a
-/// step or speed is not positive, or a stretch is so long that it would take more than 100 000
+/// step or speed is not positive, or a segment is so long that it would take more than 100 000
 /// frames.
 std::string motion_scene_json(const MotionInput& input);
 

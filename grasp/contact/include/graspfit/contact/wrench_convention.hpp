@@ -47,7 +47,7 @@ struct WrenchSpaceOptions {
 /// Tools whose wrench conventions are known: what torques are divided by and taken about, what of a
 /// force is one, and what ε is outside. All but DexGraspBench take them about the center of mass.
 enum class WrenchTool {
-  House,          ///< Largest radius of the surface; unit normal; 0.
+  Graspfit,       ///< Largest radius of the surface; unit normal; 0.
   GraspIt,        ///< Largest radius, here from the center of mass; unit normal; −1.
   Simox,          ///< Half the longest extent; unit edge; reports none, 0 stands for it.
   DexNet,         ///< Median extent; unit normal; 0.
@@ -66,8 +66,8 @@ struct WrenchConvention {
   std::optional<WrenchTool> tool = std::nullopt;  ///< Whose it is; empty for one of the user's own.
 };
 
-/// In one line: "house: torques about (0, 0, 0.1) m over 0.075 m, friction 0.5, 8 inscribed edges
-/// from normal x e_x, L1, unit normal force, outside 0".
+/// In one line: "graspfit: torques about (0, 0, 0.1) m over 0.075 m, friction 0.5, 8 inscribed
+/// edges from normal x e_x, L1, unit normal force, outside 0".
 std::string describe(const WrenchConvention& convention);
 
 /// What of an object conventions scale by.

@@ -22,7 +22,7 @@ enum class HoldLoad {
 
 /// A named way to decide whether a grasp holds: every number that the verdict depends on
 /// (DexGraspBench, Dexonomy, MultiDex; `source` says where each comes from). A protocol is a value:
-/// copy one, change a knob, and give it a name of its own.
+/// copy one, change a parameter, and give it a name of its own.
 struct HoldProtocol {
   std::string name;
   std::string source;

@@ -28,7 +28,8 @@ struct HoldReport {
   std::string object_sha256;
   std::string hand_name;
   HoldProtocol protocol;
-  std::vector<std::string> changed_knobs;  ///< Those that differ from the protocol of that name.
+  std::vector<std::string>
+      changed_parameters;  ///< Those that differ from the protocol of that name.
   geometry::ConvexDecompositionOptions decomposition;
   PiecesReport object;
   std::vector<PiecesReport> links;  ///< Those that have a surface.
@@ -39,9 +40,9 @@ struct HoldReport {
 /// The numbers of a decomposition, without its pieces.
 PiecesReport pieces_report(const std::string& name, const geometry::ConvexDecomposition& shape);
 
-/// The knobs in which a protocol differs from the shipped one of its name.
+/// The parameters in which a protocol differs from the shipped one of its name.
 /// @throws InvalidInput if there is none of that name.
-std::vector<std::string> changed_knobs(const HoldProtocol& protocol);
+std::vector<std::string> changed_parameters(const HoldProtocol& protocol);
 
 /// What the loads of a protocol are called, in the order of HoldVerdict::directions.
 std::vector<std::string> load_names(const HoldProtocol& protocol);

@@ -23,19 +23,19 @@ struct MotionObject {
 /// What a motion file says of one move.
 struct RecordedMove {
   int object = -1;
-  double grasp_m = 0.0;                  ///< M of the grasp.
-  int num_contacts = 0;                  ///< N' of the grasp.
-  std::vector<MotionStretch> stretches;  ///< Each begins where the last one ends.
+  double grasp_m = 0.0;                 ///< M of the grasp.
+  int num_contacts = 0;                 ///< N' of the grasp.
+  std::vector<MotionSegment> segments;  ///< Each begins where the last one ends.
 };
 
 /// A motion file (`motion.json`): the moves of a hand that tidies a table, as keyframes between
-/// which palm, joints and objects go straight (`MotionStretch`); all in W, meters and radians.
+/// which palm, joints and objects go straight (`MotionSegment`); all in W, meters and radians.
 struct MotionFile {
   std::string title;
   std::string hand;                 ///< A shipped hand, or a description, as given.
   std::string description_sha256;   ///< Of the hand's description.
   std::vector<std::string> joints;  ///< Names, in the order of the positions.
-  double clearance = 0.0;  ///< Proven for the stretches of Reach, Transport and Retreat [m].
+  double clearance = 0.0;  ///< Proven for the segments of Reach, Transport and Retreat [m].
   std::vector<MotionObject> objects;
   std::vector<RecordedMove> moves;
   std::vector<UnmovedObject> unmoved;

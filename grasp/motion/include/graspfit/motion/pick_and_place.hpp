@@ -43,10 +43,10 @@ struct PlannedMove {
   geometry::RigidTransform X_WO_to = geometry::RigidTransform::Identity();
   grasp::Grasp grasp;  ///< In the frame in which it was planned: W, with the object at X_WO_from.
   Eigen::Vector3d approach_W = Eigen::Vector3d::Zero();  ///< Wanted palm direction, unit.
-  std::vector<MotionStretch> stretches;                  ///< Each begins where the last one ends.
+  std::vector<MotionSegment> segments;                   ///< Each begins where the last one ends.
   std::int64_t planner_attempts = 0;                     ///< What it took, as in MoveAttempt.
   int grasps_tried = 0;
-  int stretches_tried = 0;
+  int segments_tried = 0;
   std::string refusals;  ///< Why earlier grasps and ways were refused, in a line.
 };
 
@@ -55,7 +55,7 @@ struct MoveAttempt {
   std::optional<PlannedMove> move;  ///< Empty: impossible within the options' limits.
   std::int64_t planner_attempts = 0;
   int grasps_tried = 0;
-  int stretches_tried = 0;
+  int segments_tried = 0;
   /// Why grasps and ways were refused, with how often: "lift: bunny and mug", "no grasp: …".
   std::map<std::string, int> failures;
   /// The most frequent reasons in a line; of equally frequent ones the first by name.
@@ -63,7 +63,7 @@ struct MoveAttempt {
 };
 
 /// Plans to take an object from where it stands (`X_WO[object]`, the others around it) to
-/// `X_WO_goal`, every stretch proven free (`find_encounter`): reach, approach, lift, transport and
+/// `X_WO_goal`, every segment proven free (`find_collision`): reach, approach, lift, transport and
 /// turn, place, release, retreat.
 ///
 /// Grasps are planned in W on the object as it stands, amid the table and the convex hulls of the

@@ -55,7 +55,7 @@ class TableScene {
   std::vector<geometry::TriangleMesh> hulls_O_;
 };
 
-/// What happens in a stretch of a motion.
+/// What happens in a segment of a motion.
 enum class MotionPhase {
   Reach,      ///< The hand, free, to the pre-grasp.
   Approach,   ///< To the grasp.
@@ -70,12 +70,12 @@ std::optional<MotionPhase> phase_named(std::string_view name);
 /// Lift, Transport, Place: the object moves with the hand.
 bool is_carrying(MotionPhase phase);
 
-/// A straight stretch of a motion in the world W.
+/// A straight segment of a motion in the world W.
 ///
 /// Hand free: palm position and joints linear, palm rotation along the shortest arc
 /// (`interpolated`). Carrying: the same of the object's pose, taken at its center of mass; the palm
 /// keeps its place against it and joints do not move.
-struct MotionStretch {
+struct MotionSegment {
   MotionPhase phase = MotionPhase::Reach;
   int object = -1;                ///< The one that the motion is about.
   hands::HandConfiguration from;  ///< `X_OH` is here the palm's pose in W, X_WH.
@@ -84,20 +84,20 @@ struct MotionStretch {
   geometry::RigidTransform X_WO_to = geometry::RigidTransform::Identity();
 };
 
-/// Hand (`X_OH` is X_WH) and handled object somewhere on a stretch.
+/// Hand (`X_OH` is X_WH) and handled object somewhere on a segment.
 struct MotionState {
   hands::HandConfiguration hand;
   geometry::RigidTransform X_WO;
 };
 
-/// At a share in [0, 1] of a stretch; 0 and 1 are its ends to the last digit.
-MotionState state_at(const TableScene& scene, const MotionStretch& stretch, double share);
+/// At a share in [0, 1] of a segment; 0 and 1 are its ends to the last digit.
+MotionState state_at(const TableScene& scene, const MotionSegment& segment, double share);
 
-/// Upper bound of the way that any point of the hand or of a carried object goes on a stretch [m].
-double largest_travel(const TableScene& scene, const MotionStretch& stretch);
+/// Upper bound of the way that any point of the hand or of a carried object goes on a segment [m].
+double largest_travel(const TableScene& scene, const MotionSegment& segment);
 
-/// Two bodies that cannot be proven apart on a stretch.
-struct Encounter {
+/// Two bodies that cannot be proven apart on a segment.
+struct Collision {
   std::string first;   ///< A link, or the carried object.
   std::string second;  ///< "table", an object, or a link.
   std::string text() const { return first + " and " + second; }
@@ -108,12 +108,12 @@ struct Encounter {
 inline constexpr double kTouchTolerance = 1e-5;
 
 /// The first two bodies that are not proven to stay more than `clearance` [m] ≥ 0 apart on the
-/// whole stretch; empty: all are. `X_WO` are the poses of all objects, that of the handled one does
+/// whole segment; empty: all are. `X_WO` are the poses of all objects, that of the handled one does
 /// not count.
 ///
 /// The proof is conservative advancement, not sampling (`find_pre_grasp`): bodies that are d apart
-/// at one place of the stretch, and of which no point goes faster than v per unit of its share,
-/// keep their clearance c for (d − c) / v of the share before and after it; the stretch is free
+/// at one place of the segment, and of which no point goes faster than v per unit of its share,
+/// keep their clearance c for (d − c) / v of the share before and after it; the segment is free
 /// when such intervals cover it. Bodies are all links, and the carried object; each is held against
 /// the table and the objects that stand, links also against each other where joints move. That none
 /// is inside an object is decided exactly at both ends. Exceptions, each of them by meaning:
@@ -124,14 +124,14 @@ inline constexpr double kTouchTolerance = 1e-5;
 /// - Carrying: hand and object keep their places against each other, so that nothing is looked at.
 ///
 /// Like `find_pre_grasp` it never says free wrongly, up to the rounding of distances. It may say
-/// encounter wrongly: where bodies come within 1e-8 m of the clearance, and where 500 distances of
-/// a pair of bodies leave some of the stretch uncovered (long slides hardly farther apart than the
+/// collision wrongly: where bodies come within 1e-8 m of the clearance, and where 500 distances of
+/// a pair of bodies leave some of the segment uncovered (long slides hardly farther apart than the
 /// clearance).
-std::optional<Encounter> find_encounter(const TableScene& scene,
+std::optional<Collision> find_collision(const TableScene& scene,
                                         std::span<const geometry::RigidTransform> X_WO,
-                                        const MotionStretch& stretch, double clearance);
+                                        const MotionSegment& segment, double clearance);
 
-/// Distances at one place of a stretch.
+/// Distances at one place of a segment.
 struct MotionClearance {
   double hand = 0.0;    ///< Smallest distance of a link from the table and from standing objects,
                         ///< but for the one that is approached or released [m]; 0: they touch.
@@ -139,17 +139,17 @@ struct MotionClearance {
                         ///< Lift and Place [m]; infinite where nothing is carried.
 };
 
-/// Measured at a share of a stretch, up to rounding.
+/// Measured at a share of a segment, up to rounding.
 MotionClearance clearance_at(const TableScene& scene,
                              std::span<const geometry::RigidTransform> X_WO,
-                             const MotionStretch& stretch, double share);
+                             const MotionSegment& segment, double share);
 
 /// Whether at a share some two bodies share a point, decided exactly on the true meshes: links with
 /// each other (exclusions of the hand besides), with standing objects, with the handled object, a
 /// carried object with standing ones. The table: links as `SurroundingsCollision::touches`, a
-/// carried object deeper than 1e-9 m. The oracle of `find_encounter`.
-std::optional<Encounter> find_overlap(const TableScene& scene,
+/// carried object deeper than 1e-9 m. The oracle of `find_collision`.
+std::optional<Collision> find_overlap(const TableScene& scene,
                                       std::span<const geometry::RigidTransform> X_WO,
-                                      const MotionStretch& stretch, double share);
+                                      const MotionSegment& segment, double share);
 
 }  // namespace graspfit::motion

@@ -33,7 +33,7 @@ struct TidyingResult {
   std::vector<PlannedMove> moves;                  ///< In the order in which they are made.
   std::vector<UnmovedObject> unmoved;              ///< Empty: the table is tidy.
   int moves_tried = 0;
-  int stretches_tried = 0;
+  int segments_tried = 0;
   std::int64_t planner_attempts = 0;
   int grasps_tried = 0;
 };

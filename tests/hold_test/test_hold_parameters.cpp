@@ -5,23 +5,23 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
-#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_parameters.hpp"
 #include "graspfit/hold_test/hold_report.hpp"
 #include "support/catch.hpp"
 
-namespace graspfit::test_hold_knobs {
+namespace graspfit::test_hold_parameters {
 namespace {
 
 using base::shortest_decimal;
 using hold_test::HoldProtocol;
-using hold_test::knob_names;
-using hold_test::knob_value;
-using hold_test::KnobValue;
-using hold_test::set_knob;
+using hold_test::parameter_names;
+using hold_test::parameter_value;
+using hold_test::ParameterValue;
+using hold_test::set_parameter;
 using testing::Contains;
 
 // As a command line has it; `change` makes another value of it.
-std::string text_of(const KnobValue& value, bool change) {
+std::string text_of(const ParameterValue& value, bool change) {
   const double by = change ? 1.5 : 0.0;
   if (const auto* number = std::get_if<double>(&value)) return shortest_decimal(*number + by);
   if (const auto* count = std::get_if<int>(&value))
@@ -40,29 +40,29 @@ std::string text_of(const KnobValue& value, bool change) {
   return choice == "none" ? "forces" : "none";
 }
 
-TEST_CASE("Setting one knob of a protocol from text changes that one and no other",
-          "[hold_test][hold_knobs]") {
+TEST_CASE("Setting one parameter of a protocol from text changes that one and no other",
+          "[hold_test][hold_parameters]") {
   for (const std::string& protocol_name : hold_test::hold_protocol_names()) {
     const HoldProtocol shipped = hold_test::hold_protocol(protocol_name);
-    CHECK(hold_test::changed_knobs(shipped).empty());
-    for (const std::string& name : knob_names()) {
+    CHECK(hold_test::changed_parameters(shipped).empty());
+    for (const std::string& name : parameter_names()) {
       CAPTURE(protocol_name, name);
       HoldProtocol protocol = shipped;
-      const KnobValue before = knob_value(protocol, name);
-      set_knob(protocol, name, text_of(before, true));
-      CHECK(hold_test::changed_knobs(protocol) == std::vector{name});
-      set_knob(protocol, name, text_of(before, false));
-      CHECK(knob_value(protocol, name) == before);
+      const ParameterValue before = parameter_value(protocol, name);
+      set_parameter(protocol, name, text_of(before, true));
+      CHECK(hold_test::changed_parameters(protocol) == std::vector{name});
+      set_parameter(protocol, name, text_of(before, false));
+      CHECK(parameter_value(protocol, name) == before);
     }
   }
 }
 
-TEST_CASE("Knobs that there are not and texts that are no value are refused by name",
-          "[hold_test][hold_knobs]") {
+TEST_CASE("Parameters that there are not and texts that are no value are refused by name",
+          "[hold_test][hold_parameters]") {
   HoldProtocol protocol;
-  CHECK_THROWS_WITH(set_knob(protocol, "mass", "1"),
+  CHECK_THROWS_WITH(set_parameter(protocol, "mass", "1"),
                     Contains("mass") && Contains("object_mass_kg"));
-  CHECK_THROWS_AS(knob_value(protocol, ""), base::InvalidInput);
+  CHECK_THROWS_AS(parameter_value(protocol, ""), base::InvalidInput);
   for (const auto& [name, text] :
        std::vector<std::pair<std::string, std::string>>{{"force_N", ""},
                                                         {"force_N", "1,5"},
@@ -77,9 +77,10 @@ TEST_CASE("Knobs that there are not and texts that are no value are refused by n
                                                         {"squeeze", "Forces"},
                                                         {"load", "six"}}) {
     CAPTURE(name, text);
-    CHECK_THROWS_WITH(set_knob(protocol, name, text), Contains(name) && Contains('"' + text + '"'));
+    CHECK_THROWS_WITH(set_parameter(protocol, name, text),
+                      Contains(name) && Contains('"' + text + '"'));
   }
 }
 
 }  // namespace
-}  // namespace graspfit::test_hold_knobs
+}  // namespace graspfit::test_hold_parameters

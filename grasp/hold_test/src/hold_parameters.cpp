@@ -1,4 +1,4 @@
-#include "graspfit/hold_test/hold_knobs.hpp"
+#include "graspfit/hold_test/hold_parameters.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,15 +25,15 @@ using Member =
                  std::array<double, 2> HoldProtocol::*, std::array<double, 3> HoldProtocol::*,
                  SqueezeRule HoldProtocol::*, HoldLoad HoldProtocol::*>;
 
-struct Knob {
+struct Parameter {
   const char* name;
   Member member;
 };
 
-/// The one table: files and command lines know no other knobs.
-const std::vector<Knob>& knobs() {
+/// The one table: files and command lines know no other parameters.
+const std::vector<Parameter>& parameters() {
   using P = HoldProtocol;
-  static const std::vector<Knob> table = {
+  static const std::vector<Parameter> table = {
       {"load", &P::load},
       {"squeeze", &P::squeeze},
       {"step_s", &P::step},
@@ -78,16 +78,17 @@ const std::vector<Knob>& knobs() {
                                 k26, k27, k28, k29, k30, k31, k32, k33] = protocol;
 }
 
-const Knob& knob_named(const std::string& name) {
-  const auto found = std::find_if(knobs().begin(), knobs().end(),
-                                  [&](const Knob& knob) { return name == knob.name; });
-  if (found != knobs().end()) return *found;
-  throw InvalidInput("no knob \"" + name + "\" of a hold protocol; there are " +
-                     base::list_text(knobs(), &Knob::name));
+const Parameter& parameter_named(const std::string& name) {
+  const auto found =
+      std::find_if(parameters().begin(), parameters().end(),
+                   [&](const Parameter& parameter) { return name == parameter.name; });
+  if (found != parameters().end()) return *found;
+  throw InvalidInput("no parameter \"" + name + "\" of a hold protocol; there are " +
+                     base::list_text(parameters(), &Parameter::name));
 }
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, const std::string& why) {
-  throw InvalidInput("knob " + name + ": \"" + text + "\" " + why);
+  throw InvalidInput("parameter " + name + ": \"" + text + "\" " + why);
 }
 
 /// A finite number that is the whole text; nothing else.
@@ -132,15 +133,15 @@ auto parsed_choice(const std::string& name, const std::string& text, const Choic
   refuse(name, text, "is not one of " + base::list_text(choices, name_of_choice, "|"));
 }
 
-KnobValue value_of(double value) { return value; }
-KnobValue value_of(int value) { return value; }
-KnobValue value_of(bool value) { return value; }
+ParameterValue value_of(double value) { return value; }
+ParameterValue value_of(int value) { return value; }
+ParameterValue value_of(bool value) { return value; }
 template <std::size_t N>
-KnobValue value_of(const std::array<double, N>& values) {
+ParameterValue value_of(const std::array<double, N>& values) {
   return std::vector<double>(values.begin(), values.end());
 }
 template <class Choice>
-KnobValue value_of(Choice choice) {
+ParameterValue value_of(Choice choice) {
   return std::string(name_of(choice));
 }
 
@@ -181,22 +182,22 @@ const char* name_of(SqueezeRule rule) {
 
 const char* name_of(HoldLoad load) { return load == HoldLoad::SixForces ? "six-forces" : "lift"; }
 
-const std::vector<std::string>& knob_names() {
+const std::vector<std::string>& parameter_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Knob& knob : knobs()) all.emplace_back(knob.name);
+    for (const Parameter& parameter : parameters()) all.emplace_back(parameter.name);
     return all;
   }();
   return names;
 }
 
-KnobValue knob_value(const HoldProtocol& protocol, const std::string& name) {
+ParameterValue parameter_value(const HoldProtocol& protocol, const std::string& name) {
   return std::visit([&](auto member) { return value_of(protocol.*member); },
-                    knob_named(name).member);
+                    parameter_named(name).member);
 }
 
-void set_knob(HoldProtocol& protocol, const std::string& name, const std::string& text) {
-  std::visit([&](auto member) { set(protocol.*member, name, text); }, knob_named(name).member);
+void set_parameter(HoldProtocol& protocol, const std::string& name, const std::string& text) {
+  std::visit([&](auto member) { set(protocol.*member, name, text); }, parameter_named(name).member);
 }
 
 }  // namespace graspfit::hold_test

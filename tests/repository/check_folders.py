@@ -1,0 +1,79 @@
+"""Folders of sources, each of one topic. One uses those before it in its module's FOLDERS and
+none after it, and holds no more than 25 files, its public headers included.
+
+  check_folders.py SOURCE_DIR
+"""
+
+import pathlib
+import re
+import sys
+
+SOURCE = pathlib.Path(sys.argv[1])
+MOST_FILES = 25
+
+faults = []
+num_modules = 0
+
+
+def folders_of(module):
+    """The folders of a module in the order of its CMakeLists.txt; none if it has one folder only."""
+    match = re.search(r"\bFOLDERS:?\s+([a-z_ \n]+?)\s*(?:SOURCES|:|$)",
+                      (module / "CMakeLists.txt").read_text(), re.M)
+    return match.group(1).split() if match else []
+
+
+def includes(file):
+    return re.findall(r'^#include "([^"]+)"', file.read_text(), re.M)
+
+
+def check_module(module):
+    global num_modules
+    num_modules += 1
+    name = str(module.relative_to(SOURCE))
+    source = module / "src"
+    folders = folders_of(module)
+    found = {path.name for path in source.iterdir() if path.is_dir()}
+    for folder in sorted(found ^ set(folders)):
+        faults.append("%s: folder %s is not both in FOLDERS and in src/" % (name, folder))
+    if found != set(folders):
+        return
+    files = {folder: sorted((source / folder).glob("*.[ch]pp")) for folder in folders}
+    if not folders:
+        files = {"": sorted(source.glob("*.[ch]pp"))}
+    folder_of = {file.stem: folder for folder, members in files.items() for file in members}
+    # A public header belongs to the folder of the source of its name.
+    headers = sorted(module.glob("include/graspfit/*/*.hpp"))
+    for folder, members in files.items():
+        number = len(members) + sum(folder_of.get(header.stem) == folder for header in headers)
+        if number > MOST_FILES:
+            faults.append("%s: folder %s holds %d files, more than %d"
+                          % (name, folder or "src", number, MOST_FILES))
+    place = {folder: i for i, folder in enumerate(folders)}
+    own = "graspfit/%s/" % headers[0].parent.name if headers else None
+    sources = [(file, folder) for folder, members in files.items() for file in members]
+    sources += [(header, folder_of[header.stem]) for header in headers if header.stem in folder_of]
+    for file, folder in sources:
+        for include in includes(file):
+            parts = include.split("/")
+            if len(parts) == 2 and parts[0] in place:
+                used = parts[0]
+            elif own and include.startswith(own):
+                used = folder_of.get(pathlib.Path(include).stem)
+            else:
+                continue
+            if used is not None and place.get(used, 0) > place.get(folder, 0):
+                faults.append("%s: folder %s includes %s of folder %s, which comes after it"
+                              % (file.relative_to(SOURCE), folder, include, used))
+
+
+for listing in sorted(SOURCE.glob("*/CMakeLists.txt")) + sorted(SOURCE.glob("*/*/CMakeLists.txt")):
+    if (listing.parent / "src").is_dir() and listing.parts[len(SOURCE.parts)] != "tests":
+        check_module(listing.parent)
+assert num_modules > 8, "no modules were found"
+for module in sorted(path for path in (SOURCE / "tests").rglob("*") if path.is_dir()):
+    number = len([file for file in module.iterdir() if file.suffix in (".cpp", ".hpp", ".py")])
+    if number > MOST_FILES:
+        faults.append("%s holds %d files, more than %d"
+                      % (module.relative_to(SOURCE), number, MOST_FILES))
+print("\n".join(faults) or "%d modules, no arrow back" % num_modules)
+sys.exit(bool(faults))
