@@ -19,7 +19,7 @@
 
 namespace graspfit::grasp {
 
-/// Version of this library, such as "0.1.0".
+/// Version of this library, such as "0.2.0".
 const char* library_version();
 
 /// What stands around the object, as it can be read again.
