@@ -21,7 +21,7 @@ using hands::RigidTransform;
 
 namespace {
 
-constexpr int kMostSteps = 1000;
+constexpr int kMostSteps = 1000;  // of a retreat; each costs the distances of all links
 
 struct LinkPair {
   int a;

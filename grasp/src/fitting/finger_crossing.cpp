@@ -17,7 +17,8 @@ using hands::HandModel;
 
 namespace {
 
-constexpr int kJointTurns = 16;  // over the range of a swinging joint
+// Over the range of a swinging joint: more find narrower free ranges, at an intersection test each.
+constexpr int kJointTurns = 16;
 
 /// Pairs of links, one of each list, that meet.
 int num_meeting(const FittingHand& hand, const std::vector<int>& links,

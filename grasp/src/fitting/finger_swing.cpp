@@ -43,8 +43,9 @@ double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
 double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
                   const TargetContacts& targets, int leader,
                   const std::vector<FingerTarget>& pairs) {
-  constexpr int kCoarse = 18;
-  constexpr int kRefine = 20;  // the range shrinks by 0.618 each
+  constexpr int kCoarse =
+      18;  // samples: fewer may miss the better of two valleys, more cost as much
+  constexpr int kRefine = 20;  // the range shrinks by 0.618 each: to 1e-5 of a joint's range
   constexpr double kGolden = 0.61803398874989485;
   std::vector<AzimuthOfFinger> azimuths;
   for (const FingerTarget& pair : pairs) azimuths.emplace_back(hand, pair.finger);
@@ -53,7 +54,7 @@ double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& 
     trial.q[leader] = position;
     hands::apply_couplings(hand, trial.q);
     double sum = 0.0;
-    for (std::size_t i = 0; i < looks.size(); ++i) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
       const double error = azimuths[i].error(trial, targets.contacts[pairs[i].target].point_O);
       sum += error * error;
     }

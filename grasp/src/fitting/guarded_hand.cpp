@@ -21,12 +21,16 @@ using geometry::RigidTransform;
 // to 1.44 spacings (at most 0.85 voxel) from a sample.
 constexpr float kNearVoxels = 3.0F;
 
-// A link that surely keeps this far [voxels] is not looked up again: steps of three voxels follow.
+// The distance of a link that surely keeps this far [voxels] is not asked for again: a larger value
+// asks oftener, a smaller one makes bounds of less use, as steps of three voxels follow.
 constexpr double kFarEnough = 4.0;
 
-constexpr double kStepBeforeSurface = 0.5;  // [voxels]
+// Step between one and two voxels from the surface [voxels]: longer ones are taken back more often,
+// shorter ones are more.
+constexpr double kStepBeforeSurface = 0.5;
 
-// Depths of links in the object up to the first are not told apart, others to the second [voxels].
+// Depths of links in the object up to the first are not told apart, others to the second [voxels]:
+// finer ones cost more exact tests.
 constexpr double kDepthFloor = 0.3;
 constexpr double kDepthTolerance = 0.05;
 

@@ -10,11 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
+// More directions find better sides and cost a posture each.
 constexpr int kDirectionsAroundAxis = 16;  // for two targets
 constexpr int kPalmTurns = 8;              // about the palm's target, where the seed leaves it open
 // A seed nearer than this to the palm's axis says nothing about how the hand is turned [m].
 constexpr double kSeedOnAxis = 0.01;
-// Radius of the palm about its center, for the room before it [m].
+// Radius of the palm about its center, for the space before it [m].
 constexpr double kPalmRadius = 0.025;
 
 /// Directions perpendicular to the line of two targets, or the two normals of the plane nearest to

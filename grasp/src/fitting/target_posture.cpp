@@ -25,9 +25,11 @@ constexpr double kMissUnit = 0.01;    // [m]
 constexpr double kTiltWeight = 1.5;   // per unit length of the difference of two unit normals
 constexpr double kRestWeight = 0.04;  // per share of a joint's range off its start: decides what
                                       // targets leave open, and little else
-// Of pads that do not look at each other against pads that lean. Valid of 30 attempts with 0, 1, 2:
+// Of pads that do not face each other against pads that lean. Valid of 30 attempts with 0, 1, 2:
 // bunny00 28, 29, 30; ball 28, 28, 30; horse 11, 11, 14; but 2 costs M (README).
 constexpr double kPairWeight = 0.5;
+// More iterations and a smaller gain bring fingertips nearer to their targets, at a forward
+// kinematics with Jacobian each; the posture is the start of fitting, no result.
 constexpr int kIterations = 20;
 constexpr double kSmallGain = 1e-3;  // of the squared error, at which the search ends
 

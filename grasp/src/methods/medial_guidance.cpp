@@ -19,6 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of the retreat, as published.
 constexpr double kPublishedStep = 0.003;  // [m]
 constexpr int kPublishedSteps = 5;
 

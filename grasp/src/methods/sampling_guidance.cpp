@@ -23,13 +23,13 @@ struct Preshape {
   double closed_by_rad;  ///< Revolute joints that close, on from their open limits.
 };
 
-// Notes 16.3: spreads of 0, 60, 90 and 180 degrees of the Barrett hand's 180.
+// [R] Spreads of 0, 60, 90 and 180 degrees of the Barrett hand's 180.
 constexpr std::array kSurfacePreshapes = {Preshape{0.0, 0.0}, Preshape{1.0 / 3.0, 0.0},
                                           Preshape{0.5, 0.0}, Preshape{1.0, 0.0}};
-// Notes 16.2: preshapes of OpenRAVE's grasp database for the Barrett hand.
+// Preshapes of OpenRAVE's grasp database for the Barrett hand.
 constexpr std::array kBoxPreshapes = {Preshape{1.0 / 3.0, 0.5}, Preshape{0.0, 0.5},
                                       Preshape{0.5, 0.0}};
-constexpr int kBoxRolls = 4;
+constexpr int kBoxRolls = 4;  // as there
 
 class SamplingGuidance : public GraspGuidance {
  public:

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 // How far a ball's center may be off, over its radius: what the tolerance of `medial_balls` leaves
 // on faceted round bodies.
 constexpr double kCenterAccuracy = 0.03;
-constexpr int kRandomCandidates = 8;  // As many as an axis has.
+constexpr int kRandomCandidates = 8;  // as many as there are around an axis
 
 MedialSymmetry symmetry_of(const geometry::MedialBall& ball, const std::vector<Vector3d>& centers,
                            double least_spread, const MedialSymmetryOptions& options) {

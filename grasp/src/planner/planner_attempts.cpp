@@ -17,6 +17,8 @@
 namespace graspfit::grasp::internal {
 namespace {
 
+// With `Rejection::Quality` an attempt is given up where M is below both: higher ones keep better
+// grasps of more attempts, as M itself selects.
 constexpr double kHighQuality = 0.6;  // of M
 constexpr double kIdealShare = 0.5;   // of the targets' own M
 // More than refinement may exceed its largest turn by [rad].

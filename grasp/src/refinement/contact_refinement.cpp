@@ -23,12 +23,13 @@ using hands::HandConfiguration;
 using internal::LinkPoses;
 using internal::NearPoints;
 
-// Weights of the least squares, against 1 for a length moved: gaps come first, then room, then
-// where the targets are and how the pads lie there.
+// Weights of the least squares, against 1 for a length moved: gaps come first, then clearance, then
+// where the targets are and how the pads lie there. A joint weighs less than the palm, whose motion
+// moves every pad. More for targets brings contacts nearer to them, and leaves more gaps open.
 constexpr double kPalmWeight = 1.0;
 constexpr double kJointWeight = 0.5;
 constexpr double kGapWeight = 30.0;
-constexpr double kRoomWeight = 3.0;
+constexpr double kClearanceWeight = 3.0;
 constexpr double kTargetWeight = 0.1;
 constexpr double kTiltWeight = 0.5;
 constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
@@ -37,25 +38,36 @@ constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
 constexpr double kSlideWeight = 1.0;
 constexpr double kShortestSlide = 1e-4;  // [m]; below it the rest is not worth the work
 
-constexpr double kLongestStep = 4e-3;   // of every entry of a motion [m]
-constexpr double kNearPerStep = 2.0;    // near is what is within so many times the step
+// Steps: long ones get there sooner, but distances are linear over short ones only, so that long
+// ones are shortened again, at a query of all distances each.
+constexpr double kLongestStep = 4e-3;  // of every entry of a motion [m]
+// Bodies within so many times the step are rows of the problem: more make it larger, fewer are met
+// by surprise and shorten the step.
+constexpr double kNearPerStep = 2.0;
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
-constexpr double kRoomPerGap = 0.1;     // kept to everything, per largest gap that is left
-constexpr double kMostRoom = 3e-4;      // [m]
-constexpr double kPartingShare = 0.3;   // of a step that bodies too near may be asked to part by
-constexpr int kMostHalvings = 5;
+// Clearance from everything while gaps are large: more lets fingers pass obstacles in longer steps,
+// less ends nearer to the surface.
+constexpr double kClearancePerGap = 0.1;  // per largest gap that is left
+constexpr double kMostClearance = 3e-4;   // [m]
+// Of a step that bodies too near may be asked to part by: more parts them sooner, at the cost of
+// what else the step is for.
+constexpr double kPartingShare = 0.3;
+constexpr int kMostHalvings = 5;          // more save steps of blocked hands, a query each
 constexpr double kTrustGrowth = 2.0;      // of the longest step, after one that was taken whole
 constexpr double kLeastTrust = 0.1;       // of the longest step, after one that was not taken
 constexpr double kLeastSlideTrust = 0.3;  // the same while sliding
 constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 are rounded so far
-constexpr int kPatience = 8;              // steps within which the gaps must shrink
-constexpr double kLeastProgress = 0.85;   // to this share
+// The gaps must shrink to this share within so many steps: less patience saves the steps of hands
+// that are blocked, and loses those that get there slowly.
+constexpr int kPatience = 8;
+constexpr double kLeastProgress = 0.85;
 
-// The way out of a start that cuts something: steps that grow, 3 cm in all.
+// The way out of a start that cuts something: steps that grow, 3 cm in all. A finer start stays
+// nearer to the configuration found by fitting, a longer way saves deeper starts.
 constexpr int kMostOpenings = 14;
 constexpr double kFirstOpening = 5e-4;  // [m]
 constexpr double kOpeningGrowth = 1.2;
-constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm
+constexpr int kOpeningsOfFingersAlone = 8;  // 8 mm; then the palm withdraws, too
 
 /// A pad that must touch.
 struct PadRequest {
@@ -373,13 +385,14 @@ class Refinement {
     for (const PadRequest& request : requests_)
       pivot += request.point_O / static_cast<double>(requests_.size());
     motion_.set(configuration_, X_OL_, pivot);
-    const double room = std::clamp(kRoomPerGap * largest_gap(), options_.least_distance, kMostRoom);
+    const double clearance =
+        std::clamp(kClearancePerGap * largest_gap(), options_.least_distance, kMostClearance);
     internal::ConstrainedRows rows;
     for (Index i = 0; i < motion_.size(); ++i) {
       rows.want(RowVectorXd::Unit(motion_.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
     }
     for (const PadRequest& request : requests_) {
-      const double wanted = std::max(options_.wanted_gap, room) - request.gap;
+      const double wanted = std::max(options_.wanted_gap, clearance) - request.gap;
       rows.want(motion_.row(request.link, request.point_O, request.normal_O), wanted, kGapWeight);
       if (request.target) draw_to_target(request, trust, rows);
     }
@@ -389,10 +402,10 @@ class Refinement {
         row -= motion_.row(*near.other_link, near.point_on_other_O, near.normal_O);
       }
       // What even the longest step leaves clear needs no row.
-      if (near.distance - trust * row.cwiseAbs().sum() > room) continue;
+      if (near.distance - trust * row.cwiseAbs().sum() > clearance) continue;
       // Bodies that all but touch go apart first: along a curved surface they would meet at once.
-      rows.require(row, std::min(room - near.distance, kPartingShare * trust));
-      if (near.distance < room) rows.want(row, room - near.distance, kRoomWeight);
+      rows.require(row, std::min(clearance - near.distance, kPartingShare * trust));
+      if (near.distance < clearance) rows.want(row, clearance - near.distance, kClearanceWeight);
     }
     add_limits(trust, rows);
     return rows.solve(kShortestStep);

@@ -20,7 +20,8 @@ using base::shortest_decimal;
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
-constexpr std::size_t kLeafSize = 8;
+constexpr std::size_t kLeafSize =
+    8;  // points: larger leaves ask the map oftener, smaller make more balls
 constexpr double kPieceSize = 0.012;  // [m]; about a fingertip: its sides and end are pieces apart
 
 /// Into how many parts of `spacing` the longest edge of a face is cut.

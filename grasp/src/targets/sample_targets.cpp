@@ -7,6 +7,7 @@
 namespace graspfit::grasp::internal {
 namespace {
 
+// More draws find sets around seeds that have few, and cost as much where there are none.
 constexpr int kDrawsPerSeed = 100;
 
 std::vector<PoolPoint> places_of(const std::vector<geometry::SurfaceSample>& samples) {

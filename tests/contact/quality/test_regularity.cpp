@@ -162,7 +162,7 @@ TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a s
   CHECK(regularity(points(0.2 * (1 + 1e-12)), Regularity::Combined) ==
         Approx(solid(0.2)).epsilon(1e-9));
   CHECK(regularity(points(0.5), Regularity::Combined) == Approx(solid(0.5)).epsilon(1e-12));
-  CHECK(std::abs(solid(0.2) - planar) > 0.1);  // the jump that the notes warn of
+  CHECK(std::abs(solid(0.2) - planar) > 0.1);  // a jump, as the two hulls differ
 }
 
 TEST_CASE("A fifth contact raised over four is no corner below thickness 0.1, and an apex above",
