@@ -71,7 +71,7 @@ TEST_CASE("Three contacts on a ball have the measure of the angles between them"
           "[grasp][contact_quality]") {
   // Contacts s degrees apart see each other at theta = 90 - s/2, so the pair counts 1 - theta/45 if
   // s > 90. The triangle's angles are half the arcs opposite, its edges 2 sin(s/2). Rows: arcs; M2,
-  // R, M/M1 with R of angles alone and with both, as tabulated in the notes, section 24 (two
+  // R, M/M1 with R of angles alone and with both, as an independent program tabulated them (two
   // decimals).
   struct Row {
     double first, second, m2, r, ratio_angles, ratio;

@@ -111,7 +111,7 @@ TEST_CASE("A ball of 30 voxels has as many partial voxels as its surface predict
           "[geometry][voxel_grid]") {
   // A plane meets one voxel more per unit of area projected on each axis; averaged over the sphere
   // that is 1.5 a voxel face: 1.5 · pi · 30² = 4241 where the sphere is locally flat; its curvature
-  // takes some off (notes, section 24: 4056 for one position). Full and partial bracket the volume.
+  // takes some off (counted elsewhere: 4056 for one position). Full and partial bracket the volume.
   const TriangleMesh mesh = ball(15.0, 5);
   const VoxelGrid grid = voxels_of(mesh, lattice_around(bounding_box(mesh), {}));
   const auto partial = static_cast<double>(grid.count(VoxelClass::Partial));

@@ -66,9 +66,9 @@ geometry::TriangleMesh ellipsoid(const Vector3d& half_axes) {
 }
 
 /// A ball with four round legs of diameter 2.4 below it, 30 high in all, with about the surface of
-/// the notes' shape (1488). Seen from its center the surface is a graph over directions, so there
-/// is nothing inside the ball: along a direction phi off a leg's axis, the leg's wall is at 1.2 /
-/// sin(phi) and its end at 22.2 / cos(phi).
+/// an independent experiment's shape (1488). Seen from its center the surface is a graph over
+/// directions, so there is nothing inside the ball: along a direction phi off a leg's axis, the
+/// leg's wall is at 1.2 / sin(phi) and its end at 22.2 / cos(phi).
 constexpr double kBallRadius = 9.63;
 constexpr double kLegRadius = 1.2;
 constexpr double kLegEnd = 22.2;
@@ -354,7 +354,8 @@ TEST_CASE("Flat faces score at least as high as curved surface", "[grasp][contac
   CHECK(lowest_flat >= highest_curved);
 }
 
-TEST_CASE("Scores of round shapes agree with the notes' experiment", "[grasp][contact_score_map]") {
+TEST_CASE("Scores of round shapes agree with an independent experiment",
+          "[grasp][contact_score_map]") {
   // Notes section 24, an independent implementation; values depend on placement and are good to
   // about 10 %. Raw percentiles without the mean filter; share of voxels above 0.6 by floor-median
   // with it.
@@ -383,8 +384,9 @@ TEST_CASE("Scores of round shapes agree with the notes' experiment", "[grasp][co
   }
 }
 
-TEST_CASE("Shares above the threshold agree with the notes' experiment on flat and mixed shapes",
-          "[grasp][contact_score_map]") {
+TEST_CASE(
+    "Shares above the threshold agree with an independent experiment on flat and mixed shapes",
+    "[grasp][contact_score_map]") {
   // Notes section 24, column floor-median: edges and rims are rejected, faces and walls are not.
   std::vector<Eigen::Vector2d> half_disk = {{0.0, 1.0}};
   for (int i = 1; i < 48; ++i) {
@@ -430,7 +432,7 @@ TEST_CASE("Thin legs score lowest and are rejected by the threshold",
   CHECK(highest_leg < 0.6);
   CHECK(highest_leg < *std::min_element(upper_half.begin(), upper_half.end()));
   CHECK(share_above(upper_half, 0.6) == 1.0);
-  // The notes' shape has 63 %; how far its legs stick out is not said.
+  // The independent experiment's shape has 63 %; how far its legs stick out is not said.
   CHECK(share_above(map.scores, 0.6) == Approx(0.63).margin(0.1));
 }
 
