@@ -16,13 +16,13 @@
 namespace graspfit::grasp {
 
 using internal::FingerOrder;
-using internal::Places;
+using internal::PointIndices;
 using internal::TargetRules;
 
 namespace {
 
 // The stable pairs of more places could take a gigabyte.
-constexpr std::size_t kMostPlaces = 1 << 14;
+constexpr std::size_t kMostPoints = 1 << 14;
 // Sets kept per round.
 constexpr std::size_t kMostKept = 1 << 12;
 // By how much the first round's limit on the rank is above the best possible; rounds that find
@@ -42,9 +42,9 @@ struct RankedTargets::Impl {
   Impl(const ObjectModel& object, const PartDistances& distances, const RequestedParts& parts,
        const TargetOptions& options)
       : rules(object, distances, parts, options), num_fingers(rules.num_fingers()) {
-    if (rules.pool().size() > kMostPlaces) {
+    if (rules.pool().size() > kMostPoints) {
       throw base::InvalidInput("RankedTargets: " + std::to_string(rules.pool().size()) +
-                               " places, at most " + std::to_string(kMostPlaces) +
+                               " points, at most " + std::to_string(kMostPoints) +
                                " can be searched; set pool_spacing");
     }
     const auto n = static_cast<double>(num_fingers);
@@ -247,7 +247,7 @@ struct RankedTargets::Impl {
         for (std::size_t rest = 1; rest < num_fingers; ++rest) {
           if (rest != second && rest != third) other[k++] = chosen[rest];
         }
-        const double other_error = rules.edge_error(Places(other.data(), num_fingers));
+        const double other_error = rules.edge_error(PointIndices(other.data(), num_fingers));
         if (other_error < error) return false;
         if (other_error == error &&
             std::make_pair(other[1], other[2]) < std::make_pair(chosen[1], chosen[2])) {
@@ -271,7 +271,7 @@ struct RankedTargets::Impl {
       const std::optional<double> misfit = rules.palm_misfit(fingers(), orders, palm);
       if (!misfit) continue;
       chosen[num_fingers] = palm;
-      keep(Places(chosen.data(), num_fingers + 1), misfit);
+      keep(PointIndices(chosen.data(), num_fingers + 1), misfit);
     }
   }
 
