@@ -309,11 +309,15 @@ class Help(program.ProgramTest):
     def test_the_options_page_is_the_program_s(self):
         done = program.run("options")
         self.assertEqual(done.stdout, (program.SOURCE_DIR / "docs/options.md").read_text(),
-                         "run: graspfit options > docs/options.md")
+                         "build the target write_generated")
         listed = set(re.findall(r"(?m)^\| `([a-z][a-z0-9-]+)` \|", done.stdout)) - {"paper", "fast", "strong"}
         flags = set(re.findall(r"(?m)^  --([a-z][a-z0-9-]+)", program.run("plan", "--help-all").stdout))
         self.assertLess(listed, flags)
         self.assertGreater(len(listed), 70)
+        schema = program.SOURCE_DIR / "grasp/grasps.schema.json"
+        self.assertEqual(program.run("options", "--schema", schema).stdout, schema.read_text(),
+                         "build the target write_generated")
+        self.assert_refused("options", "--schema", self.write("no.json", "{}"), says=("no.json", "/$defs"))
         # Every path is that of a key in a grasp file.
         self.write_torus()
         done = program.run("plan", self.folder / "torus.off", *FAST, "--out", self.folder / "out")
