@@ -12,7 +12,7 @@ namespace {
 
 using geometry::RigidTransform;
 using motion::MotionPhase;
-using motion::MotionStretch;
+using motion::MotionSegment;
 
 RigidTransform at(double x, double y, double z, double turn = 0.0) {
   RigidTransform X = RigidTransform::Identity();
