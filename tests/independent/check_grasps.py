@@ -280,13 +280,13 @@ def check_poses(X_OL, stored, found, where):
 def check_requested(scene, grasp, contacts, quality, found):
     """What follows from contacts and penetration: gaps of requested parts, usable, valid."""
     requested = set(scene.used["fingers"]) | ({"palm"} if scene.used["palm"] else set())
-    requested = {c["pad"] for c in grasp["contacts"] if c["target"]}
-    gaps = [contacts[name].gap for name in requested]
+    requested_pads = {c["pad"] for c in grasp["contacts"] if c["target"]}
+    gaps = [contacts[name].gap for name in requested_pads]
     found.equal("gap", "largest_contact_gap_m", max(c.gap for c in contacts.values()),
                 grasp["largest_contact_gap_m"])
     found.equal("gap", "largest_requested_gap_m", max(gaps, default=0.0),
                 grasp["largest_requested_gap_m"])
-    touching = {scene.hand.pads[name].finger for name in requested}
+    touching = {scene.hand.pads[name].finger for name in requested_pads}
     near = not scene.options["refine"] or (
         max(gaps, default=0.0) <= scene.options["refinement"]["largest_gap_m"])
     found.require(f"has_all_contacts: {sorted(touching)} of {sorted(requested)}, gaps {gaps}",

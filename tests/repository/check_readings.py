@@ -1,5 +1,6 @@
 """The readings page names the options of every reading, with the values that they may have, as the
-options page has them, which the program writes from its rows.
+options page has them, which the program writes from its rows; in its column of options it names no
+others but those below.
 
   check_readings.py SOURCE_DIR            says what differs
   check_readings.py SOURCE_DIR --write    puts it into docs/readings.md
@@ -13,6 +14,7 @@ from pathlib import Path
 SOURCE = Path(sys.argv[1])
 PAGE = SOURCE / "docs/readings.md"
 OPTION = re.compile(r"(?m)^\| `([a-z0-9-]+)` \| .* \| (.*?) \| `[\w.]+` \| (.*) \|$")
+OTHERS = {"hand", "max-hole", "no-palm", "no-weak", "obstacle", "repair", "table"}
 CELL = re.compile(r"(?<!\\) \| ")
 
 
@@ -50,6 +52,10 @@ def main():
     unknown = {name: readings - numbers for name, (_, readings) in known.items()
                if readings - numbers}
     assert len(numbers) > 40 and not unknown, f"there are no such readings: {unknown}"
+    cells = [CELL.split(row)[4] for row in re.findall(r"(?m)^\| A?[^-].*$", before)
+             if len(CELL.split(row)) > 5]
+    gone = set(re.findall(r"`--([a-z0-9-]+)", " ".join(cells))) - set(known) - OTHERS
+    assert not gone, f"there are no such options: {gone}"
     after = "".join(written(line, known, before) for line in before.splitlines(keepends=True))
     if "--write" in sys.argv:
         PAGE.write_text(after)

@@ -39,15 +39,10 @@ std::string value_name(const PlannerOption& option) {
   return "";
 }
 
-/// Of the flag: settings say 0 where flags say --no-weak.
-base::NumberRange range_of(const PlannerOption& option) {
-  return option.name == "weak-thickness-mm" ? base::above(0) : option.range;
-}
-
 /// "how raw scores become comparable with the threshold [R, A1]".
 std::string description_of(const PlannerOption& option) {
   std::string text(option.meaning);
-  if (option.is_number()) text += ", " + range_of(option).text();
+  if (option.is_number()) text += ", " + option.range.text();
   return text + option.source_text();
 }
 
@@ -143,7 +138,7 @@ OptionValue value_of(const Flags& flags, const PlannerOption& option) {
   const std::string name(option.name);
   switch (option.kind) {
     case OptionKind::Number:
-      return flags.number(name, range_of(option));
+      return flags.number(name, option.range);
     case OptionKind::Integer:
       return std::int64_t{flags.integer(name, option.range)};
     case OptionKind::YesNo:

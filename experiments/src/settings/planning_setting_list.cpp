@@ -123,13 +123,16 @@ OptionValue value_of(const PlannerOption& option, const JsonValue& value) {
 }
 
 PlanningSetting setting_of(const PlannerOption& option) {
+  // Settings say 0 where flags say --no-weak.
+  const bool may_be_none = option.name == "weak-thickness-mm";
   return {{std::string(option.name), option.is_number() ? std::string(option.unit) : "",
-           std::string(option.meaning)},
+           std::string(option.meaning) + (may_be_none ? "; 0: none are looked for" : "")},
           schema_of(option),
           [&option](PlanningSettings& settings, const JsonValue& value) {
             grasp::set_option(settings.options, option, value_of(option, value));
           },
-          option.is_number() ? std::optional(option.range) : std::nullopt,
+          option.is_number() ? std::optional(may_be_none ? base::at_least(0) : option.range)
+                             : std::nullopt,
           option.fallback};
 }
 

@@ -175,7 +175,7 @@ std::string to_json(const HoldReport& report) {
   for (const PiecesReport& link : report.links) links.push_back(pieces_json(link));
   return grasp::internal::json_text(
       {{"format", "graspfit-hold"},
-       {"version", 1},
+       {"version", 2},
        {"conventions", conventions()},
        {"grasp_file", {{"file", report.grasp_file}, {"sha256", report.grasp_sha256}}},
        {"engine", {{"name", "MuJoCo"}, {"version", GRASPFIT_ENGINE_VERSION}}},

@@ -21,7 +21,8 @@ using hands::RigidTransform;
 
 namespace {
 
-constexpr int kMostSteps = 1000;  // of a retreat; each costs the distances of all links
+// Of a retreat, for options that would ask for more; each costs the distances of all links.
+constexpr int kMostSteps = 1000;
 
 struct LinkPair {
   int a;

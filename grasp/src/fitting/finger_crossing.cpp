@@ -17,7 +17,8 @@ using hands::HandModel;
 
 namespace {
 
-// Over the range of a swinging joint: more find narrower free ranges, at an intersection test each.
+// Over the range of a swinging joint: more find narrower free ranges, at intersection tests of the
+// finger's links each.
 constexpr int kJointTurns = 16;
 
 /// Pairs of links, one of each list, that meet.

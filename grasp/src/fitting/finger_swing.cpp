@@ -43,8 +43,8 @@ double AzimuthOfFinger::error(const hands::HandConfiguration& configuration,
 double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& configuration,
                   const TargetContacts& targets, int leader,
                   const std::vector<FingerTarget>& pairs) {
-  constexpr int kCoarse =
-      18;  // samples: fewer may miss the better of two valleys, more cost as much
+  constexpr int kCoarse = 18;  // samples, an evaluation each; the sum over fingers of one leader
+                               // may have several minima
   constexpr int kRefine = 20;  // the range shrinks by 0.618 each: to 1e-5 of a joint's range
   constexpr double kGolden = 0.61803398874989485;
   std::vector<AzimuthOfFinger> azimuths;

@@ -313,7 +313,7 @@ void FittingLoop::finish(FittingResult& result) {
   result.smallest_distance = state_.smallest_distance();
   bool has_all = true;
   bool is_blocked = false;
-  const auto measure = [&](int pad, bool is_stopped) {
+  const auto note_contact = [&](int pad, bool is_stopped) {
     if (has_contact_at(pad, state_.X_OL())) return;
     has_all = false;
     is_blocked = is_blocked || is_stopped;
@@ -322,9 +322,9 @@ void FittingLoop::finish(FittingResult& result) {
                                   std::sqrt(object_.query.closest_point(point).squared_distance));
   };
   for (const Part& part : parts_) {
-    if (part.has_target) measure(*part.pad, part.state == Part::State::Blocked);
+    if (part.has_target) note_contact(*part.pad, part.state == Part::State::Blocked);
   }
-  if (has_palm_target_) measure(*model_.palm.pad, true);
+  if (has_palm_target_) note_contact(*model_.palm.pad, true);
   result.contact_tests_s = contact_tests_s_;
   const bool is_out_of_budget = iterations_ >= options_.max_iterations && num_free() > 0;
   result.stop = is_out_of_budget ? FittingStop::IterationLimit

@@ -203,10 +203,6 @@ HoldRecord read_hold(const JsonValue& node, std::size_t num_grasps) {
   return hold;
 }
 
-}  // namespace
-
-namespace {
-
 /// Sets options from the members of a JSON object. Those that it lacks keep their defaults; members
 /// that are no options are refused.
 class OptionReader {

@@ -79,7 +79,9 @@ class SchemaWriter {
   }
   template <class Options, class Rows>
   void optional_group(std::string_view key, const std::optional<Options>&, const Rows& rows) {
-    properties_[std::string(key)] = or_null_schema(object_schema(Options{}, rows));
+    Json schema = {{"description", "null: without"}};
+    schema.update(or_null_schema(object_schema(Options{}, rows)));
+    properties_[std::string(key)] = schema;
   }
 
   /// Without required members: options that a file lacks have their defaults.
@@ -102,8 +104,8 @@ std::string with_option_schema(const std::string& schema, const std::string& fil
   root.at("$defs").at("options");
   Json changed = root.json();
   Json options = {{"description",
-                   "every option of the planner; one that is missing has its default. Written by "
-                   "graspfit options --schema"}};
+                   "every option of the planner; one that is missing has its default. Descriptions "
+                   "name other options as flags. Written by graspfit options --schema"}};
   options.update(SchemaWriter::object_schema(PlannerOptions{}, internal::planner_rows));
   changed["$defs"]["options"] = options;
   return internal::json_text(changed);

@@ -57,9 +57,8 @@ constexpr auto shape_diameter_rows = [](auto& at, auto& rays) {
 };
 
 constexpr auto weak_rows = [](auto& at, auto& weak) {
-  at(weak.weak_thickness, {"weak_thickness_m", at_least(0), "weak-thickness-mm", "mm", kTargets,
-                           "slender features thinner than this are fragile: S = 0 in M1; "
-                           "experiments say 0 where none are looked for",
+  at(weak.weak_thickness, {"weak_thickness_m", above(0), "weak-thickness-mm", "mm", kTargets,
+                           "slender features thinner than this are fragile: S = 0 in M1",
                            "P; what is fragile: R", "A37"});
   at(weak.min_length_ratio, {"min_length_ratio", at_least(0)});
   at(weak.voxels_per_thickness, {"voxels_per_thickness", between(4, 32)});
@@ -92,7 +91,11 @@ constexpr auto target_rows = [](auto& at, auto& targets) {
   at(targets.max_seeds, {"max_seeds", at_least(1), "max-seeds", "1", kTargets,
                          "seeds tried per target set", "R", "A20"});
   at(targets.relax_after_seeds, {"relax_after_seeds", at_least(0)});
-  at(targets.min_separation, {"min_separation_m", at_least(0)});
+  at(targets.min_separation,
+     {.key = "min_separation_m",
+      .range = at_least(0),
+      .meaning =
+          "of targets of different fingers; 0: the width of the widest requested fingertip pad"});
   at(targets.pool_spacing, {"pool_spacing_m", at_least(0), "pool-spacing-mm", "mm", kTargets,
                             "of all candidates in a cube of this size the best one stays; 0: all; "
                             "a pad's width makes ranked searches for four and more targets short",
@@ -212,8 +215,12 @@ constexpr auto squeeze_rows = [](auto& at, auto& squeeze) {
                           "sum of the normal forces of all contacts in the squeeze, in newtons"});
   at(squeeze.stiffness, {"stiffness_N_m_per_rad", above(0), "squeeze-stiffness", "N m/rad", kForces,
                          "of revolute joints under position control, in N m/rad"});
-  at(squeeze.slide_stiffness, {"slide_stiffness_N_per_m", above(0)});
-  at(squeeze.largest_residual, {"largest_residual", at_least(0)});
+  at(squeeze.slide_stiffness, {.key = "slide_stiffness_N_per_m",
+                               .range = above(0),
+                               .meaning = "of slides under position control"});
+  at(squeeze.largest_residual, {.key = "largest_residual",
+                                .range = at_least(0),
+                                .meaning = "of a squeeze that balances, over normal_sum_N"});
 };
 
 constexpr auto distinct_rows = [](auto& at, auto& distinct) {
@@ -245,7 +252,11 @@ constexpr auto quality_rows = [](auto& at, auto& quality) {
   at(quality.centroid,
      {"centroid", kAny, "centroid", "", kMeasure,
       "centroid of the contacts' hull: of its area or volume, or of its corners", "R", "A15"});
-  at(quality.merge_distance, {"merge_distance_m", at_least(0)});
+  at(quality.merge_distance,
+     {.key = "merge_distance_m",
+      .range = at_least(0),
+      .meaning =
+          "contacts nearer to each other are one corner of the hull; 0: a tenth of a voxel"});
 };
 
 constexpr auto planner_rows = [](auto& at, auto& options) {

@@ -21,7 +21,7 @@ using internal::TargetRules;
 
 namespace {
 
-// The stable pairs of more places could take a gigabyte.
+// The stable pairs of more points could take a gigabyte.
 constexpr std::size_t kMostPoints = 1 << 14;
 // Sets kept per round.
 constexpr std::size_t kMostKept = 1 << 12;
@@ -32,7 +32,7 @@ constexpr double kFirstStep = 0.02;
 /// A complete set: what it is ordered by.
 struct RankedSet {
   double rank = -1.0;  ///< Before all sets.
-  std::array<std::int32_t, kMostParts> places{};
+  std::array<std::int32_t, kMostParts> points{};
   auto operator<=>(const RankedSet&) const = default;
 };
 
@@ -58,11 +58,11 @@ struct RankedTargets::Impl {
     const RankedSet set = queue.back();
     queue.pop_back();
     const std::size_t size = num_fingers + (rules.has_palm() ? 1 : 0);
-    const PointIndices places(set.places.data(), size);
-    return rules.as_targets(places, misfit_of(places), 0);
+    const PointIndices points(set.points.data(), size);
+    return rules.as_targets(points, misfit_of(points), 0);
   }
 
-  /// The stable pairs within reach, from either of their places, by ascending distance.
+  /// The stable pairs within reach, from either of their points, by ascending distance.
   void find_partners() {
     const auto num_places = static_cast<std::int32_t>(rules.pool().size());
     if (num_places > 0) failure = TargetFailure::NoSecond;
@@ -103,7 +103,7 @@ struct RankedTargets::Impl {
       step /= 2.0;
     } else {
       last.rank = first_limit;
-      last.places.fill(std::numeric_limits<std::int32_t>::max());
+      last.points.fill(std::numeric_limits<std::int32_t>::max());
       is_finished = !is_cut;
       if (queue.size() < kMostKept / 8) step *= 2.0;
     }
@@ -232,7 +232,7 @@ struct RankedTargets::Impl {
   }
 
   /// Whether no order of the same targets with the same seed comes before this one: the least rank,
-  /// then the first places.
+  /// then the first points.
   bool is_best_order() const {
     if (num_fingers == 2) return true;
     const double error = rules.edge_error(fingers());
@@ -275,11 +275,11 @@ struct RankedTargets::Impl {
     }
   }
 
-  void keep(PointIndices places, std::optional<double> misfit) {
+  void keep(PointIndices points, std::optional<double> misfit) {
     RankedSet set;
-    set.rank = rules.rank(places, misfit);
+    set.rank = rules.rank(points, misfit);
     if (is_over_limit(set.rank)) return;
-    std::copy(places.begin(), places.end(), set.places.begin());
+    std::copy(points.begin(), points.end(), set.points.begin());
     if (set <= last) return;
     queue.push_back(set);
     std::push_heap(queue.begin(), queue.end());
@@ -291,15 +291,15 @@ struct RankedTargets::Impl {
   }
 
   /// Misfit of a set's palm, found again.
-  std::optional<double> misfit_of(PointIndices places) {
+  std::optional<double> misfit_of(PointIndices points) {
     if (!rules.has_palm()) return std::nullopt;
     std::vector<FingerOrder> orders = TargetRules::seed_orders();
     std::array<double, kMostParts> distances{};
     for (std::size_t k = 1; k < num_fingers; ++k) {
-      for (std::size_t i = 0; i < k; ++i) distances[i] = rules.distance(places[i], places[k]);
+      for (std::size_t i = 0; i < k; ++i) distances[i] = rules.distance(points[i], points[k]);
       orders = rules.extended(orders, {distances.data(), k});
     }
-    return rules.palm_misfit(places.first(num_fingers), orders, places[num_fingers]);
+    return rules.palm_misfit(points.first(num_fingers), orders, points[num_fingers]);
   }
 
   const Eigen::Vector3d& point(std::size_t k) const { return rules.pool()[chosen[k]].point_O; }

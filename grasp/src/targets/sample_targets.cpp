@@ -7,18 +7,19 @@
 namespace graspfit::grasp::internal {
 namespace {
 
-// More draws find sets around seeds that have few, and cost as much where there are none.
+// More draws find sets around seeds that have few, and are made in vain around those that have
+// none.
 constexpr int kDrawsPerSeed = 100;
 
-std::vector<PoolPoint> places_of(const std::vector<geometry::SurfaceSample>& samples) {
-  std::vector<PoolPoint> places;
+std::vector<PoolPoint> points_of(const std::vector<geometry::SurfaceSample>& samples) {
+  std::vector<PoolPoint> points;
   for (const geometry::SurfaceSample& sample : samples) {
-    places.push_back({sample.point, -sample.normal, std::nullopt});
+    points.push_back({sample.point, -sample.normal, std::nullopt});
   }
-  return places;
+  return points;
 }
 
-/// Whether fingers can have the first places as their targets; `orders` are the ways to.
+/// Whether fingers can have the first points as their targets; `orders` are the ways to.
 bool are_in_reach(const TargetRules& rules, PointIndices fingers,
                   std::vector<FingerOrder>& orders) {
   orders = TargetRules::seed_orders();
@@ -37,7 +38,7 @@ bool are_in_reach(const TargetRules& rules, PointIndices fingers,
 SampleTargets::SampleTargets(const ObjectModel& object, const PartDistances& distances,
                              const RequestedParts& parts, const TargetOptions& options,
                              const std::vector<geometry::SurfaceSample>& samples)
-    : rules_(object, distances, parts, options, places_of(samples)) {}
+    : rules_(object, distances, parts, options, points_of(samples)) {}
 
 TargetSelection SampleTargets::select(base::Random& random) const {
   TargetSelection result;

@@ -99,12 +99,12 @@ std::vector<PoolPoint> pool_of(const ObjectModel& object, const TargetOptions& o
 }
 
 /// Indices in ascending order, so that sums over a set do not depend, to the bit, on its order.
-std::array<std::int32_t, kMostParts> ascending(PointIndices places) {
+std::array<std::int32_t, kMostParts> ascending(PointIndices points) {
   std::array<std::int32_t, kMostParts> sorted{};
-  for (std::size_t size = 0; size < places.size(); ++size) {
+  for (std::size_t size = 0; size < points.size(); ++size) {
     std::size_t at = size;
-    for (; at > 0 && sorted[at - 1] > places[size]; --at) sorted[at] = sorted[at - 1];
-    sorted[at] = places[size];
+    for (; at > 0 && sorted[at - 1] > points[size]; --at) sorted[at] = sorted[at - 1];
+    sorted[at] = points[size];
   }
   return sorted;
 }
@@ -213,11 +213,11 @@ bool TargetRules::is_extendable(const std::vector<FingerOrder>& orders,
   return false;
 }
 
-double TargetRules::centroid_error(PointIndices places) const {
-  const auto sorted = ascending(places);
+double TargetRules::centroid_error(PointIndices points) const {
+  const auto sorted = ascending(points);
   Vector3d sum = Vector3d::Zero();
-  for (std::size_t k = 0; k < places.size(); ++k) sum += pool_[sorted[k]].point_O;
-  return (sum / static_cast<double>(places.size()) - center_of_mass_O()).norm() /
+  for (std::size_t k = 0; k < points.size(); ++k) sum += pool_[sorted[k]].point_O;
+  return (sum / static_cast<double>(points.size()) - center_of_mass_O()).norm() /
          normalizing_radius();
 }
 
@@ -236,9 +236,9 @@ double TargetRules::edge_error(PointIndices fingers) const {
   return sum / (n * (n - 1.0) / 2.0 - 1.0);
 }
 
-double TargetRules::rank(PointIndices places, std::optional<double> palm_misfit) const {
-  const PointIndices fingers = places.first(num_fingers());
-  double rank = edge_error(fingers) + centroid_error(places) + palm_misfit.value_or(0.0);
+double TargetRules::rank(PointIndices points, std::optional<double> palm_misfit) const {
+  const PointIndices fingers = points.first(num_fingers());
+  double rank = edge_error(fingers) + centroid_error(points) + palm_misfit.value_or(0.0);
   if (options_.angle_weight > 0.0) {
     double sum = 0.0;
     for (std::size_t i = 0; i < fingers.size(); ++i) {
@@ -350,12 +350,12 @@ std::optional<double> TargetRules::palm_misfit(PointIndices fingers,
   return *misfit / normalizing_radius();
 }
 
-TargetContacts TargetRules::as_targets(PointIndices places, std::optional<double> palm_misfit,
+TargetContacts TargetRules::as_targets(PointIndices points, std::optional<double> palm_misfit,
                                        int seeds_tried) const {
   TargetContacts targets;
   targets.seeds_tried = seeds_tried;
-  targets.rank = rank(places, palm_misfit);
-  for (const std::int32_t index : places) {
+  targets.rank = rank(points, palm_misfit);
+  for (const std::int32_t index : points) {
     const PoolPoint& place = pool_[index];
     const double score = place.patch ? object_.scores.scores[*place.patch]
                                      : contact_score_at(object_, place.point_O).value_or(0.0);

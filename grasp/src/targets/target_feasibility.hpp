@@ -14,7 +14,7 @@
 
 namespace graspfit::grasp::internal {
 
-/// A place that may become a target.
+/// A point that may become a target.
 struct PoolPoint {
   Eigen::Vector3d point_O;
   Eigen::Vector3d inward_normal_O;
@@ -73,20 +73,20 @@ class TargetRules {
   bool is_extendable(const std::vector<FingerOrder>& orders,
                      std::span<const double> distances) const;
 
-  /// Distance of the places' centroid from the center of mass over the normalizing radius.
-  double centroid_error(PointIndices places) const;
+  /// Distance of the points' centroid from the center of mass over the normalizing radius.
+  double centroid_error(PointIndices points) const;
   /// Mean error of all edges but the first; 0 for two. Independent of the order of all but the
   /// first two, to the bit.
   double edge_error(PointIndices fingers) const;
-  /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last place.
-  double rank(PointIndices places, std::optional<double> palm_misfit) const;
+  /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last point.
+  double rank(PointIndices points, std::optional<double> palm_misfit) const;
 
   /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
   /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
   std::optional<double> palm_misfit(PointIndices fingers, const std::vector<FingerOrder>& orders,
                                     std::int32_t palm) const;
 
-  TargetContacts as_targets(PointIndices places, std::optional<double> palm_misfit,
+  TargetContacts as_targets(PointIndices points, std::optional<double> palm_misfit,
                             int seeds_tried) const;
 
  private:
@@ -104,7 +104,7 @@ class TargetRules {
   const contact::StablePairTest stable_pairs_;
   std::vector<PoolPoint> pool_;
   enum class PalmSpace : signed char { Unknown, Free, Taken };
-  mutable std::vector<std::atomic<PalmSpace>> palm_space_;  ///< Per place: for the palm.
+  mutable std::vector<std::atomic<PalmSpace>> palm_space_;  ///< Per point: for the palm.
   std::vector<Eigen::Matrix3d> turns_H_;                    ///< About the palm's direction.
   std::optional<PalmAxes> palm_axes_;
   std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.

@@ -114,7 +114,7 @@ class Deriver {
   std::optional<Vector3d> resting_direction() const;
   /// The side of the palm that is seen from the fingers' center: the direction that most of the
   /// field of view faces.
-  void check_palm();
+  void find_palm_direction_by_view();
   /// Joints that bend no finger but bring its half-closed tip before the palm (a thumb's
   /// opposition) close it that way: of every finger first the one that does so most, then, with
   /// that one half closed, the next.

@@ -90,7 +90,7 @@ void Deriver::palm_direction() {
   }
   palm_center_ = base;
   palm_direction_ = facing_center_ - base;
-  if (!bodies_[0].mesh.faces.empty()) check_palm();
+  if (!bodies_[0].mesh.faces.empty()) find_palm_direction_by_view();
   if (const auto resting = resting_direction()) {
     constexpr double kAgree = 0.64;  // cosine of 50°
     if (resting->dot(palm_direction_.normalized()) >= kAgree) palm_direction_ = *resting;
@@ -145,7 +145,7 @@ std::optional<Vector3d> Deriver::resting_direction() const {
   return best;
 }
 
-void Deriver::check_palm() {
+void Deriver::find_palm_direction_by_view() {
   const MeshQuery palm(bodies_[0].mesh);
   Vector3d eye = facing_center_;
   const Vector3d away = (facing_center_ - palm_middle_).normalized();

@@ -108,20 +108,20 @@ TEST_CASE("A metric is in the convention that was asked for, and says so",
           "[grasp][grasp_metric]") {
   const double mu = 0.5;
   const GraspMetric& epsilon = grasp_metrics().at("epsilon");
-  const GraspMetricValue house = evaluate(epsilon, input_of(on_cube(), mu));
+  const GraspMetricValue own = evaluate(epsilon, input_of(on_cube(), mu));
   CHECK(
-      house.convention ==
+      own.convention ==
       "graspfit: torques about (0, 0, 0) m over 1 m, friction 0.5, 8 inscribed edges from normal x "
       "e_x, L1, unit normal force, outside 0");
   // Half the longest extent of the ball is its radius: only the forces are shorter.
   const GraspMetricValue simox = evaluate(epsilon, input_of(on_cube(), mu, WrenchTool::Simox));
-  CHECK(*simox.value == Approx(*house.value / std::hypot(1.0, mu)).epsilon(kRounding));
+  CHECK(*simox.value == Approx(*own.value / std::hypot(1.0, mu)).epsilon(kRounding));
   CHECK_THAT(simox.convention, testing::StartsWith("Simox: "));
   for (const WrenchTool tool :
        {WrenchTool::DexNet, WrenchTool::Frogger, WrenchTool::DexGraspBench}) {
     const GraspMetricValue value = evaluate(epsilon, input_of(on_cube(), mu, tool));
     CHECK(*value.value > 0.0);
-    CHECK(value.convention != house.convention);
+    CHECK(value.convention != own.convention);
   }
 }
 

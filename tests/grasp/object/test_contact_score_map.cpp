@@ -356,9 +356,9 @@ TEST_CASE("Flat faces score at least as high as curved surface", "[grasp][contac
 
 TEST_CASE("Scores of round shapes agree with an independent experiment",
           "[grasp][contact_score_map]") {
-  // Notes section 24, an independent implementation; values depend on placement and are good to
-  // about 10 %. Raw percentiles without the mean filter; share of voxels above 0.6 by floor-median
-  // with it.
+  // An independent experiment, an independent implementation; values depend on placement and are
+  // good to about 10 %. Raw percentiles without the mean filter; share of voxels above 0.6 by
+  // floor-median with it.
   struct Row {
     std::string name;
     geometry::TriangleMesh mesh;
@@ -387,7 +387,8 @@ TEST_CASE("Scores of round shapes agree with an independent experiment",
 TEST_CASE(
     "Shares above the threshold agree with an independent experiment on flat and mixed shapes",
     "[grasp][contact_score_map]") {
-  // Notes section 24, column floor-median: edges and rims are rejected, faces and walls are not.
+  // An independent experiment, column floor-median: edges and rims are rejected, faces and walls
+  // are not.
   std::vector<Eigen::Vector2d> half_disk = {{0.0, 1.0}};
   for (int i = 1; i < 48; ++i) {
     const double angle = std::numbers::pi / 2 * i / 48;

@@ -275,13 +275,13 @@ void require_separate_axes(const Draft& draft) {
 }
 
 /// Where a setting of a cell was written.
-std::string place_of(const Draft& draft, const Cell& cell, const std::string& key) {
+std::string location_of(const Draft& draft, const Cell& cell, const std::string& key) {
   for (std::size_t i = 0; i < draft.axes.size(); ++i) {
     const Axis& axis = draft.axes[i].axis;
     const std::size_t index = find_value(axis, cell.labels[i]).value();
     if (!SortedJson::parse(axis.values[index].settings).contains(key)) continue;
-    const std::string& place = draft.axes[i].locations[index];
-    return key == axis.name ? place : place + '/' + key;
+    const std::string& location = draft.axes[i].locations[index];
+    return key == axis.name ? location : location + '/' + key;
   }
   const auto found = draft.setting_locations.find(key);
   if (found != draft.setting_locations.end()) return found->second;
@@ -295,7 +295,7 @@ void check_cells(const Experiment& experiment, const Draft& draft, const Paramet
       experiment.check(cell);
     } catch (const SettingError& error) {
       const std::string& key = error.key();
-      throw base::InvalidInput(draft.file + ": " + place_of(draft, cell, key) + ": " +
+      throw base::InvalidInput(draft.file + ": " + location_of(draft, cell, key) + ": " +
                                error.what());
     } catch (const base::InvalidInput& error) {
       throw base::InvalidInput(draft.file + ": cell " + cell.key + ": " + error.what());

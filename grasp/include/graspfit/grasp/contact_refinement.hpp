@@ -61,10 +61,10 @@ struct RefinementResult {
 /// clear is decided exactly on the true meshes; an end that is not counts as GapLeft, at the start.
 /// A start that cuts something is first opened, straightened and withdrawn until clear. Where
 /// `targets` are given, pads are also drawn, weakly, toward their targets and to lie flat on the
-/// surface there; with `slide_steps`, strongly once they touch, and of the places where all claimed
-/// pads touch the one nearest to the targets is kept. At last further pads that nearly touch, the
-/// nearest first, are treated as requested ones for a few steps, and let go where that does not end
-/// with all of them in contact.
+/// surface there; with `slide_steps`, strongly once they touch, and of the places where all
+/// requested pads touch the one nearest to the targets is kept. At last further pads that nearly
+/// touch, the nearest first, are treated as requested ones for a few steps, and let go where that
+/// does not end with all of them in contact.
 ///
 /// Gap: as `Contact::gap`, the distance between the pad's part of the link's mesh and the object.
 /// Deterministic.

@@ -108,8 +108,7 @@ UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands
 /// Reads a grasp file and the hand it names; checks the hashes of the hand's files. A hand that is
 /// not where the record says is looked for relative to the grasp file, then beside it, then among
 /// the shipped hands by the name of its description.
-/// Options that the file lacks, as those that are newer than it, have their defaults, which are
-/// what was done before there was an option.
+/// Options that the file lacks, as those that are newer than it, have their defaults.
 /// @throws IoError (file, JSON path, what) for malformed files, versions before 4 (their grasps
 /// lack what is measured today), options that there are not, hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);

@@ -24,7 +24,7 @@ inline constexpr std::string_view kMeasure = "Measure M = M1^w1 * M2^w2 * M3^w3"
 struct OptionRow {
   std::string_view key;          ///< In grasp files, SI units: "pool_spacing_m".
   base::NumberRange range = {};  ///< Of a number, in `unit`.
-  // The rest is about options that people set; of others it stays empty.
+  // The rest is about options that people set; others have a meaning at most, for the schema.
   std::string_view name = "";     ///< As a flag and as a setting of experiments: "pool-spacing-mm".
   std::string_view unit = "1";    ///< Of its numbers as flag and setting.
   std::string_view group = "";    ///< One of `option_group`.

@@ -25,12 +25,12 @@ namespace graspfit::grasp {
 ///
 /// Search: depth first through the stable pairs, cut off by a growing limit on the rank, keeping
 /// the best few thousand sets of each round. Memory: 4 bytes per stable pair of the pool, and the
-/// kept sets. Cost: at 30 voxels (3000 places) well under a second to the first set for two and
+/// kept sets. Cost: at 30 voxels (3000 points) well under a second to the first set for two and
 /// three targets, seconds to prove that there is none; for more, see `pool_spacing`.
 class RankedTargets {
  public:
   /// Object and distances are referred to, not copied: they have to outlive the search.
-  /// @throws InvalidInput as `TargetSelector`, and for a pool of more than 16384 places.
+  /// @throws InvalidInput as `TargetSelector`, and for a pool of more than 16384 points.
   RankedTargets(const ObjectModel& object, const PartDistances& distances,
                 const RequestedParts& parts, const TargetOptions& options);
   ~RankedTargets();

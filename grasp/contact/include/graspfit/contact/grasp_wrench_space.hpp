@@ -25,7 +25,7 @@ struct GraspWrenchSpace {
 /// points that are not finite.
 Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvention& convention);
 
-/// The space of a convention, or of options and the point that torques are about, for the house
+/// The space of a convention, or of options and the point that torques are about, for the own
 /// convention the center of mass. No contacts span nothing: rank −1.
 ///
 /// Cost: that of the hull, see `ConvexPolytope`: about 2 ms for three contacts with eight edges and
