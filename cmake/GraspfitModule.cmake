@@ -42,7 +42,7 @@ function(graspfit_unity_folders target)
 endfunction()
 
 # The static library graspfit_<name>, known as graspfit::<name> here and to whoever finds the
-# installed package.
+# installed package; without SOURCES an interface library.
 #
 #   HEADERS   public headers, relative to the module's folder: include/graspfit/<name>/x.hpp
 #   FOLDERS   folders below src/, each of one topic, in the order of who may include whom: one
@@ -61,20 +61,26 @@ function(graspfit_add_module name)
   endif()
 
   set(target graspfit_${name})
-  add_library(${target} STATIC)
+  if(arg_SOURCES)
+    add_library(${target} STATIC)
+    set(scope PUBLIC)
+    graspfit_target_defaults(${target})
+    target_sources(${target} PRIVATE ${arg_SOURCES})
+    graspfit_unity_folders(${target} ${arg_SOURCES})
+    target_include_directories(${target} PRIVATE src)
+    target_link_libraries(${target} PRIVATE ${arg_PRIVATE})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
   add_library(graspfit::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name}
     POSITION_INDEPENDENT_CODE ON
     VERIFY_INTERFACE_HEADER_SETS ON)
-  graspfit_target_defaults(${target})
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  target_sources(${target}
-    PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_HEADERS}
-    PRIVATE ${arg_SOURCES})
-  graspfit_unity_folders(${target} ${arg_SOURCES})
-  target_include_directories(${target} PRIVATE src)
-  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_sources(${target} ${scope} FILE_SET HEADERS BASE_DIRS include FILES ${arg_HEADERS})
+  target_link_libraries(${target} ${scope} ${arg_PUBLIC})
 
   # CMake defines <target>_verify_interface_header_sets when it generates the build.
   add_custom_target(${name}_header_check)
