@@ -9,12 +9,14 @@ include(CMakePackageConfigHelpers)
 # Everything that checks a public header compiles alone; no part of the default build.
 add_custom_target(header_check)
 
-# Warnings are private to our targets, and errors in CI only.
+# Warnings and the rounding of our sources are private to our targets; warnings are errors in CI only.
 function(graspfit_target_defaults target)
   target_compile_features(${target} PRIVATE cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
     -Wunused -Wextra-semi
+    # A product and a sum are rounded one by one, as error bounds assume, on processors with FMA too.
+    -ffp-contract=off
     # GCC 12 warns of overlaps in std::string's own operator+ (its bug 105329).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
     # It takes the sources that a unity build includes for headers, whose anonymous namespaces would

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "graspfit/base/floating_point.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
 
 namespace graspfit::geometry {
