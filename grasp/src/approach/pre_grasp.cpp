@@ -21,7 +21,8 @@ using hands::RigidTransform;
 
 namespace {
 
-// Of a retreat, for options that would ask for more; each costs the distances of all links.
+// Largest number of steps of a retreat that options may ask for; each step costs the distances of
+// all links.
 constexpr int kMostSteps = 1000;
 
 struct LinkPair {
@@ -36,7 +37,7 @@ struct GuardedLink {
   geometry::ProximitySeed seed;  ///< With the object.
 };
 
-/// Whether all pass; one that fails goes first, to be asked first the next time.
+/// Whether all items pass; an item that fails moves to the front, to be tested first the next time.
 template <class T, class Test>
 bool all_pass(std::vector<T>& items, const Test& test) {
   const auto failed = std::find_if_not(items.begin(), items.end(), test);
@@ -89,7 +90,7 @@ class PreGraspSearch {
  private:
   enum class Joints { Closing, All };
 
-  /// The first of all openings of these joints and retreats, in their order.
+  /// The first pre-grasp among all openings of these joints and retreats, in their order.
   std::optional<PreGrasp> least_opening(Joints joints) {
     const int num_retreats = static_cast<int>(options_.largest_retreat / options_.retreat_step *
                                               (1.0 + 1e-12));  // 0.1 / 0.01 is 10, not 9.99…
@@ -128,7 +129,8 @@ class PreGraspSearch {
     return q;
   }
 
-  /// The largest share of a closing joint's way to where the open hand has it, in [0, 1].
+  /// The largest share, over the closing joints, of the motion to the joint's position in the open
+  /// hand, in [0, 1].
   double opening_of(const Eigen::VectorXd& q) const {
     double largest = 0.0;
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
@@ -187,8 +189,9 @@ class PreGraspSearch {
     return found.at_least;
   }
 
-  /// Surfaces that stay apart do not bring a body into another that was not there: at the start no
-  /// link is in the object, in the grasp none of the pairs is one in the other.
+  /// Whether the straight path to the grasp is free. Surfaces that stay apart suffice, since no
+  /// body is inside another to begin with: at the start no link is in the object, and in the grasp
+  /// neither link of a pair is in the other.
   bool is_free(const HandConfiguration& start, const std::vector<RigidTransform>& X_OL_start) {
     const internal::StraightWay way(hand_, start, grasp_);
     const auto stays_apart = [&](double speed, const auto& distance) {
@@ -233,7 +236,7 @@ class PreGraspSearch {
   const Eigen::VectorXd open_q_;
   const std::vector<RigidTransform> X_OL_grasp_;
   std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
-  std::vector<LinkPair> pairs_;     ///< To be kept apart from each other, likewise.
+  std::vector<LinkPair> pairs_;  ///< Pairs that must stay apart; one that failed last comes first.
 };
 
 }  // namespace

@@ -21,8 +21,9 @@ geometry::RigidTransform turned(const geometry::RigidTransform& X_OH, const Eige
 bool is_one_sided(const hands::HandModel& hand);
 
 /// The point that is placed before the targets and about which the hand turns: the palm center [P];
-/// of a one-sided hand the point at the palm center's height before the middle of the fingertips
-/// with targets, or the targets would lie behind the bases of its fingers [R].
+/// for a one-sided hand the mean of the fingertips with targets, projected onto the plane through
+/// the palm center normal to the palm direction, because otherwise the targets would lie behind the
+/// bases of its fingers [R].
 Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sided,
                               const std::vector<geometry::RigidTransform>& X_OL,
                               const TargetContacts& targets);
@@ -32,10 +33,11 @@ Eigen::Vector3d turning_point(const hands::HandModel& hand, bool is_hand_one_sid
 /// clutch frees (breakaway).
 std::vector<int> closing_joints(const hands::HandModel& hand, const hands::Finger& finger);
 
-/// The hand open, its palm looking along `placement`, its turning point `distance` before the
-/// targets' centroid (its palm center before the palm's target, where there is one), the seed's
-/// finger turned to the seed and on by the placement's turn, the others swung to their targets. A
-/// thumb that swings by itself stands where the others' swings come closest to their targets.
+/// The open hand, its palm facing along `placement` and its turning point `distance` before the
+/// targets' centroid (where the palm has a target: before that target). The hand is turned until
+/// the seed's finger points at the seed, and then by the placement's turn; the other fingers are
+/// swung to their targets. A thumb that swings by itself stands where the others' swings come
+/// closest to their targets.
 hands::HandConfiguration aligned_open_hand(const hands::HandModel& hand,
                                            const TargetContacts& targets,
                                            const PalmPlacement& placement, double distance);

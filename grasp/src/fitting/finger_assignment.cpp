@@ -32,8 +32,9 @@ TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts
     for (std::size_t t = 0; t < order.size(); ++t) assigned.contacts[t].finger = order[t];
   };
   assign();
-  // Where the hand stands depends on the seed and on which fingers there are, not on who serves
-  // what; and a finger's error on its own group's targets alone.
+  // The hand's pose depends on the seed and on which fingers have targets, not on which finger has
+  // which target; a finger's error depends on the targets of its own group (fingers that swing by
+  // the same joint) alone.
   const hands::HandConfiguration start =
       internal::aligned_open_hand(hand, assigned, placement, hands::largest_reach(hand));
   std::map<std::vector<internal::FingerTarget>, double> known;

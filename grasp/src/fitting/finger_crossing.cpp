@@ -17,8 +17,8 @@ using hands::HandModel;
 
 namespace {
 
-// Over the range of a swinging joint: more find narrower free ranges, at intersection tests of the
-// finger's links each.
+// Steps over the range of a swing joint: more steps find narrower free ranges, at the cost of
+// intersection tests of the finger's links at each.
 constexpr int kJointTurns = 16;
 
 /// Pairs of links, one of each list, that meet.
@@ -34,8 +34,8 @@ int num_meeting(const FittingHand& hand, const std::vector<int>& links,
   return count;
 }
 
-/// The swinging joint's place, of those tried, where the fewest of the finger's links meet the
-/// others; of several such places the nearest to where it is.
+/// The position of the swing joint, of those tried, in which the fewest of the finger's links meet
+/// the others; of several such positions the one nearest to the current one.
 double place_apart(const FittingHand& hand, const hands::Finger& finger,
                    const std::vector<int>& others, HandConfiguration goal) {
   const int index = *finger.swing_joint;

@@ -10,9 +10,9 @@
 #include "graspfit/hands/hand_configuration.hpp"
 
 /// \file
-/// Directions around the palm: how far a finger is from looking at its target, and the places of
-/// swinging joints that bring it there. Steps 3 and 4 of the paper's loop, its initial
-/// configuration and the assignment of fingers share these.
+/// Directions around the palm: by what angle a finger misses pointing at its target, and the
+/// positions of swing joints that make it point there. Steps 3 and 4 of the paper's loop, its
+/// initial configuration and the assignment of fingers share these.
 
 namespace graspfit::grasp::internal {
 
@@ -21,8 +21,8 @@ namespace graspfit::grasp::internal {
 double azimuth_error(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                      const Eigen::Vector3d& axis);
 
-/// Azimuth error of a finger toward a point around its own swing axis's origin, or around the palm
-/// center where it does not swing. Only the finger's own chain is posed.
+/// Azimuth error of a finger toward a point, about the origin of the finger's swing axis, or about
+/// the palm center where the finger does not swing. Only the finger's own chain is posed.
 class AzimuthOfFinger {
  public:
   AzimuthOfFinger(const hands::HandModel& hand, int finger);
@@ -37,7 +37,7 @@ class AzimuthOfFinger {
   std::vector<geometry::RigidTransform> X_OL_;  ///< Of the links of the chain.
 };
 
-/// A finger and the target that it is to look at.
+/// A finger and the target that it is to point at.
 struct FingerTarget {
   int finger = 0;
   int target = 0;
@@ -50,11 +50,12 @@ double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& 
                   const TargetContacts& targets, int leader,
                   const std::vector<FingerTarget>& pairs);
 
-/// Fingers with targets by the independent joint that swings them; those that do not swing first.
+/// Fingers with their targets, grouped by the independent joint that swings them; fingers that do
+/// not swing come first.
 std::map<std::optional<int>, std::vector<FingerTarget>> pairs_by_leader(
     const hands::HandModel& hand, const TargetContacts& targets);
 
-/// Joint positions in which every finger that can swing around the palm looks at its assigned
+/// Joint positions in which every finger that can swing around the palm points at its assigned
 /// target as well as the joints allow; fingers that share a joint take the least sum of squared
 /// errors. Other joints as in `configuration`.
 Eigen::VectorXd aligned_swing(const hands::HandModel& hand,

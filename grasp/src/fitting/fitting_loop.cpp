@@ -18,7 +18,7 @@ using geometry::RigidTransform;
 
 namespace {
 
-/// A number of steps, but no more than an int holds, were they that short.
+/// A number of steps as an int; limited to the largest int, since steps may be very short.
 int steps_of(double number) {
   return base::bounded_integer(number, 0, std::numeric_limits<int>::max());
 }
@@ -83,7 +83,8 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
   goal_ = start;
   is_palm_done_ = true;
   const double step = rule.step.value_or(voxel_size_);
-  // Past the object, whose normalizing radius is half its diagonal, and the hand's own length.
+  // Far enough to pass the object, whose normalizing radius is half its diagonal, by the hand's own
+  // length.
   const double far = 2.0 * (object_.normalizing_radius + hands::largest_reach(model_));
   const int steps_to_far = steps_of(std::ceil(far / step));
   const int most_steps = rule.most_steps.value_or(steps_to_far);
@@ -110,8 +111,8 @@ FittingResult FittingLoop::run() {
   return result;
 }
 
-/// Steps 1 and 2 until every finger has stopped or the iterations are used up. False as soon as
-/// the fit cannot come to anything.
+/// Steps 1 and 2 until every finger has stopped or the iterations are used up. Returns false as
+/// soon as the fit is hopeless.
 bool FittingLoop::close_free_parts() {
   while (iterations_ < options_.max_iterations && num_free() > 0) {
     ++iterations_;
@@ -175,8 +176,8 @@ bool FittingLoop::place() {
   return retreat(start, voxel_size_, steps_of(2.0 * hands::largest_reach(model_) / voxel_size_));
 }
 
-/// Puts the hand at the first clear place from `start` on against the palm direction. False if none
-/// is; the hand then stands at the last.
+/// Puts the hand at its first clear pose, from `start` on in steps against the palm direction.
+/// Returns false if none is clear; the hand is then at the last one.
 bool FittingLoop::retreat(hands::HandConfiguration start, double step, int most_steps) {
   const Vector3d back = -step * palm_direction();
   for (int steps = 0;; ++steps) {
@@ -206,15 +207,16 @@ void FittingLoop::advance(double distance, double tolerance) {
   }
 }
 
-/// Step 2 along n_palm, all the way with open fingers: to the goal or until something is near.
+/// Step 2 along n_palm, with open fingers: moves the palm to the goal, or until the guard or the
+/// palm's contact stops it.
 void FittingLoop::approach() {
   const double wanted =
       (goal_.X_OH.translation() - state_.configuration().X_OH.translation()).dot(palm_direction());
   advance(wanted, options_.small_step * voxel_size_);
 }
 
-/// The palm, if it is requested, onto the surface about `distance` before it: on until its
-/// clip volume holds surface or the guard stops it, and then until it touches.
+/// Moves the palm, if it is requested, onto the surface about `distance` before it: first until its
+/// clip volume holds surface or the guard stops it, then until it touches.
 void FittingLoop::seat_palm(double distance) {
   if (!has_palm_target_) return;
   is_palm_done_ = true;
@@ -224,15 +226,15 @@ void FittingLoop::seat_palm(double distance) {
   bring_palm(distance + kSearch * voxel_size_);
 }
 
-/// The palm onto the surface, if that is within `distance` along n_palm.
+/// Moves the palm onto the surface, if the surface is within `distance` along n_palm.
 void FittingLoop::bring_palm(double distance) {
   stops_at_palm_ = true;
   if (!palm_touches()) advance(distance, options_.small_step * voxel_size_ / 8.0);
   if (options_.contact_state == ContactState::Closed && palm_touches()) press_palm();
 }
 
-/// On along n_palm until the guard stops even the smallest motion, or the palm would lose its
-/// contact.
+/// Moves the palm on along n_palm until the guard stops even the smallest motion, or the palm would
+/// lose its contact.
 void FittingLoop::press_palm() {
   is_palm_held_ = true;
   const Vector3d direction = palm_direction();
@@ -281,8 +283,8 @@ bool FittingLoop::touches(const Part& part) {
          has_contact_at(*part.pad, state_.X_OL());
 }
 
-/// Steps 2 and 3: the palm toward where the fingertips will be at their targets. Once a finger
-/// touches, it stays.
+/// Steps 2 and 3: moves the palm toward the pose in which the fingertips will be at their targets.
+/// Once a finger touches, the palm stays.
 void FittingLoop::move_palm_to_goal() {
   if (is_palm_done_ || any_touching()) return;
   const Vector3d wanted = goal_.X_OH.translation() - state_.configuration().X_OH.translation();
@@ -295,7 +297,8 @@ void FittingLoop::move_palm_to_goal() {
   try_move(candidate, state_.all_links(), share * length);
 }
 
-/// Whether a part with a target has stopped too far from the object for anything to mend it.
+/// Whether a part with a target has stopped too far from the object for any later stage to close
+/// the gap.
 bool FittingLoop::is_hopeless(const Part& part) const {
   if (!part.has_target || part.state == Part::State::Free || part.state == Part::State::Touching) {
     return false;

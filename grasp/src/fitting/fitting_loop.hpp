@@ -15,16 +15,18 @@ class FittingLoop {
   FittingLoop(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
               const FittingOptions& options);
 
-  /// To targets that are assigned to the requested parts.
+  /// Fits the hand to targets that are assigned to the requested parts.
   FittingResult fit(const TargetContacts& targets, const PalmPlacement& placement,
                     const std::optional<hands::HandConfiguration>& goal);
-  /// From where the hand stands, without targets.
+  /// Closes the hand from `start`, without targets.
   FittingResult close(const hands::HandConfiguration& start, const RetreatRule& retreat);
 
-  /// Before it runs: this link is not to get deeper into the object than a voxel's edge, see
-  /// `GuardedHand::guard_depth`. Its motions take several times as long.
+  /// To be called before the loop runs: keeps the link from getting deeper into the object than a
+  /// voxel's edge, see `GuardedHand::guard_depth`. Motions of the link then take several times as
+  /// long.
   void guard_depth(int link) { state_.guard_depth(link); }
-  /// After it ran: links not guarded so that may be that deep, if the hand was clear at the start.
+  /// To be called after the loop ran: links without `guard_depth` that may be deeper in the object
+  /// than a voxel's edge; none if the hand was not clear at the start.
   std::vector<int> links_too_deep() {
     return is_clear_at_start_ ? state_.links_too_deep() : std::vector<int>();
   }
@@ -47,12 +49,13 @@ class FittingLoop {
     State state = State::Free;
   };
 
-  /// Where the fingers have closed, and how far from their targets.
+  /// A configuration in which the fingers have closed, and how far their contacts are from their
+  /// targets.
   struct Formed {
     hands::HandConfiguration configuration;
     std::vector<Part> parts;
-    int num_missing = 0;        ///< Targets whose fingertip has no contact.
-    double miss = 0.0;          ///< The sum of the others' distances from their contacts [m].
+    int num_missing = 0;  ///< Targets whose fingertip has no contact.
+    double miss = 0.0;    ///< Sum of the distances of the other targets from their contacts [m].
     Eigen::Vector3d to_center;  ///< From the mean of contacts to the mean of targets [m].
   };
 
@@ -107,7 +110,8 @@ class FittingLoop {
   const GraspStyle style_;
   const bool has_palm_target_;
   hands::HandConfiguration initial_;
-  hands::HandConfiguration goal_;  ///< The posture at the targets; without, where the hand started.
+  /// The posture at the targets; without targets, the hand's start.
+  hands::HandConfiguration goal_;
   bool is_clear_at_start_ = false;
   bool is_palm_done_ = false;  ///< The palm is where it is wanted, or cannot get there.
   bool stops_at_palm_;         ///< Once the palm touches, `advance` ends.

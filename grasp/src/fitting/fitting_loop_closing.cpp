@@ -1,4 +1,5 @@
-// How a finger closes: which joint moves next, by how much, and what a stopped neighbor leaves.
+// How a finger closes: which joint moves next, by how much, and what it can do when a finger on the
+// same joint is stopped.
 
 #include <algorithm>
 #include <cmath>
@@ -71,15 +72,17 @@ void FittingLoop::close_part(Part& part) {
   for (int halving = 0; halving <= options_.max_halvings; ++halving, step /= 2) {
     if (try_closing(part, step)) return;
   }
-  // Blocked at the tip means done; blocked farther back lets the joints beyond go on.
+  // A finger that is blocked at its tip has stopped; one that is blocked behind its tip goes on by
+  // its more distal joints.
   const bool is_tip = state_.blocking_link() == part.tip_link;
   if (is_tip || !next_stage(part)) {
     part.state = touches(part) ? Part::State::Touching : Part::State::Blocked;
   }
 }
 
-/// All joints of the finger at once toward the goal: steps 1, 4 and 5 in one. False once it is
-/// there or stopped, from when on it closes joint by joint.
+/// Moves all joints of the finger at once toward the goal: steps 1, 4 and 5 in one. Returns false
+/// once the finger has reached the goal or is stopped behind its tip; from then on it closes joint
+/// by joint.
 bool FittingLoop::close_toward_goal(Part& part) {
   const hands::HandConfiguration& now = state_.configuration();
   const std::vector<int>& moved = moved_links_[part.closing.front()];
@@ -110,8 +113,8 @@ bool FittingLoop::close_toward_goal(Part& part) {
   return false;
 }
 
-/// Closes a joint by `step`. Where several fingers hang on it and one of them is stopped, the hand
-/// moves so that this one stays where it is and the others close, as far in all.
+/// Closes a joint by `step`. Where the joint closes several fingers and one of them is stopped, the
+/// hand moves so that the stopped finger stays where it is and the others close by as much in all.
 bool FittingLoop::try_closing(const Part& part, double step) {
   const int joint = part.closing[part.stage];
   const double length = std::abs(step) * lever(joint);
@@ -127,8 +130,7 @@ bool FittingLoop::try_closing(const Part& part, double step) {
   return try_move(candidate, state_.all_links(), length / 2 + moved_by.norm());
 }
 
-/// The part on whose account the last motion was not possible, if its closing joint closes others
-/// too.
+/// The part that prevented the last motion, if its closing joint closes other parts, too.
 const FittingLoop::Part* FittingLoop::stopped_part_sharing(int joint) const {
   const Part* stopped = nullptr;
   for (const Part& part : parts_) {
@@ -143,7 +145,7 @@ const FittingLoop::Part* FittingLoop::stopped_part_sharing(int joint) const {
   return stopped;
 }
 
-/// Goes on to the next joint that moves less than the one that is stopped. False if there is none.
+/// Goes on to the next joint that does not move the blocking link. Returns false if there is none.
 bool FittingLoop::next_stage(Part& part) {
   const std::optional<int> blocking = state_.blocking_link();
   while (++part.stage < part.closing.size()) {

@@ -11,16 +11,17 @@ namespace graspfit::grasp::internal {
 
 using Eigen::Vector3d;
 
-/// Steps 2 and 1 in turn: a small step of the palm that brings the mean of the contacts toward that
-/// of the targets, then the fingers close again. As long as that brings contacts nearer to targets;
-/// the nearest is kept that the guard of voxels does not find too deep.
+/// Repeats steps 2 and 1 in turn: the palm makes a small step that brings the mean of the contacts
+/// toward the mean of the targets, then the fingers close again; this goes on as long as it brings
+/// contacts nearer to targets. Of the configurations in which the guard on voxels finds no link too
+/// deep, the one nearest to the targets is kept.
 void FittingLoop::recenter() {
-  // A finger that hangs on the same joint as others would take them along: the hand gives way to
-  // these.
+  // A finger that closes by the same joint as others would move them along; for such fingers the
+  // hand itself gives way while they close (`try_closing`).
   if (std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.is_shared; })) {
     return;
   }
-  // A step may make room for the next one before it gains anything itself.
+  // A step that gains nothing itself may still allow the next one to gain.
   constexpr int kPatience = 4;
   const double small_step = options_.small_step * voxel_size_;
   is_palm_held_ = has_palm_target_ && palm_touches();
@@ -81,8 +82,8 @@ FittingLoop::Formed FittingLoop::formed() {
   return formed;
 }
 
-/// Shifts the palm while every finger opens by `opening` [m] at its fastest point. Those that then
-/// do not touch are free again, with all their joints.
+/// Shifts the palm while every finger opens by `opening` [m] at its fastest point. Fingers that
+/// then do not touch are free to close again by all their joints.
 bool FittingLoop::try_shift(const Vector3d& shift, double opening) {
   const std::vector<Part> before = parts_;
   hands::HandConfiguration candidate = state_.configuration();

@@ -16,21 +16,22 @@ namespace {
 
 using geometry::RigidTransform;
 
-// A link whose samples keep this far [voxels] cannot meet the surface: a sample and a point of the
-// surface are each up to √3/2 from the centers of their voxels, and a point of the link is up
-// to 1.44 spacings (at most 0.85 voxel) from a sample.
+// A link whose sample points are at least this far from the surface [voxels] cannot meet it: a
+// sample and a point of the surface are each up to √3/2 from the centers of their voxels, and a
+// point of the link is up to 1.44 spacings (at most 0.85 voxel) from a sample.
 constexpr float kNearVoxels = 3.0F;
 
-// The distance of a link that surely keeps this far [voxels] is not asked for again: a larger value
-// asks oftener, a smaller one makes bounds of less use, as steps of three voxels follow.
+// The distance of a link is not measured again while it is surely larger than this [voxels]: a
+// larger value measures more often, a smaller one makes bounds less useful, as steps of three
+// voxels follow.
 constexpr double kFarEnough = 4.0;
 
 // Step between one and two voxels from the surface [voxels]: longer ones are taken back more often,
 // shorter ones are more.
 constexpr double kStepBeforeSurface = 0.5;
 
-// Depths of links in the object up to the first are not told apart, others to the second [voxels]:
-// finer ones cost more exact tests.
+// Depths of links in the object up to `kDepthFloor` are not distinguished, larger ones to
+// `kDepthTolerance` [voxels]: smaller values cost more exact tests.
 constexpr double kDepthFloor = 0.3;
 constexpr double kDepthTolerance = 0.05;
 
@@ -223,7 +224,8 @@ double GuardedHand::allowed_motion(const std::vector<int>& links) const {
     // Not yet at the surface: half a voxel cannot pass the layer of partial ones.
     voxels = std::max(options_.small_step, kStepBeforeSurface);
   }
-  // Less than the room cannot meet the surroundings; close to them, small steps are looked at.
+  // A motion shorter than the distance to the surroundings cannot meet them; close to them, small
+  // steps are allowed and then tested.
   return std::min(voxels * voxel_size_, std::max(room, options_.small_step * voxel_size_));
 }
 

@@ -19,22 +19,24 @@ class GuardedHand {
   /// Puts the hand somewhere, unchecked.
   void put(const hands::HandConfiguration& configuration);
 
-  /// Whether no link shares a voxel with the object's surface or inside, the true meshes are as the
-  /// guard wants them, and nothing touches the surroundings.
+  /// Whether no link shares a voxel with the object's surface or interior, the true meshes satisfy
+  /// the guard, and no link touches the surroundings.
   bool is_clear();
 
   /// With the guard on voxels: from now on no motion brings this link deeper into the object than a
   /// voxel's edge.
   void guard_depth(int link) { guards_depth_[link] = true; }
-  /// Links not guarded so that may be deeper in the object than that.
+  /// Links without `guard_depth` that may be deeper in the object than a voxel's edge.
   std::vector<int> links_too_deep();
 
-  /// A motion under test.
+  /// A motion is tested by `passes_map`, then by `passes_exact`, and made by `accept`.
   bool passes_map(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
-                  double length);  ///< Poses the moved links; `length`: of the fastest point [m].
-  bool passes_exact(const std::vector<int>& moved);  ///< Meshes, surroundings and, where they
-                                                     ///< count, other links, after the map.
-  void accept();                                     ///< The motion under test.
+                  double length);  ///< Poses the moved links and tests them against the distance
+                                   ///< map; `length` is the motion of the fastest point [m].
+  /// Tests meshes, surroundings and, where they are guarded, other links; to be called after
+  /// `passes_map`.
+  bool passes_exact(const std::vector<int>& moved);
+  void accept();  ///< Makes the motion under test.
 
   /// Motion of the fastest point of `links` allowed now [m] (paper section 9) [R].
   double allowed_motion(const std::vector<int>& links) const;
@@ -60,13 +62,15 @@ class GuardedHand {
     geometry::RigidTransform X_OL;
     geometry::DepthBounds bounds;
   };
-  /// The last pose at which the guard let it pass for its depth, and the last at which it did not.
+  /// The last pose of a link whose depth the guard allowed, and the last one whose depth it
+  /// refused.
   struct KnownDepths {
     std::optional<KnownDepth> let, cut;
   };
 
   float measured(int link, const geometry::RigidTransform& X_OL);
-  /// Never more than `enough`: what is farther comes nearer in later motions.
+  /// Distance of a link from the surroundings [m], at most `enough`: farther surroundings are
+  /// measured again when motions have brought the link nearer.
   double measured_room(int link, double enough) const;
   /// Whether the true meshes overlap by more than the guard lets them.
   bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL);
@@ -93,7 +97,7 @@ class GuardedHand {
   hands::HandConfiguration configuration_, trial_;
   std::vector<geometry::RigidTransform> X_OL_, trial_X_OL_;
   std::vector<float> distance_, trial_distance_;
-  /// Distance to the surroundings, a lower bound [m]; kept current by the motions.
+  /// Per link: lower bound of its distance to the surroundings [m], updated by every motion.
   std::vector<double> room_, trial_room_;
   std::optional<int> blocking_link_;
 };

@@ -31,9 +31,9 @@ void require_tip_pad(const std::string& where, const hands::HandModel& hand, int
   throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
 }
 
-/// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand of
-/// which a link ends deeper in the object than a voxel's edge, one of twenty, is fitted again with
-/// an eye on the depth of that link at every motion.
+/// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand that
+/// ends with a link deeper in the object than a voxel's edge (one of twenty) is fitted again, with
+/// the depth of that link guarded at every motion.
 template <class Make, class Run>
 FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
   std::vector<int> watched;

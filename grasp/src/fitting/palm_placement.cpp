@@ -48,7 +48,7 @@ struct Extent {
   double before_palm = 0.0;  ///< Within the palm's radius of the line through the centroid.
 };
 
-/// By the patches' centroids, so within half a voxel's diagonal.
+/// The extents of the patches' centroids, so accurate to half a voxel's diagonal.
 Extent extent_against(const ObjectModel& object, const Vector3d& center,
                       const Vector3d& direction) {
   Extent extent;

@@ -25,8 +25,8 @@ constexpr double kMissUnit = 0.01;    // [m]
 constexpr double kTiltWeight = 1.5;   // per unit length of the difference of two unit normals
 constexpr double kRestWeight = 0.04;  // per share of a joint's range off its start: decides what
                                       // targets leave open, and little else
-// Of pads that do not face each other against pads that lean. Valid of 30 attempts with 0, 1, 2:
-// bunny00 28, 29, 30; ball 28, 28, 30; horse 11, 11, 14; but 2 costs M (README).
+// Weight of pads that do not face each other, relative to pads that lean. Valid of 30 attempts with
+// 0, 1, 2: bunny00 28, 29, 30; ball 28, 28, 30; horse 11, 11, 14; but 2 costs M (README).
 constexpr double kPairWeight = 0.5;
 // More iterations and a smaller gain bring fingertips nearer to their targets, at a forward
 // kinematics with Jacobian each; the posture is the start of fitting, no result.
@@ -41,7 +41,7 @@ struct Tip {
   int pad = 0;
   Vector3d contact_C = Vector3d::Zero();
   std::vector<int> links;   ///< Root to the pad's link.
-  std::vector<int> joints;  ///< Between them.
+  std::vector<int> joints;  ///< Joints between these links.
   const TargetContact* target = nullptr;
 };
 
@@ -243,7 +243,8 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
     }
   }
   hands::apply_couplings(hand, start.q);
-  // The fingertips' middle onto that of their targets: step 2, all at once.
+  // Moves the mean of the fingertips (and the palm) onto the mean of their targets: step 2, all at
+  // once.
   const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, start);
   Vector3d shift = Vector3d::Zero();
   int count = 0;
@@ -260,12 +261,14 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
 
 namespace {
 
-/// What a fingertip misses counts as much as leaning, by the same exchange as in the search.
+/// Adds the distances by which fingertips miss to the angles by which pads lean, at the same rate
+/// as in the search.
 double tilt_and_miss(const TargetPosture& posture) {
   return posture.largest_tilt + posture.largest_miss / (kTiltWeight * kMissUnit);
 }
 
-/// Between the line from one pad to another and their normals, the larger one [rad].
+/// The larger of the two angles between the line from one pad to another and the pads' normals
+/// [rad].
 double pair_angle(const Vector3d& point_a, const Vector3d& normal_a, const Vector3d& point_b,
                   const Vector3d& normal_b) {
   const Vector3d line = point_b - point_a;

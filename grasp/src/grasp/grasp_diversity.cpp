@@ -35,7 +35,7 @@ class DisjointSets {
   std::vector<std::size_t> parents_;
 };
 
-/// A grasp as a point: what `grasp_diversity` says.
+/// A grasp as a point, with the coordinates that `grasp_diversity` describes.
 Eigen::VectorXd point_of(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                          const DistinctOptions& options) {
   Eigen::VectorXd point = Eigen::VectorXd::Zero(12 + grasp.q.size());

@@ -11,7 +11,7 @@ namespace {
 
 using geometry::RigidTransform;
 
-/// Marks the contacts of `pad` as targets; whether one of them is near enough.
+/// Marks the contacts of `pad` as targets; returns whether one of them is near enough.
 bool mark_requested(std::vector<contact::Contact>& contacts, int pad,
                     const std::optional<double>& largest_gap) {
   bool is_any_near = false;

@@ -11,10 +11,10 @@ namespace graspfit::grasp::internal {
 Grasp with_contacts(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
                     const RequestedParts& requested);
 
-/// And how deep the hand cuts into itself.
+/// Adds how deep the hand penetrates itself.
 Grasp with_self_penetration(const MeasuringScene& scene, Grasp grasp);
 
-/// And how deep into everything else, and ε.
+/// Adds the penetration of everything else, and ε.
 Grasp with_all_measures(const MeasuringScene& scene, Grasp grasp);
 
 }  // namespace graspfit::grasp::internal

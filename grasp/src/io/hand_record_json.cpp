@@ -60,7 +60,8 @@ Json pad_json(const hands::HandModel& hand, const hands::ContactPad& pad, double
           {"clip_volume_L", {{"thickness_m", thickness}, {"half_spaces", half_spaces}}}};
 }
 
-/// Of a shipped hand below the folder of shipped hands: the same on every machine.
+/// The path of a file; that of a shipped hand is relative to the folder of shipped hands, the same
+/// on every machine.
 Json file_json(const std::string& file) {
   return base::path_text(hands::path_in_library(file).string());
 }

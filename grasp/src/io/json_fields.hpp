@@ -58,7 +58,7 @@ class JsonWriter {
   void part(const Part& part, const char* key) {
     json_[key] = finger_name(*hand_, part);
   }
-  /// None is −1.
+  /// An empty index is −1.
   void index(const std::optional<int>& index, const char* key) { json_[key] = index.value_or(-1); }
 
   template <class Struct, class Fields>
@@ -148,7 +148,7 @@ class JsonReader {
     part(target.finger, key);
     target.is_palm = !target.finger;
   }
-  /// None is −1.
+  /// An empty index is −1.
   void index(std::optional<int>& index, const char* key) const {
     const int number = node_.at(key).small_integer();
     if (number >= 0) index = number;

@@ -16,7 +16,7 @@ std::array<double, 4> rotation_wxyz(const geometry::RigidTransform& X_AB);
 geometry::RigidTransform pose(const Eigen::Vector3d& translation,
                               const std::array<double, 4>& rotation_wxyz);
 
-/// Those of a JSON file: [x, y, z], and {translation_m, rotation_wxyz}.
+/// The vector and the pose of a JSON value: [x, y, z], and {translation_m, rotation_wxyz}.
 Eigen::Vector3d vector3(const base::JsonValue& value);
 geometry::RigidTransform pose(const base::JsonValue& value);
 

@@ -33,12 +33,12 @@ inline Json finger_name(const hands::HandModel& hand, const std::optional<int>& 
   return finger ? hand.fingers[*finger].name : "palm";
 }
 
-/// What they call that of a target; null where it is not assigned.
+/// What grasp files call the finger of a target; null where the target is not assigned.
 inline Json finger_name(const hands::HandModel& hand, const TargetContact& target) {
   return target.is_palm || target.finger ? finger_name(hand, target.finger) : Json(nullptr);
 }
 
-/// The parts of a grasp file that say what was planned on, with, and amid.
+/// The parts of a grasp file about the object, the hand and the surroundings.
 Json object_json(const ObjectRecord& object, const std::optional<std::string>& used_mesh_file);
 Json hand_json(const GraspFile& file);
 Json surroundings_json(const GraspFile& file);

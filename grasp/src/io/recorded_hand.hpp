@@ -20,8 +20,8 @@ struct RecordedHand {
 /// IoError.
 std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand);
 
-/// Finds and reads the hand of a record: where it says, the same relative to the grasp file's
-/// folder, beside the grasp file, or the shipped hand whose description has the same name.
+/// Finds and reads the hand of a record: at the recorded path, at that path relative to the grasp
+/// file's folder, beside the grasp file, or the shipped hand whose description has the same name.
 /// @throws IoError if there is none, or any of its files is not the one recorded.
 hands::HandModel read_recorded_hand(const RecordedHand& record,
                                     const std::filesystem::path& grasp_folder);

@@ -88,7 +88,7 @@ class FittingGuidance : public GraspGuidance {
   }
 
  private:
-  /// The next of the sets in their order.
+  /// The sides of the ranked set with this number, ordered by `by_misfit`.
   std::vector<TargetSide> ranked_sides(std::int64_t number, GuidedStarts& result) const {
     const std::optional<TargetContacts> targets = ranked_targets(number);
     if (!targets) {
@@ -102,7 +102,8 @@ class FittingGuidance : public GraspGuidance {
     return sides;
   }
 
-  /// Of several random sets the one whose best side goes first, or those of all of them.
+  /// The sides of the random set whose best side goes first or, where the strongest grasp is kept,
+  /// of all sets drawn.
   std::vector<TargetSide> drawn_sides(std::int64_t number, GuidedStarts& result) const {
     const PlannerOptions& options = scene_.options;
     base::Random random = base::Random::stream(options.seed, static_cast<std::uint64_t>(number));
@@ -157,7 +158,8 @@ class FittingGuidance : public GraspGuidance {
     return do_balance(options.friction) ? 1 : 2;
   }
 
-  /// Sets with a target for the palm are chosen by the fingers' reach already.
+  /// Number of sets to draw; fewer with a target for the palm, since such sets are chosen by the
+  /// fingers' reach already.
   int num_draws() const {
     const int draws = scene_.options.target_draws;
     return scene_.parts.palm ? std::max(1, draws / 4) : draws;
@@ -174,7 +176,7 @@ class FittingGuidance : public GraspGuidance {
   }
 
   const GuidanceScene scene_;
-  const double torque_scale_;               ///< As of squeezes [m].
+  const double torque_scale_;               ///< The torque scale of squeezes [m].
   const PartDistances distances_;           ///< Outlives the searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
   mutable std::mutex ranked_lock_;

@@ -2,9 +2,9 @@
 // its first author's implementation: hands are put around the balls of the medial axis
 // by the symmetry of their neighborhoods. Balls come from shrinking instead of a power crust [R].
 //
-// Twice: `ma` backs a colliding hand off by at most 5 steps of 3 mm and then closes it wherever it
-// is, as that implementation does; `ma-full-retreat` backs it off until it is clear, and gives the
-// attempt up where it is not.
+// There are two variants: `ma` backs a colliding hand off by at most 5 steps of 3 mm and then
+// closes it wherever it is, as that implementation does; `ma-full-retreat` backs it off until it is
+// clear, and gives the attempt up where it is not.
 #include <algorithm>
 #include <array>
 #include <limits>

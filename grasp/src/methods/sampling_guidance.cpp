@@ -1,8 +1,8 @@
 // The baseline GS of the paper's Table 1: surface samples with normals guide the hand. A
 // reconstruction [R]: the paper says that much, and the work it cites could not be identified with
-// certainty. A sample is drawn at random; the palm looks against its normal, turned at
-// random, at the sample, where it may touch, or a little before it; the hand backs off until it is
-// clear and closes.
+// certainty. A sample is drawn at random; the palm faces against the sample's normal, turned about
+// it at random, and is put at the sample, where it may touch, or a little before it; the hand backs
+// off until it is clear and closes.
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -19,8 +19,9 @@ using Eigen::Vector3d;
 
 /// How the open hand may stand before it closes.
 struct Preshape {
-  double spread_share;   ///< Of the range of joints that neither open nor close.
-  double closed_by_rad;  ///< Revolute joints that close, on from their open limits.
+  double spread_share;  ///< Of the range of joints that neither open nor close.
+  /// Angle by which revolute closing joints are closed from their open limits.
+  double closed_by_rad;
 };
 
 // [R] Spreads of 0, 60, 90 and 180 degrees of the Barrett hand's 180.
@@ -110,7 +111,8 @@ class SamplingGuidance : public GraspGuidance {
   const GuidanceScene scene_;
   const Vector3d axis_H_;
   const std::vector<geometry::SurfaceSample> samples_;
-  std::vector<std::size_t> usable_;  ///< Indices of those along which the palm may look.
+  /// Indices of the samples against whose normals the palm may face.
+  std::vector<std::size_t> usable_;
 };
 
 }  // namespace

@@ -11,10 +11,11 @@ namespace graspfit::grasp::internal {
 struct TargetSide {
   TargetContacts targets;
   PalmPlacement placement;
-  int imbalance = 0;  ///< Of its set, where that counts.
+  int imbalance = 0;  ///< Imbalance of the set, where that counts.
   double misfit = 0.0;
   std::optional<hands::HandConfiguration> goal = {};  ///< `fitting_goal`, where it was asked for.
-  bool do_fingers_cross = false;  ///< Where that counts: at the start from this side.
+  /// Whether fingers cross at the start from this side, where that counts.
+  bool do_fingers_cross = false;
 };
 
 /// Sides of sets that balance first where that counts, then those from which fingers need not

@@ -37,7 +37,8 @@ double sum(Contacts contacts, double contact::Contact::*field) {
       [field](double total, const contact::Contact& contact) { return total + contact.*field; });
 }
 
-/// Over the targets; none without targets, and where one has no contact.
+/// Mean or largest distance of the targets from their contacts; none without targets, and where one
+/// has no contact.
 Value distance_from_targets(const GraspMetricInput& input, bool is_mean) {
   if (input.facts().grasp == nullptr) return std::nullopt;
   const std::vector<double> distances = target_distances(*input.facts().grasp);

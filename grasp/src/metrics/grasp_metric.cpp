@@ -41,7 +41,7 @@ const std::optional<contact::WrenchConvention>& GraspMetricInput::convention() c
     convention_ =
         contact::wrench_convention(facts_.tool, facts_.object, touching(), facts_.friction);
   }
-  has_asked_for_convention_ = true;  // not before: what is refused is refused again
+  has_asked_for_convention_ = true;  // set last, so that facts that are refused are refused again
   return convention_;
 }
 

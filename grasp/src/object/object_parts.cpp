@@ -11,7 +11,7 @@ namespace {
 // Raised whenever the same input may give other parts.
 constexpr std::string_view kAlgorithm = "object parts 1";
 
-/// A patch but for its faces, as it is kept.
+/// A patch without its faces, as the cache stores it.
 struct PatchRecord {
   std::int64_t voxel;
   std::int64_t num_faces;
@@ -42,7 +42,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// What is not there makes it bad for good; lists are empty from then on.
+/// Reads lists from bytes. After a list that is incomplete the reader stays bad, and all further
+/// lists are empty.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}

@@ -9,7 +9,7 @@
 
 namespace graspfit::grasp::internal {
 
-/// What of an object model may be kept between runs.
+/// The parts of an object model that may be cached between runs.
 struct ObjectParts {
   std::vector<geometry::SurfacePatch> patches;
   geometry::VoxelGrid grid;
@@ -23,8 +23,8 @@ std::string object_parts_key(const geometry::TriangleMesh& mesh, const ObjectMod
 /// The parts as bytes of this machine, for a cache that does not leave it.
 std::string to_bytes(const ObjectParts& parts);
 
-/// Their inverse; empty unless the bytes are those of parts on that lattice, of a mesh of so many
-/// faces.
+/// The inverse of `to_bytes`; empty unless the bytes are those of parts on `lattice`, of a mesh
+/// with `num_faces` faces.
 std::optional<ObjectParts> from_bytes(std::string_view bytes, const geometry::VoxelLattice& lattice,
                                       std::size_t num_faces);
 

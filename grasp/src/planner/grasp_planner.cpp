@@ -131,7 +131,7 @@ class Search {
     });
   }
 
-  /// In the search for the first grasps, only those that differ from all before them.
+  /// Keeps a grasp; in the search for the first grasps, only one that differs from all before it.
   void keep(Grasp grasp) {
     if (options_.search == SearchRule::Best || is_unlike(grasp, result_.grasps)) {
       result_.grasps.push_back(std::move(grasp));
@@ -140,7 +140,7 @@ class Search {
     }
   }
 
-  /// Best M first; of those too like a better one, none.
+  /// Sorts the grasps, best M first, and leaves out those that are too like a better one.
   void select() {
     std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
                      [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });

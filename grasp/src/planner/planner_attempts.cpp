@@ -17,14 +17,14 @@
 namespace graspfit::grasp::internal {
 namespace {
 
-// With `Rejection::Quality` an attempt is given up where M is below both: higher ones keep better
-// grasps of more attempts, as M itself selects.
+// With `Rejection::Quality` an attempt is given up where M is below both limits: higher limits keep
+// better grasps at the cost of more attempts, as M itself selects.
 constexpr double kHighQuality = 0.6;  // of M
 constexpr double kIdealShare = 0.5;   // of the targets' own M
-// More than refinement may exceed its largest turn by [rad].
+// An angle larger than the one by which refinement may exceed its largest turn [rad].
 constexpr double kAngleSlack = 1e-6;
 
-/// `options` with what the planner's rules set where they leave it open.
+/// `options`, completed by the planner's rules where they leave a value open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                   PlannerOptions options) {
   options.validate();
@@ -33,7 +33,8 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
     options.targets.min_separation = fingertip_width(hand, parts.fingers);
   }
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
-  // Refinement takes over there, which moves the palm too and would undo the rest of closing.
+  // At the first graze refinement takes over, which moves the palm too and would undo any further
+  // closing.
   if (options.refine) options.fitting.contact_state = ContactState::FirstGraze;
   // Where other contacts may do, fingers close however far one of them has stopped.
   if (options.missing_contact == MissingContact::Measured) {
@@ -72,7 +73,7 @@ AttemptOutcome unusable_outcome(const Grasp& grasp) {
   return grasp.quality.stable_pairs.empty() ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape;
 }
 
-/// Of the squeeze; infinite without one.
+/// Residual of the grasp's squeeze; infinite without one.
 double squeeze_residual(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze ? result.grasp->squeeze->residual
                                                : std::numeric_limits<double>::infinity();
@@ -82,8 +83,8 @@ bool is_balanced(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
 }
 
-/// ε of the contacts that touch, within the cones of the squeeze, negative where those do not
-/// close; least possible without any.
+/// ε of the contacts that touch, with the friction cones of the squeeze: negative without force
+/// closure, minus infinity without contacts.
 double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
   std::vector<contact::Contact> contacts;
   if (result.grasp)
@@ -179,7 +180,8 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
   return work;
 }
 
-/// The first of the highest rank, a way in taken for granted where it was not looked for yet.
+/// Index of the first result of the highest rank; a pre-grasp that was not searched for yet is
+/// assumed to exist.
 std::size_t PlannerAttempts::best_of(const std::vector<AttemptResult>& tried) const {
   std::size_t best = 0;
   StartRank best_rank = rank_of(tried[0]);
@@ -192,8 +194,8 @@ std::size_t PlannerAttempts::best_of(const std::vector<AttemptResult>& tried) co
   return best;
 }
 
-/// The same when all ways in are known: only those of the best are looked for, until one of them
-/// has what it takes, since no grasp gets better by its way in.
+/// The same with pre-grasps known. A pre-grasp is searched for only for the current best result,
+/// until the best one has been searched: no result ranks higher after its search.
 std::size_t PlannerAttempts::best_with_way_in(std::vector<AttemptResult>& tried) const {
   for (;;) {
     const std::size_t best = best_of(tried);
@@ -202,7 +204,8 @@ std::size_t PlannerAttempts::best_with_way_in(std::vector<AttemptResult>& tried)
   }
 }
 
-/// An accepted grasp before any other, then the later stage, then what the choice asks for.
+/// Rank of a result: an accepted grasp before any other, then the later stage, then what
+/// `PlannerOptions::kept` compares.
 PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result) const {
   StartRank rank{result.is_accepted, stage_of(result.outcome), false, 0.0};
   switch (options_.kept) {
@@ -237,7 +240,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   AttemptResult result;
   hands::HandConfiguration configuration;
   std::optional<AttemptOutcome> failure = close(start, configuration, result);
-  // Refinement also brings fingers home that stopped short of the surface.
+  // Refinement also brings fingers into contact that stopped short of the surface.
   const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
   if (is_refinable) failure = refine(start.targets, configuration, result);
   const bool is_measured =
@@ -292,8 +295,8 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   return result;
 }
 
-/// From the start to the object, at the level of voxels. Why it failed, if it did; the
-/// configuration it ended at in any case.
+/// Closes the hand from the start onto the object, at the level of voxels. Returns why this failed,
+/// if it did; `configuration` is the final one in any case.
 std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
                                                      hands::HandConfiguration& configuration,
                                                      AttemptResult& result) const {
@@ -317,7 +320,8 @@ std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
   return std::nullopt;
 }
 
-/// From voxels to true contact.
+/// Brings a hand that is closed at the level of voxels into true contact. Returns why this failed,
+/// if it did.
 std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targets,
                                                       hands::HandConfiguration& configuration,
                                                       AttemptResult& result) const {
@@ -356,7 +360,8 @@ void PlannerAttempts::add_squeeze(Grasp& grasp, AttemptResult& result) const {
       scene_.bearing_gap);
 }
 
-/// Completes a grasp: its way in, without which it fails where one is asked for, and its squeeze.
+/// Completes a grasp by its pre-grasp, without which it fails where one is required, and by its
+/// squeeze.
 void PlannerAttempts::find_way_in(AttemptResult& result) const {
   result.is_way_in_open_question = false;
   Grasp& grasp = *result.grasp;
@@ -374,13 +379,14 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
   if (!grasp.squeeze) add_squeeze(grasp, result);
 }
 
-/// Between the palm's direction and the one asked for [rad]; 0 if none is.
+/// Angle between the palm's direction and the one asked for [rad]; 0 if none is asked for.
 double PlannerAttempts::angle_from_approach(const hands::HandConfiguration& configuration) const {
   return hands::angle_from_approach(configuration.X_OH.linear() * hand_.palm.direction_H,
                                     options_.approach_O);
 }
 
-/// Fingers miss their targets, so a target's score says little about the contact's.
+/// Whether the scores at the contacts are high enough. Fingers miss their targets, so the scores of
+/// targets say little about those of contacts.
 bool PlannerAttempts::are_scores_high(const std::vector<contact::Contact>& contacts) const {
   if (!options_.contact_score_threshold) return true;
   return std::all_of(contacts.begin(), contacts.end(), [&](const contact::Contact& contact) {

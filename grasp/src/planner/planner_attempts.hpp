@@ -20,8 +20,9 @@ struct AttemptResult {
   bool is_exhausted = false;  ///< The method had nothing left to try: not an attempt at all.
   std::optional<std::string> target_failure;
   std::optional<Grasp> grasp;  ///< Where the outcome is Valid or UsableOnly.
-  bool is_accepted = false;    ///< The grasp is one of those looked for.
-  /// The grasp's way in was not looked for yet, nor perhaps its squeeze; taken for granted so far.
+  bool is_accepted = false;    ///< Whether the options accept the grasp.
+  /// The grasp's pre-grasp was not searched for yet, nor perhaps its squeeze; until then it is
+  /// assumed to exist.
   bool is_way_in_open_question = false;
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
@@ -43,7 +44,8 @@ class PlannerAttempts {
   double guidance_s() const { return guidance_s_; }  ///< What it took to prepare.
 
  private:
-  /// Accepted, stage, and what the choice of an attempt asks for: balanced, and a number.
+  /// Whether the grasp is accepted, the stage reached, and what `KeptCandidate` compares: whether
+  /// the squeeze is balanced, and a number.
   using StartRank = std::tuple<bool, int, bool, double>;
 
   AttemptResult try_start(const GuidedStart& start, std::int64_t number) const;

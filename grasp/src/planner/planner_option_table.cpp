@@ -16,7 +16,8 @@
 namespace graspfit::grasp {
 namespace {
 
-/// To twelve digits: what a conversion of units adds behind them is not the option's.
+/// The number to twelve digits: digits behind these come from the conversion of units, not from the
+/// option.
 std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.11e", value);

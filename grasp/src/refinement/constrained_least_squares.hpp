@@ -6,11 +6,11 @@
 namespace graspfit::grasp::internal {
 
 /// The x that minimizes ‖A x − b‖ subject to G x ≥ h, for an A of full column rank. Approximate, to
-/// rounding; small violations of that size are possible. If no x meets all rows, something that
-/// violates some: test it (h ≤ 0 allows x = 0).
+/// rounding; small violations of that size are possible. If no x meets all rows of G x ≥ h, the
+/// result violates some of them: the caller has to test it (with h ≤ 0, x = 0 meets all).
 ///
-/// By QR factorization of A the least distance problem, that by nonnegative least squares of its
-/// dual [Lawson & Hanson 1974, ch. 23].
+/// The QR factorization of A gives a least distance problem, which is solved by nonnegative least
+/// squares of its dual [Lawson & Hanson 1974, ch. 23].
 Eigen::VectorXd constrained_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                                           const Eigen::MatrixXd& g, const Eigen::VectorXd& h);
 
@@ -21,8 +21,8 @@ class ConstrainedRows {
   void want(const Eigen::RowVectorXd& row, double value, double weight);
   /// row · x must be at least `least`.
   void require(const Eigen::RowVectorXd& row, double least);
-  /// Limits that cannot all be met at once, up to `slack`, ask for no more than that nothing gets
-  /// worse.
+  /// The solution. Where the limits cannot all be met, up to `slack`, those that x = 0 violates
+  /// only require that the violation does not grow.
   Eigen::VectorXd solve(double slack) const;
 
  private:

@@ -23,9 +23,10 @@ using hands::HandConfiguration;
 using internal::LinkPoses;
 using internal::NearPoints;
 
-// Weights of the least squares, against 1 for a length moved: gaps come first, then clearance, then
-// where the targets are and how the pads lie there. A joint weighs less than the palm, whose motion
-// moves every pad. More for targets brings contacts nearer to them, and leaves more gaps open.
+// Weights of the least squares, relative to 1 for a length that the palm moves: gaps come first,
+// then clearance, then the positions of the targets and the tilt of the pads there. A joint weighs
+// less than the palm, whose motion moves every pad. A larger weight of the targets brings contacts
+// nearer to them, and leaves more gaps open.
 constexpr double kPalmWeight = 1.0;
 constexpr double kJointWeight = 0.5;
 constexpr double kGapWeight = 30.0;
@@ -38,19 +39,19 @@ constexpr double kTiltLever = 0.01;  // [m/rad]; half a fingertip
 constexpr double kSlideWeight = 1.0;
 constexpr double kShortestSlide = 1e-4;  // [m]; below it the rest is not worth the work
 
-// Steps: long ones get there sooner, but distances are linear over short ones only, so that long
-// ones are shortened again, at a query of all distances each.
+// Long steps need fewer iterations, but distances are linear over short ones only, so that long
+// steps are shortened again, at the cost of a query of all distances each time.
 constexpr double kLongestStep = 4e-3;  // of every entry of a motion [m]
-// Bodies within so many times the step are rows of the problem: more make it larger, fewer are met
-// by surprise and shorten the step.
+// Bodies within so many times the step length are rows of the problem: a larger value makes the
+// problem larger, with a smaller one bodies without a row are met and shorten the step.
 constexpr double kNearPerStep = 2.0;
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
 // Clearance from everything while gaps are large: more lets fingers pass obstacles in longer steps,
 // less ends nearer to the surface.
 constexpr double kClearancePerGap = 0.1;  // per largest gap that is left
 constexpr double kMostClearance = 3e-4;   // [m]
-// Of a step that bodies too near may be asked to part by: more parts them sooner, at the cost of
-// what else the step is for.
+// Share of a step by which bodies that are too near may be required to separate: a larger share
+// separates them sooner, at the cost of the step's other aims.
 constexpr double kPartingShare = 0.3;
 constexpr int kMostHalvings = 5;          // more save steps of blocked hands, a query each
 constexpr double kTrustGrowth = 2.0;      // of the longest step, after one that was taken whole
@@ -62,8 +63,8 @@ constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 ar
 constexpr int kPatience = 8;
 constexpr double kLeastProgress = 0.85;
 
-// The way out of a start that cuts something: steps that grow, 3 cm in all. A finer start stays
-// nearer to the configuration found by fitting, a longer way saves deeper starts.
+// A start that penetrates something is opened in steps that grow, 3 cm in all. A smaller first step
+// stays nearer to the configuration found by fitting, a longer opening saves deeper starts.
 constexpr int kMostOpenings = 14;
 constexpr double kFirstOpening = 5e-4;  // [m]
 constexpr double kOpeningGrowth = 1.2;
@@ -109,7 +110,7 @@ class Refinement {
         slide(result.iterations);
         if (!is_clear()) go_to(touching);
       }
-      // Nearest points tell to rounding; what counts is exact.
+      // Nearest points are accurate to rounding only; the exact test decides.
       if (!is_clear()) {
         go_to(clear);
         result.stop = RefinementStop::GapLeft;
@@ -162,7 +163,7 @@ class Refinement {
            turn(configuration).norm() <= options_.largest_turn + kTurnRounding;
   }
 
-  /// Opens and withdraws until clear; `Contact` means that it is.
+  /// Opens and withdraws the hand until it is clear; returns `Contact` if it is.
   RefinementStop make_clear() {
     double step = kFirstOpening;
     for (int round = 0;; ++round, step *= kOpeningGrowth) {
@@ -208,7 +209,7 @@ class Refinement {
     return opened;
   }
 
-  /// Exact.
+  /// Whether the hand is clear of object, surroundings and itself, decided exactly.
   bool is_clear() {
     return clearance_.is_clear_of_world(X_OL_) && clearance_.is_clear_of_itself(X_OL_);
   }
@@ -249,7 +250,7 @@ class Refinement {
            });
   }
 
-  /// Closes the gaps from a clear start, in so many steps at most.
+  /// Closes the gaps from a clear start, in at most `max_iterations` steps.
   RefinementStop approach(int& iterations, int max_iterations) {
     if (!measure_gaps() || largest_gap() > options_.reach) return RefinementStop::OutOfReach;
     double trust = kLongestStep;
@@ -275,7 +276,7 @@ class Refinement {
     return RefinementStop::Contact;
   }
 
-  /// Pads beside the requested ones that nearly touch, one after the other: what is not brought to
+  /// Brings further pads that nearly touch into contact, one after the other. A pad that does not
   /// touch within its steps, or takes another's contact, is given up.
   void bring_near_pads(int& iterations) {
     if (options_.near_pad_steps == 0) return;
@@ -295,7 +296,8 @@ class Refinement {
     measure_gaps();
   }
 
-  /// Not requested, with surface in their clip volumes and a gap; the smallest first.
+  /// Pads that are not requested, with surface in their clip volumes and a gap; the smallest gap
+  /// first.
   std::vector<PadRequest> near_pads() const {
     std::vector<PadRequest> near;
     for (int pad = 0; pad < static_cast<int>(model_.pads.size()); ++pad) {
@@ -331,8 +333,8 @@ class Refinement {
     return sum;
   }
 
-  /// Moves touching pads over the surface toward their targets; the nearest place where all touch
-  /// stays.
+  /// Moves touching pads over the surface toward their targets; the configuration nearest to the
+  /// targets in which all touch is kept.
   void slide(int& iterations) {
     if (std::none_of(requests_.begin(), requests_.end(),
                      [](const PadRequest& c) { return c.target; })) {
@@ -403,7 +405,8 @@ class Refinement {
       }
       // What even the longest step leaves clear needs no row.
       if (near.distance - trust * row.cwiseAbs().sum() > clearance) continue;
-      // Bodies that all but touch go apart first: along a curved surface they would meet at once.
+      // Bodies that nearly touch are separated first: moving along a curved surface they would meet
+      // at once.
       rows.require(row, std::min(clearance - near.distance, kPartingShare * trust));
       if (near.distance < clearance) rows.want(row, clearance - near.distance, kClearanceWeight);
     }
@@ -411,7 +414,8 @@ class Refinement {
     return rows.solve(kShortestStep);
   }
 
-  /// The weak wishes: the pad's middle to the target, its normal against the surface's.
+  /// Adds weak rows that draw the pad's contact point to the target and its normal against the
+  /// surface's normal.
   void draw_to_target(const PadRequest& request, double trust,
                       internal::ConstrainedRows& rows) const {
     const Vector3d middle = hands::pad_contact_point(model_, request.pad, X_OL_);
@@ -452,7 +456,7 @@ class Refinement {
   const ObjectModel& object_;
   const contact::ContactEstimationOptions& contact_options_;
   const RefinementOptions& options_;
-  const double least_;  ///< What a step must keep: half of what it aims at [m].
+  const double least_;  ///< Distance that a step must keep: half of the one that it aims at [m].
   internal::Clearance clearance_;
   internal::HandMotion motion_;
   std::vector<PadRequest> requests_;

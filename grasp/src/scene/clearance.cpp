@@ -13,8 +13,9 @@ using hands::RigidTransform;
 
 namespace {
 
-/// Bodies that are not near are asked how far they are, up to so much more [m] and to half of it:
-/// for so long they need not be asked again.
+/// The distance of bodies that are not near is bounded from below, up to so much more than asked
+/// for [m] and to half of the distance: until the bodies have moved by the bound, they need not be
+/// measured again.
 constexpr double kAhead = 0.04;
 constexpr double kAheadShare = 0.5;
 

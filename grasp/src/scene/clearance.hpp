@@ -24,8 +24,9 @@ struct NearPoints {
   Eigen::Vector3d normal_O;          ///< Unit, from the other body to the link.
 };
 
-/// Distances of a hand from all that it must not touch, asked many times along a motion: bounds
-/// from earlier answers spare most questions. Deterministic in the sequence of questions.
+/// Distances of a hand from all bodies that it must not touch, for many queries along a motion:
+/// bounds from earlier queries make most distance computations unnecessary. Results are
+/// deterministic in the sequence of queries.
 class Clearance {
  public:
   Clearance(const FittingHand& hand, const ObjectModel& object,
@@ -35,8 +36,9 @@ class Clearance {
   /// object, links against the surroundings, links against each other.
   std::vector<NearPoints> find(const LinkPoses& X_OL, double enough);
 
-  /// Whether nothing is within `least` [m] of anything else, to the rounding of distances. What the
-  /// last answers of `find` settle is not looked at.
+  /// Whether no link is within `least` [m] of the object, the surroundings or another link, to the
+  /// rounding of distances. Bodies that are surely farther apart, by bounds from `find`, are not
+  /// measured.
   bool is_apart(const LinkPoses& X_OL, double least) const;
 
   /// Links that are closer than `least` to something.
@@ -52,13 +54,15 @@ class Clearance {
   bool is_clear_of_itself(const LinkPoses& X_OL) const;
 
  private:
-  /// What is known of a piece or a pair: at least this far apart in that relative pose.
+  /// What is known of a piece or a pair: the bodies are at least `at_least` apart in the relative
+  /// pose `X`.
   struct Known {
     double at_least = 0.0;
     hands::RigidTransform X = hands::RigidTransform::Identity();
     geometry::ProximitySeed seed;
     bool is_known = false;
-    bool is_near = false;  ///< Nearer than what was asked for, the last time.
+    /// Whether the last query found the bodies nearer than the distance asked for.
+    bool is_near = false;
   };
   static std::optional<geometry::SurfaceProximity> nearest(Known& known,
                                                            const geometry::MeshQuery& a,

@@ -6,8 +6,8 @@
 
 namespace graspfit::grasp::internal {
 
-/// Room for the rounding of a box seen from another frame [m]: of coordinates of a hand and its
-/// object, below 1e-14.
+/// Slack for the rounding of a box that is transformed to another frame [m]; with the coordinates
+/// of a hand and its object the rounding is below 1e-14.
 inline constexpr double kBoxSlack = 1e-9;
 
 /// `geometry::distance` where it is below `enough` [m]; infinite, without points, where it is not.

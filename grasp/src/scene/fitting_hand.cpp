@@ -47,7 +47,7 @@ void require_few_points(const hands::HandModel& hand, const hands::Link& link, d
 }
 
 /// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
-/// `spacing`; then one point of each cell of half that size, the first.
+/// `spacing`; of these, only the first one in each cell of half that size is kept.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
   std::vector<Vector3d> points = mesh.vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -68,8 +68,8 @@ std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double 
   return points;
 }
 
-/// Adds the ball of points [first, last) and, split at the median of the longest extent, those
-/// below it.
+/// Adds the ball of points [first, last) and those of its two halves, split at the median of the
+/// longest extent.
 void add_ball(FittingHand::LinkSamples& samples, std::size_t first, std::size_t last) {
   const std::span<Vector3d> points(samples.points_L.data() + first, last - first);
   Eigen::AlignedBox3d box;
@@ -141,7 +141,8 @@ float smallest_distance(const FittingHand& hand, int link, const RigidTransform&
   open[size++] = {0, bound(samples.balls[0])};
   while (size > 0) {
     const Open next = open[--size];
-    // Below zero the next value is −1: a link at the surface asks for full voxels alone.
+    // The next value below 0 is −1: once the smallest value is 0, only full voxels are searched
+    // for.
     if (next.bound >= smallest || (smallest == 0.0F && next.bound > -1.0)) continue;
     const FittingHand::Ball& ball = samples.balls[next.ball];
     if (ball.count > 0) {

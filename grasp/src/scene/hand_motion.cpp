@@ -63,7 +63,8 @@ void HandMotion::set(const hands::HandConfiguration& configuration,
   pivot_O_ = pivot_O;
 }
 
-/// How far a joint goes along with its entry: not at all where its own limit holds it back.
+/// Ratio by which a joint moves with its entry of the motion; 0 where the joint's own limit holds
+/// it back.
 double HandMotion::share_of_follower(int j) const {
   const auto index = static_cast<std::size_t>(j);
   const hands::Joint& joint = hand_.joints[index];

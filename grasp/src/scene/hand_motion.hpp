@@ -19,7 +19,8 @@ class HandMotion {
 
   Eigen::Index size() const { return 6 + static_cast<Eigen::Index>(free_joints_.size()); }
 
-  /// Where the motions start from; `X_OL` its link poses; `pivot_O` is where the palm turns about.
+  /// Sets the configuration that motions start from, its link poses `X_OL`, and the point `pivot_O`
+  /// about which the palm turns.
   void set(const hands::HandConfiguration& configuration,
            const std::vector<hands::RigidTransform>& X_OL, const Eigen::Vector3d& pivot_O);
 
@@ -46,8 +47,8 @@ class HandMotion {
   /// The motion that opens the joints between a link and the palm, each by `step` [m] at its end.
   Eigen::VectorXd opening(int link, double step) const;
 
-  /// The same for those that neither open nor close (spread, abduction), toward where they stand in
-  /// the open hand: fingers that cross part by it.
+  /// The same for joints that neither open nor close (spread, abduction), toward their positions in
+  /// the open hand: this separates fingers that cross.
   Eigen::VectorXd straightening(int link, double step) const;
 
   /// The configuration after a motion; couplings and limits hold.
@@ -64,18 +65,19 @@ class HandMotion {
   bool palm_translates_;
   bool palm_turns_;
   std::vector<int> free_joints_;
-  std::vector<std::vector<int>>
-      joints_above_;                 ///< Per link: those that move it, distal ones first.
-  std::vector<int> entry_of_joint_;  ///< Of the motion that drives it, or its leader.
-  std::vector<double> ratio_;        ///< Of that entry.
-  std::vector<double> lever_;        ///< Per joint [m/rad; 1 of a prismatic joint].
-  Eigen::VectorXd open_q_;           ///< Of the open hand.
+  /// Per link: those that move it, distal ones first.
+  std::vector<std::vector<int>> joints_above_;
+  /// Per joint: the entry of the motion that drives it, or its leader.
+  std::vector<int> entry_of_joint_;
+  std::vector<double> ratio_;  ///< Per joint: its ratio to that entry.
+  std::vector<double> lever_;  ///< Per joint [m/rad; 1 of a prismatic joint].
+  Eigen::VectorXd open_q_;     ///< Of the open hand.
   hands::HandConfiguration configuration_;
   std::vector<hands::RigidTransform> X_OL_;
   Eigen::Vector3d pivot_O_ = Eigen::Vector3d::Zero();
 };
 
-/// Length of the palm's turns, about half a hand [m/rad].
+/// Lever by which turns of the palm become lengths, about half a hand [m/rad].
 inline constexpr double kTurnLever = 0.1;
 
 }  // namespace graspfit::grasp::internal

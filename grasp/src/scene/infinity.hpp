@@ -4,7 +4,8 @@
 
 namespace graspfit::grasp::internal {
 
-/// Where a search for the nearest starts, and the distance to what is not there.
+/// Initial value of searches for the least distance, and the distance to a body that does not
+/// exist.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace graspfit::grasp::internal

@@ -92,7 +92,7 @@ double StraightWay::relative_speed(int link_a, int link_b) const {
 bool are_apart_on_way(double relative_speed, double tolerance, const DistanceOnWay& distance) {
   constexpr int kMostDistances = 500;
   if (tolerance > 0.0 && relative_speed <= tolerance) return true;  // nothing but the last segment
-  // As good as at rest: where they are, they are all the way.
+  // The bodies are practically at rest: what holds at share 0 holds on the whole path.
   if (relative_speed <= kTouching) return distance(0.0, 8.0 * kTouching) > 2.0 * kTouching;
   const double share_per_meter = 1.0 / relative_speed;
   const auto covered = [&](double d) { return (d - kTouching) * share_per_meter; };

@@ -8,14 +8,15 @@
 
 namespace graspfit::grasp::internal {
 
-/// Share of a distance that a proof is content with: the rest costs more than steps more do.
+/// Share of a distance that suffices as its bound in a proof: a tighter bound costs more than the
+/// steps that it saves.
 inline constexpr double kNearEnough = 0.6;
 
 /// Least angle between two orientations [rad].
 double turn_between(const hands::RigidTransform& from, const hands::RigidTransform& to);
 
-/// The straight way of a hand from one configuration to another (`interpolated`), and how far its
-/// links go on it: upper bounds of the speeds of all their points per unit of the way's share.
+/// The straight path of a hand from one configuration to another (`interpolated`), with upper
+/// bounds of the speeds of the points of its links, per unit of the path's share.
 class StraightWay {
  public:
   StraightWay(const hands::HandModel& hand, const hands::HandConfiguration& from,
@@ -34,24 +35,27 @@ class StraightWay {
 
   const hands::HandModel& hand_;
   const Eigen::VectorXd motion_;  ///< Per joint, over the whole way, ≥ 0.
-  std::vector<double> radii_;     ///< Per link: of its points from its frame's origin.
-  std::vector<double> levers_;    ///< Per link: of its points from the axis of its joint.
-  std::vector<double> offsets_;   ///< Per link: of its frame from its parent's, largest on the way.
+  /// Per link: largest distance of its points from its frame's origin.
+  std::vector<double> radii_;
+  std::vector<double> levers_;  ///< Per link: largest distance of its points from its joint's axis.
+  /// Per link: largest distance of its frame from its parent's on the path.
+  std::vector<double> offsets_;
   std::vector<double> speeds_;
 };
 
-/// Lower bound of the distance of two bodies at a share of the way; what lies beyond `enough` is
+/// Lower bound of the distance of two bodies at a share of the path; distances beyond `enough` are
 /// not searched, so that the bound may be `enough` itself.
 using DistanceOnWay = std::function<double(double share, double enough)>;
 
-/// Whether two bodies are surely apart on the whole way from share 0 to 1, by conservative
+/// Whether two bodies are surely apart on the whole path from share 0 to 1, by conservative
 /// advancement from both ends and by halves in between: a distance d at one share keeps bodies of
 /// relative speed v apart up to d / v before and after it. Over the last segment, in which no point
-/// moves by more than `tolerance`, they may be as near as they like; without a tolerance, bodies
+/// moves by more than `tolerance`, the bodies may be at any distance; without a tolerance, bodies
 /// that do not move are apart if they are apart where they stand.
 ///
-/// False: they touch (come within 1e-8 m, which is not told from touching), or it could not be
-/// proven in 500 distances, as where bodies slide along each other without a gap to speak of.
+/// The result is false if the bodies touch (come within 1e-8 m, which is not distinguished from
+/// touching), or if 500 distances do not prove them apart, as where bodies slide along each other
+/// with hardly a gap.
 bool are_apart_on_way(double relative_speed, double tolerance, const DistanceOnWay& distance);
 
 }  // namespace graspfit::grasp::internal

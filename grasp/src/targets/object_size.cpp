@@ -55,7 +55,8 @@ double widest_opening(const PartDistances& distances, const RequestedParts& part
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const std::vector<int>& fingers, double widest) {
-  // Where no hand has such fingertips, or opens so little, the hand is in another unit.
+  // No hand has fingertips wider than the first, or opens less than the second: such a hand is in
+  // another unit.
   constexpr double kWidestFingertip = 0.1;     // [m]
   constexpr double kNarrowestOpening = 0.005;  // [m]
   const double smallest = fingertip_width(hand, fingers);

@@ -16,9 +16,10 @@ double fingertip_width(const hands::HandModel& hand, const std::vector<int>& fin
 /// Largest distance between two of the parts [m].
 double widest_opening(const PartDistances& distances, const RequestedParts& parts);
 
-/// Why an object could not be held whatever its pose, with its extents: smaller than one fingertip,
-/// or thicker than `widest`, both along the axes of the mesh's own frame; and what to do: say the
-/// object's unit, or, where no hand is like that, mend the hand's. Empty: it may be.
+/// Why an object could not be held in any pose: it is smaller than one fingertip, or thicker than
+/// `widest`, both along the axes of the mesh's own frame. The text states the object's extents and
+/// what to do: to name the object's unit or, where no hand has such dimensions, to correct the
+/// hand's. Empty: the object may be held.
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const std::vector<int>& fingers, double widest);

@@ -51,7 +51,7 @@ class GreedySearch {
     std::int32_t place;
   };
 
-  /// Tries to complete a set from a random seed; the stage at which it failed.
+  /// Tries to complete a set from a random seed; returns the stage at which this failed.
   TargetFailure try_seed() {
     is_complete_ = false;
     palm_misfit_.reset();
@@ -67,7 +67,7 @@ class GreedySearch {
     return TargetFailure::NoPalm;
   }
 
-  /// Every further target pairs with the seed.
+  /// Finds the points that form a stable pair with the seed, as every further target must.
   void find_partners() {
     partners_.clear();
     for (std::int32_t place = 0; place < static_cast<std::int32_t>(rules_.pool().size()); ++place) {

@@ -29,7 +29,7 @@ constexpr std::size_t kMostKept = 1 << 12;
 // nothing or little double it, rounds that overflow halve it.
 constexpr double kFirstStep = 0.02;
 
-/// A complete set: what it is ordered by.
+/// A complete set with its rank, by which sets are ordered.
 struct RankedSet {
   double rank = -1.0;  ///< Before all sets.
   std::array<std::int32_t, kMostParts> points{};
@@ -62,7 +62,7 @@ struct RankedTargets::Impl {
     return rules.as_targets(points, misfit_of(points), 0);
   }
 
-  /// The stable pairs within reach, from either of their points, by ascending distance.
+  /// Finds the stable pairs within reach: for each point its partners, by ascending distance.
   void find_partners() {
     const auto num_places = static_cast<std::int32_t>(rules.pool().size());
     if (num_places > 0) failure = TargetFailure::NoSecond;
@@ -145,8 +145,9 @@ struct RankedTargets::Impl {
            TargetRules::num_stable_pairs(options.pair_rule, num_fingers);
   }
 
-  /// The third's distance from the seed is close to the first edge, and, if it is the last, such
-  /// that the centroid can be near the center of mass: a range of the seed's sorted partners.
+  /// Searches through the third targets. A third target's distance from the seed must be close to
+  /// the first edge and, if it is the last target, such that the centroid can be near the center of
+  /// mass: this gives a range of the seed's sorted partners.
   void search_thirds(const std::vector<FingerOrder>& orders, double first_edge, double least_rank) {
     const double tolerance = rules.options().edge_tolerance_rel;
     const double allowed = (limit - least_rank) * num_rank_edges;
@@ -191,7 +192,8 @@ struct RankedTargets::Impl {
     return false;
   }
 
-  /// Goes on with `chosen[k]`, a partner of the seed, if it goes with the targets before it.
+  /// Continues the search with `chosen[k]`, a partner of the seed, if it is compatible with the
+  /// targets before it.
   void add(std::size_t k, const std::vector<FingerOrder>& orders, double least_rank) {
     std::array<double, kMostParts> distances{};
     const double first_edge = rules.distance(chosen[0], chosen[1]);
@@ -217,7 +219,7 @@ struct RankedTargets::Impl {
       complete(more);
       return;
     }
-    // The targets after the third come by ascending place: each set of them once.
+    // Targets after the third are taken in ascending order, so that each set of them comes once.
     for (const std::int32_t place : partners[chosen[0]]) {
       if (place == chosen[1] || place == chosen[2] || (k >= 3 && place <= chosen[k])) continue;
       chosen[k + 1] = place;
@@ -231,8 +233,8 @@ struct RankedTargets::Impl {
     return !rules.has_palm() && is_over_limit(least_rank + off);
   }
 
-  /// Whether no order of the same targets with the same seed comes before this one: the least rank,
-  /// then the first points.
+  /// Whether no order of the same targets with the same seed comes before this one; orders are
+  /// compared by rank, then by their points.
   bool is_best_order() const {
     if (num_fingers == 2) return true;
     const double error = rules.edge_error(fingers());

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 constexpr double kTableCell = 0.006;          // [m], like a cell of the tips' reach
 constexpr double kTurn = 2.0 * kPi / kTurns;  // [rad]
-// Widens what is looked for, so that rounding takes nothing away [m] and [rad].
+// Enlarges the search so that rounding excludes no turn [m] and [rad].
 constexpr double kRounding = 1e-9;
 constexpr double kMostCells = 0x1p26;  // 64 m squared
 

@@ -15,8 +15,8 @@ inline constexpr int kTurns = 72;
 /// A set of those turns.
 using Turns = std::bitset<kTurns>;
 
-/// A place as seen from the palm's center: ahead along its direction, aside of it, and which turn's
-/// width its azimuth falls into.
+/// A point in cylindrical coordinates about the palm's center: the coordinate along the palm's
+/// direction, the distance from that axis, and the turn in whose width the azimuth lies.
 struct PointFromPalm {
   double ahead = 0.0;  ///< [m]
   double aside = 0.0;  ///< [m], ≥ 0
@@ -38,15 +38,15 @@ class PalmAxes {
   Eigen::Vector3d center_H_, ahead_H_, right_H_, up_H_;
 };
 
-/// The turns at which a fingertip gets near a place, looked up by the place: never too few, some
-/// too many. Which way the pad looks there is left out.
+/// A table of the turns of the hand at which a fingertip gets near a point, looked up by the point.
+/// No such turn is missing, but some are too many; the direction that the pad faces is ignored.
 class ReachableTurns {
  public:
   /// @param tolerance how near [m].
   ReachableTurns(const PalmAxes& palm, const hands::TipReach& tip, double tolerance);
 
   /// Every turn k at which `hands::TipReach` has a visited cell within the tolerance of the cell
-  /// that holds the place turned by k · 2π/kTurns, and others.
+  /// that holds the point turned by k · 2π/kTurns, and possibly further turns.
   Turns at(const PointFromPalm& place) const;
 
  private:

@@ -19,7 +19,8 @@ std::vector<PoolPoint> points_of(const std::vector<geometry::SurfaceSample>& sam
   return points;
 }
 
-/// Whether fingers can have the first points as their targets; `orders` are the ways to.
+/// Whether the fingers can have these points as their targets; `orders` gets the possible
+/// assignments.
 bool are_in_reach(const TargetRules& rules, PointIndices fingers,
                   std::vector<FingerOrder>& orders) {
   orders = TargetRules::seed_orders();

@@ -16,9 +16,10 @@ class SampleTargets {
                 const RequestedParts& parts, const TargetOptions& options,
                 const std::vector<geometry::SurfaceSample>& samples);
 
-  /// One set, each of its targets drawn from all samples alike; drawn anew, a hundred times
+  /// One set, each of its targets drawn from all samples alike. Sets are drawn, a hundred times
   /// `max_seeds` at most, until the distances are within the fingers' ranges and each target forms
-  /// a stable pair with the seed's: no score, no edge or centroid rule. Empty where none was.
+  /// a stable pair with the seed; scores, edges and centroid do not count. The result has no
+  /// targets where no set was found.
   TargetSelection select(base::Random& random) const;
 
  private:

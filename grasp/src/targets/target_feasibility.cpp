@@ -63,7 +63,8 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
   }
 }
 
-/// Keeps the best place per cell and main direction of the normal, in order.
+/// Keeps the point with the best score per cell and main direction of the normal; the order of the
+/// points stays.
 void thin(std::vector<PoolPoint>& pool, const ObjectModel& object, double spacing) {
   using Cell = std::tuple<double, double, double, int>;  // whole numbers, of any size
   std::map<Cell, std::size_t> best;
@@ -109,7 +110,7 @@ std::array<std::int32_t, kMostParts> ascending(PointIndices points) {
   return sorted;
 }
 
-/// Turns at which each target may be reached by the finger that some order gives it to.
+/// Turns of the hand at which, for some assignment, every target may be reached by its finger.
 Turns turns_of_any(const std::vector<FingerOrder>& orders,
                    const std::array<std::array<Turns, kMostParts>, kMostParts>& reachable,
                    std::size_t num_targets) {

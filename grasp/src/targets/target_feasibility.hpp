@@ -18,30 +18,31 @@ namespace graspfit::grasp::internal {
 struct PoolPoint {
   Eigen::Vector3d point_O;
   Eigen::Vector3d inward_normal_O;
-  std::optional<std::int32_t> patch;  ///< Empty: not a patch's.
+  /// Index into ObjectModel::patches; empty: the point belongs to no patch.
+  std::optional<std::int32_t> patch;
 };
 
-/// One way to give targets to fingers: position in `RequestedParts::fingers` by target, the seed's
-/// 0 first.
+/// One assignment of targets to fingers: for each target the position of its finger in
+/// `RequestedParts::fingers`; the seed's, 0, comes first.
 using FingerOrder = std::array<std::int8_t, kMostParts>;
 
 /// A set: indices into `TargetRules::pool`, the seed first.
 using PointIndices = std::span<const std::int32_t>;
 
-/// What may be a target, and which targets go together (paper section 6): the same for every way of
-/// searching. Several threads may ask at once.
+/// Which points may be targets, and which targets form a feasible set (paper section 6): the same
+/// rules for every kind of search. Several threads may use them at once.
 class TargetRules {
  public:
   /// Refers to the object and the distances. @throws InvalidInput as `TargetSelector`.
   TargetRules(const ObjectModel& object, const PartDistances& distances,
               const RequestedParts& parts, const TargetOptions& options);
-  /// With a pool of its own.
+  /// The same with `pool` in place of the object's patches.
   TargetRules(const ObjectModel& object, const PartDistances& distances,
               const RequestedParts& parts, const TargetOptions& options,
               std::vector<PoolPoint> pool);
 
   const TargetOptions& options() const { return options_; }
-  /// Of patches: ascending by patch.
+  /// The points that may be targets; where they are patches, ascending by patch.
   const std::vector<PoolPoint>& pool() const { return pool_; }
   const std::vector<int>& fingers() const { return parts_.fingers; }
   std::size_t num_fingers() const { return parts_.fingers.size(); }
@@ -62,12 +63,12 @@ class TargetRules {
   /// Number of pairs that have to be stable among that many targets.
   static double num_stable_pairs(PairRule rule, std::size_t num_targets);
 
-  /// Whether the seed's finger and another reach `distance`.
+  /// Whether the tips of the seed's finger and of some other one can be `distance` apart.
   bool is_in_seed_reach(double distance) const;
-  /// The only way to give the seed to a finger.
+  /// The only assignment of the seed alone.
   static std::vector<FingerOrder> seed_orders() { return {FingerOrder{}}; }
-  /// The ways of giving one more target to a finger left: `distances` are those from the targets
-  /// that `orders` are about to it, in order.
+  /// The assignments that extend those of `orders` by one more target, to a finger that has none
+  /// yet; `distances` are the new target's distances from the assigned targets, in order.
   std::vector<FingerOrder> extended(const std::vector<FingerOrder>& orders,
                                     std::span<const double> distances) const;
   bool is_extendable(const std::vector<FingerOrder>& orders,
@@ -75,14 +76,15 @@ class TargetRules {
 
   /// Distance of the points' centroid from the center of mass over the normalizing radius.
   double centroid_error(PointIndices points) const;
-  /// Mean error of all edges but the first; 0 for two. Independent of the order of all but the
-  /// first two, to the bit.
+  /// Mean error of all edges but the first; 0 for two. The result does not depend, to the bit, on
+  /// the order of the targets after the first two.
   double edge_error(PointIndices fingers) const;
   /// The rank of a set (see `RankedTargets`); `palm_misfit` where it has a palm, the last point.
   double rank(PointIndices points, std::optional<double> palm_misfit) const;
 
-  /// Mean distance of the fingers' targets from where their tips get while the palm is at `palm`,
-  /// in normalizing radii, for the best turn and order; empty if `palm` cannot be the palm's.
+  /// Mean distance of the fingers' targets from the points that their tips reach while the palm is
+  /// at `palm`, in normalizing radii, for the best turn and assignment; empty if `palm` cannot be
+  /// the palm's target.
   std::optional<double> palm_misfit(PointIndices fingers, const std::vector<FingerOrder>& orders,
                                     std::int32_t palm) const;
 
@@ -104,8 +106,9 @@ class TargetRules {
   const contact::StablePairTest stable_pairs_;
   std::vector<PoolPoint> pool_;
   enum class PalmSpace : signed char { Unknown, Free, Taken };
-  mutable std::vector<std::atomic<PalmSpace>> palm_space_;  ///< Per point: for the palm.
-  std::vector<Eigen::Matrix3d> turns_H_;                    ///< About the palm's direction.
+  /// Per point: whether the space before it is free for the palm.
+  mutable std::vector<std::atomic<PalmSpace>> palm_space_;
+  std::vector<Eigen::Matrix3d> turns_H_;  ///< About the palm's direction.
   std::optional<PalmAxes> palm_axes_;
   std::vector<std::optional<ReachableTurns>> reachable_turns_;  ///< Per finger of the hand.
 };

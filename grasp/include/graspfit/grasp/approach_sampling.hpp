@@ -23,8 +23,8 @@ struct ApproachSamplingOptions {
   int count = 1000;  ///< Of surface samples (K), in [1, 10⁶]; the box has as many as its grid.
   double box_margin = 0.01;         ///< By which the box is larger on every side [m], > 0.
   double box_spacing = 0.02;        ///< Of the grid on the box's faces [m], > 0.
-  double largest_standoff = 0.025;  ///< Of the palm from the sample, or none: either with
-                                    ///< probability ½ [m], ≥ 0.
+  double largest_standoff = 0.025;  ///< Standoff of the palm from the sample, taken with
+                                    ///< probability ½, else none [m], ≥ 0.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
 

@@ -10,8 +10,12 @@ namespace graspfit::grasp {
 /// How raw scores become comparable with the threshold 0.6: the paper does not say, and
 /// nothing else that it leaves open matters as much.
 enum class ScoreNormalization {
-  FloorMedian,  ///< x floored at 0.05, 1/x, mean filter, min(1, score / (1.25 · median)) [R].
-  Max,  ///< Divided by the largest score, x floored at 0.05 so that planes do not give infinity.
+  /// x = C_d/L + C_a/gamma is floored at 0.05 and inverted; after the mean filter the score is
+  /// min(1, score / (1.25 · median)) [R].
+  FloorMedian,
+  /// Scores are divided by the largest one, and x is floored at 0.05 so that planes do not give
+  /// infinity.
+  Max,
   Raw,  ///< As the formula stands; unbounded (infinite on planes).
 };
 

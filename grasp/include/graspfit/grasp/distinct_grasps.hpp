@@ -12,10 +12,10 @@ namespace graspfit::grasp {
 struct DistinctOptions {
   double translation = 0.01;             ///< Between palm centers in O [m], ≥ 0.
   double rotation = 0.2617993877991494;  ///< Between palm orientations [rad], ≥ 0; 15°.
-  double joints = 0.2;       ///< Largest difference of an independent joint [rad], ≥ 0; of slides
-                             ///< after division by `slide_scale`.
-  double slide_scale = 0.1;  ///< What counts as one radian of a slide [m], > 0: about the lever of
-                             ///< a finger.
+  double joints = 0.2;  ///< Largest difference of an independent joint [rad], ≥ 0; of prismatic
+                        ///< joints after division by `slide_scale`.
+  double slide_scale = 0.1;  ///< Travel of a prismatic joint that counts as one radian [m], > 0:
+                             ///< about the lever of a finger.
   void validate() const;     ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -26,16 +26,16 @@ struct ConfigurationDistance {
   double joints = 0.0;       ///< As `DistinctOptions::joints` counts it.
 };
 
-/// Symmetric, and the same after a rigid motion of both (the palm moves, the joints do not).
-/// Coupled joints do not count, broken away or not. Rounded.
+/// The distance is symmetric, and the same after a rigid motion of both hands (the palm moves, the
+/// joints do not). Coupled joints do not count, whether broken away or not. Results are rounded.
 /// @throws InvalidInput if a configuration does not have the hand's number of joints, or
 /// `slide_scale` is not a positive length.
 ConfigurationDistance configuration_distance(const hands::HandModel& hand,
                                              const hands::HandConfiguration& a,
                                              const hands::HandConfiguration& b, double slide_scale);
 
-/// Whether two grasps of one object count as different: not for equal ones, whatever the options.
-/// Being alike is no equivalence: a chain of alike grasps may lead anywhere.
+/// Whether two grasps of one object count as different; equal grasps never do, whatever the
+/// options. Being alike is not transitive: a chain of alike grasps may lead anywhere.
 /// @throws InvalidInput for bad options, and as `configuration_distance`.
 bool are_distinct(const hands::HandModel& hand, const hands::HandConfiguration& a,
                   const hands::HandConfiguration& b, const DistinctOptions& options = {});

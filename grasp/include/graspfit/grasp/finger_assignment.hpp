@@ -6,8 +6,9 @@
 
 namespace graspfit::grasp {
 
-/// Assigns targets to fingers: the seed to the first of them, the others by the
-/// permutation with the least angular error around the palm axis. A target of the palm stays it.
+/// Assigns targets to fingers: the seed to the first finger of `parts`, the others by the
+/// permutation with the least angular error around the palm axis. The palm's target stays the
+/// palm's.
 /// @throws InvalidInput unless there is one target for every part, the palm's (if any) last.
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const RequestedParts& parts, const PalmPlacement& placement);

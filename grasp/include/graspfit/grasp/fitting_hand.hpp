@@ -35,7 +35,8 @@ class FittingHand {
   /// A small piece of a link's surface, for nearest points in several places of one link.
   struct Piece {
     geometry::MeshQuery surface_L;
-    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();  ///< Of a ball that holds it [m].
+    /// Center of a ball that contains the piece [m].
+    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();
     double radius = 0.0;
   };
   const hands::HandModel& model() const { return model_; }
@@ -55,9 +56,9 @@ class FittingHand {
 };
 
 /// The paper's d_min: smallest value of the distance map over the voxels that a link's surface
-/// occupies [voxels]. Values above `enough` are not searched further: the result is then a number
-/// above it, and no more than that is known. Approximate: the surface is represented by points at
-/// the chosen spacing.
+/// occupies [voxels]. A value above `enough` is not searched further: of such a result it is only
+/// known that the value is above `enough`, too. Approximate: the surface is represented by points
+/// at the chosen spacing.
 float smallest_distance(const FittingHand& hand, int link, const geometry::RigidTransform& X_OL,
                         const geometry::SignedDistanceMap& map, float enough);
 

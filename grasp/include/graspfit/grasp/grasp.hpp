@@ -31,8 +31,9 @@ struct GraspPenetration {
 /// A grasp with everything measured on it. All in the object frame O.
 struct Grasp {
   hands::HandConfiguration configuration;
-  std::optional<PreGrasp> pre_grasp;  ///< Open, clear of the object, with a free way to the grasp.
-  std::optional<contact::Squeeze> squeeze;  ///< Commanded beyond the surface.
+  /// An open hand, clear of the object, with a collision-free path to the grasp.
+  std::optional<PreGrasp> pre_grasp;
+  std::optional<contact::Squeeze> squeeze;  ///< The configuration commanded beyond the surface.
   TargetContacts targets;
   std::vector<contact::Contact> contacts;
   contact::ContactQuality quality;
@@ -42,15 +43,16 @@ struct Grasp {
   GraspPenetration penetration;
   bool has_all_contacts = false;  ///< Every requested finger/palm has a contact; of a refined grasp
                                   ///< one with a gap of at most RefinementOptions::largest_gap.
-  std::int64_t attempt = 0;       ///< Number of the one that made it; seeds it with the run's seed.
-  int iterations = 0;             ///< Of the adjustment loop.
+  std::int64_t attempt = 0;  ///< Number of the attempt that made the grasp; with the run's seed it
+                             ///< seeds the attempt's random numbers.
+  int iterations = 0;        ///< Of the adjustment loop.
   int refinement_iterations = 0;  ///< Of refinement; 0 without.
 
-  /// Of the contacts that touch; without any nothing is withstood.
+  /// ε of the contacts that touch; 0 without any.
   double epsilon() const { return wrench ? wrench->epsilon : 0.0; }
   bool is_force_closure() const { return wrench && wrench->is_force_closure; }
-  /// Force closure by more than the rounding of wrenches, about 1e-16, which decides by itself
-  /// where contacts face each other exactly.
+  /// Force closure with an ε above the rounding of wrenches (about 1e-16), which alone decides
+  /// about `is_force_closure` where contacts face each other exactly.
   bool is_closed() const { return is_force_closure() && wrench->epsilon > 1e-9; }
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
@@ -58,8 +60,8 @@ struct Grasp {
   bool is_valid() const { return is_usable() && !penetration.is_any() && has_all_contacts; }
 };
 
-/// How far the grasp is from every one of its targets: the nearest contact of the part that the
-/// target is for [m]; infinite where that has none. In the order of the targets.
+/// Distance of every target from the nearest contact of the part that the target is for [m], in the
+/// order of the targets; infinite where the part has no contact.
 std::vector<double> target_distances(const Grasp& grasp);
 
 }  // namespace graspfit::grasp

@@ -6,14 +6,14 @@
 
 namespace graspfit::grasp {
 
-/// The facts about grasps of a file, for metrics in a tool's wrench convention: everything there
-/// is. `object` is the record's own mesh. Both must outlive this.
+/// All facts about the grasps of a file, for metrics in a tool's wrench convention. `object` is the
+/// mesh of the file's object record. File and object must outlive this.
 class GraspFileMetrics {
  public:
   GraspFileMetrics(const GraspFile& file, const geometry::MeshQuery& object,
                    contact::WrenchTool tool);
 
-  /// Of a grasp as measured (`RecordedScene::measure`); it must outlive the result.
+  /// The facts of a measured grasp (`RecordedScene::measure`); the grasp must outlive the result.
   GraspMetricFacts facts(const Grasp& grasp) const;
 
  private:

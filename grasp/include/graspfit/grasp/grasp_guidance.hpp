@@ -18,14 +18,16 @@
 /// What one planning method does differently from another: where hands start and how they close.
 /// Hands, collision guard, refinement, contacts, measures, distinctness, budgets and threads are
 /// the planner's and the same for all. A method is a function that makes its `GraspGuidance`, added
-/// to `PlanningMethods` by name: here in planning_methods, elsewhere to a copy of that.
+/// to `PlanningMethods` by name: a method of this library in `planning_methods`, any other to a
+/// copy of them.
 
 namespace graspfit::grasp {
 
 /// What every method is given. All of it outlives the guidance.
 struct GuidanceScene : GraspScene {
   const RequestedParts& parts;
-  const PlannerOptions& options;  ///< With what the planner's rules set where they leave it open.
+  /// Completed by the planner's rules where they leave a value open.
+  const PlannerOptions& options;
 };
 
 /// One hand about to close on the object.
@@ -40,15 +42,15 @@ struct GuidedStart {
 struct GuidedStarts {
   std::vector<GuidedStart> starts = {};  ///< Empty: the attempt fails with `failure`, or there was
                                          ///< nothing left to try.
-  std::optional<std::string> failure = {};  ///< Why there is none, for statistics.
-  bool is_exhausted = false;                ///< There will be none for any later attempt either.
+  std::optional<std::string> failure = {};  ///< Why there is no start, for statistics.
+  bool is_exhausted = false;                ///< No later attempt will have starts either.
   std::int64_t seeds_tried = 0;             ///< Work done, for statistics.
 };
 
-/// What a method looks at to guide a hand, as a table of points: its "intermediate model" (paper,
-/// Fig. 19).
+/// The geometry from which a method derives its starts, as a table of points: its "intermediate
+/// model" (paper, Fig. 19).
 struct GuidanceModel {
-  std::vector<std::string> columns;  ///< x_m, y_m, z_m (in O), then whatever there is to say.
+  std::vector<std::string> columns;  ///< x_m, y_m, z_m (in O), then columns of the method's own.
   std::vector<std::vector<double>> rows = {};  ///< One value per column.
 };
 
@@ -57,17 +59,20 @@ class GraspGuidance {
  public:
   virtual ~GraspGuidance() = default;
 
-  /// The starts of attempt `number`, ≥ 0. They depend on the number alone (random numbers are of
-  /// the stream (seed, number), as may be those of the preparation), not on order or threads.
+  /// The starts of attempt `number`, ≥ 0. They depend on the number alone, not on the order of
+  /// attempts or on threads: random numbers are drawn from the stream (seed, number), as may be
+  /// those of the preparation.
   virtual GuidedStarts starts(std::int64_t number) const = 0;
 
   /// Its intermediate model, for pictures.
   virtual GuidanceModel model() const = 0;
 
-  /// All that `GuidedStarts::failure` may say, for statistics with zeros. May be empty.
+  /// All texts that `GuidedStarts::failure` may hold, so that statistics show zero for those that
+  /// did not occur. May be empty.
   virtual std::vector<std::string> failures() const { return {}; }
 
-  /// What the preparation came to: "balls on an axis" 312, for example. May be empty.
+  /// Counts of what the preparation found, by name: "balls on an axis" 312, for example. May be
+  /// empty.
   virtual std::map<std::string, std::int64_t> counts() const { return {}; }
 };
 
@@ -77,7 +82,7 @@ struct PlanningMethod {
   std::string title;  ///< In words.
   std::function<std::unique_ptr<GraspGuidance>(const GuidanceScene&)> make;
   bool has_targets = false;  ///< Its hands are fitted to target contacts.
-  bool has_scores = false;   ///< It chooses these by the score map.
+  bool has_scores = false;   ///< It chooses the target contacts by the score map.
 };
 
 /// Methods by name, in the order in which they were added.

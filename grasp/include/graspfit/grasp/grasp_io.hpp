@@ -56,7 +56,8 @@ struct ImportRecord {
 /// Its schema is grasp/grasps.schema.json.
 ///
 /// Paths in it are as they were given, those of shipped hands relative to the folder of shipped
-/// hands, and each is written as its `base::path_text`; hashes say whether what is found is it.
+/// hands, and each is written as its `base::path_text`; hashes tell whether a file that is found is
+/// the recorded one.
 struct GraspFile {
   ObjectRecord object;
   SurroundingsRecord surroundings;
@@ -64,24 +65,27 @@ struct GraspFile {
   hands::HandModel hand;                      ///< As loaded again from the files recorded.
   std::vector<std::string> link_mesh_sha256;  ///< One per link, of its mesh files one after the
                                               ///< other; empty text where it has none.
-  std::string preset;  ///< That `options` come from, before what was set beside it; empty: none.
+  std::string preset;  ///< Name of the preset that `options` started from, before other options
+                       ///< were set; empty: none.
   PlannerOptions options;
   std::string version = library_version();  ///< Of the library that planned.
-  std::vector<std::string> fingers;         ///< Requested, the thumb first; what `options` came to.
-  bool palm = false;                        ///< Requested too.
-  double voxel_size = 0.0;                  ///< [m]
-  double clip_thickness = 0.0;              ///< Used where a pad states none [m].
-  double merge_distance = 0.0;              ///< Used by the measure [m].
-  std::vector<Grasp> grasps;                ///< Best M first; with `hold`, largest margin first.
-  std::optional<HoldRecord> hold;           ///< Empty: not tested while planning.
-  std::optional<ImportRecord> imported;     ///< Empty: planned; else `options` only measured.
+  /// Names of the requested fingers, the thumb first, as `options` select them.
+  std::vector<std::string> fingers;
+  bool palm = false;               ///< Whether the palm is requested, too.
+  double voxel_size = 0.0;         ///< [m]
+  double clip_thickness = 0.0;     ///< Used where a pad states none [m].
+  double merge_distance = 0.0;     ///< Used by the measure [m].
+  std::vector<Grasp> grasps;       ///< Best M first; with `hold`, largest margin first.
+  std::optional<HoldRecord> hold;  ///< Empty: not tested while planning.
+  /// Empty: the grasps were planned; else `options` only served to measure them.
+  std::optional<ImportRecord> imported;
   PlannerStatistics statistics;
   PlannerStop stop = PlannerStop::Attempts;
   PlannerTimings timings;
 };
 
-/// The gap up to which contacts of the file's grasps bear forces [m]: as the planner's of planned
-/// ones; empty for imported ones, which nobody refined: all contacts do.
+/// The gap up to which contacts of the file's grasps bear forces [m]: for planned grasps the
+/// planner's; empty for imported grasps, which were not refined: all their contacts bear forces.
 std::optional<double> bearing_gap(const GraspFile& file);
 
 /// The record of a run of the planner.
@@ -110,7 +114,7 @@ UsedMeshFiles write_used_meshes(const std::filesystem::path& folder, const hands
 /// the shipped hands by the name of its description.
 /// Options that the file lacks, as those that are newer than it, have their defaults.
 /// @throws IoError (file, JSON path, what) for malformed files, versions before 4 (their grasps
-/// lack what is measured today), options that there are not, hash mismatch.
+/// lack what is measured today), unknown options, hash mismatch.
 GraspFile read_grasps(const std::filesystem::path& path);
 
 /// `schema`, the text of `grasps.schema.json`, with the options that the planner has now. `file` is
@@ -120,8 +124,8 @@ std::string with_option_schema(const std::string& schema, const std::string& fil
 /// One row per grasp, units in the column names (`grasps.csv`).
 std::string to_csv(const GraspFile& file);
 
-/// The surroundings of a record; `files` says where its obstacles are (empty: where it says
-/// itself), else one for each.
+/// The surroundings of a record; `files` gives the path of each obstacle's file; empty: the paths
+/// of the record.
 /// @throws IoError if a file is missing or its SHA-256 is another one.
 Surroundings read_surroundings(const SurroundingsRecord& record,
                                const std::vector<std::filesystem::path>& files = {});
@@ -135,7 +139,7 @@ double largest_requested_gap(const Grasp& grasp);
 /// The deepest overlap found, with the object or of the hand with itself [m].
 double largest_penetration(const Grasp& grasp);
 
-/// All that the grasps of a file were measured in, prepared again from the meshes.
+/// Everything that the measures of a file's grasps depend on, prepared again from the meshes.
 class RecordedScene {
  public:
   /// `object` and `surroundings` must be the records' own; `file` must outlive this. Weak features

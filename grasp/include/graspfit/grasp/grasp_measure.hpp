@@ -27,8 +27,8 @@ struct MeasuringScene {
   contact::QualityContext quality_context = {};
   contact::QualityOptions quality_options = {};
   contact::ContactEstimationOptions contact_options = {};
-  std::optional<double> largest_gap =
-      std::nullopt;  ///< A requested contact with a larger gap is none [m].
+  /// A requested contact with a larger gap does not count as contact [m].
+  std::optional<double> largest_gap = std::nullopt;
   std::optional<double> bearing_gap =
       std::nullopt;  ///< Contacts with a larger gap bear no force: not in ε [m].
 };

@@ -26,37 +26,39 @@ namespace graspfit::grasp {
 
 struct PlannerOptions;
 
-/// All that a metric may look at. Contacts and the object's scales are enough for most; what is not
-/// given makes the metrics that need it have no value. Everything pointed at must outlive this.
+/// Everything that a metric may depend on. Contacts and the object's scales are enough for most
+/// metrics; a metric has no value where a fact that it needs is not given. Everything pointed at
+/// must outlive this.
 struct GraspMetricFacts {
   std::vector<contact::Contact> contacts;
-  /// Contacts with a larger gap bear no force [m]: in M and in what is said of contacts they count,
-  /// in wrench spaces and balances not. Empty: all bear forces.
+  /// Contacts with a larger gap bear no force [m]: they count in M and in the metrics of contacts,
+  /// but not in wrench spaces and balances. Empty: all contacts bear forces.
   std::optional<double> bearing_gap = std::nullopt;
   contact::WrenchObject object;  ///< Center of mass and scales.
   double friction = 0.4;         ///< Coulomb's μ of all wrench metrics, ≥ 0.
-  contact::WrenchTool tool = contact::WrenchTool::Graspfit;  ///< Whose wrench convention.
-  const Grasp* grasp = nullptr;  ///< As measured, with these contacts: for penetration and M.
+  /// The tool whose wrench convention is used.
+  contact::WrenchTool tool = contact::WrenchTool::Graspfit;
+  const Grasp* grasp = nullptr;  ///< The measured grasp with these contacts, for penetration and M.
   const geometry::MeshQuery* surface = nullptr;  ///< Of the object: for pose robustness.
   /// For M where there is no `grasp`, and for pose robustness.
   std::optional<contact::QualityContext> quality_context = std::nullopt;
   contact::QualityOptions quality_options = {};
 };
 
-/// Facts and what several metrics compute from them, each once and when it is first asked for. For
-/// one thread at a time.
+/// Facts and the intermediate results that several metrics share; each is computed once, when it is
+/// first asked for. An input may be used by one thread at a time.
 class GraspMetricInput {
  public:
   explicit GraspMetricInput(GraspMetricFacts facts);
 
   const GraspMetricFacts& facts() const { return facts_; }
   std::span<const contact::Contact> contacts() const { return facts_.contacts; }
-  /// Those that bear forces.
+  /// The contacts that bear forces.
   std::span<const contact::Contact> touching() const { return touching_; }
 
-  /// The convention of `facts().tool`. Empty where no contact touches, and where it has no torque
-  /// scale for them (DexGraspBench, all contacts in one point). @throws InvalidInput for bad facts:
-  /// a friction below 0, an object without extent.
+  /// The convention of `facts().tool`. Empty where no contact touches, and where the convention has
+  /// no torque scale for the contacts (DexGraspBench, all contacts in one point). @throws
+  /// InvalidInput for bad facts: a friction below 0, an object without extent.
   const std::optional<contact::WrenchConvention>& convention() const;
 
   /// The wrench space in that convention; null where there is no convention.
@@ -66,7 +68,7 @@ class GraspMetricInput {
   /// M and its parts: of the grasp, or from contacts and `quality_context`; null without both.
   const contact::ContactQuality* quality() const;
 
-  /// At the default noise; null without contacts or `surface`.
+  /// Pose robustness at the default noise; null without contacts or `surface`.
   const PoseRobustness* robustness() const;
 
  private:
@@ -115,8 +117,8 @@ class GraspMetrics {
   const GraspMetric& at(std::string_view name) const;
   bool contains(std::string_view name) const;
 
-  /// Those of the given names, in the order that they have here. @throws InvalidInput as `at`, and
-  /// for a name given twice.
+  /// The metrics of the given names, in the order that they have in this list. @throws InvalidInput
+  /// as `at`, and for a name given twice.
   GraspMetrics selected(std::span<const std::string> names) const;
 
  private:
@@ -126,8 +128,8 @@ class GraspMetrics {
 /// The metrics of this library. To use others too, copy it and `add` them.
 const GraspMetrics& grasp_metrics();
 
-/// The facts about a grasp that was planned on `object` with `options`: everything there is.
-/// `object`, `hand` and `grasp` must outlive the result.
+/// All facts about a grasp that was planned on `object` with `options`. `object`, `hand` and
+/// `grasp` must outlive the result.
 GraspMetricFacts metric_facts(const ObjectModel& object, const hands::HandModel& hand,
                               const PlannerOptions& options, const Grasp& grasp);
 

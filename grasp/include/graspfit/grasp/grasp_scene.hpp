@@ -7,7 +7,8 @@
 
 namespace graspfit::grasp {
 
-/// Who is there when a hand moves at an object, and what counts as contact. Refers to all of it.
+/// The hand, the object and the surroundings among which the hand moves, and what counts as
+/// contact. The scene refers to all of them and owns none.
 struct GraspScene {
   const FittingHand& hand;
   const ObjectModel& object;

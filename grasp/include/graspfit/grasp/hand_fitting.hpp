@@ -16,31 +16,36 @@ enum class GraspStyle {
               ///< first and links behind the tips are closed onto it.
 };
 
-/// What a motion of the hand must not do (paper section 9).
+/// Which motions of the hand the guard refuses (paper section 9).
 enum class PenetrationGuard {
-  Voxels,  ///< Let a link's surface enter a full voxel: d_min < 0 [P]; nor end with
-           ///< the true meshes deeper in each other than a voxel's edge, which d_min alone lets
-           ///< happen where a partial voxel is entered along its diagonal [R].
-  Meshes,  ///< Nor, where a link shares voxels with the surface (d_min = 0), let the true meshes
-           ///< intersect, decided exactly [R].
+  /// Motions in which a link's surface would enter a full voxel: d_min < 0 [P]. The hand may also
+  /// not end with the true meshes deeper in each other than a voxel's edge, which d_min alone
+  /// allows where a partial voxel is entered along its diagonal [R].
+  Voxels,
+  /// In addition, where a link shares voxels with the surface (d_min = 0), motions after which the
+  /// true meshes would intersect, decided exactly [R].
+  Meshes,
 };
 
-/// When a closing part has touched.
+/// When a closing part (a finger or the palm) counts as touching the object.
 enum class ContactState {
-  Closed,  ///< When its next motion would enter what the guard keeps free, or take its surface out
-           ///< of its clip volume: fingers "stop their movements by touching the object surface"
-           ///< [P].
-  FirstGraze,  ///< When its clip volume holds a first sliver of surface: up to a clip thickness
-               ///< before it, with a few hundredths of the pad's area. For comparison; no reading
-               ///< of the paper [R].
+  /// When the guard would refuse the part's next motion, or that motion would take the object's
+  /// surface out of the pad's clip volume: fingers "stop their movements by touching the object
+  /// surface" [P].
+  Closed,
+  /// When the pad's clip volume first holds a sliver of the object's surface: the pad is then up to
+  /// a clip thickness before the surface, and the contact has a few hundredths of the pad's area.
+  /// This state is for comparison and is no reading of the paper [R].
+  FirstGraze,
 };
 
 /// What the palm does once a finger touches.
 enum class PalmAfterContact {
-  Frozen,     ///< It stays: a shift would drag the finger.
-  Recentred,  ///< Once the fingers have closed it goes on in small steps that bring the mean of the
-              ///< contacts to that of their targets; fingers give way and close again, as long as
-              ///< contacts come nearer to targets.
+  Frozen,  ///< The palm stays where it is: a shift would drag the finger.
+  /// Once the fingers have closed, the palm moves on in small steps that bring the mean of the
+  /// contacts toward the mean of their targets. Fingers open where a step needs it and close again,
+  /// as long as contacts come nearer to targets.
+  Recentred,
 };
 
 /// Parameters of the fitting loop (paper sections 7–9).
@@ -56,11 +61,14 @@ struct FittingOptions {
       0.5;  ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
   PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
   ContactState contact_state = ContactState::Closed;  ///< [P]
-  double closing_tolerance = 1e-5;  ///< Motion at which closing ends where it is to touch [m], > 0.
+  /// Closing onto the surface (`ContactState::Closed`) ends when its steps are shorter than this
+  /// [m], > 0.
+  double closing_tolerance = 1e-5;
   PalmAfterContact palm_after_contact = PalmAfterContact::Recentred;  ///< [R]
-  /// Whether links must not run into each other either, exclusions of the model left out [R].
-  /// Without: fingers close through each other, and refinement has to part them. Links that meet
-  /// where the loop starts are let go on.
+  /// Whether the guard also refuses motions that bring links of the hand into each other, except
+  /// pairs that the model excludes [R]. Without it fingers close through each other, and refinement
+  /// has to separate them. Links that already intersect where the loop starts may continue to do
+  /// so.
   bool guard_self = false;
   double give_up_distance = 0.03;  ///< A part that has stopped farther than this from the object
                                    ///< ends the attempt [m], ≥ 0: refinement reaches as far [R].
@@ -94,21 +102,23 @@ struct FittingResult {
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop
 /// of five steps (section 8) under the penetration guard (section 9).
 ///
-/// Readings [R]. The five steps rest where fingertips are over their targets; that posture is found
-/// first, without the object, and steps 2 to 5 move toward it: the palm along n_palm to where the
-/// tips' centroid will be over that of the targets, then fingers by all their joints together, then
-/// on by proximal joints and, where a link behind the tip is stopped, by the distal ones. For power
-/// grasps: the palm first, until its clip volume holds surface or the guard stops it; then
-/// each finger, one without a target too, by its proximal joint until stopped, then by the next. An
+/// Readings [R]. The paper's five steps come to rest in the posture in which the fingertips are
+/// over their targets. That posture is found first, without the object, and steps 2 to 5 move the
+/// hand toward it: the palm moves along n_palm until the fingertips' centroid will be over the
+/// targets' centroid; then each finger closes by all its joints together, then on by its proximal
+/// joints and, where a link behind the tip is stopped, by its distal ones. In power grasps the palm
+/// moves first, until its clip volume holds surface or the guard stops it; then every finger, with
+/// a target or without, closes by its proximal joint until that is stopped, then by the next. An
 /// attempt ends early when a part has stopped farther than `give_up_distance` from the object.
 ///
 /// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0), and, with the
 /// guard on meshes, no link intersects the object. With the guard on voxels the true meshes may
-/// intersect. No configuration on the way touches the surroundings. Links of the hand may intersect
-/// each other in either case.
+/// intersect. No configuration on the path touches the surroundings. Links of the hand may
+/// intersect each other in either case.
 /// @throws InvalidInput for options out of range, fewer than two targets or unassigned ones.
 ///
-/// @param goal `fitting_goal`, where it is known already.
+/// @param goal the posture at the targets toward which the loop moves the hand, if it is known
+/// already; empty: it is computed.
 FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetContacts& targets,
                        const PalmPlacement& placement, const FittingOptions& options,
                        const std::optional<hands::HandConfiguration>& goal = {});
@@ -116,21 +126,21 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
 /// How a hand that starts in collision backs off, against its palm direction.
 struct RetreatRule {
   std::optional<double> step = {};  ///< [m], > 0; empty: a voxel.
-  std::optional<int> most_steps =
-      {};  ///< ≥ 0; empty: as many as take the hand out of any object's reach.
-  /// Whether the fingers close all the same where the hand is still not clear: links that are
-  /// inside the object stay where they are, and the result may have d_min < 0.
+  /// ≥ 0; empty: as many as take the whole hand past the object.
+  std::optional<int> most_steps = {};
+  /// Whether the fingers close even if the hand is still not clear after its last step: links that
+  /// are inside the object stay where they are, and the result may have d_min < 0.
   bool closes_in_collision = false;
   /// Whether a hand that has backed off goes back again until its palm touches, or the guard stops
   /// it, but not beyond where it started.
   bool palm_may_touch = false;
 };
 
-/// Closes the fingers of a hand that stands somewhere, open: the methods without target contacts.
-/// The hand backs off until it is clear; the palm, if it is requested, moves on to the surface, by
-/// four voxels at most; then the requested fingers (of power grasps all) close joint by joint,
-/// proximal to distal, under the same guard, contact tests and budget as in `fit_hand`, until each
-/// touches, is stopped or is at its limits.
+/// Closes the fingers of an open hand from a given pose: the way in which planning methods without
+/// target contacts close hands. The hand backs off until it is clear; the palm, if it is requested,
+/// moves on to the surface, by four voxels at most; then the requested fingers (of power grasps
+/// all) close joint by joint, proximal to distal, under the same guard, contact tests and budget as
+/// in `fit_hand`, until each touches, is stopped or is at its limits.
 ///
 /// @throws InvalidInput for options out of range, no finger, or one without a fingertip pad.
 FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,

@@ -7,7 +7,8 @@
 
 namespace graspfit::grasp {
 
-/// By how much the solid that is planned on may differ from the object's file before it is said.
+/// By how much the solid that is planned on may differ from the object's file before the difference
+/// is reported.
 struct DifferenceLimits {
   double volume_rel = 0.01;  ///< Change of the volume over that of the solid, >= 0. A hundredth is
                              ///< what voxels of the default resolution are uncertain by.

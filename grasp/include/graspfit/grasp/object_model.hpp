@@ -15,7 +15,7 @@
 
 namespace graspfit::grasp {
 
-/// Voxels of room around the object where nothing else is asked for.
+/// Voxels of margin around the object where `ObjectModelOptions::margin` is empty.
 ///
 /// Enough for any hand: the fitting loop tells distances apart up to one voxel more than its
 /// longest step (3 voxels), and beyond the lattice the distance map goes on as a lower bound.
@@ -24,11 +24,12 @@ inline constexpr int kRoomVoxels = 8;
 /// How an object is prepared for planning.
 struct ObjectModelOptions {
   int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
-  /// Room around the object [m], ≥ 0; empty: `kRoomVoxels`, whatever the hand.
+  /// Margin of the voxel grid around the object [m], ≥ 0; empty: `kRoomVoxels`, for any hand.
   std::optional<double> margin = {};
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   ScoreOptions score = {};
-  std::optional<geometry::WeakRegionOptions> weak = {};  ///< Looked for where given.
+  /// Options of the search for weak regions; empty: no search.
+  std::optional<geometry::WeakRegionOptions> weak = {};
   base::ContentCache weak_cache = {};  ///< Where weak regions of earlier runs are kept.
   void validate() const;               ///< Throws InvalidInput naming the field and its value.
 };
@@ -39,7 +40,7 @@ struct ObjectModel {
   geometry::MeshQuery query;                    ///< The mesh with its box tree.
   geometry::MassProperties mass;                ///< Center of mass at uniform density.
   double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m].
-  geometry::VoxelGrid grid;                     ///< The object and some room around it.
+  geometry::VoxelGrid grid;                     ///< The object and a margin around it.
   std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.
   geometry::SignedDistanceMap distance;
@@ -51,9 +52,10 @@ struct ObjectModel {
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
 
-/// Score of the surface at `point_O`, a point on it: of the patch in the voxel that holds the
-/// point. Where rounding put it into a voxel without surface, of the patch with the nearest
-/// centroid of those in the 26 voxels around. Empty for points farther away.
+/// Contact score at `point_O`, a point on the surface: the score of the patch in the voxel that
+/// holds the point. Where rounding put the point into a voxel without surface, the score is that of
+/// the patch with the nearest centroid in the 26 voxels around. The result is empty for points
+/// farther away.
 std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::Vector3d& point_O);
 
 /// Seconds spent in each step of `build_object_model`, for benchmarks.
@@ -76,10 +78,11 @@ ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
 /// The kind of entry that `cached_object_model` keeps.
 inline constexpr std::string_view kObjectModelKind = "object_model";
 
-/// The same model, bit for bit, but patches, classes, distances and scores that were found before
-/// are read from the cache, and new ones kept there; the box tree and the mass are found anew, and
-/// weak regions have entries of their own (`ObjectModelOptions::weak_cache`). Entries that are
-/// damaged are as good as none and replaced. What is read counts in none of the timings.
+/// The same model as of `build_object_model`, bit for bit. Patches, classes, distances and scores
+/// that were computed before are read from the cache, and new ones are stored there; the box tree
+/// and the mass are computed again, and weak regions have entries of their own
+/// (`ObjectModelOptions::weak_cache`). Damaged entries are ignored and replaced. Reading counts in
+/// none of the timings.
 ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                                 const ObjectModelOptions& options,
                                 const base::ContentCache& cache = {},

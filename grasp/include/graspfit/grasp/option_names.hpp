@@ -31,8 +31,9 @@ struct NamedValue {
 template <class Enum>
 NamedValue(Enum, const char*) -> NamedValue<Enum>;
 
-/// All values of an enumeration with their names, in their order of declaration: of those of the
-/// planner and of wrench conventions that follow; of others nothing, which does not compile.
+/// All values of an enumeration with their names, in the order of declaration. The specializations
+/// below are for the enumerations of the planner and of wrench conventions; use with any other
+/// enumeration does not compile.
 template <class Enum>
 inline constexpr auto kNames = nullptr;
 template <>

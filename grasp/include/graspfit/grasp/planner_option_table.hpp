@@ -26,7 +26,7 @@ enum class OptionKind {
   Direction,  ///< x, y, z.
 };
 
-/// A value of an option, in the option's unit: of kinds in their order.
+/// A value of an option, in the option's unit; the types are in the order of `OptionKind`.
 using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>,
                                  Eigen::Vector3d>;
 
@@ -46,10 +46,10 @@ struct PlannerOption : OptionRow {
 /// All options that have a name, in the order of grasp files.
 const std::vector<PlannerOption>& planner_option_table();
 
-/// Sets an option of the table. "theta-max-deg" is of targets and measure alike, "fingers" sets
-/// their number, too, and 0 as "weak-thickness-mm" means that nothing is weak. Ranges are checked
-/// by `PlannerOptions::validate`. Precondition: `value` is of the option's kind, a choice one of
-/// its names.
+/// Sets an option of the table. "theta-max-deg" sets the angle of targets and of the measure,
+/// "fingers" sets the number of contacts, too, and 0 as "weak-thickness-mm" means that nothing is
+/// weak. Ranges are checked by `PlannerOptions::validate`. Precondition: `value` is of the option's
+/// kind, a choice one of its names.
 void set_option(PlannerOptions& options, const PlannerOption& option, const OptionValue& value);
 
 }  // namespace graspfit::grasp

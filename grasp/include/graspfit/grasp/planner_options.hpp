@@ -27,16 +27,17 @@ enum class Acceptance {
 };
 
 /// Which usable grasps are rejected, so that the next attempt draws new targets: the validation of
-/// the paper's section 6.5, which leaves open how much is too much.
+/// the paper's section 6.5, which does not state the limits.
 enum class Rejection {
   None,
-  Deviation,  ///< A requested contact farther from its target as drawn than
-              ///< `PlannerOptions::largest_deviation`, or missing. Of methods without targets none.
-  Quality,    ///< M < min(0.5 · ideal M, 0.6): below "high quality"; of methods without targets
-              ///< M < 0.6. Selects by M itself.
+  /// Grasps in which a requested contact is missing, or farther from its target as drawn than
+  /// `PlannerOptions::largest_deviation`. Methods without targets reject none.
+  Deviation,
+  Quality,  ///< M < min(0.5 · ideal M, 0.6): below "high quality"; of methods without targets
+            ///< M < 0.6. Selects by M itself.
 };
 
-/// When the planner stops looking.
+/// When the planner stops searching.
 enum class SearchRule {
   Best,   ///< Use all attempts and return the best accepted grasps: the paper's generate, evaluate,
           ///< select.
@@ -46,29 +47,35 @@ enum class SearchRule {
 
 /// What becomes of a hand that has closed while a requested part does not touch.
 enum class MissingContact {
-  Fails,     ///< The attempt has failed: a formed grasp needs them all [P: its stop condition].
-  Measured,  ///< The contacts that there are count; M > 0 makes it usable. Without refinement only:
-             ///< refined grasps have all their contacts. For tables over all attempts with M > 0.
+  Fails,  ///< The attempt has failed: a formed grasp needs them all [P: its stop condition].
+  /// The contacts that the hand has are measured, and M > 0 makes the grasp usable. This is
+  /// possible without refinement only, since refined grasps have all their contacts; it is for
+  /// tables over all attempts with M > 0.
+  Measured,
 };
 
-/// Which of an attempt's candidates go first, and on which of the target sets drawn: each is a side
-/// of a set, from which a hand is fitted [R].
+/// Which of an attempt's candidates are tried first, and by that which of the target sets drawn is
+/// fitted [R]. A candidate is a target set and a side from which the hand is fitted to it.
 enum class CandidateOrder {
-  Pads,     ///< Those on whose targets the fingertip pads would lie flattest.
-  Balance,  ///< Those whose targets balance one another (within the squeeze's largest residual) at
-            ///< `squeeze_friction`, then those that do at `friction`; among equals as `Pads`.
+  Pads,  ///< Candidates on whose targets the fingertip pads would lie flattest.
+  /// Candidates whose targets balance one another (within the squeeze's largest residual) at
+  /// `squeeze_friction`, then those whose targets do so at `friction`; ties are ordered as by
+  /// `Pads`.
+  Balance,
 };
 
-/// Which of an attempt's candidates is kept [R]. The first two know those of one target set.
+/// Which of an attempt's candidates is kept [R]. `First` and `Balanced` choose among the candidates
+/// of one target set.
 enum class KeptCandidate {
-  First,      ///< The first whose grasp is accepted.
-  Balanced,   ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
-              ///< grasp of least residual.
-  Strongest,  ///< All are tried; of the accepted grasps the strongest one with a balanced squeeze,
-              ///< else the strongest: largest ε, signed, within cones of `squeeze_friction`, of the
-              ///< contacts that touch (with refinement: within its largest gap), torques over the
-              ///< object's largest radius. The sides of all sets drawn are candidates; of a ranked
-              ///< search those of its next set.
+  First,     ///< The first whose grasp is accepted.
+  Balanced,  ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
+             ///< grasp of least residual.
+  /// All candidates are tried, and the strongest accepted grasp with a balanced squeeze is kept,
+  /// else the strongest accepted one. Strength is ε, signed, of the contacts that touch (with
+  /// refinement: within its largest gap), with friction cones of `squeeze_friction` and torques
+  /// over the object's largest radius. Candidates are the sides of all sets drawn, or of the next
+  /// set of a ranked search.
+  Strongest,
 };
 
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
@@ -81,8 +88,8 @@ struct PlannerOptions {
       fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
   int num_contacts =
       3;  ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
-  /// Whether the palm must touch too, one target more; empty: as the style has it, power grasps yes
-  /// [P: "if the palm may touch"].
+  /// Whether the palm must touch too, which adds one target; empty: in power grasps only [P: "if
+  /// the palm may touch"].
   std::optional<bool> palm;
   int count = 1;  ///< Grasps to collect (K), ≥ 1.
   std::uint64_t seed = 1;
@@ -93,21 +100,22 @@ struct PlannerOptions {
   std::optional<std::int64_t> max_iterations;
   Acceptance acceptance = Acceptance::Valid;
   MissingContact missing_contact = MissingContact::Fails;
-  Rejection rejection = Rejection::None;      ///< [R]: which grasps are good the measures say.
-  std::optional<double> largest_deviation;    ///< Of a contact from its target [m], > 0; empty: the
-                                              ///< width of a fingertip pad.
-  std::optional<Eigen::Vector3d> approach_O;  ///< Wanted palm direction in O; must be nonzero. Kept
-                                              ///< by targets' sides and by every grasp accepted.
-  double approach_angle =
-      std::numbers::pi / 2;  ///< Largest angle of the palm direction from it [rad], in (0, π].
+  Rejection rejection = Rejection::None;    ///< [R]: the measures say which grasps are good.
+  std::optional<double> largest_deviation;  ///< Of a contact from its target [m], > 0; empty: the
+                                            ///< width of a fingertip pad.
+  /// Wanted palm direction in O, nonzero; the sides of target sets and all accepted grasps are
+  /// within `approach_angle` of it.
+  std::optional<Eigen::Vector3d> approach_O;
+  /// Largest angle between the palm direction and `approach_O` [rad], in (0, π].
+  double approach_angle = std::numbers::pi / 2;
   std::optional<double>
       wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
   int resolution = 30;     ///< Voxels along the object's longest extent [P].
   std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
-  std::optional<contact::CountedPads> counted_pads;  ///< Empty: in power grasps all [P: proximal
-                                                     ///< links are encouraged to touch], else those
-                                                     ///< of fingertips and palm [R].
+  /// Pads whose contacts count; empty: in power grasps all [P: proximal links are encouraged to
+  /// touch], else those of fingertips and palm [R].
+  std::optional<contact::CountedPads> counted_pads;
   contact::ContactPieces contact_pieces = contact::ContactPieces::Joined;
   ScoreOptions score;
   /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
@@ -116,13 +124,15 @@ struct PlannerOptions {
   TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
   /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
-  /// kinematics [R]. 1: the paper's random set, the side with more room first.
+  /// kinematics [R]. 1: the paper's random set, first from the side on which the object protrudes
+  /// less.
   int target_draws = 32;
   CandidateOrder candidate_order = CandidateOrder::Pads;
   KeptCandidate kept = KeptCandidate::First;
-  int max_placements = 4;  ///< Sides that are fitted, ≥ 1: of one target set, the flattest first
-                           ///< [R], of which three and more targets have two, two have
-                           ///< sixteen; of all sets drawn where the strongest grasp is kept.
+  /// Sides from which an attempt fits the hand, ≥ 1: sides of one target set, those with the
+  /// flattest pads first [R] (three and more targets have two sides, two targets sixteen); with
+  /// `KeptCandidate::Strongest`, sides of all sets drawn.
+  int max_placements = 4;
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
   MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.
@@ -136,13 +146,15 @@ struct PlannerOptions {
   /// Every contact's score must exceed it, in [0, 1), whether the pad had a target or not; empty:
   /// only the scores of targets count, as the paper states it [R].
   std::optional<double> contact_score_threshold;
-  bool pre_grasps = true;  ///< Whether a grasp needs a pre-grasp with a free way in [R].
+  /// Whether a grasp needs a pre-grasp with a collision-free path to it [R].
+  bool pre_grasps = true;
   PreGraspOptions pre_grasp;
   contact::SqueezeOptions squeeze;
   DistinctOptions distinct;
-  double friction = 0.4;          ///< Coulomb's μ of ε, ≥ 0 [R]; GraspIt!'s usual.
-  double squeeze_friction = 0.2;  ///< Of the squeeze: within so narrow cones its forces are sought,
-                                  ///< ≥ 0 [R]. What friction there is beyond carries loads.
+  double friction = 0.4;  ///< Coulomb's μ of ε, ≥ 0 [R]; GraspIt!'s usual.
+  /// Friction coefficient of the narrower cones to which the forces of the squeeze are limited, ≥ 0
+  /// [R]; the friction beyond it is left for loads.
+  double squeeze_friction = 0.2;
   contact::QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
@@ -161,8 +173,8 @@ contact::ContactEstimationOptions contact_estimation(const PlannerOptions& optio
                                                      double clip_thickness);
 
 /// The gap up to which contacts of planned grasps bear forces (ε, closure, min-weight, squeeze)
-/// [m]: of refined grasps the largest that a requested pad may have. Empty at the level of voxels:
-/// all contacts do.
+/// [m]: with refinement, the largest gap that a requested pad may have. Empty without refinement
+/// (at the level of voxels), where all contacts bear forces.
 std::optional<double> bearing_gap(const PlannerOptions& options);
 
 /// What `options` ask of `hand`, the thumb first where it is among the fingers.

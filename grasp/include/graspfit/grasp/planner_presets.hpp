@@ -9,7 +9,7 @@
 
 namespace graspfit::grasp {
 
-/// Options that go together, by name. What else is set after a preset changes it.
+/// A named set of option values. Options that are set after a preset replace the preset's values.
 struct PlannerPreset {
   std::string_view name;
   std::string_view meaning;  ///< A sentence without its full stop.

@@ -23,16 +23,18 @@ enum class PlannerStop {
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
 enum class AttemptOutcome {
   Valid,
-  UsableOnly,  ///< Usable but penetrating, without a requested contact, without a way in, or with
-               ///< the palm out of the cone of approach, or a contact where the score is too low.
-  NoTargets,   ///< Nothing to start from: of fitting no seed, no pair or no further contact.
+  /// Usable, but penetrating, without a requested contact, without a collision-free path to the
+  /// grasp, with the palm direction outside the cone of approach, or with a contact where the score
+  /// is too low.
+  UsableOnly,
+  NoTargets,  ///< The method had no start; with fitting: no seed, no pair or no further contact.
   InitialCollision,
   BlockedFinger,
   MissedContact,
   GapLeft,  ///< Refinement could not bring every requested pad to touch.
   SelfCollision,
   Rejected,  ///< Usable, but not as `PlannerOptions::rejection` wants it.
-  NoWayIn,   ///< No pre-grasp with a free way to the grasp.
+  NoWayIn,   ///< No pre-grasp with a collision-free path to the grasp.
   IterationLimit,
   Weak,       ///< All contacts on weak features (M1 = 0).
   Unstable,   ///< A formed grasp with no stable pair (M2 = 0).
@@ -49,8 +51,9 @@ struct PlannerStatistics {
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
   std::int64_t refinement_iterations = 0;
-  std::int64_t duplicates = 0;  ///< Accepted grasps left out, too like one that is returned or was
-                                ///< found before; in the outcomes they count as what they are.
+  /// Accepted grasps left out because they are too like one that is returned or was found before;
+  /// `outcomes` counts them under their own outcome.
+  std::int64_t duplicates = 0;
   std::int64_t usable() const;
   std::int64_t valid() const;
 };
@@ -62,9 +65,9 @@ struct PlannerTimings {
   double targets_s = 0.0;        ///< Starts of attempts: target contacts.
   double fitting_s = 0.0;        ///< The loop, its contact tests included.
   double contact_tests_s = 0.0;  ///< Contact estimation inside the loop; a part of `fitting_s`.
-  double refinement_s = 0.0;     ///< Contacts made real.
+  double refinement_s = 0.0;     ///< Refinement of contacts.
   double measure_s = 0.0;        ///< Contacts, measures and exact tests of formed grasps.
-  double pre_grasp_s = 0.0;      ///< Ways in and squeezes.
+  double pre_grasp_s = 0.0;      ///< Pre-grasps with their paths, and squeezes.
   double total_s = 0.0;          ///< By the clock; the others add up over all threads.
 
   /// Adds the stages of attempts; `object`, `guidance_s` and `total_s` stay.

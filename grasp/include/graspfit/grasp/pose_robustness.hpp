@@ -22,23 +22,25 @@ struct PoseRobustnessOptions {
 /// What becomes of a grasp when the object is not quite where it was thought to be [after Weisz &
 /// Allen 2012].
 struct PoseRobustness {
-  double closed_share = 0.0;  ///< Of the poses: force closure. Its standard error is at most
-                              ///< 0.5 / √num_samples.
-  std::optional<double> usable_share;  ///< Of the poses: M > 0; empty without `quality_context`.
-  double mean_epsilon = 0.0;           ///< In the facts' convention, 0 without closure.
+  double closed_share = 0.0;  ///< Share of the poses with force closure. Its standard error is at
+                              ///< most 0.5 / √num_samples.
+  /// Share of the poses with M > 0; empty without `quality_context`.
+  std::optional<double> usable_share;
+  /// Mean ε in the facts' wrench convention, 0 for poses without closure.
+  double mean_epsilon = 0.0;
   double mean_num_contacts = 0.0;
 };
 
-/// Moves the contacts' pads as rigidly as a hand that is off by Gaussian noise: a turn about the
-/// center of mass, then a shift. Each pad then goes along its own contact's inward normal, from
-/// `reach` before to `reach` beyond its place, until it meets the front of the surface; the contact
-/// is there, with the face's normal, and keeps its area, its distance from the pad's outline and
-/// its gap: a pad that bears no force in the grasp bears none here. One that meets no surface has
-/// no contact.
+/// Moves the pads of the contacts rigidly, as with a hand whose pose is off by Gaussian noise: by a
+/// turn about the center of mass, then by a shift. Each pad then moves along the inward normal of
+/// its own contact, from `reach` before to `reach` beyond its position, until it meets the front of
+/// the surface. The new contact is at that point, with the face's normal, and keeps its area, its
+/// distance from the pad's outline and its gap: a pad that bears no force in the grasp bears none
+/// here. A pad that meets no surface has no contact.
 ///
-/// So fingers give way along their contact's normal only, and neither joint limits nor other parts
-/// of the hand count: a model of compliance, not a simulation of closing. Empty without contacts or
-/// without `surface`. Same facts and options, same numbers.
+/// Fingers thus yield along their contact's normal only, and neither joint limits nor other parts
+/// of the hand count: this is a model of compliance, not a simulation of closing. The result is
+/// empty without contacts or without `surface`. The same facts and options give the same numbers.
 /// @throws InvalidInput for bad options, and as the metrics do for bad facts.
 std::optional<PoseRobustness> pose_robustness(const GraspMetricFacts& facts,
                                               const PoseRobustnessOptions& options = {});

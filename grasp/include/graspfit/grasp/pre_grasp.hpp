@@ -9,61 +9,65 @@
 
 namespace graspfit::grasp {
 
-/// What a pre-grasp must keep.
+/// Requirements of a pre-grasp, and limits of the search for one.
 struct PreGraspOptions {
   double clearance = 0.005;      ///< Every link from the object and the surroundings [m], > 0.
   double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], in [0, 10].
   double retreat_step = 0.01;    ///< [m], > 0; at most 1000 of them up to `largest_retreat`.
   int opening_steps = 10;        ///< From the grasp's joints to open ones, in [1, 1000].
-  /// Whether neutral joints (spread, abduction) may go with the closing ones where nothing else is
-  /// free: fingers drawn together around an object cross each other when they straighten.
+  /// Whether neutral joints (spread, abduction) may open together with the closing ones where no
+  /// pre-grasp is found otherwise: fingers that a grasp draws together around an object would cross
+  /// each other as they straighten.
   bool open_neutral = false;
-  double way_tolerance = 1e-5;  ///< Over so much of the end of the way, bodies that touch in the
-                                ///< grasp, or nearly, may already do so [m], > 0: half of the gap
-                                ///< that refinement leaves.
-  void validate() const;        ///< Throws InvalidInput naming the field and its value.
+  /// Length of the end of the path over which bodies that touch in the grasp, or nearly do, may
+  /// already touch [m], > 0; the default is half of the gap that refinement leaves.
+  double way_tolerance = 1e-5;
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// Where to start from (evaluation of grasps in the field: pre-grasp, grasp, squeeze).
+/// The configuration from which the hand moves to a grasp (evaluation of grasps in the field:
+/// pre-grasp, grasp, squeeze).
 struct PreGrasp {
   hands::HandConfiguration configuration;
-  double clearance = 0.0;  ///< Of the nearest link [m], ≥ the wanted one.
-  double opening = 0.0;  ///< Share of the way from the grasp's joints to the open ones, in (0, 1].
+  double clearance = 0.0;  ///< Distance of the nearest link [m], ≥ the wanted clearance.
+  /// Share of the motion from the grasp's joint positions to the open ones, in (0, 1].
+  double opening = 0.0;
   double retreat = 0.0;  ///< Of the palm, against its direction [m].
 };
 
-/// Poses on the straight way from one configuration to another: palm position (of its frame's
-/// origin) linear, its rotation along the shortest arc, joints linear. Share 0 is `from` and 1 is
-/// `to` to the last digit. @throws InvalidInput for unlike numbers of joints and unless 0 ≤ share ≤
-/// 1.
+/// Configurations on the straight path from one configuration to another: the palm's position (of
+/// its frame's origin) and the joints change linearly, the palm's rotation along the shortest arc.
+/// Share 0 is `from` and 1 is `to` to the last digit. @throws InvalidInput for unlike numbers of
+/// joints and unless 0 ≤ share ≤ 1.
 hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
                                       const hands::HandConfiguration& to, double share);
 
-/// The least opening, and for it the least retreat, from which the hand is clear of object and
-/// surroundings by `clearance` and can go straight to the grasp without touching them on the way,
-/// nor itself.
+/// The pre-grasp with the least opening, and for it the least retreat, in which the hand is clear
+/// of object and surroundings by `clearance` and from which it can move straight to the grasp
+/// without touching them, or itself, on the path.
 ///
-/// Openings are 1/n, 2/n, …, 1 (n = `opening_steps`) of the way of every closing joint to where
-/// `open_configuration` has it, followers by their couplings; neutral joints (spread, abduction)
-/// stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`. Every
-/// combination is tried in that order, then, with `open_neutral`, every one again with neutral
-/// joints going the same share of their way, so that empty means: none of them.
+/// Openings are 1/n, 2/n, …, 1 (n = `opening_steps`) of the motion of every closing joint to its
+/// position in `open_configuration`; followers move by their couplings, and neutral joints (spread,
+/// abduction) stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`.
+/// Every combination is tried in that order, then, with `open_neutral`, every one again with
+/// neutral joints opened by the same share; the result is empty if none of them is a pre-grasp.
 ///
-/// That the way is free is proven, not sampled (conservative advancement): two bodies that are a
-/// distance apart cannot meet before the fastest points of both have gone as far together. Each
-/// link is held so against the object, the surroundings, and every other link (exclusions of the
-/// model and pairs that share a point in the grasp itself besides), over the whole way, its end
-/// included:
+/// That the path is free is proven, not sampled, by conservative advancement: two bodies at a
+/// distance cannot meet before the fastest points of both have together moved by that distance.
+/// Each link is tested in this manner against the object, the surroundings, and every other link
+/// (except pairs that the model excludes or that share a point in the grasp itself), over the whole
+/// path, its end included:
 ///
-/// - bodies that the grasp holds apart by more than `way_tolerance` touch at no share in [0, 1];
-/// - those that it holds apart by less, or lets touch, do not before the share from which on no
-///   point of theirs has farther to go than `way_tolerance` (self: against each other).
+/// - bodies that are farther apart than `way_tolerance` in the grasp touch at no share in [0, 1];
+/// - bodies that are nearer than that in the grasp, or touch in it, do not touch before the share
+///   from which on none of their points has farther to move than `way_tolerance` (two links:
+///   relative to each other).
 ///
-/// So a grasp that cuts the object or the surroundings deeper than that has no pre-grasp. Nearer
-/// than 1e-8 m is not told from touching, and what 500 distances per pair cannot prove (links that
-/// slide along the object without a gap to speak of) counts as not free: an answer's way is free,
-/// none may be missed. Links are the solids of their meshes, poses as `forward_kinematics` rounds
-/// them.
+/// A grasp that penetrates the object or the surroundings deeper than `way_tolerance` therefore has
+/// no pre-grasp. Distances below 1e-8 m are not distinguished from touching, and a path that 500
+/// distances per pair cannot prove free (links slide along the object with hardly a gap) counts as
+/// not free: the path of a pre-grasp found is free, but a free path may be missed. Links are the
+/// solids of their meshes, poses as `forward_kinematics` rounds them.
 /// @throws InvalidInput for bad options and a grasp outside the hand's limits.
 std::optional<PreGrasp> find_pre_grasp(const hands::HandModel& hand,
                                        const hands::HandCollision& collision,

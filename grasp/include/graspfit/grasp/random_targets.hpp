@@ -7,27 +7,30 @@
 
 namespace graspfit::grasp {
 
-/// Picks targets by the paper's randomized greedy search (section 6): a random seed above the
-/// threshold; a second contact in tip distance and in both cones; further contacts with edges close
-/// to the first and a centroid close to the center of mass; each drawn at random from the
-/// best-ranked feasible candidates; a new seed where one has none.
+/// Selects targets by the paper's randomized greedy search (section 6). The seed is a random point
+/// with a score above the threshold. The second contact is within the distances that fingertips
+/// reach and forms a stable pair with the seed; further contacts have edges close in length to the
+/// first edge and a centroid close to the center of mass. Each contact is drawn at random from the
+/// best-ranked feasible candidates; where there are none, the search starts again from a new seed.
 ///
 /// Fingers' targets come first, the seed's first of all. Distances are checked finger by finger:
-/// for every set returned, at least one way to give the seed to the first finger and the other
-/// targets to the others has every two of them within those fingers' own range (`assign_fingers`
-/// chooses one way).
+/// for every set returned there is at least one assignment, with the seed to the first finger, in
+/// which every two targets are within the distance range of their two fingers (`assign_fingers`
+/// chooses an assignment).
 ///
 /// A target for the palm, if `parts` has it, comes last and is the only one assigned here
-/// (`is_palm`). With n its outward normal, the palm there looks along −n. It is chosen so that
-///  - no other surface stands in the palm's way: within the pad's radius around n, none is higher
-///    than a voxel over the target's plane;
+/// (`is_palm`). With n the target's outward normal, the palm faces along −n. The target is chosen
+/// so that
+///  - no other surface obstructs the palm: within the pad's radius around n, none is higher than a
+///    voxel over the target's plane;
 ///  - every finger's target is in front of the palm: (V − palm) · n < 0;
-///  - some turn of the hand about n and some assignment that suits the fingers' own ranges has
-///    every finger's target at a distance in `palm_to_tip` and within `palm_reach_tolerance` of a
-///    place that the finger's tip gets to with its pad looking into the surface, roughly
+///  - for some turn of the hand about n and some assignment within the fingers' distance ranges,
+///    every finger's target is at a distance in `palm_to_tip` and within `palm_reach_tolerance` of
+///    a point that the fingertip reaches with its pad facing the surface, roughly
 ///    (`hands::TipReach`; turns are sampled, 5° apart).
-/// It need not form a stable pair. Its rank is the distance of the whole set's centroid from the
-/// center of mass, plus the mean distance from the tips' reach, both over the normalizing radius.
+/// The palm's target need not form a stable pair. The rank of a candidate is the distance of the
+/// whole set's centroid from the center of mass, plus the mean distance from the tips' reach, both
+/// over the normalizing radius.
 ///
 /// @throws InvalidInput for fewer than two fingers, more than six parts, a finger that the hand
 /// does not have, without a tip pad or named twice; for the palm of a hand without a palm pad; and
@@ -35,7 +38,7 @@ namespace graspfit::grasp {
 class TargetSelector {
  public:
   /// Object, distances and the measure's hand are referred to, not copied: they have to outlive the
-  /// selector. `ideal` is what `ideal_m_bias` prefers sets by.
+  /// selector. `ideal` says how the M of sets is computed that `ideal_m_bias` prefers them by.
   TargetSelector(const ObjectModel& object, const PartDistances& distances,
                  const RequestedParts& parts, const TargetOptions& options,
                  const IdealMeasure& ideal = {});

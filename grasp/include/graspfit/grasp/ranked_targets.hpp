@@ -7,9 +7,9 @@
 
 namespace graspfit::grasp {
 
-/// All feasible target sets, best first (`TargetSearch::Ranked`) [R]: complete, so that an end
-/// without any set proves that the pool has none within the unrelaxed limits, and `failure` says at
-/// which stage.
+/// All feasible target sets, best first (`TargetSearch::Ranked`) [R]. The search is complete: if it
+/// ends without any set, the pool has none within the unrelaxed limits, and `failure` says at which
+/// stage the search failed.
 ///
 /// A set is a seed and a set of further targets; it is feasible if the greedy search could choose
 /// it in some order, the limits not relaxed. Its rank is the least over those orders of
@@ -19,9 +19,9 @@ namespace graspfit::grasp {
 ///   + angle_weight · mean over the pairs that must be stable of their angle / theta_max
 ///   + mean distance from the tips' reach / normalizing radius (palm),
 ///
-/// the terms that the greedy search ranks its candidates by. Sets come by ascending rank, each
-/// once in its best order; equal ranks by ascending patches in that order. Two targets come twice,
-/// with either as the seed.
+/// the terms that the greedy search ranks its candidates by. Sets come by ascending rank, each once
+/// in its best order; equal ranks by ascending patches in that order. A set of two targets comes
+/// twice, with either one as the seed.
 ///
 /// Search: depth first through the stable pairs, cut off by a growing limit on the rank, keeping
 /// the best few thousand sets of each round. Memory: 4 bytes per stable pair of the pool, and the
@@ -39,7 +39,7 @@ class RankedTargets {
   /// The next best set; empty when there are no more.
   std::optional<TargetContacts> next();
 
-  /// Why there was none, after `next` gave none the first time.
+  /// Why there is no set at all, once the first call of `next` has returned none.
   TargetFailure failure() const;
 
  private:

@@ -24,13 +24,16 @@ struct Surroundings {
 
 /// Distance of a link from the surroundings.
 struct SurroundingsDistance {
-  double distance = 0.0;            ///< [m]; zero where they touch; infinite if there are none.
-  Eigen::Vector3d point_on_link_O;  ///< Nearest to them; meaningless at zero and at infinity.
-  Eigen::Vector3d normal_O;         ///< Unit, from the surroundings to the link; as the point.
+  double distance = 0.0;  ///< [m]; zero where they touch; infinite if there are none.
+  /// Point of the link nearest to the surroundings; meaningless where the distance is zero or
+  /// infinite.
+  Eigen::Vector3d point_on_link_O;
+  /// Unit, from the surroundings to the link; meaningless where the distance is zero or infinite.
+  Eigen::Vector3d normal_O;
 };
 
-/// A hand with what is needed to hold it against surroundings many times. Links without faces are
-/// nowhere: they touch nothing.
+/// A hand prepared for many queries of collision with, and distance from, surroundings. Links
+/// without faces touch nothing.
 class SurroundingsCollision {
  public:
   /// @throws InvalidInput as `Surroundings::validate`. Cost: without a table and obstacles nothing;
@@ -45,9 +48,9 @@ class SurroundingsCollision {
   bool touches(const hands::HandCollision& collision, int link,
                const hands::RigidTransform& X_OL) const;
 
-  /// Nearest approach of one link, where it is at most `enough` [m] ≥ 0; infinite where it is more.
-  /// Approximate, to rounding; zero exactly where `touches`. Of equal distances the table counts
-  /// first, then obstacles in order.
+  /// Distance of one link from the surroundings, where it is at most `enough` [m] ≥ 0; infinite
+  /// where it is more. Approximate, to rounding; zero exactly where `touches`. Of equal distances
+  /// the table counts first, then obstacles in order.
   SurroundingsDistance distance(const hands::HandCollision& collision, int link,
                                 const hands::RigidTransform& X_OL, double enough) const;
 

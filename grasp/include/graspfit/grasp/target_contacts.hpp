@@ -17,8 +17,9 @@ namespace graspfit::grasp {
 
 /// Fingers and palm that must touch.
 struct RequestedParts {
-  std::vector<int> fingers;  ///< Of the hand, the seed's first (the thumb where it is among
-                             ///< them).
+  /// Indices of fingers of the hand; the first one gets the seed (the thumb, where it is among
+  /// them).
+  std::vector<int> fingers;
   bool palm = false;
   int size() const { return static_cast<int>(fingers.size()) + (palm ? 1 : 0); }
 };
@@ -29,19 +30,19 @@ enum class TargetSearch {
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
 };
 
-/// Which earlier targets a new one of a finger must form a stable pair with.
+/// Which of the earlier targets a finger's new target must form a stable pair with.
 enum class PairRule {
   Seed,      ///< With the seed (the thumb's target) [R].
-  AllPairs,  ///< With every earlier target (the literal reading). Below a cone of 45° no five
-             ///< contacts of any object can be so: their normals would be pairwise more than 90°
-             ///< apart.
+  AllPairs,  ///< With every earlier target (the literal reading). With cones below 45° no five
+             ///< contacts of any object are pairwise stable: their normals would be pairwise more
+             ///< than 90° apart.
 };
 
 /// Most parts that can be asked for.
 inline constexpr int kMostParts = 6;
 
-/// What a contact in the middle of its pad has of the pad's largest boundary distance, and the
-/// share of a pad that meets the surface then: the terms of the ideal M [R].
+/// Terms of the ideal M, for a contact in the middle of its pad: its boundary distance as a share
+/// of the pad's largest one, and the share of the pad's area that meets the surface [R].
 inline constexpr double kIdealBoundaryDistance = 1.0;
 inline constexpr double kIdealArea = 0.3;
 
@@ -54,20 +55,23 @@ struct TargetOptions {
   double edge_tolerance_rel = 0.25;     ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 [R].
   double centroid_limit_rel = 0.6;  ///< Largest distance of the centroid of the fingers' targets
                                     ///< from the center of mass over the normalizing radius [R].
-  /// Weight in the rank of the angles between the lines of stable pairs and the normals, as a share
-  /// of theta_max, ≥ 0. 0: not ranked by angles [R]; 1 puts them beside edges and centroid.
+  /// Weight, in the rank, of the angles between the lines that connect stable pairs and the contact
+  /// normals, as a share of theta_max, ≥ 0. With 0 angles do not count [R]; with 1 they count as
+  /// much as edges and centroid.
   double angle_weight = 0.0;
   double pool_fraction = 0.2;  ///< Share of the ranked candidates drawn from, in (0, 1] [R].
-  int pool_minimum = 5;        ///< Candidates drawn from at least, if there are so many [R].
-  int max_seeds = 200;  ///< Seeds tried per set, ≥ 1 [R]; an attempt that has a set draws no
-                        ///< more once its draws together have tried as many.
+  int pool_minimum = 5;        ///< Least number of candidates drawn from, if there are so many [R].
+  /// Seeds tried per set, ≥ 1 [R]; an attempt that has found a set draws no further ones once all
+  /// its draws together have tried this many seeds.
+  int max_seeds = 200;
   int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
                                ///< [R]. The ranked search never relaxes them.
   double min_separation =
       0.0;  ///< Between targets of different parts [m], ≥ 0; the planner sets one pad width.
-  /// Of all places of the pool in one cube of this size [m] whose normals have the same largest
-  /// component, the one with the best score stays, ≥ 0; 0: all stay [P: "sampling by voxels"].
-  /// The ranked search needs it for four and more targets: a pad's width.
+  /// Edge of the cubes by which the pool is thinned [m], ≥ 0: of all points in one cube whose
+  /// normals have the same largest component, only the one with the best score is kept; 0: all are
+  /// kept [P: "sampling by voxels"]. The ranked search needs thinning for four and more targets: a
+  /// pad's width.
   double pool_spacing = 0.0;
   TargetSearch search = TargetSearch::Random;
   bool exclude_weak = true;  ///< No targets on weak features, where the object model knows them
@@ -76,9 +80,11 @@ struct TargetOptions {
   /// `ideal_m_draws` complete sets one is drawn with probability ∝ M^bias. 0: the first set, M is
   /// not used [R].
   double ideal_m_bias = 0.0;
-  int ideal_m_draws = 8;  ///< ≥ 1; within `max_seeds` altogether.
-  /// How far a finger's target may lie from where its tip gets while the palm is on the palm's
-  /// target [m], ≥ 0: fingers close until they touch, wherever that is [R].
+  int ideal_m_draws = 8;  ///< Number of complete sets to draw one from, ≥ 1; their seeds together
+                          ///< stay within `max_seeds`.
+  /// How far a finger's target may lie from the points that its tip reaches while the palm is on
+  /// the palm's target [m], ≥ 0. A distance is allowed because fingers close until they touch,
+  /// wherever that is [R].
   double palm_reach_tolerance = 0.015;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
@@ -87,9 +93,10 @@ struct TargetOptions {
 struct TargetContact {
   Eigen::Vector3d point_O = Eigen::Vector3d::Zero();           ///< Patch centroid, or sample [m].
   Eigen::Vector3d outward_normal_O = Eigen::Vector3d::Zero();  ///< Its normal, unit.
-  std::optional<std::int32_t> patch;  ///< Index into ObjectModel::patches; empty: not a patch's.
-  double score = 0.0;                 ///< Of that patch, or of the voxel that the point is in.
-  bool is_palm = false;               ///< The palm's target.
+  /// Index into ObjectModel::patches; empty: the point belongs to no patch.
+  std::optional<std::int32_t> patch;
+  double score = 0.0;    ///< Score of the patch, or of the voxel that the point is in.
+  bool is_palm = false;  ///< The palm's target.
   /// Assigned finger of the hand; empty: none yet, or the palm's target.
   std::optional<int> finger = {};
 };
@@ -108,7 +115,7 @@ struct TargetContacts {
   Eigen::Vector3d centroid() const;
 };
 
-/// By what the ideal M of targets is measured: as M of the grasps.
+/// Hand and options by which the ideal M of targets is computed; the same as for M of the grasps.
 struct IdealMeasure {
   const hands::HandModel* hand = nullptr;  ///< Null: in normalized units only.
   contact::QualityOptions options = {};
@@ -129,13 +136,14 @@ struct TargetSelection {
   int seeds_tried = 0;
 };
 
-/// What of a hand decides which targets suit its palm.
+/// The properties of a hand that decide which targets are suitable for its palm.
 struct PalmReach {
-  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();      ///< Comes over the palm's target [m].
+  /// Palm center, which is placed over the palm's target [m].
+  Eigen::Vector3d center_H = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();  ///< Unit n_palm.
   double pad_radius =
       0.0;  ///< Of the palm's pad, from its frame's origin to the farthest corner [m].
-  /// Where every finger's tip gets; no fingers: anywhere in front of the palm.
+  /// Per finger, the points that its tip reaches; no entries: any point in front of the palm.
   std::vector<std::optional<hands::TipReach>> tips;
 };
 
@@ -146,11 +154,12 @@ struct PartDistances {
   std::optional<PalmReach> palm = {};                  ///< Empty for a hand without a palm pad.
 };
 PartDistances part_distances(const hands::HandModel& hand);
-/// Only what `parts` need: nothing of the palm where it is not among them.
+/// The same for `parts` only: without distances and reach of the palm where it is not requested.
 PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts);
 
-/// The contacts that targets stand for: at their points, of their fingers. Targets that are not
-/// assigned are those of `fingers` in order; beyond these, they have no finger, as the palm's.
+/// Contacts at the points of the targets, each of the finger that its target is assigned to.
+/// Targets that are not assigned get `fingers` in order; those beyond the end of `fingers` get no
+/// finger, as the palm's target.
 std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
                                           const std::vector<int>& fingers = {});
 
