@@ -49,9 +49,9 @@ bool is_weak(const geometry::SurfacePatch& patch, const std::vector<bool>& is_we
 
 geometry::VoxelLattice lattice_of(const Eigen::AlignedBox3d& box,
                                   const ObjectModelOptions& options) {
-  const double room = kRoomVoxels * box.sizes().maxCoeff() / options.resolution;
+  const double margin = kMarginVoxels * box.sizes().maxCoeff() / options.resolution;
   return geometry::lattice_around(
-      box, {.resolution = options.resolution, .margin = options.margin.value_or(room)});
+      box, {.resolution = options.resolution, .margin = options.margin.value_or(margin)});
 }
 
 internal::ObjectParts find_parts(const geometry::MeshQuery& query,

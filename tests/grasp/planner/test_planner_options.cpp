@@ -167,7 +167,7 @@ TEST_CASE("The object is prepared with the resolution asked for alike for every 
     const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options);
     const geometry::VoxelLattice& lattice = object.grid.lattice;
     CHECK(lattice.voxel_size == Approx(0.10 / resolution).epsilon(1e-12));
-    CHECK(lattice.counts.x() == resolution + 2 * grasp::kRoomVoxels);
+    CHECK(lattice.counts.x() == resolution + 2 * grasp::kMarginVoxels);
     const grasp::ObjectModel other =
         grasp::prepare_object(mesh, hands::find_hand("human_hand"), options);
     CHECK(other.grid.lattice == lattice);

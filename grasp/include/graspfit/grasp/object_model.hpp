@@ -17,14 +17,14 @@ namespace graspfit::grasp {
 
 /// Voxels of margin around the object where `ObjectModelOptions::margin` is empty.
 ///
-/// Enough for any hand: the fitting loop tells distances apart up to one voxel more than its
-/// longest step (3 voxels), and beyond the lattice the distance map goes on as a lower bound.
-inline constexpr int kRoomVoxels = 8;
+/// Enough for any hand: beyond the lattice the distance map goes on as a lower bound, so that a hand
+/// farther away only takes shorter steps than it could.
+inline constexpr int kMarginVoxels = 8;
 
 /// How an object is prepared for planning.
 struct ObjectModelOptions {
   int resolution = 30;  ///< Voxels along the object's longest extent, in [4, 512] [P].
-  /// Margin of the voxel grid around the object [m], ≥ 0; empty: `kRoomVoxels`, for any hand.
+  /// Margin of the voxel grid around the object [m], ≥ 0; empty: `kMarginVoxels`, for any hand.
   std::optional<double> margin = {};
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   ScoreOptions score = {};
