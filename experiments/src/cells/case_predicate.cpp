@@ -17,7 +17,8 @@ double read_angle(const base::JsonValue& value, double most_deg) {
   return angle * base::kRadiansPerDegree;
 }
 
-/// Without it the paper's contacts: what lies in the clip volumes.
+/// Reads the largest gap [m]. Without this setting all surface in the clip volumes counts as
+/// contact, as in the paper.
 double read_largest_gap(const base::JsonValue& value) {
   if (!value.has("largest_gap_mm")) return std::numeric_limits<double>::infinity();
   return value.at("largest_gap_mm").positive_number() * base::kMetersPerMillimeter;

@@ -15,7 +15,7 @@ struct JudgedGrasp {
   const grasp::Grasp& grasp;
   const hands::HandModel& hand;
   PredicateObject object;
-  std::map<std::string, double> best_m;  ///< Of every mode of the case that has a grasp.
+  std::map<std::string, double> best_m;  ///< Largest M of every mode of the case that has a grasp.
 };
 
 /// A predicate with its parameters.

@@ -8,7 +8,8 @@
 namespace graspfit::experiments::internal {
 namespace {
 
-// A hundred wrench spaces a grasp, half a second: `graspfit evaluate` has them for single grasps.
+// Pose robustness takes a hundred wrench spaces, half a second, per grasp; `graspfit evaluate` has
+// it for single grasps.
 constexpr std::string_view kLeftOut = "pose robustness";
 
 /// The library's metrics but those that take too long for thousands of grasps.

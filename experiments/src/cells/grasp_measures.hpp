@@ -18,7 +18,7 @@ std::vector<sweep::Column> grasp_measure_columns();
 /// All measures of a grasp of a run; the time that it takes is added to `seconds`.
 GraspMeasures measures_of(const Planned& planned, const grasp::Grasp& grasp, double& seconds);
 
-/// Those that are compared by rank with one another.
+/// Names of the measures that are compared by rank with one another.
 std::vector<std::string> correlated_measures();
 
 }  // namespace graspfit::experiments::internal

@@ -18,7 +18,7 @@ Eigen::Vector3d away_from_axis(const Eigen::Vector3d& point_O, const PredicateOb
   return length > 0.0 ? Eigen::Vector3d(radial / length) : Eigen::Vector3d(Eigen::Vector3d::Zero());
 }
 
-/// Cosine of the angle between a contact's outward normal and the way from that line.
+/// Cosine of the angle between a contact's outward normal and the direction of `away_from_axis`.
 double outward_cosine(const contact::Contact& contact, const PredicateObject& object, int axis) {
   return -contact.inward_normal_O.dot(away_from_axis(contact.point_O, object, axis));
 }

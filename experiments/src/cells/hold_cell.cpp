@@ -30,7 +30,7 @@ int num_margins(const sweep::Cell& cell) {
   return value.small_integer();
 }
 
-/// The planner's settings; those by which it would keep some grasps from the test are refused.
+/// Reads the planner's settings and refuses those by which it would keep some grasps from the test.
 PlanningSettings settings_of(const sweep::Cell& cell) {
   PlanningSettings settings = planning_settings(cell, own_settings());
   const grasp::PlannerOptions& options = settings.options;
@@ -150,7 +150,7 @@ struct TestedGrasp {
   const grasp::Grasp* grasp = nullptr;
   GraspMeasures measures;
   std::vector<hold_test::HoldVerdict> verdicts;  ///< Per tested protocol.
-  std::optional<hold_test::HoldMargin> margin;   ///< Under the first of them.
+  std::optional<hold_test::HoldMargin> margin;   ///< Margin under the first protocol.
 };
 
 /// The returned grasps in the order in which they were found.
@@ -273,7 +273,7 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
   return result;
 }
 
-/// Axis whose values are summed up apart, too.
+/// Axis whose values are also summarized separately.
 constexpr const char* kGroupAxis = "grip";
 constexpr const char* kAllGroups = "all";
 

@@ -9,7 +9,7 @@
 
 namespace graspfit::experiments::internal {
 
-/// Protocols of the hold test under which every grasp is put, and what columns call them.
+/// Protocols by which every grasp is tested, with the prefixes of their columns.
 struct TestedProtocol {
   const char* name;
   const char* prefix;
@@ -31,7 +31,7 @@ inline constexpr std::array<std::pair<const char*, double>, 3> kQuartiles = {
 /// Columns of the number of margins and of their quartiles.
 std::vector<sweep::Column> margin_columns();
 
-/// Index of the column of that name, which there is.
+/// Returns the index of the column of that name. Precondition: there is one.
 std::size_t column_index(const std::vector<sweep::Column>& columns, const std::string& name);
 
 /// All finished cells ("all"), then those of each value of the axis `grip`.

@@ -81,7 +81,7 @@ std::vector<sweep::Column> paper_layout_columns(const MethodTableAxes& axes) {
 
 namespace {
 
-/// What the cells of one method on one object and row come to.
+/// Results of the cells of one method on one object and row, taken together.
 struct MethodCells {
   std::string hand;
   double attempts = 0.0;

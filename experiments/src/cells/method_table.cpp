@@ -95,7 +95,8 @@ std::string guidance_text(const grasp::PlannerStatistics& statistics) {
   return text;
 }
 
-/// What a model costs that no cache has. Weak features are in `prepare_s` of a first run.
+/// Measures the time to build a model without the cache. The time of weak features is in
+/// `prepare_s` of a first run.
 grasp::ObjectModelTimings uncached_timings(const Planned& planned) {
   const grasp::PlannerOptions& options = planned.settings.options;
   grasp::ObjectModelTimings timings;
@@ -111,7 +112,8 @@ std::optional<double> share_of(std::size_t count, std::size_t all) {
   return static_cast<double>(count) / static_cast<double>(all);
 }
 
-/// Of all links, where the map knows it.
+/// Smallest value of the distance map over the samples of all links, where the map knows it
+/// [voxels].
 double d_min(const grasp::ObjectModel& object, const grasp::FittingHand& hand,
              const grasp::Grasp& grasp) {
   constexpr float kEnough = 2.0F;
@@ -126,8 +128,8 @@ double d_min(const grasp::ObjectModel& object, const grasp::FittingHand& hand,
   return smallest;
 }
 
-/// A measure as these tables have it: read by plots and statistics, which more digits would not
-/// change, and the details are half as large.
+/// Rounds a measure for these tables. Plots and statistics would not change with more digits, and
+/// the details are half as large.
 double to_six_digits(double value) {
   std::array<char, 32> text{};
   const char* const end =

@@ -12,9 +12,10 @@ struct PaperFigures {
   double quality;
 };
 
-/// By the label of an object and of a method; both `bowling_pin` and `bowling_ball` have those of
-/// its BOWLING, `gs` and `gs-targets` those of its GS, `ma` and `ma-full-retreat` those of its MA,
-/// and all that begin with `fitting` those of the paper's own method. Empty for others.
+/// Returns the figures for the label of an object and of a method. Both `bowling_pin` and
+/// `bowling_ball` have the figures of the paper's BOWLING, `gs` and `gs-targets` those of its GS,
+/// `ma` and `ma-full-retreat` those of its MA, and all methods that begin with `fitting` those of
+/// the paper's own method. The result is empty for others.
 std::optional<PaperFigures> paper_table1(std::string_view object, std::string_view method);
 
 }  // namespace graspfit::experiments::internal

@@ -7,7 +7,7 @@ namespace graspfit::experiments::internal {
 namespace planner_table_experiment_parts {
 namespace {
 
-constexpr std::size_t kGraspsKept = 10;  // Per cell: what the goals of these tables speak of.
+constexpr std::size_t kGraspsKept = 10;  // Per cell; the goals of these tables are about so many.
 
 sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& folder) {
   const Planned planned = plan(planning_settings(cell));

@@ -53,8 +53,8 @@ struct Measures {
   std::size_t num_balanced = 0;
 };
 
-/// Whether some forces within the cones of ε's friction, pressing on every contact, balance; its
-/// own squeeze a grasp may have for another friction.
+/// Says whether some forces within the friction cones of ε balance and press on every contact; the
+/// grasp's own squeeze may be for another friction.
 bool is_balanced(const Planned& planned, const grasp::Grasp& grasp, double torque_scale) {
   const grasp::PlannerOptions& options = planned.settings.options;
   return contact::squeeze_configuration(
@@ -283,7 +283,8 @@ sweep::Value field(std::size_t count) { return static_cast<std::int64_t>(count);
 
 void write_best_grasps(const std::filesystem::path& folder, const Planned& planned,
                        std::size_t count) {
-  // A grasp file says how its object comes from a file: a shape has none, a turned one no record.
+  // A grasp file records how its object is read from a file: a shape has no file, and a turned
+  // object no such record.
   const ObjectSettings& object = planned.settings.object;
   if (planned.result.grasps.empty() || !object.shape.empty()) return;
   if (!object.rotation_xyz.isZero(0.0)) return;

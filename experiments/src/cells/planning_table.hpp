@@ -32,13 +32,13 @@ Planned plan(const PlanningSettings& settings);
 std::vector<sweep::Column> planning_columns();
 void fill_planning_columns(const Planned& planned, sweep::ResultRow& row);
 
-/// Where its time went.
+/// Columns of the time that a planner's run took, and their values.
 std::vector<sweep::Column> planning_timings();
 void fill_planning_timings(const Planned& planned, sweep::ResultRow& row);
 
-/// Empty without any.
+/// The largest of some numbers; empty without any.
 std::optional<double> largest(const std::vector<double>& values);
-/// The middle of some numbers, mean of the middle two; empty without any.
+/// The median of some numbers, or the mean of the middle two; empty without any.
 std::optional<double> median(std::vector<double> values);
 /// The arithmetic mean; empty without any.
 std::optional<double> mean(const std::vector<double>& values);
@@ -49,8 +49,8 @@ std::optional<double> standard_deviation(const std::vector<double>& values);
 sweep::Value field(const std::optional<double>& value);
 sweep::Value field(std::size_t count);
 
-/// Writes `<folder>/grasps.json` with the best `count` grasps, if there are any. A shape that comes
-/// from no file has none: its grasps could not be read back.
+/// Writes `<folder>/grasps.json` with the best `count` grasps, if there are any. Nothing is written
+/// for a shape, which comes from no file: its grasps could not be read back.
 void write_best_grasps(const std::filesystem::path& folder, const Planned& planned,
                        std::size_t count);
 

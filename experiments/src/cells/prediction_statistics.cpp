@@ -20,7 +20,7 @@ bool are_different(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [&](double v) { return v != values.front(); });
 }
 
-/// By the rank sum of the successes [Mann & Whitney 1947].
+/// Counts the pairs by the rank sum of the successes [Mann & Whitney 1947].
 Concordance concordance(const ScoredOutcomes& sample) {
   const std::vector<double> ranks = midranks(sample.scores);
   double successes = 0.0;
@@ -89,7 +89,7 @@ ScoredOutcomes together(std::span<const ScoredOutcomes> clusters,
   return all;
 }
 
-/// A statistic of the clusters as they are and of draws of them.
+/// Computes a statistic of the clusters as they are, and its interval from draws of them.
 template <class Statistic>
 Estimate estimate_by(std::size_t num_clusters, const Statistic& statistic,
                      const BootstrapOptions& options) {
@@ -100,7 +100,7 @@ Estimate estimate_by(std::size_t num_clusters, const Statistic& statistic,
   return {value, bootstrap_interval(num_clusters, statistic, options)};
 }
 
-/// The same where a cluster's part of the statistic does not depend on the others.
+/// As `estimate_by`, where a cluster's part of the statistic does not depend on the others.
 template <class Part, class Combine>
 Estimate estimate_by_parts(const std::vector<Part>& parts, const Combine& combine,
                            const BootstrapOptions& options) {

@@ -29,7 +29,8 @@ struct ScoredOutcomes {
 /// scores are equal and where there are no successes or no failures: nothing can be told.
 std::optional<double> auc(const ScoredOutcomes& sample);
 
-/// The same over pairs of one cluster each: wins of all clusters over pairs of all clusters.
+/// The AUC over pairs within one cluster each: the wins of all clusters over the pairs of all
+/// clusters.
 std::optional<double> auc_within(std::span<const ScoredOutcomes> clusters);
 
 /// Spearman's rank correlation: Pearson's of midranks. Empty where scores or outcomes are all

@@ -19,7 +19,8 @@ namespace graspfit::experiments::internal {
 namespace contacts_and_time_parts {
 namespace {
 
-/// N' with a column of its own among the timings; the last one stands for more, too.
+/// Numbers of contacts N' with a column of their own among the timings; the last one stands for
+/// more, too.
 constexpr std::array kContactCounts = {2, 3, 4, 5, 6, 7};
 
 std::vector<sweep::Column> columns() {
@@ -63,7 +64,8 @@ std::vector<sweep::Column> timings() {
   return all;
 }
 
-/// All grasps that are usable count; a selection by M would have more contacts than chance gives.
+/// Reads the settings, which must keep all usable grasps: a selection by M would have more contacts
+/// than chance gives.
 PlanningSettings settings_of(const sweep::Cell& cell) {
   PlanningSettings settings = planning_settings(cell);
   if (settings.options.count < settings.options.max_attempts) {

@@ -93,7 +93,8 @@ class Loop {
                            targets_, placement, fitting);
   }
 
-  /// The side from which the loop ends nearest to the grasp: the planner does not record it.
+  /// Returns the palm placement from which the loop ends nearest to the grasp, as the planner does
+  /// not record it.
   grasp::PalmPlacement placement(const grasp::Grasp& grasp) const {
     const grasp::PlannerOptions& options = planned_.settings.options;
     std::optional<grasp::PalmPlacement> best;
@@ -122,14 +123,15 @@ class Loop {
   grasp::SurroundingsCollision surroundings_;
 };
 
-/// Mean distance of the fingers' contacts with a target from it [m].
+/// Mean distance from their targets of the fingers' contacts that have one [m].
 std::optional<double> mean_target_distance(const grasp::Grasp& grasp) {
   std::vector<double> distances = grasp::target_distances(grasp);
   std::erase_if(distances, [](double distance) { return !std::isfinite(distance); });
   return mean(distances);
 }
 
-/// Grasps of other methods have no targets from which the loop could be run again.
+/// Reads the settings and refuses methods without targets, from which the loop could not be run
+/// again.
 PlanningSettings settings_of(const sweep::Cell& cell) {
   PlanningSettings settings = planning_settings(cell);
   if (!grasp::planning_methods().at(settings.options.planner).has_targets) {

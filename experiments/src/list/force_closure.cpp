@@ -82,7 +82,7 @@ std::vector<sweep::Column> timings() {
   return all;
 }
 
-/// GraspIt! says −1 where there is no closure; in means and medians that is 0.
+/// Epsilon of a grasp, but 0 for GraspIt!'s −1 where there is no closure, for means and medians.
 double epsilon_of(const grasp::Grasp& grasp) { return std::max(0.0, grasp.epsilon()); }
 
 /// Fills the columns of a sample. Returns the attempts that it took: up to its last grasp, or all

@@ -1,6 +1,6 @@
 // Question: what does the planner know of an object before it looks for contacts: which voxels are
-// partial and full, where their surface is and looks to, how far from the surface the others are,
-// how its score comes about, and what is fragile?
+// partial and full, where their surface is and which way it faces, how far from the surface the
+// others are, how the score comes about, and what is fragile?
 //
 // Answered by a row per object (how many voxels, how scores are distributed) and, in the details, a
 // row per partial voxel and, where a slice is asked for, per voxel of it, through the center of

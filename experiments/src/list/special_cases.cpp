@@ -105,7 +105,7 @@ PredicateObject predicate_object(const Planned& planned) {
   return {planned.object.query.box(), planned.object.mass.center_of_mass};
 }
 
-/// Puts the grasps found to the predicates.
+/// Tests which of the grasps found meet the predicates.
 void judge(const Case& read, const Planned& planned, const std::map<std::string, double>& best_m,
            sweep::ResultRow& row) {
   const std::vector<grasp::Grasp>& grasps = planned.result.grasps;
@@ -138,7 +138,8 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
       }
       if (mode == read.mode) judged.emplace(std::move(planned));
     } catch (const base::InvalidInput& error) {
-      // Too large for one mode is no fault of the others; alone it is the cell's reason.
+      // An object that is too large for one mode does not fail the others; without other modes this
+      // is the cell's reason.
       if (mode.empty()) throw;
       failures += (failures.empty() ? "" : "; ") + mode + ": " + error.what();
     }

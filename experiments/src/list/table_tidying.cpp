@@ -86,7 +86,7 @@ std::vector<sweep::Column> timings() {
           {"measure_s", "s", "measuring the frames"}};
 }
 
-/// What a table of settings is in space.
+/// The scene of a table, the records of its objects and their poses.
 struct Table {
   motion::TableScene scene;
   std::vector<motion::MotionObject> objects;
@@ -120,7 +120,7 @@ Table load_table(const TableSettings& settings) {
           std::move(start), std::move(goal)};
 }
 
-/// What the frames of some segments show.
+/// Measurements over the frames of some segments.
 struct Measured {
   std::int64_t segments = 0;
   std::int64_t frames = 0;
@@ -167,7 +167,7 @@ constexpr std::array kPhases = {motion::MotionPhase::Reach,  motion::MotionPhase
                                 motion::MotionPhase::Place,  motion::MotionPhase::Release,
                                 motion::MotionPhase::Retreat};
 
-/// Rows of the moves' phases; their sum in `all`.
+/// Returns the rows of the moves' phases and adds all their measurements to `all`.
 std::vector<sweep::ResultRow> move_rows(const Table& table, const motion::TidyingResult& result,
                                         double step, Measured& all) {
   std::vector<sweep::ResultRow> rows;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What lengths are multiplied by so that the mesh has the size that is wanted.
+/// Factor by which lengths are multiplied so that the mesh has the size that is wanted.
 double scale_of(const ObjectSettings& settings, const geometry::TriangleMesh& mesh) {
   const Eigen::Vector3d extents = geometry::bounding_box(mesh).sizes();
   double scale = 1.0;
@@ -52,7 +52,7 @@ grasp::ObjectFile file_object(const ObjectSettings& settings) {
   return grasp::read_object_file(file, options);
 }
 
-/// As `rotation_xyz` says; untouched, to the bit, where it is zero.
+/// Turns the object as `rotation_xyz` says; where this is zero, the mesh is untouched, to the bit.
 void turn(const ObjectSettings& settings, grasp::ObjectFile& object) {
   if (settings.rotation_xyz.isZero(0.0)) return;
   const Eigen::Vector3d& angles = settings.rotation_xyz;

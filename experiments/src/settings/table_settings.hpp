@@ -12,9 +12,10 @@ namespace graspfit::experiments::internal {
 
 /// How an object rests on the table.
 struct RestSettings {
-  Eigen::Vector3d up_O;  ///< Of all ways of resting, the one whose up is nearest to this.
-  double turn = 0.0;     ///< About z [rad].
-  Eigen::Vector2d place_W = Eigen::Vector2d::Zero();  ///< Under the center of mass [m].
+  Eigen::Vector3d up_O;  ///< The rest pose whose up is nearest to this is taken.
+  double turn = 0.0;     ///< Rotation about z [rad].
+  Eigen::Vector2d place_W = Eigen::Vector2d::Zero();  ///< Point of the table under the center of
+                                                      ///< mass [m].
 };
 
 struct TableObject {
@@ -31,9 +32,9 @@ struct TableSettings {
   std::vector<TableObject> objects;
   Eigen::Vector3d home_palm_W = Eigen::Vector3d::Zero();       ///< Palm center at home [m].
   Eigen::Vector3d home_direction_W = Eigen::Vector3d::Zero();  ///< Palm direction at home.
-  double home_turn = 0.0;                                      ///< About that direction [rad].
-  double frame_step = 0.0;                                     ///< [m]
-  motion::TidyingOptions tidying;                              ///< All but the home of the hand.
+  double home_turn = 0.0;          ///< Rotation about the palm direction [rad].
+  double frame_step = 0.0;         ///< Largest motion of any point between two frames [m].
+  motion::TidyingOptions tidying;  ///< All but the home of the hand.
 };
 
 /// The settings beside those of the planner.
@@ -42,8 +43,8 @@ std::vector<sweep::Column> table_setting_names();
 /// @throws SettingError for what cannot be used.
 TableSettings table_settings(const sweep::Cell& cell);
 
-/// The open hand with its palm where the settings say: turned from its own frame by the least
-/// rotation, then by `home_turn`. `X_OH` is X_WH.
+/// Returns the open hand with palm center and palm direction as set: the hand is turned from its
+/// own frame by the least rotation, then by `home_turn`. `X_OH` is X_WH.
 hands::HandConfiguration home_of(const TableSettings& settings, const hands::HandModel& hand);
 
 /// The files of objects and hand, for manifests.

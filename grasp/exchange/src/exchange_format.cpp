@@ -54,7 +54,7 @@ std::string with_retreat(const grasp::GraspFile& file) {
   });
 }
 
-/// Grasps in which a follower stands where its leader does not put it.
+/// Returns the ranks of grasps in which a coupled joint is not where its leader puts it.
 std::string off_coupling(const grasp::GraspFile& file) {
   return ranks_where(file, [&](const grasp::Grasp& grasp) {
     for (std::size_t j = 0; j < file.hand.joints.size(); ++j) {
@@ -149,7 +149,7 @@ std::optional<ExchangeFormat> format_named(std::string_view name) {
 std::optional<ExchangeFormat> format_of(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   if (extension == ".yml") return ExchangeFormat::IsaacGrasp;
-  for (const FormatNames& names : kFormats) {  // isaac before moveit
+  for (const FormatNames& names : kFormats) {  // isaac precedes moveit, also .yaml
     if (extension == '.' + std::string(names.extension)) return names.format;
   }
   return std::nullopt;

@@ -23,7 +23,8 @@ std::string text_without_blanks(const XMLElement* element) {
   return packed;
 }
 
-/// Number and ratio of "d1*0.33+40". The reader of hands has checked the text.
+/// Number of the degree of freedom and ratio in a text like "d1*0.33+40", which the reader of hands
+/// has checked.
 struct Expression {
   std::size_t dof = 0;
   double ratio = 1.0;

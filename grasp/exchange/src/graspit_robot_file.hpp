@@ -7,8 +7,8 @@
 
 namespace graspfit::exchange::internal {
 
-/// A degree of freedom of a GraspIt! robot: its joints read `ratio` times its value, in radians or
-/// millimeters.
+/// A degree of freedom of a GraspIt! robot: each of its joints stands at `ratio` times its value,
+/// in radians or millimeters.
 struct GraspItDof {
   struct Follower {
     int joint = -1;  ///< Of the hand model.

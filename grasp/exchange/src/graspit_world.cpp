@@ -21,7 +21,7 @@ using tinyxml2::XMLElement;
 
 constexpr double kMillimetersPerMeter = 1000.0;
 
-/// Joints further apart than this are not on one degree of freedom any more [rad or mm].
+/// A joint further than this from the value of its degree of freedom has broken away [rad or mm].
 constexpr double kSameValue = 1e-9;
 
 double in_graspit_units(const hands::Joint& joint, double position) {
@@ -36,8 +36,9 @@ std::string full_transform(const geometry::RigidTransform& X) {
          ' ' + shortest_decimal(p.z()) + ']';
 }
 
-/// The value of a degree of freedom and, where it breaks away, a flag per joint: 0, or 1 and the
-/// value at which the joint stopped. Its own value is that of the joint that has closed furthest.
+/// Returns the value of a degree of freedom and, where it breaks away, a flag per joint: 0, or 1
+/// and the value at which the joint stopped. The value of the degree of freedom is that of the
+/// joint that has closed furthest.
 std::string dof_text(const hands::HandModel& hand, const GraspItDof& dof,
                      const Eigen::VectorXd& q) {
   const auto value_of = [&](const GraspItDof::Follower& follower) {

@@ -51,7 +51,7 @@ GraspFile empty_file(const grasp::ObjectFile& object, const hands::HandModel& ha
   return file;
 }
 
-/// What ways in and squeezes of the file's grasps need.
+/// Adds pre-grasps and squeezes to the grasps of a file.
 class Completion {
  public:
   Completion(const GraspFile& file, const geometry::TriangleMesh& mesh)

@@ -94,7 +94,8 @@ class Reader {
   void follow_couplings(const YamlNode& node, Eigen::VectorXd& q) const {
     const Eigen::VectorXd stated = q;
     for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
-      // Any place will do for a follower: all but those that a clutch lets go on are put right.
+      // Any position will do for a follower: the couplings correct all but those that a clutch lets
+      // go on closing.
       if (std::isnan(q[j])) {
         q[j] = hand_.joints[j].open_limit();
       }

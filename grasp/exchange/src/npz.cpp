@@ -21,7 +21,7 @@ void append(Unsigned value, std::string& bytes) {
   }
 }
 
-/// The code points of UTF-8; U+FFFD for a byte that is none of it.
+/// Returns the code points of a UTF-8 text, with U+FFFD for a byte that is not part of any.
 std::u32string code_points(const std::string& utf8) {
   std::u32string points;
   for (std::size_t i = 0; i < utf8.size();) {
@@ -77,8 +77,8 @@ void NpzWriter::add(std::string_view name, const std::vector<std::size_t>& shape
 
 void NpzWriter::add_member(std::string_view name, std::string_view type,
                            const std::vector<std::size_t>& shape, const std::string& data) {
-  // Magic text, version, header's length; the header ends in a line feed where 64 divides the
-  // place.
+  // The prelude is the magic text, the version and the header's length. The header is padded with
+  // blanks so that it ends, with a line feed, at a multiple of 64 bytes.
   std::string header = "{'descr': '" + std::string(type) +
                        "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
   constexpr std::size_t kPrelude = 10;
@@ -94,7 +94,7 @@ void NpzWriter::add_member(std::string_view name, std::string_view type,
   const std::string file = std::string(name) + ".npy";
   constexpr std::uint16_t kVersion = 20;
   constexpr std::uint16_t kFirstDay = 0x21;  // 1 January 1980, where the archive's time begins
-  std::string common;                        // of both headers
+  std::string common;                        // fields that both headers share
   append(kVersion, common);
   append(std::uint16_t{0}, common);  // flags
   append(std::uint16_t{0}, common);  // stored

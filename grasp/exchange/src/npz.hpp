@@ -18,8 +18,8 @@ class NpzWriter {
   void add(std::string_view name, const std::vector<std::size_t>& shape,
            std::span<const double> values);
 
-  /// Unicode texts of a common width; `shape` as above. Precondition: valid UTF-8 (else bytes that
-  /// are not become U+FFFD).
+  /// Unicode texts of a common width; `shape` as above. Precondition: the texts are valid UTF-8
+  /// (bytes that are not become U+FFFD).
   void add(std::string_view name, const std::vector<std::size_t>& shape,
            std::span<const std::string> texts);
 

@@ -40,7 +40,7 @@ Json material(const char* name, const std::array<double, 3>& color) {
             {"roughnessFactor", 0.7}}}};
 }
 
-/// A document in the making.
+/// A glTF document that is being put together.
 class Document {
  public:
   Document()
@@ -76,7 +76,7 @@ class Document {
   std::string bytes() {
     json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
     std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    text.append((4 - text.size() % 4) % 4, ' ');  // chunks end where 4 divides the place
+    text.append((4 - text.size() % 4) % 4, ' ');  // chunks end at multiples of 4 bytes
     const std::size_t size = 12 + 8 + text.size() + 8 + binary_.size();
     if (size > std::numeric_limits<std::uint32_t>::max()) {
       throw base::InvalidInput("posed_scene_glb: " + std::to_string(size) +
@@ -123,7 +123,7 @@ class Document {
     return static_cast<int>(json_["accessors"].size()) - 1;
   }
 
-  /// Makes what stands from `begin` on a view; its accessor.
+  /// Makes a buffer view of the bytes from `begin` on, and returns its accessor.
   Json add_view(std::size_t begin, int target, int component, std::size_t count, const char* type) {
     json_["bufferViews"].push_back({{"buffer", 0},
                                     {"byteOffset", begin},

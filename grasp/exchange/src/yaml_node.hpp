@@ -11,7 +11,7 @@
 
 namespace graspfit::exchange::internal {
 
-/// A value of a YAML file together with where it stands, so that every complaint says
+/// A value of a YAML file together with its location, so that every error message says
 /// "grasps.yaml: line 12: /grasps/grasp_0/position: is missing". All members throw IoError.
 class YamlNode {
  public:
@@ -28,7 +28,7 @@ class YamlNode {
   double number() const;  ///< Finite; written plain or quoted, read in the C locale.
   Eigen::Vector3d vector3() const;
 
-  /// Throws IoError: file, line, place, `what`, in one line.
+  /// Throws IoError that states file, line, location and `what` in one line.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -47,8 +47,8 @@ std::vector<TestedGrasp> test_grasps(const HoldHand& hand, const HoldObject& obj
                                      const HoldProgress& progress) {
   const std::vector<std::size_t> indices = wanted_indices(options, grasps.size());
   std::vector<TestedGrasp> tested(indices.size());
-  // Which worker tests what is chance; what comes out is not, since a verdict depends on the grasp
-  // alone. An error is the one of the first grasp that had one.
+  // Chance decides which worker tests which grasp, but not what the tests find, since a verdict
+  // depends on the grasp alone. Of several errors the first grasp's is thrown.
   std::vector<std::exception_ptr> errors(indices.size());
   std::atomic<std::size_t> next = 0;
   std::size_t done = 0;
@@ -106,7 +106,7 @@ std::map<HoldStage, std::size_t> count_stages(std::span<const TestedGrasp> teste
 }
 
 std::vector<std::size_t> held_best_first(std::span<const TestedGrasp> tested) {
-  std::vector<std::size_t> held;  // places in `tested`
+  std::vector<std::size_t> held;  // indices into `tested`
   for (std::size_t i = 0; i < tested.size(); ++i) {
     if (tested[i].verdict.held()) held.push_back(i);
   }

@@ -30,7 +30,7 @@ struct Parameter {
   Member member;
 };
 
-/// The one table: files and command lines know no other parameters.
+/// The table of all parameters: files and command lines know no others.
 const std::vector<Parameter>& parameters() {
   using P = HoldProtocol;
   static const std::vector<Parameter> table = {
@@ -71,7 +71,7 @@ const std::vector<Parameter>& parameters() {
   return table;
 }
 
-/// Does not compile when a protocol gets a field: then the table above needs it too.
+/// This does not compile when a protocol gets a field, which the table above then needs, too.
 [[maybe_unused]] void require_all_fields(const HoldProtocol& protocol) {
   [[maybe_unused]] const auto& [name, source, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12,
                                 k13, k14, k15, k16, k17, k18, k19, k20, k21, k22, k23, k24, k25,
@@ -91,7 +91,7 @@ const Parameter& parameter_named(const std::string& name) {
   throw InvalidInput("parameter " + name + ": \"" + text + "\" " + why);
 }
 
-/// A finite number that is the whole text; nothing else.
+/// Reads a text that is a finite number as a whole; empty for any other text.
 template <class Number>
 std::optional<Number> number_of(const std::string& text) {
   Number number{};

@@ -20,8 +20,8 @@ using hands::HandConfiguration;
 
 namespace {
 
-/// A follower this near to where its leader puts it follows it [rad or m]: rounding of positions
-/// that were written as text, as for the squeeze.
+/// A coupled joint this near to where its leader puts it counts as following it [rad or m]. The
+/// slack covers the rounding of positions that were written as text, as for the squeeze.
 constexpr double kFollowingSlack = 1e-9;
 
 std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::VectorXd& q) {

@@ -10,7 +10,8 @@
 
 namespace graspfit::hold_test::internal {
 
-/// One grasp's way through a protocol: on to the squeeze once, then any number of loads from there.
+/// The test of one grasp by a protocol: one simulation up to the squeeze, then any number of loads
+/// that each start from the squeezed state.
 class HoldRun {
  public:
   using Watch = std::function<void()>;  ///< Called after every step.
@@ -19,11 +20,12 @@ class HoldRun {
           const HoldProtocol& protocol)
       : physics_(physics), hand_(hand.model), object_(object), protocol_(protocol) {}
 
-  /// Pre-grasp, grasp and squeeze. Fills stage (Rejected, Approach, or Held so far), reason, what
-  /// the approach moved and the squeeze's force.
+  /// Simulates the motion from the pre-grasp to the grasp and on to the squeeze. Fills in the stage
+  /// (Rejected, Approach, or Held so far), the reason, how far the approach moved the object, and
+  /// the force of the squeeze.
   void approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch = {});
 
-  /// From the squeezed state, as often as wanted.
+  /// Simulates a load from the squeezed state; may be called as often as wanted.
   DirectionVerdict load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
                         const Eigen::Vector3d& torque_O, const Watch& watch = {});
 
@@ -32,16 +34,17 @@ class HoldRun {
 
  private:
   struct Motion {
-    double shift = 0.0;  ///< Of the center of mass [m].
+    double shift = 0.0;  ///< Displacement of the center of mass [m].
     double turn = 0.0;   ///< [rad]
   };
 
   std::string rejection(const grasp::Grasp& grasp);
   hands::HandConfiguration squeezed(const grasp::Grasp& grasp) const;
-  /// Straight from one command to another; checks on the way. False: lost.
+  /// Moves linearly from one command to another, with checks on the way. Returns false if the
+  /// object was lost or the simulation went wrong.
   bool move(const hands::HandConfiguration& from, const hands::HandConfiguration& to,
             double duration, HoldVerdict& verdict, const Watch& watch);
-  bool step(const Watch& watch);  ///< False: the simulation went wrong.
+  bool step(const Watch& watch);  ///< Returns false if the simulation went wrong.
   Motion motion(const geometry::RigidTransform& X_HB_before,
                 const geometry::RigidTransform& X_HB_now) const;
   geometry::RigidTransform X_HB() const;

@@ -28,15 +28,15 @@ const std::array<Vector3d, 6>& six_directions() {
   return directions;
 }
 
-/// A load is found to this share of itself, and below `kLeastLoad` of the largest it counts as
-/// zero.
+/// Relative accuracy to which a failing load is found; below `kLeastLoad` times the largest load it
+/// counts as zero.
 constexpr double kLoadTolerance = 0.02;
 constexpr double kLeastLoad = 1e-4;
 
-/// Lever that makes the largest force of a margin its largest torque [m].
+/// Lever arm by which the largest force of a margin becomes its largest torque [m].
 constexpr double kTorqueLever = 0.1;
 
-/// Where the search for a failing load begins, over the largest.
+/// First load of the search for a failing one, over the largest load.
 constexpr double kFirstLoad = 0.02;
 
 /// The smallest load in (0, `most`] at which `holds` is false, to `kLoadTolerance`: the returned
@@ -59,8 +59,9 @@ double smallest_failing(double first, double most, double least, const Holds& ho
   }
 }
 
-/// The least over six directions. `holds(direction, load)`; a direction that holds what the weakest
-/// so far nearly holds is not looked into further.
+/// Returns the smallest failing load over six directions, and its direction. `holds(direction,
+/// load)` tests a load. A direction that holds nearly the smallest failing load so far is not
+/// searched further.
 template <class Holds>
 std::pair<double, Vector3d> weakest(double most, const Holds& holds) {
   std::pair<double, Vector3d> result = {most, Vector3d::Zero()};

@@ -25,9 +25,9 @@ struct DataDeleter {
 constexpr std::array kFatalWarnings = {mjWARN_CONTACTFULL, mjWARN_CNSTRFULL, mjWARN_BADQPOS,
                                        mjWARN_BADQVEL, mjWARN_BADQACC};
 
-/// A follower that broke away is held by a drive that does not give way, as a worm gear's
-/// (Barrett's) and as the squeeze assumes, which asks nothing of it: so many times stiffer and more
-/// damped than joints that press.
+/// How many times stiffer and more damped the drive of a follower that broke away is than those of
+/// joints that press. Such a drive does not give way, like a worm gear (Barrett's); the squeeze
+/// assumes this, as it asks no torque of such a joint.
 constexpr double kLockedFactor = 50.0;
 
 Eigen::Quaterniond quaternion(const mjtNum* wxyz) {
@@ -89,7 +89,7 @@ struct Physics::Engine {
     return mj_name2id(model, mjOBJ_BODY, link_name(link).c_str());
   }
 
-  /// Position actuators: force = kp (command − position).
+  /// Sets the stiffness of a position actuator, whose force is kp (command − position).
   void set_stiffness(int actuator, double kp) {
     model->actuator_gainprm[mjNGAIN * actuator] = kp;
     model->actuator_biasprm[mjNBIAS * actuator + 1] = -kp;

@@ -10,35 +10,34 @@
 
 namespace graspfit::hold_test::internal {
 
-/// The simulated scene: hand, object and what acts on them. Only this knows the engine.
-///
+/// The simulated scene: hand, object and what acts on them. Only this class knows the engine.
 class Physics {
  public:
   /// @throws InvalidInput if the engine refuses the scene.
   Physics(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol);
   ~Physics();
 
-  /// All at rest: the object as planned, the hand at `start`, commanded to stay there, no load.
-  /// `follows` says for each joint whether it follows its leader; a follower that does not is
-  /// driven by its own actuator.
+  /// Puts all bodies at rest without load: the object as planned, the hand at `start`, commanded to
+  /// stay there. `follows` says for each joint whether it follows its leader; a follower that does
+  /// not is driven by its own actuator.
   void reset(const hands::HandConfiguration& start, const std::vector<bool>& follows);
 
-  /// Puts the palm where `to` has it (not moved by forces) and commands the joints.
+  /// Puts the palm at its pose in `to`, where forces do not move it, and commands the joints.
   void command(const hands::HandConfiguration& to);
   /// Commands the lifting slide of HoldLoad::Lift [m].
   void command_lift(double height);
-  /// From now on acting on the object at its center of mass [N, N m].
+  /// Sets the force and torque that act on the object at its center of mass from now on [N, N m].
   void set_load(const Eigen::Vector3d& force_O, const Eigen::Vector3d& torque_O);
-  /// One step of time. Why its result is not to be trusted; empty: it is. Only `reset` and
-  /// `restore` make that good again.
+  /// Simulates one time step. Returns why the result is not to be trusted; empty if it is. After a
+  /// failure only `reset` and `restore` lead back to a state that can be trusted.
   std::string step();
 
   double time() const;                    ///< Since the reset [s].
-  geometry::RigidTransform X_OB() const;  ///< Of the object; identity as planned.
-  hands::HandConfiguration hand() const;  ///< As it stands.
+  geometry::RigidTransform X_OB() const;  ///< Pose of the object; identity as planned.
+  hands::HandConfiguration hand() const;  ///< Palm pose and joints as they are.
   double squeeze_force() const;           ///< Normal forces of the hand on the object [N].
 
-  /// Deepest overlap of hand and object, or hand and hand, by the engine's pieces.
+  /// Deepest overlap of hand and object, or hand and hand, between the engine's convex pieces.
   struct Overlap {
     double depth = 0.0;  ///< [m]
     int link_a = -1;

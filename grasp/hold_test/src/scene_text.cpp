@@ -18,18 +18,18 @@ namespace {
 using geometry::RigidTransform;
 using hands::JointType;
 
-/// Below this the engine refuses a mesh [m³].
+/// Volume below which the engine refuses a mesh [m³].
 constexpr double kLeastPieceVolume = 1e-13;
 
-/// Least mass and inertia of a body [kg, kg m²]: a link that says zero would otherwise be refused.
+/// Least mass and inertia of a body [kg, kg m²]: the engine would refuse a link that states zero.
 constexpr double kLeastMass = 1e-4;
 constexpr double kLeastInertia = 1e-8;
 
-/// Joints that cannot move get this much room, as the engine asks for an interval [rad or m].
+/// Range of joints that cannot move, as the engine asks for an interval [rad or m].
 constexpr double kLeastRange = 1e-9;
 
-/// Of the slide that lifts the hand: so stiff that 10 N move it by 0.1 mm, so inert that fingers do
-/// not shake it.
+/// Drive of the slide that lifts the hand: so stiff that 10 N move it by 0.1 mm, so inert that
+/// fingers do not shake it.
 constexpr double kLiftStiffness = 1e5;  // [N/m]
 constexpr double kLiftDamping = 2e3;    // [N s/m]: critical.
 constexpr double kLiftArmature = 10.0;  // [kg]
@@ -112,7 +112,7 @@ class Scene {
            attribute("solref", numbers(protocol_.object_solref)) + "/></default>\n</default>\n";
   }
 
-  /// Geoms of the pieces, whose meshes are moved by `shift`.
+  /// Returns the geoms of the pieces, whose meshes are translated by `shift`.
   std::string pieces(const geometry::ConvexDecomposition& shape, const std::string& kind,
                      const Eigen::Vector3d& shift) {
     std::string geoms;
@@ -129,8 +129,8 @@ class Scene {
     return geoms;
   }
 
-  /// As described; what the description leaves out or says as zero is that of the link's solid: of
-  /// the described mass, or else of the protocol's density.
+  /// Returns the link's inertia as described. What the description leaves out or states as zero is
+  /// computed from the link's solid, with the described mass or else the protocol's density.
   std::string link_inertial(const hands::Link& link) const {
     const bool has_mass = link.inertia && link.inertia->mass > 0.0;
     if (has_mass && is_positive_definite(link.inertia->inertia_L)) {

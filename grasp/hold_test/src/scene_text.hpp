@@ -11,7 +11,8 @@ namespace graspfit::hold_test::internal {
 std::string link_name(int link);
 std::string joint_name(int joint);
 
-/// Hand, object and, for protocols that lift, a table as the text of an MJCF model; frame W is O.
+/// Returns hand, object and, for protocols that lift, a table as the text of an MJCF model; frame W
+/// is O.
 ///
 /// - The hand's root link is a child of the world, or of a body on a vertical slide; its pose is to
 ///   be set in the compiled model. Every link is a body, every joint a hinge or slide with the
@@ -22,7 +23,7 @@ std::string joint_name(int joint);
 ///   excludes, all with the table.
 /// - The object's body frame is at its center of mass with the axes of O.
 ///
-/// Numbers in shortest round-trip form in the C locale.
+/// Numbers are in shortest round-trip form in the C locale.
 std::string scene_text(const HoldHand& hand, const HoldObject& object,
                        const HoldProtocol& protocol);
 

@@ -33,7 +33,7 @@ constexpr std::string_view kShapePrefix = "shape ";
 
 Json joints_json(const Eigen::VectorXd& q) { return std::vector<double>(q.begin(), q.end()); }
 
-/// Where a segment begins or ends.
+/// A keyframe: the state in which a segment begins or ends.
 Json keyframe_json(const hands::HandConfiguration& hand, const RigidTransform& X_WO) {
   return {{"X_WH", grasp::internal::to_json(hand.X_OH)},
           {"q", joints_json(hand.q)},
@@ -88,7 +88,8 @@ bool are_same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).norm() <= kSame;
 }
 
-/// What a segment says of the object must be true of the phase that it calls itself.
+/// Refuses a segment whose motion its phase does not allow: an object that moves while the hand is
+/// free, or a hand that moves relative to the object that it carries.
 void require_possible(const JsonValue& end, const MotionSegment& segment) {
   const std::string phase = phase_name(segment.phase);
   if (!is_carrying(segment.phase)) {
@@ -111,7 +112,7 @@ struct Whereabouts {
   std::vector<RigidTransform> X_WO;
 };
 
-/// A move must begin where things are.
+/// Refuses a move that does not begin where the moves before it have left object and hand.
 void require_there(const JsonValue& from, const MotionSegment& first, const Whereabouts& now) {
   if (!are_same(first.X_WO_from, now.X_WO[first.object])) {
     from.at("X_WO").fail("is not where the object stands then");
@@ -154,7 +155,8 @@ void require_hash(const std::string& what, const std::string& found, const std::
                       recorded);
 }
 
-/// The joints must be the hand's, and where it can have them.
+/// Requires that the joints are those of the hand, and that the hand can take their positions in
+/// every keyframe.
 void require_joints(const MotionFile& file, const hands::HandModel& hand) {
   std::vector<std::string> names;
   for (const hands::Joint& joint : hand.joints) names.push_back(joint.name);
@@ -187,7 +189,7 @@ geometry::TriangleMesh mesh_of(const MotionObject& object, const fs::path& mesh_
   if (object.file.starts_with(kShapePrefix)) {
     const geometry::TriangleMesh mesh =
         geometry::named_shape(object.file.substr(kShapePrefix.size()));
-    // As when it was made: a factor of one leaves the bits alone.
+    // The shape is scaled as it was when it was made: a factor of one leaves its bits alone.
     return object.meters_per_file_unit == 1.0 ? mesh
                                               : geometry::scaled(mesh, object.meters_per_file_unit);
   }

@@ -54,17 +54,17 @@ geometry::TriangleMesh hull_mesh(const geometry::TriangleMesh& mesh) {
   return result;
 }
 
-/// The segment touches the handled object with the hand at one of its ends.
+/// Whether the hand touches the handled object at one end of the segment.
 bool is_touching(MotionPhase phase) {
   return phase == MotionPhase::Approach || phase == MotionPhase::Release;
 }
 
-/// The carried object stands on the table at one of the ends.
+/// Whether the carried object stands on the table at one end of the segment.
 bool is_resting(MotionPhase phase) {
   return phase == MotionPhase::Lift || phase == MotionPhase::Place;
 }
 
-/// Bounds of how far the points of every body go on a segment.
+/// Upper bounds of how far the points of every body travel on a segment.
 class Travel {
  public:
   Travel(const TableScene& scene, const MotionSegment& segment)
@@ -104,7 +104,7 @@ class Travel {
   double object_ = 0.0;
 };
 
-/// Everything at one place of a segment.
+/// Poses of hand, links and handled object at one share of a segment.
 struct Posed {
   MotionState state;
   std::vector<RigidTransform> X_WL;
@@ -159,8 +159,9 @@ class SegmentProof {
  private:
   using Distance = std::function<double(const Posed&, double enough)>;
 
-  /// Whether two bodies stay more than `clearance` apart but for a way of `tolerance` at the end at
-  /// which the hand touches, which counts as the way's end.
+  /// Says whether two bodies stay more than `clearance` apart, except for a path length of
+  /// `tolerance` at the end at which the hand touches the object. The segment is traversed toward
+  /// this end, a release therefore backward.
   bool stay_apart(double travel, double clearance, double tolerance,
                   const Distance& distance) const {
     const bool is_backward = segment_.phase == MotionPhase::Release;
@@ -170,7 +171,8 @@ class SegmentProof {
     });
   }
 
-  /// Lower bound of the distance of two surfaces up to `enough`; near `clearance` all of it.
+  /// Returns a lower bound of the distance of two surfaces up to `enough`; near `clearance` the
+  /// bound is the distance itself.
   static double surface_distance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                                  const RigidTransform& X_AB, double enough, double clearance,
                                  geometry::ProximitySeed& seed) {
@@ -314,7 +316,8 @@ MotionState state_at(const TableScene& scene, const MotionSegment& segment, doub
   }
   if (share == 0.0) return {segment.from, segment.X_WO_from};
   if (share == 1.0) return {segment.to, segment.X_WO_to};
-  // The object as a hand without joints whose palm frame is at the center of mass.
+  // The object is interpolated like a hand without joints whose palm frame is at the center of
+  // mass.
   const Eigen::Translation3d center(scene.object(segment.object).center_of_mass_O);
   const HandConfiguration pivot =
       grasp::interpolated({segment.X_WO_from * center, Eigen::VectorXd()},

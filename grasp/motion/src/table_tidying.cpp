@@ -85,7 +85,7 @@ class TidyingSearch {
     return false;
   }
 
-  /// Keeps the arrangement that has most objects at their goals, the first of them.
+  /// Keeps the current arrangement if it has more objects at their goals than all before.
   void note(const std::vector<UnmovedObject>& refused) {
     int num_home = 0;
     for (int object = 0; object < num_objects(); ++object) num_home += is_home(object) ? 1 : 0;
@@ -104,7 +104,8 @@ class TidyingSearch {
       return std::nullopt;
     }
     ++result_.moves_tried;
-    // Moves of two objects in either order lead to one arrangement.
+    // Moves of two objects in either order lead to one arrangement, in which a refused move comes
+    // up again.
     const auto known = std::find_if(refused_.begin(), refused_.end(), [&](const Refused& refused) {
       return refused.object == object && is_same(refused.X_WO_to, X_WO_to) &&
              std::equal(at_.begin(), at_.end(), refused.at.begin(), is_same);
@@ -120,7 +121,8 @@ class TidyingSearch {
     return std::move(attempt.move);
   }
 
-  /// Poses to put an object down in between: for each way of lying, places and quarter turns.
+  /// Returns the poses in which an object may be put down in between: for each rest pose, all
+  /// resting places and quarter turns.
   std::vector<RigidTransform> stopovers(int object) const {
     const auto i = static_cast<std::size_t>(object);
     const SceneObject& moved = scene_.object(object);

@@ -11,11 +11,12 @@ namespace graspfit::experiments {
 /// All experiments, by slug. This is the registry: one line each in experiment_registry.cpp.
 const std::vector<sweep::Experiment>& all_experiments();
 
-/// @throws InvalidInput that lists the experiments, if there is none of that name.
+/// Returns the experiment of that slug. @throws InvalidInput that lists the experiments, if there
+/// is none.
 const sweep::Experiment& find_experiment(std::string_view slug);
 
 /// The JSON Schema of configurations, for editors and other programs: members, names and values of
-/// settings. What depends on several values at once only `read_config` checks.
+/// settings. Rules between several values are checked by `read_config` only.
 std::string config_schema();
 
 }  // namespace graspfit::experiments

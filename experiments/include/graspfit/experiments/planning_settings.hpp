@@ -13,17 +13,17 @@
 
 namespace graspfit::experiments {
 
-/// What an object of a cell is.
+/// The object of a cell: where its mesh comes from, its size and its orientation.
 struct ObjectSettings {
   // One of these three; the others are empty.
-  std::string file;      ///< In the data folder, or an absolute path.
+  std::string file;      ///< Mesh file in the data folder, or by an absolute path.
   std::string packaged;  ///< A mesh of libcgal-demo by the name of its file.
-  std::string shape;     ///< Of `geometry::named_shape`, in meters.
+  std::string shape;     ///< Name of a `geometry::named_shape`, in meters.
   std::optional<double>
       size;  ///< Length of the bounding box along `size_axis` [m]; empty: as it is.
   std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
-  /// Scaled down further where its bounding box's shortest edge is longer than this [m]: what a
-  /// hand that spans so much can close around.
+  /// The object is scaled down further where its bounding box's shortest edge is longer than this
+  /// [m], so that a hand that spans so much can close around it.
   std::optional<double> largest_thickness;
   /// Angles by which the object, scaled, is turned about its frame's fixed x, then y, then z axis
   /// [rad]: planning sees it in that pose.
@@ -35,9 +35,9 @@ struct ObjectSettings {
 /// What the planner is asked to do in a cell.
 struct PlanningSettings {
   ObjectSettings object;
-  std::string hand;  ///< A shipped one, or a description in the data folder (has a '/').
+  std::string hand;  ///< A shipped hand, or a description in the data folder (has a '/').
   std::optional<double> table_z_O;  ///< Everything at or below this z is solid [m].
-  std::string preset;  ///< That `options` come from, before what else is set; empty: none.
+  std::string preset;  ///< Preset that `options` start from, before other settings; empty: none.
   grasp::PlannerOptions options;
 };
 
@@ -55,14 +55,15 @@ struct SettingDescription {
   sweep::Column name;
   std::string allowed;   ///< For people: "a|b", "true|false", "in [4, 512]", "> 0", "text".
   std::string fallback;  ///< Its value where it is not given; empty: none.
-  std::optional<base::NumberRange> range;  ///< Of numbers, in `name.unit`.
+  std::optional<base::NumberRange> range;  ///< Range of a number, in `name.unit`.
 };
 
 /// All settings of `planning_setting_names`, in that order.
 const std::vector<SettingDescription>& planning_setting_descriptions();
 
-/// Checks what settings that are allowed one by one must be together, before `PlannerOptions`
-/// itself, which speaks of its members. @throws SettingError in the words of the settings.
+/// Checks rules between settings that are allowed one by one. It comes before the check of
+/// `PlannerOptions` itself, whose messages name members. @throws SettingError in the words of the
+/// settings.
 void require_compatible(const grasp::PlannerOptions& options);
 
 /// The settings of a cell; its seed becomes the planner's. `others` are names that belong to the
@@ -71,12 +72,12 @@ void require_compatible(const grasp::PlannerOptions& options);
 PlanningSettings planning_settings(const sweep::Cell& cell,
                                    const std::vector<sweep::Column>& others = {});
 
-/// The same from any JSON object, for settings within settings.
+/// Reads planning settings from any JSON object, for settings nested in others.
 PlanningSettings planning_settings(const std::string& settings, std::uint64_t seed,
                                    const std::vector<sweep::Column>& others = {});
 
-/// The object of a cell, scaled and repaired. The last few are kept, for cells that share one.
-/// @throws MissingData if its file is not there; as `grasp::read_object_file`.
+/// Loads the object of a cell, scaled and repaired. The last few objects are kept, for cells that
+/// share one. @throws MissingData if its file is not there; as `grasp::read_object_file`.
 std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings);
 
 /// The hand of a cell. @throws MissingData if its file is not there; as `hands::read_hand_model`.

@@ -105,7 +105,8 @@ std::string code_text(const SortedJson& manifest) {
          (manifest.value("is_commit_clean", false) ? "" : " with changes");
 }
 
-/// Nothing if both are the same program, or of the same commit without changes.
+/// Says how the code differs; empty if both are the same program, or of the same commit without
+/// changes.
 std::string other_code(const SortedJson& ours, const SortedJson& theirs) {
   const std::string program = ours.value("program_sha256", "");
   if (!program.empty() && program == theirs.value("program_sha256", "")) return "";

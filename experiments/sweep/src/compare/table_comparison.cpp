@@ -64,7 +64,7 @@ std::vector<std::string> row_names(const CsvTable& table, std::size_t num_labels
 
 /// What a comparison needs of a run's manifest.
 struct RunFacts {
-  std::size_t num_axes = 0;   ///< As many of its tables' first columns are labels.
+  std::size_t num_axes = 0;   ///< Number of axes: so many first columns of its tables are labels.
   std::size_t num_cells = 0;  ///< Rows of its table of cells.
 };
 
@@ -79,8 +79,9 @@ RunFacts run_facts(const std::filesystem::path& manifest) {
   return {json.at(axes).size(), json.at(cells).get<std::size_t>()};
 }
 
-/// Notes the rows of theirs that we lack although they are of a cell that the run has: one of
-/// `cells`, told by the first fields. Without `cells` we should have all.
+/// Notes the rows of their table that ours lacks although the run has their cell. `cells` are the
+/// labels of the run's cells, which are the first fields of a row; without `cells` all rows are
+/// expected.
 void note_missing_rows(const CsvTable& ours, const CsvTable& theirs, std::size_t num_labels,
                        const std::optional<std::set<std::vector<std::string>>>& cells,
                        TableComparison& result) {

@@ -52,8 +52,8 @@ std::optional<fs::path> environment_folder(const char* name) {
   return fs::path(value);
 }
 
-/// Where packaged meshes are looked for: as `fetch_meshes` of setup/setup.sh, which puts them into
-/// the build folder where the user has no cache folder.
+/// Folders that are searched for packaged meshes: as `fetch_meshes` of setup/setup.sh, which puts
+/// them into the build folder where the user has no cache folder.
 std::vector<fs::path> packaged_mesh_folders() {
   if (const auto folder = environment_folder("GRASPFIT_PACKAGED_MESHES")) return {*folder};
   std::vector<fs::path> folders;
@@ -145,7 +145,8 @@ std::string name_of_input(const fs::path& file) {
   const fs::path path = fs::absolute(file).lexically_normal();
   const fs::path data = fs::absolute(data_folder()).lexically_normal();
   const fs::path sources = fs::absolute(source_folder()).lexically_normal();
-  // In the root of a file system lies everything; elsewhere such names mean nothing.
+  // All files lie in the root of a file system, so that names relative to it would mean nothing
+  // elsewhere.
   const bool has_data = data != data.root_path();
   if (has_data && lies_in(path, data)) return path.lexically_relative(data).string();
   for (const fs::path& folder : packaged_mesh_folders()) {

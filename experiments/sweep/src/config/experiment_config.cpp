@@ -32,7 +32,8 @@ using SortedJson = nlohmann::json;
 
 constexpr std::size_t kMostCells = 1000000;  // A sweep beyond that is a mistake in its axes.
 
-/// Settings that say what an object is: one of them, so naming one leaves the others behind.
+/// Settings that say what an object is. An object has one of them, so that naming one removes the
+/// others.
 constexpr std::array kObjectSources = {"file", "packaged", "shape"};
 
 /// The configuration while it is put together.
@@ -50,7 +51,8 @@ void read_settings(const JsonValue& node, Draft& draft) {
   }
 }
 
-/// Leaves behind what settings of all cells say of the object, if `key` says it, too.
+/// Removes what the settings of all cells say of the object, if `key` is a setting that says it,
+/// too.
 void forget_other_objects(const std::string& key, Draft& draft) {
   if (std::find(kObjectSources.begin(), kObjectSources.end(), key) == kObjectSources.end()) return;
   for (const char* const source : kObjectSources) draft.settings.erase(source);
@@ -116,7 +118,8 @@ AxisValue changed_value(const AxisChange& change, const std::string& text) {
   return value;
 }
 
-/// Whether all values of an axis set what the axis is called, as plain values do.
+/// Says whether all values of an axis set only the setting that the axis is named after, as plain
+/// values do.
 bool has_plain_values(const Axis& axis) {
   return std::all_of(axis.values.begin(), axis.values.end(), [&](const AxisValue& value) {
     const SortedJson settings = SortedJson::parse(value.settings);
@@ -172,7 +175,7 @@ void apply_change(const AxisChange& change, Draft& draft) {
   draft.axes.insert(change.axis == "seed" ? draft.axes.end() : seeds, std::move(changed));
 }
 
-/// Which axis other than the objects' own sets their sizes; null if none does.
+/// Returns the axis, other than that of objects, that sets the objects' sizes; null if none does.
 const PlacedAxis* size_axis_of(const Draft& draft) {
   const auto sets_size = [](const AxisValue& value) {
     return SortedJson::parse(value.settings).contains("size_m");
@@ -202,8 +205,8 @@ void add_default_objects(Draft& draft) {
   }
 }
 
-/// Leaves out values that lack data, where others remain and nobody asked for them. The axes that
-/// have become others, for people; `num_values` is how many values they had.
+/// Leaves out values that lack data, where other values remain and nobody asked for them. Returns
+/// which axes have changed, for people; `num_values` is how many values they had.
 std::string leave_out_missing_data(Draft& draft,
                                    const std::map<std::string, std::size_t>& num_values) {
   std::string text;
@@ -255,7 +258,7 @@ void apply_object_files(const Experiment& experiment, const ConfigRequest& reque
   }
 }
 
-/// Settings belong to one axis: two that set the same would hide one another.
+/// Requires that each setting belongs to one axis: if two axes set it, one would hide the other.
 void require_separate_axes(const Draft& draft) {
   std::map<std::string, std::string> owners;
   for (const PlacedAxis& placed : draft.axes) {

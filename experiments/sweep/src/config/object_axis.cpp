@@ -24,7 +24,7 @@ std::string label_of(const fs::path& file) {
   return is_label(label) ? label : "object";
 }
 
-/// Its settings as text.
+/// Returns the settings of a mesh file as text.
 std::string file_settings(const fs::path& file, const std::optional<double>& longest) {
   Json settings = {{"file", file.string()}};
   if (longest) {

@@ -11,20 +11,20 @@
 
 namespace graspfit::sweep::internal {
 
-/// An axis with where its values were written, for messages.
+/// An axis with the locations at which its values were written, for messages.
 struct PlacedAxis {
   Axis axis;
   std::vector<std::string> locations;  ///< One per value.
-  bool is_picked = false;              ///< By `quick` or the command line: asked for as it is.
+  bool is_picked = false;  ///< Whether `quick` or the command line asked for the axis as it is.
 };
 
-/// The text of a number, text, true or false as a label.
+/// Returns a number, a text, true or false as a label.
 std::string plain_label(const nlohmann::json& value);
 
 /// "there are a, b, c", and which of these labels an unknown one is near to.
 std::string labels_text(const Axis& axis, const std::string& unknown);
 
-/// The place of the value of an axis with that label; empty if there is none.
+/// Returns the index of the value with that label; empty if there is none.
 std::optional<std::size_t> find_value(const Axis& axis, const std::string& label);
 
 /// The root of a configuration. @throws IoError: file and place.
@@ -38,7 +38,7 @@ PlacedAxis read_axis(const std::string& name, const base::JsonValue& node,
 /// The axis seed from a number of seeds.
 PlacedAxis seed_axis(const base::JsonValue& node);
 
-/// What `quick` has of an axis: values by their labels, in their old order, then its own.
+/// Reduces an axis to what `quick` picks: values by their labels, in their old order, then its own.
 void pick_values(const base::JsonValue& picks, PlacedAxis& placed);
 
 }  // namespace graspfit::sweep::internal

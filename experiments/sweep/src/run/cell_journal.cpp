@@ -131,7 +131,8 @@ CellJournal::~CellJournal() { ::close(descriptor_); }
 void CellJournal::open_and_lock() {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(std::strerror(errno));
-  // Who asks whether a run is going holds the lock for a moment, too: see is_journal_in_use.
+  // A process that asks whether a run is going holds the lock for a moment, too: see
+  // is_journal_in_use.
   constexpr int kMostTries = 50;
   constexpr std::chrono::milliseconds kPause(10);
   for (int tries = 1; ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++tries) {

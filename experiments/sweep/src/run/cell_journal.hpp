@@ -18,7 +18,7 @@ struct CellRecord {
   std::vector<std::string> fields;
   std::vector<std::string> timings;
   std::vector<std::vector<std::string>> details;
-  bool is_final = true;  ///< No: the next run tries again.
+  bool is_final = true;  ///< Whether the record is final; otherwise the next run tries again.
 };
 
 /// What all cells of a journal have in common: names for messages, and values.
@@ -26,19 +26,19 @@ using JournalIdentity = std::map<std::string, std::string>;
 
 /// A journal as it is on disk: a few bytes per cell.
 struct JournalContent {
-  /// The last line of a cell; a final one stays the last.
+  /// The last line of a cell; only a final line replaces a final one.
   struct Line {
-    std::int64_t offset = -1;  ///< Of its beginning in the file; −1: none.
+    std::int64_t offset = -1;  ///< Offset of its beginning in the file; −1: none.
     bool is_final = false;
     bool is_failed = false;
   };
   JournalIdentity identity;
   std::vector<Line> cells;                    ///< One per cell of the sweep.
   std::map<std::string, std::string> inputs;  ///< SHA-256 of what its runs read, by name.
-  std::int64_t size = 0;                      ///< Up to the end of the last whole line.
+  std::int64_t size = 0;                      ///< Size up to the end of the last whole line.
   bool has_header = false;
-  double last_start_s = 0.0;  ///< Of its last run, on the clock of Unix [s].
-  double last_cell_s = 0.0;   ///< Of the last cell of that run.
+  double last_start_s = 0.0;  ///< Start of the last run, in Unix time [s].
+  double last_cell_s = 0.0;   ///< End of the last cell of that run, in Unix time [s].
   std::size_t num_cells_since_start = 0;
 };
 
@@ -66,9 +66,9 @@ class CellJournal {
 
   std::size_t num_cells() const { return content_.cells.size(); }
   bool has(std::size_t cell) const { return content_.cells[cell].is_final; }
-  /// Whether there is any record of it, final or not.
+  /// Whether there is any record of a cell, final or not.
   bool is_known(std::size_t cell) const { return content_.cells[cell].offset >= 0; }
-  /// Whether its final record is of a failure.
+  /// Whether a cell's final record is of a failure.
   bool is_failed(std::size_t cell) const { return has(cell) && content_.cells[cell].is_failed; }
   const std::map<std::string, std::string>& inputs() const { return content_.inputs; }
 
@@ -76,7 +76,8 @@ class CellJournal {
   /// @throws InvalidInput, naming the file, if an earlier run had another in its place; IoError.
   void start_run(const std::map<std::string, std::string>& inputs);
 
-  /// On disk when it returns. Safe to call from several threads. @throws IoError.
+  /// Appends the record of a cell, which is on disk on return. Safe to call from several threads.
+  /// @throws IoError.
   void append(std::size_t cell, const std::string& key, const CellRecord& record);
 
   /// The last record of a cell that is known. @throws IoError. Not while another thread appends.

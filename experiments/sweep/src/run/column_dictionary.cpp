@@ -12,7 +12,8 @@ Json entry(const Column& column) {
   return {{"name", column.name}, {"unit", column.unit}, {"meaning", column.meaning}};
 }
 
-/// An axis named after a setting is of its values; of another one the labels are names.
+/// Returns the column of an axis. An axis named after a setting holds values of that setting; the
+/// labels of any other axis are names.
 Column axis_column(const Axis& axis, const Experiment& experiment) {
   if (axis.name == "seed") return {"seed", "1", "number of the repetition; see cell_seed"};
   for (const auto* const names : {&experiment.shared_settings, &experiment.settings}) {

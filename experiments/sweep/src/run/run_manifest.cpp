@@ -40,7 +40,7 @@ Json machine() {
           {"num_processors", std::thread::hardware_concurrency()}};
 }
 
-/// A text as one word of the shell: quoted where it holds more than what means itself there.
+/// Returns a text as one word of the shell, quoted if it has characters that are special there.
 std::string shell_word(const std::string& text) {
   constexpr const char* kPlain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_.,:/=+@%-";
@@ -140,7 +140,7 @@ void require_publishable(const ExperimentConfig& config, const fs::path& sources
   if (built.commit.empty() || !built.is_clean) {
     refuse("the program was not built from a clean commit; commit, build again and run again");
   }
-  // As write_build_source.cmake: what publishing itself writes.
+  // What publishing itself writes is left aside, as in write_build_source.cmake.
   constexpr const char* kAside = " -- . ':(exclude)notebooks-data' ':(exclude)paper-figures/data'";
   const GitAnswer untracked =
       git(sources, std::string("ls-files --others --exclude-standard") + kAside);

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using internal::CellJournal;
 using internal::CellRecord;
 
-/// A row without results. Where the cell lacks data or memory it is not final: the next run may do
-/// better.
+/// A record without results. It is not final where the cell lacks data or memory: the next run may
+/// do better.
 CellRecord without_results(const Experiment& experiment, const char* status, const char* reason,
                            bool is_final) {
   return {status,
@@ -78,7 +78,7 @@ class Run {
     std::vector<std::thread> threads;
     try {
       for (int i = 1; i < jobs_; ++i) threads.emplace_back([this] { work_until_done(); });
-    } catch (const std::exception& error) {  // of the system, or no memory
+    } catch (const std::exception& error) {  // of the system, or for want of memory
       const std::lock_guard lock(mutex_);
       is_stopped_ = true;
       error_ = std::make_exception_ptr(base::IoError(
@@ -92,7 +92,7 @@ class Run {
   }
 
  private:
-  /// In the sweep, of a cell of the shard.
+  /// Index in the sweep of a cell of the shard.
   std::size_t index_of(std::size_t cell) const { return shard_.index - 1 + cell * shard_.count; }
 
   void work_until_done() {
@@ -243,7 +243,7 @@ RunProgress run_sweep(const Experiment& experiment, const ExperimentConfig& conf
   const RunProgress done = Run(experiment, config.sweep, options, folder, journal, progress).work();
   const std::map<std::string, std::string> after = input_hashes(experiment, config.sweep);
   require_unchanged(before, after);
-  if (after.size() > before.size()) journal.start_run(after);  // files that came to be there
+  if (after.size() > before.size()) journal.start_run(after);  // files that appeared during the run
   manifest.inputs = journal.inputs();
   if (options.shard) {
     internal::write_manifest(config, manifest, done, folder);

@@ -108,7 +108,7 @@ SweepStatus status_of(const JournalContent& content, const std::string& name,
   return status;
 }
 
-/// Adds what a journal has to that of the whole sweep.
+/// Adds the cells of a journal to those of the whole sweep.
 void add_to(JournalContent& whole, const JournalContent& content, const fs::path& folder) {
   if (!whole.has_header) {
     whole.identity = content.identity;

@@ -110,7 +110,7 @@ void require_own_folder(const fs::path& folder, const std::string& slug) {
   for (const fs::directory_entry& shard : fs::directory_iterator(folder / "shards", error)) {
     places.push_back(shard.path());
   }
-  std::set<std::string> others;  // the first by name: folders have no order
+  std::set<std::string> others;  // sorted by name, as folders have no order
   for (const fs::path& place : places) {
     for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
       const std::string name = entry.path().filename().string();

@@ -11,7 +11,7 @@
 
 namespace graspfit::sweep::internal {
 
-/// The journal of an experiment's results in a folder, which is made if need be.
+/// Returns the path of the journal of an experiment's results in a folder.
 std::filesystem::path journal_file(const std::filesystem::path& folder, const std::string& slug);
 
 /// What the cells of a journal must have in common.
@@ -24,7 +24,7 @@ void require_own_folder(const std::filesystem::path& folder, const std::string& 
 /// Makes a folder. @throws IoError.
 void make_folder(const std::filesystem::path& folder);
 
-/// The text that a CSV field of a journal is.
+/// Returns the text that a CSV field of a journal stands for.
 std::string text_of_field(const std::string& field);
 
 /// Refuses to make tables without results. @throws MissingData, with the first reason, if all cells
@@ -40,7 +40,7 @@ void write_tables(const Experiment& experiment, const ExperimentConfig& config,
 /// File names of all tables of an experiment.
 std::vector<std::string> table_names(const Experiment& experiment);
 
-/// Only the manifest.
+/// Writes only the manifest.
 void write_manifest(const ExperimentConfig& config, const RunManifest& manifest,
                     const RunProgress& counts, const std::filesystem::path& folder);
 

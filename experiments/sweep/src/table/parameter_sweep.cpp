@@ -14,7 +14,7 @@ std::uint64_t cell_seed(const std::string& experiment, std::uint64_t base_seed,
   assert(axes.size() == labels.size());
   std::map<std::string, std::string> by_axis;
   for (std::size_t i = 0; i < axes.size(); ++i) by_axis[axes[i].name] = labels[i];
-  // JSON text: no two different cells have the same.
+  // As JSON text, no two different cells have the same identity.
   const nlohmann::json identity = {experiment, base_seed, by_axis};
   constexpr int kDigits = 14;      // of 4 bits each,
   constexpr int kSurplusBits = 3;  // less these: 53

@@ -17,11 +17,11 @@ using geometry::RigidTransform;
 
 constexpr double kThinRel = 1e-9;  // height over length of a triangle
 
-/// Faces whose boxes meet the prism over the pad's outline that reaches as high as its clip volume,
-/// and some more; ascending.
+/// Returns, ascending, the faces whose boxes meet the prism over the pad's outline that is as high
+/// as the pad's clip volume, and some more.
 ///
-/// Asked tile by tile: the box of a whole pad that stands oblique in O is mostly air, and holds
-/// several times the faces that are near the pad.
+/// The query is made tile by tile: the bounding box of a whole pad that stands oblique in O is
+/// mostly empty, and holds several times as many faces as are near the pad.
 std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double thickness,
                                          const RigidTransform& X_OC,
                                          const geometry::MeshQuery& object) {
@@ -55,11 +55,12 @@ std::vector<std::int32_t> faces_near_pad(const hands::ContactPad& pad, double th
   return faces;
 }
 
-/// The half-spaces of a convex volume that may cut a triangle, as far as rounded numbers can tell:
-/// none where it certainly lies inside. Empty where it certainly lies outside.
+/// Returns the half-spaces of a convex volume that may cut a triangle, as far as rounded numbers
+/// can tell: an empty list where the triangle certainly lies inside, no value where it certainly
+/// lies outside.
 ///
-/// Spares the exact clip most triangles, and the others most of the many half-spaces of a curved
-/// pad; those left out do not change a bit of its result.
+/// Most triangles need no exact clip then, and the others are clipped without most of the many
+/// half-spaces of a curved pad; the half-spaces left out do not change a bit of the result.
 std::optional<geometry::ConvexVolume> cutting_half_spaces(const std::array<Vector3d, 3>& triangle,
                                                           const geometry::ConvexVolume& volume) {
   geometry::ConvexVolume cutting;

@@ -18,9 +18,10 @@ struct CutFace {
 
 /// The object's triangles that may have area in a clip volume, ascending.
 struct FacesInVolume {
-  std::vector<std::int32_t> inside;  ///< As a whole, and none of them thin.
+  std::vector<std::int32_t> inside;  ///< Faces that lie inside as a whole; none is thin.
   std::vector<CutFace> cut;
-  bool has_thin = false;  ///< Among those cut: whether it has area at all is for the clip to say.
+  bool has_thin = false;  ///< Whether a cut face is thin, so that only the clip can say whether it
+                          ///< has area at all.
 };
 
 /// @param thickness of the clip volume where the pad states none [m].
@@ -28,14 +29,15 @@ FacesInVolume faces_in_clip_volume(const hands::ContactPad& pad, double thicknes
                                    const geometry::RigidTransform& X_OC,
                                    const geometry::MeshQuery& object);
 
-/// The surface inside a clip volume, one piece per face that has area there: first the faces that
-/// lie inside as a whole.
+/// Returns the surface inside a clip volume, one piece per face that has area in it: first the
+/// faces that lie inside as a whole.
 std::vector<geometry::ClippedPiece> clipped_surface(const FacesInVolume& faces,
                                                     const geometry::TriangleMesh& mesh);
 
-/// Pieces that hang together: indices into `pieces`, every group and the groups by their first
-/// piece. Two pieces are joined where their faces share an edge; groups whose centroids (weighted
-/// by area) are within `distance` [m] of each other are one, also by way of a third.
+/// Groups connected pieces: returns indices into `pieces`, ascending in each group, the groups in
+/// the order of their first piece. Two pieces are connected where their faces share an edge; groups
+/// whose centroids (weighted by area) are within `distance` [m] of each other are merged, also by
+/// way of a third group.
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::ClippedPiece>& pieces,
                                                 const geometry::TriangleMesh& mesh,
                                                 double distance);

@@ -11,7 +11,7 @@
 
 namespace graspfit::contact::internal {
 
-/// Normals may be off unit length by this: they come from rounded arithmetic.
+/// Normals may differ from unit length by this much, because they come from rounded arithmetic.
 inline constexpr double kUnitLengthTolerance = 1e-6;
 
 inline void require_unit(std::string_view where, const Eigen::Vector3d& normal) {

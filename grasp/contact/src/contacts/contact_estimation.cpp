@@ -27,7 +27,7 @@ using internal::FacesInVolume;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel.
 
-/// What is known of pads beyond the pieces of surface in their clip volumes.
+/// What the estimation needs besides a pad and the pieces of surface in its clip volume.
 struct Scene {
   const hands::HandModel& hand;
   const geometry::MeshQuery& object;
@@ -144,7 +144,7 @@ std::vector<Contact> contacts_of(int pad_index, const RigidTransform& X_OC, cons
 
 /// Whether the normals of all faces are so alike that no mean of them is too short for a contact.
 bool are_normals_alike(const FacesInVolume& faces, const geometry::TriangleMesh& mesh) {
-  constexpr double kAlike = 2.0 * kSmallestMeanNormal;  // its component along the first one
+  constexpr double kAlike = 2.0 * kSmallestMeanNormal;  // least cosine to the first normal
   if (faces.has_thin) return false;
   const Vector3d first =
       geometry::face_normal(mesh, faces.inside.empty() ? faces.cut[0].face : faces.inside[0]);

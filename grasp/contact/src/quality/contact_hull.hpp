@@ -14,7 +14,7 @@ namespace graspfit::contact::internal {
 struct ContactHull {
   std::size_t num_contacts = 0;         ///< Before merging.
   std::vector<Eigen::Vector3d> points;  ///< Close contacts merged into their mean [m].
-  geometry::ConvexHull3 hull;  ///< Of `points`; its rank by the thresholds of `regularity`.
+  geometry::ConvexHull3 hull;  ///< Hull of `points`; its rank is by the thresholds of `regularity`.
 };
 
 /// Contacts linked by chains of distances below `merge_distance` become one point, their mean, so

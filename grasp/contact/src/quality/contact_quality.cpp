@@ -48,7 +48,8 @@ const hands::ContactPad& pad_of(const Contact& contact, const hands::HandModel& 
   return hand.pads[contact.pad];
 }
 
-/// The pad that a target stands for: its own, or else the one that precision grasps use.
+/// Returns the pad that a target contact stands for: its own or, if it has none, the tip pad of its
+/// finger or the pad of the palm, which precision grasps use.
 const hands::ContactPad& nominal_pad(const Contact& contact, const hands::HandModel& hand) {
   Contact resolved = contact;
   if (resolved.pad < 0) {
@@ -67,7 +68,7 @@ std::string finger_text(const Contact& contact) {
 
 double strength(const Contact& contact) { return contact.weak.value_or(false) ? 0.0 : 1.0; }
 
-/// Everything but the terms of M1, which the two public functions obtain differently.
+/// Computes the measure from the terms of M1, which the two public functions obtain differently.
 ContactQuality assemble(std::span<const Contact> contacts, std::vector<SustainabilityTerm> terms,
                         const QualityContext& context, const QualityOptions& options) {
   ContactQuality quality;
@@ -110,7 +111,8 @@ ContactQuality assemble(std::span<const Contact> contacts, std::vector<Sustainab
                                          : quality.centroid_distance * kCentimetersPerMeter;
   quality.m3 = quality.regularity - options.beta * quality.scaled_centroid_distance;
 
-  // M = M1^w1 M2^w2 M3^w3. Asked factor by factor, because 0^0 = 1 would let a zero factor pass.
+  // M = M1^w1 M2^w2 M3^w3. Usability is decided factor by factor, because 0^0 = 1 would let a zero
+  // factor pass.
   const bool is_usable = contacts.size() >= 2 && quality.m1 > 0.0 &&
                          !quality.stable_pairs.empty() && quality.m2 > 0.0 && quality.m3 > 0.0;
   if (is_usable) {
@@ -142,8 +144,9 @@ std::optional<double> stable_pair_angle(const Vector3d& point_a, const Vector3d&
                                         double theta_max) {
   const Vector3d a_to_b = point_b - point_a;
   if (!(a_to_b.norm() >= kCoincident)) return std::nullopt;
-  // By tangent, not by cosine: acos loses half the digits near 0, where the best pairs are. Neither
-  // length matters, so nothing is rounded by scaling and 45° comes out as the double π/4.
+  // The angle comes from its tangent, not its cosine: acos loses half the digits near 0, where the
+  // best pairs are. The lengths of the vectors do not matter, so nothing is rounded by scaling and
+  // 45° comes out as the double π/4.
   const auto angle = [](const Vector3d& u, const Vector3d& v) {
     return std::atan2(u.cross(v).norm(), u.dot(v));
   };
@@ -158,7 +161,8 @@ StablePairTest::StablePairTest(double theta_max)
 
 bool StablePairTest::operator()(const Vector3d& point_a, const Vector3d& inward_normal_a,
                                 const Vector3d& point_b, const Vector3d& inward_normal_b) const {
-  // Cosines this far from that of theta_max are beyond doubt: rounding is a millionth of it.
+  // A cosine this far from that of theta_max decides beyond doubt: its rounding error is a
+  // millionth of this.
   constexpr double kCosineDoubt = 1e-9;
   const Vector3d a_to_b = point_b - point_a;
   const double limit = cos_theta_max_ * a_to_b.norm();

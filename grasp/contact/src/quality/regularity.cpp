@@ -187,7 +187,7 @@ class HullFaces {
     }
     return longest;
   }
-  /// Empty for a sliver.
+  /// Returns the unit normal of a triangle; empty for a sliver.
   std::optional<Vector3d> unit_normal(std::size_t facet) const {
     const auto [a, b] = edge(facet, longest_edge(facet));
     const Vector3d area = twice_vector_area(facet);
@@ -217,7 +217,8 @@ class HullFaces {
     return loop;
   }
 
-  /// Chains of small angles can wrap a group around a rounded hull; its triangles then stay alone.
+  /// A chain of small angles can wrap a group around a rounded hull. Such a group is split: each of
+  /// its triangles becomes a face of its own.
   void split_groups_without_outline() {
     const std::vector<std::size_t> merged = groups_;
     for (std::size_t name = 0; name < facets_.size(); ++name) {

@@ -14,16 +14,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Weights ≥ 0 with the given sum that bring Σ weight_i wrench_i nearest to `load`: with v_i =
-/// wrench_i − load / sum this is `sum` times the point nearest to the origin in the hull of the
-/// v_i. Its weights are, up to their own sum, those that minimize ‖Σ a_i v_i‖² + s² (Σ a_i − 1)²
-/// over a ≥ 0: for weights in a fixed ratio whose point has the squared length q, the best sum
-/// leaves s² q / (s² + q), which grows with q.
+/// Returns the weights ≥ 0 with the given sum that bring Σ weight_i wrench_i nearest to `load`.
+/// With v_i = wrench_i − load / sum, Σ weight_i wrench_i − load is `sum` times a point in the hull
+/// of the v_i, at best the point nearest to the origin. The weights of this point are, up to their
+/// own sum, those that minimize ‖Σ a_i v_i‖² + s² (Σ a_i − 1)² over a ≥ 0: for weights in a fixed
+/// ratio whose point has the squared length q, the best sum leaves s² q / (s² + q), which grows
+/// with q.
 VectorXd weights_of_sum(const MatrixXd& wrenches, const VectorXd& load, double sum) {
   const Index rows = wrenches.rows();
   MatrixXd system(rows + 1, wrenches.cols());
   system.topRows(rows) = wrenches.colwise() - load / sum;
-  // Not zero either where all wrenches are the load itself.
+  // The scale is not zero either where all wrenches are the load itself.
   const double scale = std::max(system.topRows(rows).colwise().norm().maxCoeff(),
                                 wrenches.colwise().norm().maxCoeff());
   system.row(rows).setConstant(scale);
@@ -69,7 +70,7 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
           wrench(edges.col(k), contact.point_O, reference_point_O, options.torque_scale);
     }
   }
-  // An edge's own force counts as a component of its wrench in a direction of its own.
+  // The force along an edge counts as one more component of its wrench, in a dimension of its own.
   const Index num_own = options.evenness > 0.0 ? edges.cols() : 0;
   MatrixXd terms = MatrixXd::Zero(6 + num_own, edges.cols());
   terms.topRows(6) = wrenches;
@@ -78,8 +79,8 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
   target.head(6) = load;
   BalanceForces result;
   result.edge_forces = geometry::nonnegative_least_squares(terms, target);
-  // Where the bound does not hold by itself it is met exactly: the residual grows with the
-  // distance from what is best without it.
+  // Where the optimum without the bound violates it, the bound is met exactly: the residual grows
+  // with the distance from that optimum.
   if (result.edge_forces.sum() < options.least_normal_sum) {
     result.edge_forces = weights_of_sum(terms, target, options.least_normal_sum);
   }

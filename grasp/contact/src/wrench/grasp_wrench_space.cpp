@@ -41,7 +41,7 @@ Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvent
     }
   }
   if (wrenches.cols() == 0) return wrenches;
-  // To multiples of the last bit of the largest entry.
+  // Wrenches are rounded to multiples of the last bit of the largest entry.
   const double largest = wrenches.cwiseAbs().maxCoeff();
   return geometry::rounded_to_grid(wrenches, geometry::power_above(largest) - 52);
 }
@@ -96,7 +96,8 @@ bool is_surely_no_force_closure(const Wrenches& wrenches) {
     Eigen::Index against = 0;
     const double least = (nearest.transpose() * wrenches).minCoeff(&against);
     if (least > kProductError * nearest.norm() * longest) return true;
-    // To the point nearest to the origin on the way to the wrench that is most against it.
+    // The next point is the one nearest to the origin on the segment to the wrench that is most
+    // against it.
     const Wrench way = wrenches.col(against) - nearest;
     const double squared_length = way.squaredNorm();
     const double share = -nearest.dot(way) / squared_length;

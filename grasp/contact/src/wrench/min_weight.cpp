@@ -14,7 +14,7 @@ using Eigen::Index;
 /// Singular values below this share of the largest are rounding.
 constexpr double kRankTolerance = 1e-9;
 
-/// To a grid on which sums of all columns are exact.
+/// Rounds wrenches to a grid on which sums of all columns are exact.
 Wrenches on_grid_of_sums(const Wrenches& wrenches) {
   const double bound = wrenches.cwiseAbs().maxCoeff() * static_cast<double>(wrenches.cols());
   return geometry::rounded_to_grid(wrenches, geometry::power_above(bound) - 52);
@@ -39,8 +39,8 @@ MinWeight min_weight(const Wrenches& wrenches) {
   Eigen::MatrixXd constraints(7, count + 2);
   constraints.topLeftCorner(6, count) = rounded;
   constraints.row(6).head(count).setOnes();
-  // A vector of its own: straight into a column at an odd place, Eigen 3.4 reads pairs of rows from
-  // odd ones, and its assertions take those for misaligned.
+  // The sum needs a vector of its own: written straight into a column at an odd offset, Eigen 3.4
+  // reads pairs of rows from odd offsets, and its assertions take those for misaligned.
   const Wrench sum = rounded.rowwise().sum();
   constraints.col(count) << sum, static_cast<double>(count);
   constraints.col(count + 1) = -constraints.col(count);

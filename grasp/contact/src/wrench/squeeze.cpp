@@ -19,15 +19,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of the squeeze's forces: small enough to leave the residual to the balance, large enough to
-/// decide among balanced forces well above rounding (its square, 1e-6, does).
+/// Evenness of the squeeze's forces: small enough to leave the residual to the balance, large
+/// enough to decide among balanced forces well above rounding (its square, 1e-6, does).
 constexpr double kEvenness = 1e-3;
 
-/// A follower this near to where its leader puts it follows it [rad or m]: rounding of positions
-/// that were written as text, as in `hands::validate`.
+/// A coupled joint this near to where its leader puts it counts as following it [rad or m]. The
+/// slack covers the rounding of positions that were written as text, as in `hands::validate`.
 constexpr double kFollowingSlack = 1e-9;
 
-/// Per joint: a coupled one that stands where its leader puts it.
+/// Says for each joint whether it is a coupled one that stands where its leader puts it.
 std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
   std::vector<bool> follows(hand.joints.size(), false);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
@@ -57,7 +57,7 @@ VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfigurati
 }
 
 /// Moves the independent joints by `displacement`, clamped to the limits, and their followers with
-/// them. Whether a limit kept any joint back.
+/// them. Returns whether a limit kept any joint back.
 bool command(const hands::HandModel& hand, const VectorXd& displacement,
              const std::vector<bool>& follows, VectorXd& q) {
   bool is_clamped = false;
@@ -70,7 +70,8 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
     q[independent[k]] = std::clamp(wanted, joint.lower, joint.upper);
     is_clamped = is_clamped || q[independent[k]] != wanted;
   }
-  // Put where they belong first: couplings leave a breakaway joint behind that its leader opens.
+  // Followers are put where they belong first: the couplings would leave behind a breakaway joint
+  // that its leader opens.
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     if (follows[j]) q[static_cast<Index>(j)] = hands::led_position(*hand.joints[j].coupling, q);
   }

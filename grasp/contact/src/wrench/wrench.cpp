@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cosine and sine of 2 π i / n, from the first octant, so that they have its symmetries exactly.
+/// Returns cosine and sine of 2 π i / n, computed in the first octant so that they have the
+/// symmetries of the octants exactly.
 std::pair<double, double> turn(int i, int n) {
   const int octant = 8 * i / n;
   const int rest = 8 * i % n;

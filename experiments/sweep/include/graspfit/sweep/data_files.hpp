@@ -17,12 +17,12 @@ std::filesystem::path config_folder();
 /// The repository that this library was built from; need not exist any more.
 std::filesystem::path source_folder();
 
-/// Where a file of the data folder is: there, or else the packaged mesh of the same bytes, which
-/// some of its meshes have (`packaged_twin`); none if it is in neither place. An absolute path is
-/// itself.
+/// Finds a file of the data folder: in that folder, or else as the packaged mesh with the same
+/// bytes, which some of its meshes have (`packaged_twin`). The result is empty if the file is in
+/// neither place. An absolute path is looked up as it is.
 std::optional<std::filesystem::path> find_data_file(const std::string& relative);
 
-/// The same. @throws MissingData that says how to have it, if it is nowhere.
+/// As `find_data_file`. @throws MissingData that says how to get the file, if it is nowhere.
 std::filesystem::path data_file(const std::string& relative);
 
 /// Name of the packaged mesh that has the bytes of this file of the data folder; none if no mesh
@@ -33,12 +33,13 @@ std::optional<std::string> packaged_twin(const std::string& relative);
 /// `setup/setup.sh` unpacks them.
 std::optional<std::filesystem::path> find_packaged_mesh(const std::string& name);
 
-/// The same. @throws MissingData that says how to have it, if it is not there.
+/// As `find_packaged_mesh`. @throws MissingData that says how to get the mesh, if it is not there.
 std::filesystem::path packaged_mesh(const std::string& name);
 
-/// What manifests call an input: relative to the data folder or to the repository where it lies in
-/// one of them, "packaged/..." for a packaged mesh; "sources/..." of the repository where the data
-/// folder has a file of the same name. The root of a file system is no such folder here.
+/// Returns the name of an input in manifests. It is relative to the data folder or to the
+/// repository where the file lies in one of them, and "packaged/..." for a packaged mesh. A file of
+/// the repository is "sources/..." where the data folder has a file of the same name. The root of a
+/// file system does not count as one of these folders.
 std::string name_of_input(const std::filesystem::path& file);
 
 }  // namespace graspfit::sweep

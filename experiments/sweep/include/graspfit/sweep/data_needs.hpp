@@ -21,11 +21,11 @@ struct DataNeed {
   bool is_there = false;  ///< On this machine, now.
 };
 
-/// All that settings, a JSON object as text, name by `file`, `packaged`, `shape` and, where it is
-/// no shipped one, `hand`; nested ones too, in their order.
+/// Returns all data that settings (a JSON object as text) name by `file`, `packaged`, `shape` and,
+/// unless it is a shipped one, `hand`, also in nested settings, in their order.
 std::vector<DataNeed> data_needs(const std::string& settings);
 
-/// Whether all of it is there.
+/// Says whether all data that settings name are there.
 bool has_all_data(const std::string& settings);
 
 }  // namespace graspfit::sweep

@@ -12,7 +12,7 @@
 
 namespace graspfit::sweep {
 
-/// A setting of a cell that cannot be used; who reads the configuration knows where it stands.
+/// A setting of a cell cannot be used. The reader of the configuration adds where it was written.
 class SettingError : public base::InvalidInput {
  public:
   /// `key` is the setting's name, or empty where none is to blame; `what` says value and what is
@@ -32,7 +32,7 @@ class MissingData : public base::IoError {
   using base::IoError::IoError;
 };
 
-/// What a cell came to.
+/// The results of a cell.
 struct CellResult {
   ResultRow row;                        ///< Of `Experiment::columns`.
   ResultRow timings;                    ///< Of `Experiment::timings`.
@@ -48,9 +48,10 @@ struct FinishedCell {
 
 /// A table over all cells.
 struct SummaryTable {
-  std::string name;  ///< Of its file, `<slug>.<name>.csv`.
+  std::string name;  ///< Name of the table in its file's name, `<slug>.<name>.csv`.
   std::vector<Column> columns;
-  /// Its rows from the cells that are ok, in sweep order. They depend on nothing else.
+  /// Makes the rows of the table from the cells that are ok, in sweep order. They depend on nothing
+  /// else.
   std::function<std::vector<ResultRow>(const ParameterSweep&, const std::vector<FinishedCell>&)>
       rows;
 };
@@ -61,17 +62,19 @@ struct Experiment {
   std::string slug;                   ///< Letters, digits and _; the same in every file name.
   std::vector<Column> columns;        ///< Results: the same bytes for every run.
   std::vector<Column> timings = {};   ///< What may differ from run to run.
-  std::vector<Column> settings = {};  ///< Settings of its own.
-  std::vector<Column> shared_settings = {};  ///< Settings that it reads by a library of them.
-  std::vector<Column> details = {};  ///< What a cell's row sums up, with any number of rows per
-                                     ///< cell (one per grasp); none: no such table.
+  std::vector<Column> settings = {};  ///< Settings that only this experiment has.
+  std::vector<Column> shared_settings = {};  ///< Settings that it shares with other experiments.
+  std::vector<Column> details = {};  ///< Columns of the rows that a cell's row sums up, any number
+                                     ///< per cell (one per grasp); if empty, there is no such
+                                     ///< table.
 
   /// Checks a cell's settings without doing its work. @throws SettingError.
   std::function<void(const Cell&)> check;
 
   /// Does a cell's work, on one thread; several may run at once. It may write files beside its row
   /// into `folder`, which exists only from its first file on (`cell_folder`).
-  /// @throws MissingData, or anything else: a row with that reason.
+  /// @throws MissingData, which skips the cell, or anything else, which fails it with that reason
+  /// in its row.
   std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
 
   std::vector<SummaryTable> summaries = {};  ///< Tables over all cells, made of their details.

@@ -18,32 +18,35 @@ struct AxisChange {
   std::vector<std::string> values;
 };
 
-/// "axis=a,b" taken apart. @throws InvalidInput.
+/// Parses "axis=a,b". @throws InvalidInput.
 AxisChange parse_axis_change(const std::string& text);
 
-/// What of an experiment's configuration is run.
+/// Which part of an experiment's configuration is run, and what is changed in it.
 struct ConfigRequest {
-  bool is_quick = false;            ///< The few cells of its member `quick`.
-  std::vector<AxisChange> changes;  ///< In order.
-  /// Meshes on the axis `object`: instead of its values, or beside those that a change picks.
+  bool is_quick = false;            ///< Whether only the few cells of its member `quick` are run.
+  std::vector<AxisChange> changes;  ///< Changes of axes, made in order.
+  /// Meshes for the axis `object`, instead of its values, or beside those that a change picks.
   std::vector<std::filesystem::path> object_files = {};
-  std::optional<double> object_longest = {};  ///< Longest edge of each one's bounding box [m];
-                                              ///< empty: as it is, in meters, or as sizes are set.
-  /// Values of axes whose data are not on this machine are left out where others remain, and an
-  /// axis `object` that lacks some has shapes and a packaged mesh besides. What `quick` or a change
-  /// picks stays.
+  std::optional<double> object_longest = {};  ///< Longest edge of the bounding box of each of these
+                                              ///< meshes [m]; if empty, the meshes keep their
+                                              ///< sizes, in meters, or get those that settings
+                                              ///< state.
+  /// Whether values of axes whose data are not on this machine are left out where other values
+  /// remain. An axis `object` that lacks some data then also gets shapes and a packaged mesh.
+  /// Values that `quick` or a change picks stay.
   bool leaves_out_missing_data = false;
 };
 
 /// A configuration, checked: every cell has settings that its experiment can use.
 struct ExperimentConfig {
   std::string file;
-  std::string sha256;    ///< Of the file.
+  std::string sha256;    ///< SHA-256 of the file.
   std::string question;  ///< For people.
   std::string cell;      ///< What one cell computes, for people.
   ParameterSweep sweep;
   bool is_quick = false;
-  bool is_modified = false;  ///< By the command line or for want of data.
+  bool is_modified = false;  ///< Whether the command line or missing data changed the
+                             ///< configuration.
   /// Which axes lack values for want of data and what they are now, for people; empty: none.
   std::string left_out = "";
 
@@ -64,10 +67,10 @@ struct ExperimentConfig {
 ///                  for all values of the axis of the same name in the file of that experiment,
 ///                  with "only" for those with the labels in that array
 ///     quick        optional; axes: name -> labels that remain, and perhaps values of its own;
-///                  settings; seeds. A file, packaged mesh or shape there is instead of any other
+///                  settings; seeds. A file, packaged mesh or shape there replaces any other
 ///
-/// A change picks values of an axis by their labels; on an axis of plain values it may bring
-/// others, and the name of any setting makes a new axis.
+/// A change picks values of an axis by their labels. On an axis of plain values it may also give
+/// new ones; with the name of any other setting it makes a new axis.
 /// @throws IoError, InvalidInput: file, key, what is wrong, what is allowed.
 ExperimentConfig read_config(const Experiment& experiment, const std::filesystem::path& file,
                              const ConfigRequest& request = {});

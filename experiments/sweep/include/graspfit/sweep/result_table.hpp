@@ -24,7 +24,7 @@ using Value = std::variant<std::monostate, bool, std::int64_t, double, std::stri
 /// known.
 std::string csv_field(const Value& value);
 
-/// The number that a field is, all of it; none for an empty field or a text.
+/// Reads a field that is a number as a whole; empty for an empty field or a text.
 std::optional<double> csv_number(const std::string& field);
 
 /// Fields joined by commas, with a line break.

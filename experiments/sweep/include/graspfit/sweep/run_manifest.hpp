@@ -55,7 +55,7 @@ void publish(const Experiment& experiment, const ExperimentConfig& config,
 
 /// Checks that the tables beside a manifest are those that it was written for. Manifests written
 /// before they named tables pass.
-/// @throws IoError if a table cannot be read, InvalidInput that names one that is another.
+/// @throws IoError if a table cannot be read, InvalidInput that names a table that differs.
 void require_tables_of_manifest(const std::filesystem::path& manifest);
 
 /// Only the check of `publish` that looks at the manifest of a finished run.

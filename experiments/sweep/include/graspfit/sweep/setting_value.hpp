@@ -10,7 +10,7 @@
 #include "graspfit/sweep/parameter_sweep.hpp"
 
 /// \file
-/// Settings of cells as values whose faults are SettingErrors: they name the setting, with the way
+/// Settings of cells as values whose faults are SettingErrors: they name the setting, with the path
 /// to a nested value ("predicates/0/axis"), and say what is allowed.
 
 namespace graspfit::sweep {
@@ -20,7 +20,7 @@ base::JsonValue setting_value(std::string key, const nlohmann::json& json);
 
 /// A setting of a cell; none if the cell does not have it.
 std::optional<base::JsonValue> find_setting(const Cell& cell, const std::string& key);
-/// @throws SettingError that names none if the cell does not have it.
+/// Returns a setting of a cell. @throws SettingError without a name if the cell does not have it.
 base::JsonValue setting(const Cell& cell, const std::string& key);
 
 Eigen::Vector3d vector_of(const base::JsonValue& value);          ///< [x, y, z].

@@ -13,15 +13,15 @@ namespace graspfit::sweep {
 
 /// How a run is going.
 struct RunProgress {
-  std::size_t num_cells = 0;    ///< Of the shard, where one is run.
-  std::size_t num_done = 0;     ///< Finished, in this run or an earlier one.
-  std::size_t num_resumed = 0;  ///< Of these in an earlier one.
-  std::size_t num_failed = 0;   ///< Of these with a reason instead of results.
-  std::size_t num_skipped = 0;  ///< Data that is not there; not among `num_done`.
+  std::size_t num_cells = 0;    ///< Cells of the sweep, or of the shard that is run.
+  std::size_t num_done = 0;     ///< Cells finished, in this run or an earlier one.
+  std::size_t num_resumed = 0;  ///< Of the finished cells, those of an earlier run.
+  std::size_t num_failed = 0;   ///< Of the finished cells, those with a reason instead of results.
+  std::size_t num_skipped = 0;  ///< Cells skipped for want of data; not among `num_done`.
   /// Of `num_failed` those with a reason that may pass (files, memory): the next run tries again.
   std::size_t num_not_final = 0;
-  /// Of the first cell in sweep order that failed or was skipped in this run: its labels and the
-  /// reason; empty if there is none.
+  /// Labels and reason of the first cell in sweep order that failed or was skipped in this run;
+  /// empty if there is none.
   std::string first_reason;
 };
 
@@ -32,18 +32,19 @@ struct Shard {
   std::size_t count = 1;  ///< In [1, kMostShards].
 
   std::size_t num_cells(std::size_t of_sweep) const;
-  std::string name() const;  ///< "2-of-7": of its folder.
+  std::string name() const;  ///< "2-of-7", as its folder is named.
   void validate() const;     ///< Throws InvalidInput naming the field and its value.
 };
 
-/// "2/7". @throws InvalidInput.
+/// Parses "2/7". @throws InvalidInput.
 Shard parse_shard(const std::string& text);
 
 /// How to run.
 struct RunOptions {
   static constexpr int kMostJobs = 1024;
-  std::filesystem::path folder;  ///< Of the results; made if need be.
-  int jobs = 1;                  ///< Cells at once, in [1, kMostJobs]. Timings are honest with one.
+  std::filesystem::path folder;  ///< Folder of the results; made if need be.
+  int jobs = 1;  ///< Number of cells that run at once, in [1, kMostJobs]. Timings are honest with
+                 ///< one.
   std::optional<Shard> shard = {};  ///< Only this part of the sweep, into a folder of its own.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };

@@ -27,7 +27,7 @@ enum class Regularity {
 
 /// Which centroid D is measured from.
 enum class HullCentroid {
-  Measure,   ///< Of the hull's area or volume.
+  Measure,   ///< Centroid of the hull's area or volume.
   Vertices,  ///< Mean of the hull's vertices.
 };
 
@@ -50,7 +50,7 @@ struct QualityOptions {
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// What of the object and the hand M depends on.
+/// Properties of the object and the hand that M depends on.
 struct QualityContext {
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
   double normalizing_radius = 0.0;  ///< Half the diagonal of the object's bounding box [m], > 0.
@@ -76,7 +76,7 @@ struct ContactQuality {
   double m1 = 0.0;
   double m2 = 0.0;
   double m3 = 0.0;                        ///< May be negative; M is then 0.
-  double m = 0.0;                         ///< 0: unusable.
+  double m = 0.0;                         ///< M of the contacts; 0 if they are unusable.
   double regularity = 0.0;                ///< R in (0, 1]; 0 if there are fewer than two contacts.
   double centroid_distance = 0.0;         ///< D [m].
   double scaled_centroid_distance = 0.0;  ///< D in the units chosen.
@@ -86,42 +86,43 @@ struct ContactQuality {
   bool is_usable() const { return m > 0.0; }
 };
 
-/// M1, M2, M3 and M of a set of contacts (paper section 4). Pairs are formed between contacts of
-/// different fingers only; the palm is a finger of its own.
+/// Computes M1, M2, M3 and M of a set of contacts (paper section 4). Pairs are formed between
+/// contacts of different fingers only; the palm is a finger of its own.
 ///
-/// m = 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0,
-/// whatever the exponents. Independent of the order of contacts and of rigid motions up to
-/// rounding; in normalized units also of scaling hand and object together. Rounded.
+/// M is 0 if there are fewer than two contacts, no stable pair, every contact is weak, or M3 ≤ 0,
+/// whatever the exponents. Up to rounding, the result does not depend on the order of the contacts
+/// and does not change with rigid motions nor, in normalized units, with scaling hand and object
+/// together. All numbers are rounded.
 /// @throws InvalidInput for bad options, a null hand, a pad that the hand does not have, a normal
 /// that is not unit within 1e-6, and numbers that are not finite.
 ContactQuality contact_quality(std::span<const Contact> contacts, const QualityContext& context,
                                const QualityOptions& options = {});
 
-/// The same from target contacts alone (no pads): d and A taken as given terms for every contact,
-/// in [0, 1], as shares of the pad's largest d and of its area. Used for the ideal M of a target
-/// set.
+/// Computes the measure of target contacts alone, which have no pads: for every contact, d and A
+/// are given as shares, in [0, 1], of the pad's largest d and of its area. It is used for the ideal
+/// M of a target set.
 ///
-/// The hand may be null in normalized units; in centimeters the shares are of the contact's pad, or
-/// else of its finger's tip pad. @throws InvalidInput as `contact_quality`, and if two contacts
-/// have the same finger.
+/// In normalized units the hand may be null; in centimeters the shares refer to the contact's pad
+/// or, if it has none, to the tip pad of its finger. @throws InvalidInput as `contact_quality`, and
+/// if two contacts have the same finger.
 ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityContext& context,
                              double boundary_distance_rel, double area_rel,
                              const QualityOptions& options = {});
 
-/// The line between two contacts against both cones (paper section 4.2): the mean angle
-/// [rad] if each angle is strictly below `theta_max`, else empty. Empty for points closer than 1e-9
-/// m.
+/// Tests the line between two contacts against both friction cones (paper section 4.2): returns the
+/// mean of its angles to the two normals [rad] if each angle is strictly below `theta_max`, else
+/// nothing. Points closer than 1e-9 m have no such line: the result is empty.
 ///
-/// The lengths of the normals do not matter. The comparison is of rounded angles (a few 1e-16): a
-/// pair at `theta_max` itself may fall to either side, and adds next to nothing to M2 if both of
-/// its angles are there.
+/// The lengths of the normals do not matter. The angles that are compared are rounded (a few
+/// 1e-16): a pair at `theta_max` itself may count as stable or not, and adds next to nothing to M2
+/// if both of its angles are there.
 std::optional<double> stable_pair_angle(const Eigen::Vector3d& point_a,
                                         const Eigen::Vector3d& inward_normal_a,
                                         const Eigen::Vector3d& point_b,
                                         const Eigen::Vector3d& inward_normal_b, double theta_max);
 
-/// Whether pairs are stable, for who asks of many: the same answer as whether `stable_pair_angle`
-/// has one, decided by cosines where they leave no doubt.
+/// Decides for many pairs whether they are stable. The answer is the same as whether
+/// `stable_pair_angle` has a value, but cosines decide wherever they leave no doubt.
 class StablePairTest {
  public:
   /// @param theta_max half-angle of the friction cones [rad], in (0, π/2).

@@ -18,29 +18,30 @@ struct BalanceOptions {
   double torque_scale =
       std::numeric_limits<double>::quiet_NaN();  ///< Length that divides torques [m], > 0.
                                                  ///< Required: it weighs them in the residual.
-  /// Weight of the edges' own forces beside the residual, ≥ 0: ‖residual‖² + evenness² Σ α² is
-  /// minimized. Above zero the forces are unique, spread evenly, as symmetric as the contacts, and
-  /// the residual is the least one up to evenness times the sum of the normal forces.
+  /// Weight of the forces α along the cone edges beside the residual, ≥ 0: ‖residual‖² + evenness²
+  /// Σ α² is minimized. Above zero the forces are unique, spread evenly and as symmetric as the
+  /// contacts, and the residual exceeds the least one by at most evenness times the sum of the
+  /// normal forces.
   double evenness = 0.0;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Contact forces whose wrench comes nearest to a load.
 struct BalanceForces {
-  Eigen::Matrix3Xd forces_O;    ///< Per contact, on the object [N].
+  Eigen::Matrix3Xd forces_O;    ///< Force of each contact on the object [N].
   Eigen::VectorXd edge_forces;  ///< Normal force along each cone edge, contact by contact [N], ≥ 0.
-  Wrench residual = Wrench::Zero();  ///< Of the contacts, less the load [N].
-  double residual_norm = 0.0;        ///< 0 where the contacts balance the load [N].
-  double normal_sum = 0.0;           ///< Of all normal forces [N].
+  Wrench residual = Wrench::Zero();  ///< Wrench of the contacts minus the load [N].
+  double residual_norm = 0.0;  ///< Length of `residual`; 0 where the contacts balance the load [N].
+  double normal_sum = 0.0;     ///< Sum of all normal forces [N].
 };
 
 /// Minimizes ‖Σ w − load‖ over forces in the linearized cones whose normal parts sum up to at least
 /// `least_normal_sum`, where Σ w is the wrench of the contacts about the reference point. To hold
 /// an object, `load` is minus the wrench that pulls at it. Without contacts there are no forces.
 ///
-/// The residual is unique, the forces often are not: these use few edges, unless `evenness` asks
-/// for more. Approximate, to about 1e-12 of the load and the bound [Lawson & Hanson 1974, chapter
-/// 23].
+/// The residual is unique, but the forces often are not: those returned act along few cone edges,
+/// unless `evenness` spreads them. The result is approximate, to about 1e-12 of the load and the
+/// bound [Lawson & Hanson 1974, chapter 23].
 /// @throws InvalidInput for options out of range, a normal that is not unit within 1e-6, numbers
 /// that are not finite, and a positive bound without contacts.
 BalanceForces balance_forces(std::span<const Contact> contacts,

@@ -25,11 +25,12 @@ struct GraspWrenchSpace {
 /// points that are not finite.
 Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvention& convention);
 
-/// The space of a convention, or of options and the point that torques are about, for the own
-/// convention the center of mass. No contacts span nothing: rank −1.
+/// Computes the grasp wrench space in a convention, or with options and the point about which
+/// torques are taken (in this project's own convention the center of mass). Without contacts the
+/// space is empty: its rank is −1.
 ///
-/// Cost: that of the hull, see `ConvexPolytope`: about 2 ms for three contacts with eight edges and
-/// 5 ms for five. @throws InvalidInput as `contact_wrenches`.
+/// The cost is that of the hull (see `ConvexPolytope`): about 2 ms for three contacts with eight
+/// edges and 5 ms for five. @throws InvalidInput as `contact_wrenches`.
 GraspWrenchSpace grasp_wrench_space(std::span<const Contact> contacts,
                                     const WrenchConvention& convention);
 GraspWrenchSpace grasp_wrench_space(std::span<const Contact> contacts,
@@ -41,7 +42,7 @@ struct WrenchQuality {
   double epsilon = 0.0;           ///< See `epsilon_quality`.
   double volume = 0.0;            ///< 6-volume of the hull. Comparable at equal conventions only.
   bool is_force_closure = false;  ///< See `is_force_closure`.
-  int rank = -1;                  ///< Of the hull, 6 for closure; −1 without contacts. Exact.
+  int rank = -1;  ///< Rank of the hull: 6 for closure, −1 without contacts. Exact.
   WrenchConvention convention;
 };
 WrenchQuality wrench_quality(const GraspWrenchSpace& space);
@@ -49,25 +50,29 @@ WrenchQuality wrench_quality(const GraspWrenchSpace& space);
 /// Radius of the largest ball around the origin that fits in the grasp wrench space [Ferrari &
 /// Canny 1992]. Dimensionless (newtons per newton of contact force).
 ///
-/// Zero where the origin is on the boundary, so always below rank 6; `options.outside` says what
-/// it is outside. Exactness: sign exact, magnitude rounded.
+/// It is zero where the origin is on the boundary, so always below rank 6; `options.outside` says
+/// what it is where the origin is outside. Its sign is exact, its magnitude rounded.
 double epsilon_quality(const GraspWrenchSpace& space);
 
-/// Whether the origin lies strictly within the hull of the wrenches: any load is balanced by some
-/// contact forces within the linearized cones. Exact for the wrenches as they are.
+/// Says whether the origin lies strictly within the hull of the wrenches, so that any load is
+/// balanced by some contact forces within the linearized cones. The answer is exact for the
+/// wrenches as they are.
 ///
 /// Contacts that are opposite each other but for rounding have an ε of 1e-17 and may well have
 /// closure in this sense. Compare ε with what matters to you.
 bool is_force_closure(const GraspWrenchSpace& space);
 
-/// The same for any wrenches, usually without a hull where the answer is no.
+/// Says whether any wrenches have force closure, usually without computing a hull where the answer
+/// is no.
 bool is_force_closure(const Wrenches& wrenches);
 
-/// True means: certainly no force closure. Some load was found that no wrench works against (all
-/// have a positive product with it, beyond rounding). False means nothing.
+/// Returns true only if there is certainly no force closure: some load was found that no wrench
+/// works against (all wrenches have a positive product with it, beyond rounding). False means
+/// nothing.
 ///
-/// A search for the point of the hull nearest to the origin [Gilbert 1966], at most 64 steps of one
-/// product per wrench: microseconds, for what rejects grasps by the thousand.
+/// It searches for the point of the hull nearest to the origin [Gilbert 1966], in at most 64 steps
+/// of one product per wrench. This takes microseconds, for callers that reject grasps by the
+/// thousand.
 bool is_surely_no_force_closure(const Wrenches& wrenches);
 
 }  // namespace graspfit::contact

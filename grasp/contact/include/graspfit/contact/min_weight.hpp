@@ -8,14 +8,15 @@ namespace graspfit::contact {
 
 /// How evenly wrenches can cancel [Li, Culbertson, Burdick & Ames 2023, FRoGGeR].
 struct MinWeight {
-  /// l*: the largest l such that Σ α_i w_i = 0 with Σ α_i = 1 and all α_i ≥ l. At most 1 over the
-  /// number of wrenches; negative where only pulling wrenches cancel. Empty where no weights do.
+  /// l*: the largest l such that Σ α_i w_i = 0 with Σ α_i = 1 and all α_i ≥ l. It is at most 1 over
+  /// the number of wrenches, negative where the wrenches cancel only if some of them pull, and
+  /// empty where no weights cancel them.
   std::optional<double> weight;
-  double normalized = 0.0;       ///< l* times the number of wrenches, at most 1; 0 if empty.
-  int rank = 0;                  ///< Of the wrenches: singular values above 1e-9 of the largest.
+  double normalized = 0.0;  ///< l* times the number of wrenches, at most 1; 0 if empty.
+  int rank = 0;  ///< Rank of the wrenches: number of singular values above 1e-9 of the largest.
   double smallest_singular = 0;  ///< σ_min, the sixth singular value of the wrenches; 0 for fewer.
 
-  /// l* > 0 says this at rank 6 and nothing below it: two hard contacts opposite each other have a
+  /// l* > 0 means force closure at rank 6 only: two hard-finger contacts opposite each other have a
   /// large l* and no closure.
   bool is_force_closure() const { return rank == 6 && weight && *weight > 0.0; }
 };

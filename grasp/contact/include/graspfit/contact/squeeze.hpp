@@ -11,12 +11,14 @@ namespace graspfit::contact {
 
 /// How hard a hand is commanded to press.
 struct SqueezeOptions {
-  double normal_sum = 20.0;         ///< Sum of the normal forces of all contacts [N], > 0.
-  double stiffness = 5.0;           ///< kp of position-controlled revolute joints [N m/rad], > 0;
-                                    ///< DexGraspBench's.
-  double slide_stiffness = 2000.0;  ///< kp of slides [N/m], > 0; ours: 10 N of a jaw press 5 mm
-                                    ///< deep, which jaws closed on anything thicker have left.
-  double largest_residual = 0.05;   ///< Wrench that may stay unbalanced over normal_sum, ≥ 0.
+  double normal_sum = 20.0;  ///< Sum of the normal forces of all contacts [N], > 0.
+  double stiffness = 5.0;    ///< kp of position-controlled revolute joints [N m/rad], > 0; the
+                             ///< default is DexGraspBench's.
+  double slide_stiffness = 2000.0;  ///< kp of slides [N/m], > 0; the default is ours: for 10 N a
+                                    ///< jaw is commanded 5 mm beyond contact, a travel that jaws
+                                    ///< closed on anything thicker have left.
+  double largest_residual = 0.05;   ///< Largest unbalanced wrench over normal_sum of a balanced
+                                    ///< squeeze, ≥ 0.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -24,32 +26,34 @@ struct SqueezeOptions {
 struct Squeeze {
   hands::HandConfiguration configuration;  ///< The grasp's palm pose; joints commanded, clamped to
                                            ///< their limits.
-  Eigen::Matrix3Xd forces_O;               ///< Per contact, on the object [N]; zero where the pad
-                                           ///< does not touch.
+  Eigen::Matrix3Xd forces_O;  ///< Force of each contact on the object [N]; zero where the pad does
+                              ///< not touch.
   double residual = 0.0;     ///< Unbalanced wrench over normal_sum (torques over the torque scale).
   bool is_balanced = false;  ///< residual ≤ largest_residual.
   bool is_clamped = false;   ///< Some joint would have to be commanded beyond its limits, so that
                              ///< it presses less than `forces_O` say.
 };
 
-/// Joint displacement Δq = Jᵀ f / kp (evaluation of the field), where f are contact forces on the
-/// object that balance one another within their friction cones (eight edges, no load) and press
-/// with `normal_sum` in all. A joint that stands `Δq` short of its command exerts what the forces
-/// ask of it, so it presses the contacts in the directions of f.
+/// Commands the joint displacement Δq = Jᵀ f / kp, as evaluations in the field do, where f are
+/// contact forces on the object that balance one another within their friction cones (eight edges,
+/// no load) and press with `normal_sum` in all. A joint that stands `Δq` short of its command
+/// exerts the torque or force that these need, so it presses the contacts in the directions of f.
 ///
-/// Of all such forces those spread most evenly (`BalanceOptions::evenness` 1e-3: the residual is at
-/// most 1e-3 above the least): unique, symmetric where the contacts are. Where contacts cannot
-/// balance, the forces of least residual are used, and `residual` says so. Palm contacts take their
-/// share of the forces and ask nothing of the joints.
+/// Of all such forces those spread most evenly are taken (`BalanceOptions::evenness` 1e-3: the
+/// residual is at most 1e-3 above the least). They are unique, and symmetric where the contacts
+/// are. Where contacts cannot balance, the forces of least residual are used, and `residual` says
+/// so. Palm contacts take their share of the forces and need no joint torque.
 ///
-/// kp belongs to the independent joints: a leader's torque takes up its followers', times their
-/// ratio, and they follow its command. A follower that does not stand where its leader puts it (it
-/// stands at a limit, or has broken away) neither counts nor moves until its leader takes it along.
+/// kp belongs to the independent joints: the torque of a leader includes those of its followers
+/// (the joints coupled to it), times their ratios, and followers move with its command. A follower
+/// that does not stand where its leader puts it (it stands at a limit, or has broken away) adds no
+/// torque and does not move until its leader takes it along.
 ///
 /// `friction` is Coulomb's μ, ≥ 0; `torque_scale` divides torques in the residual [m], > 0.
-/// Contacts with a gap above `bearing_gap` [m] bear nothing; without it all do.
+/// Contacts with a gap above `bearing_gap` [m] bear no force; without `bearing_gap` all contacts
+/// do.
 /// @throws InvalidInput for bad options, a configuration outside the hand's limits, no contact that
-/// bears anything, and contacts of links that the hand does not have or with normals that are not
+/// bears a force, and contacts of links that the hand does not have or with normals that are not
 /// unit.
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                               std::span<const Contact> contacts,

@@ -6,14 +6,14 @@
 #include "graspfit/contact/contact.hpp"
 
 /// \file
-/// Friction cones and wrenches of contacts. All in the object frame O, approximate (ordinary double
-/// arithmetic).
+/// Friction cones and wrenches of contacts. All are in the object frame O and approximate (ordinary
+/// double arithmetic).
 
 namespace graspfit::contact {
 
 /// [force; torque about a reference point / torque scale]: both parts in newtons.
 using Wrench = Eigen::Matrix<double, 6, 1>;
-/// Wrenches side by side.
+/// Several wrenches, one per column.
 using Wrenches = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Coulomb's cone: the forces that push into the object with a tangential part of at most
@@ -28,18 +28,18 @@ struct FrictionCone {
 /// @throws InvalidInput unless the normal is unit within 1e-6 and 0 ≤ friction < ∞.
 FrictionCone friction_cone(const Eigen::Vector3d& inward_normal_O, double friction);
 
-/// Edges of the inscribed pyramid, one a column: normal + μ (cos φ tangent 1 + sin φ tangent 2) at
-/// equal angles φ from 0 on. Their normal part is 1. Eight edges lose at most 7.6 % of μ in some
-/// direction. @throws InvalidInput for fewer than three.
+/// Returns the edges of the pyramid inscribed in a cone, one per column: normal + μ (cos φ tangent
+/// 1 + sin φ tangent 2) at equal angles φ from 0 on. Their normal part is 1. Eight edges lose at
+/// most 7.6 % of μ in some direction. @throws InvalidInput for fewer than three.
 Eigen::Matrix3Xd cone_edges(const FrictionCone& cone, int num_edges);
 
 /// Wrench of a force [N] at a point [m] about a reference point [m].
 Wrench wrench(const Eigen::Vector3d& force_O, const Eigen::Vector3d& point_O,
               const Eigen::Vector3d& reference_point_O, double torque_scale);
 
-/// The 6 × 3k matrix that takes contact forces, per contact along tangent 1, tangent 2 and the
-/// inward normal, to their total wrench. @throws InvalidInput as `friction_cone`, for numbers that
-/// are not finite, and for a torque scale that is not positive.
+/// Returns the 6 × 3k matrix that maps contact forces, per contact along tangent 1, tangent 2 and
+/// the inward normal, to their total wrench. @throws InvalidInput as `friction_cone`, for numbers
+/// that are not finite, and for a torque scale that is not positive.
 Wrenches grasp_matrix(std::span<const Contact> contacts, const Eigen::Vector3d& reference_point_O,
                       double torque_scale);
 

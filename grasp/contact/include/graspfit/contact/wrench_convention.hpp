@@ -16,17 +16,17 @@ enum class ForceNorm {
   L1,  ///< The sum of all forces is at most one: the wrench space is one convex hull.
 };
 
-/// What is one about a unit force.
+/// Which length of a unit force is one.
 enum class ForceScaling {
-  UnitNormal,  ///< Its normal part: cone edges are √(1 + μ²) long.
-  UnitEdge,    ///< Its length along a cone edge.
+  UnitNormal,  ///< The length of its normal part: cone edges are √(1 + μ²) long.
+  UnitEdge,    ///< Its full length, along a cone edge.
 };
 
 /// What ε is while the origin lies outside the wrench space.
 enum class OutsideValue {
   Zero,
   MinusOne,
-  Signed,  ///< Minus the largest distance to a facet's plane that cuts the origin off.
+  Signed,  ///< Minus the largest distance from the origin to the plane of a facet that cuts it off.
 };
 
 /// Linearization and scaling of the grasp wrench space.
@@ -44,8 +44,9 @@ struct WrenchSpaceOptions {
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
-/// Tools whose wrench conventions are known: what torques are divided by and taken about, what of a
-/// force is one, and what ε is outside. All but DexGraspBench take them about the center of mass.
+/// Tools whose wrench conventions are known. Each line states the length that divides torques,
+/// which length of a unit force is one, and the value of ε where the origin is outside. All tools
+/// but DexGraspBench take torques about the center of mass.
 enum class WrenchTool {
   Graspfit,       ///< Largest radius of the surface; unit normal; 0.
   GraspIt,        ///< Largest radius, here from the center of mass; unit normal; −1.
@@ -56,34 +57,37 @@ enum class WrenchTool {
                   ///< normal; reports the residual of a balance instead, 0 stands for it.
 };
 
-/// Everything that ε and the volume depend on besides the contacts. It goes where the numbers go:
-/// two values are comparable only if these agree.
+/// Everything that ε and the volume depend on besides the contacts. It accompanies these numbers:
+/// two values are comparable only if their conventions agree.
 ///
-/// Not selectable: edges are those of `cone_edges`, an inscribed pyramid from normal × e_x on.
+/// The cone edges cannot be selected: they are those of `cone_edges`, an inscribed pyramid from
+/// normal × e_x on.
 struct WrenchConvention {
   Eigen::Vector3d reference_point_O = Eigen::Vector3d::Zero();  ///< Origin of torques [m].
   WrenchSpaceOptions options;
-  std::optional<WrenchTool> tool = std::nullopt;  ///< Whose it is; empty for one of the user's own.
+  std::optional<WrenchTool> tool = std::nullopt;  ///< Tool of this convention; empty for one of the
+                                                  ///< user's own.
 };
 
-/// In one line: "graspfit: torques about (0, 0, 0.1) m over 0.075 m, friction 0.5, 8 inscribed
-/// edges from normal x e_x, L1, unit normal force, outside 0".
+/// Describes a convention in one line: "graspfit: torques about (0, 0, 0.1) m over 0.075 m,
+/// friction 0.5, 8 inscribed edges from normal x e_x, L1, unit normal force, outside 0".
 std::string describe(const WrenchConvention& convention);
 
-/// What of an object conventions scale by.
+/// Properties of an object by which conventions scale.
 struct WrenchObject {
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
-  double largest_radius = 0.0;                                 ///< Of the surface from there [m].
-  Eigen::Vector3d extents_O = Eigen::Vector3d::Zero();         ///< Of the bounding box [m].
+  double largest_radius = 0.0;  ///< Largest distance of the surface from the center of mass [m].
+  Eigen::Vector3d extents_O = Eigen::Vector3d::Zero();  ///< Extents of the bounding box [m].
 };
 
 /// Measures a mesh; its center of mass is given because density need not be uniform.
 WrenchObject wrench_object(const geometry::TriangleMesh& mesh_O,
                            const Eigen::Vector3d& center_of_mass_O);
 
-/// The convention of a tool at the given friction, as `WrenchTool` says it. Eight edges; Frogger
-/// four. Azimuths of edges are ours: with few edges ε is the tool's up to the turn of its pyramids.
-/// Friction limits and contact models that go beyond that (soft fingers) are not covered.
+/// Returns the convention of a tool at the given friction, as `WrenchTool` states it, with eight
+/// edges per cone (Frogger: four). The azimuths of the edges are ours: with few edges ε agrees with
+/// the tool's only up to the rotation of its pyramids about the normals. Friction limits and
+/// contact models beyond Coulomb's cone (soft fingers) are not covered.
 /// @throws InvalidInput if the torque scale comes out not positive, as for no contacts or all
 /// contacts in one point with DexGraspBench.
 WrenchConvention wrench_convention(WrenchTool tool, const WrenchObject& object,

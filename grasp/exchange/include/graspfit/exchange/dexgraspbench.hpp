@@ -7,18 +7,19 @@
 /// \file
 /// Arrays under the names that DexGraspBench reads [Mingrui-Yu/DexGraspBench, README and
 /// src/task/eval_func/base.py], in a NumPy NPZ file. DexGraspBench itself loads one pickled
-/// dictionary per grasp; plain arrays need no pickle, and README.md shows the two lines between
-/// them.
+/// dictionary per grasp; plain arrays need no pickle, and README.md shows the two lines that turn
+/// one into the other.
 
 namespace graspfit::exchange {
 
-/// The bytes of an NPZ file, the same for the same file. N grasps, dof joints of the hand:
+/// Returns the bytes of an NPZ file, which are the same for the same grasp file. For N grasps of a
+/// hand with dof joints it holds:
 ///
 /// | array | shape, type | holds |
 /// | --- | --- | --- |
 /// | `obj_path` | text | the object's file, as recorded |
 /// | `obj_scale` | double | meters per unit of that file |
-/// | `obj_pose` | [7] doubles | of O in the world, which is O: 0 0 0, 1 0 0 0 |
+/// | `obj_pose` | [7] doubles | pose of O in the world, which is O: 0 0 0, 1 0 0 0 |
 /// | `pregrasp_qpos`, `grasp_qpos`, `squeeze_qpos` | [N, 7 + dof] doubles | position [m] and
 /// quaternion w, x, y, z of the hand's root link in O, joints [rad or m] |
 /// | `joint_names` | [dof] texts | the order of the joints: the hand model's |

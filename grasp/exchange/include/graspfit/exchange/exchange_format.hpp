@@ -13,7 +13,7 @@ namespace graspfit::exchange {
 /// File formats of other tools. Each has a header of its own that says frames, units and quaternion
 /// order.
 enum class ExchangeFormat {
-  IsaacGrasp,     ///< isaac_grasp 1.0, YAML; the one that is read too.
+  IsaacGrasp,     ///< isaac_grasp 1.0, YAML; the only one that is also read.
   DexGraspBench,  ///< NPZ of plain arrays.
   MoveItGrasp,    ///< YAML with the keys of moveit_msgs/Grasp.
   GraspItWorld,   ///< World XML; one grasp a file.
@@ -23,7 +23,7 @@ enum class ExchangeFormat {
 /// "isaac", "dexgraspbench", "moveit", "graspit", "glb".
 std::string_view name_of(ExchangeFormat format);
 
-/// The format of a name; empty if there is none of it.
+/// Returns the format of that name; empty if there is none.
 std::optional<ExchangeFormat> format_named(std::string_view name);
 
 /// The format that a file's extension stands for: .yaml and .yml isaac_grasp, .npz, .xml, .glb;
@@ -36,8 +36,8 @@ std::string_view extension_of(ExchangeFormat format);
 /// Whether a file of that format holds a single grasp.
 bool holds_one_grasp(ExchangeFormat format);
 
-/// What of this file's grasps the format cannot carry, or carries otherwise than a reader of the
-/// format may expect: a sentence each, for people.
+/// Returns what of this file's grasps the format cannot carry, or carries otherwise than a reader
+/// of the format may expect: a sentence each, for people.
 std::vector<std::string> limits_of(ExchangeFormat format, const grasp::GraspFile& file);
 
 }  // namespace graspfit::exchange

@@ -19,10 +19,10 @@ struct GraspItWorldOptions {
 
 /// The text of a world with the object at its origin and the hand in the grasp `index` of the file.
 ///
-/// Millimeters; `<fullTransform>` is (w x y z)[x y z]; `<dofValues>` in radians and millimeters, in
-/// the order of the robot file's degrees of freedom, with the flags of those that break away. They
-/// are known for hands read from a GraspIt! robot XML; of others the independent joints are written
-/// in the hand's order.
+/// Lengths are in millimeters; `<fullTransform>` is (w x y z)[x y z]. `<dofValues>` are in radians
+/// and millimeters, in the order of the robot file's degrees of freedom, with the flags of those
+/// that break away. The degrees of freedom are known for hands read from a GraspIt! robot XML; for
+/// other hands the independent joints are written in the hand's order.
 /// @throws InvalidInput if the file has no such grasp.
 /// @throws IoError if the hand's GraspIt! description can no longer be read.
 std::string graspit_world_xml(const grasp::GraspFile& file, std::size_t index,

@@ -18,25 +18,25 @@ namespace graspfit::exchange {
 struct ImportedGrasp {
   std::string name;
   hands::HandConfiguration configuration;      ///< X_OH and all joints.
-  std::optional<Eigen::VectorXd> pre_grasp_q;  ///< Joints before, at the same palm pose.
+  std::optional<Eigen::VectorXd> pre_grasp_q;  ///< Joints of the pre-grasp, at the same palm pose.
 };
 
 /// Grasps of another tool, measured as ours are.
 struct ImportResult {
-  grasp::GraspFile file;             ///< Best M first, ties in the order given.
-  std::vector<std::size_t> sources;  ///< Per grasp of `file`: its index among those given.
-  std::vector<std::string> notes;    ///< For people: pre-grasps that could not be kept.
+  grasp::GraspFile file;             ///< Grasp file, best M first, ties in the order given.
+  std::vector<std::size_t> sources;  ///< For each grasp of `file`, its index among those given.
+  std::vector<std::string> notes;    ///< Notes for people: pre-grasps that could not be kept.
 };
 
-/// A grasp file of grasps that come from elsewhere.
+/// Makes a grasp file from grasps that come from elsewhere.
 ///
 /// Nothing but poses and joints is taken over: contacts, M, ε, penetration, pre-grasps and squeezes
 /// are computed from the meshes, by `options`, which the file records as if the planner had used
-/// them. `options` also say which fingers and whether the palm are to touch. A pre-grasp that was
-/// given is kept where it is clear by `options.pre_grasp.clearance` and the straight way from it is
-/// proven free (of grasps that cut something no way is); else one is looked for
-/// (`grasp::find_pre_grasp`).
-/// `Grasp::attempt` is the grasp's index among those given, and no attempts are counted.
+/// them. `options` also say which fingers and whether the palm are to touch. A given pre-grasp is
+/// kept if it is clear by `options.pre_grasp.clearance` and the straight path from it to the grasp
+/// is proven free; otherwise one is searched for (`grasp::find_pre_grasp`). A grasp that itself
+/// cuts something has no free path, and no pre-grasp. `Grasp::attempt` is the grasp's index among
+/// those given, and no attempts are counted.
 /// @throws InvalidInput for bad options, a hand that cannot do what they ask, an object that is not
 /// a closed outward solid, configurations outside the hand's limits.
 /// @throws IoError if a link mesh of the hand can no longer be read.

@@ -28,22 +28,23 @@ namespace graspfit::exchange {
 /// Numbers are shortest round-trip decimals that YAML 1.1 readers too take for numbers.
 std::string isaac_grasp_yaml(const grasp::GraspFile& file);
 
-/// What reading forgives.
+/// Tolerances of reading a file.
 struct IsaacReadOptions {
-  double largest_norm_error = 1e-3;      ///< Of quaternions, from 1; they are normalized then.
-  double largest_limit_excess = 1e-6;    ///< Beyond a joint's limits [rad or m], clamped: limits in
-                                         ///< single precision.
-  double largest_coupling_error = 1e-3;  ///< Of a coupled joint from where its leader puts it [rad
-                                         ///< or m]; it is put there.
+  double largest_norm_error = 1e-3;      ///< Largest difference of a quaternion's norm from 1;
+                                         ///< quaternions are normalized then.
+  double largest_limit_excess = 1e-6;    ///< Largest excess over a joint's limits [rad or m], which
+                                         ///< is clamped: limits may be in single precision.
+  double largest_coupling_error = 1e-3;  ///< Largest distance of a coupled joint from where its
+                                         ///< leader puts it [rad or m]; it is then put there.
   void validate() const;                 ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Reads an isaac_grasp file written for `hand`, whose root link must be the file's gripper frame.
 ///
 /// The version may be the number 1.0 or the text "1.0". Every independent joint of the hand must be
-/// there, coupled ones may be left out, names that the hand does not have are refused. Joints that
-/// a clutch lets go on closing (`Coupling::breakaway`) keep their positions. Other keys than those
-/// of the format are not looked at; `confidence` must be a number and is not used otherwise. A
+/// given, coupled ones may be left out, names that the hand does not have are refused. Joints that
+/// a clutch lets go on closing (`Coupling::breakaway`) keep their positions. Keys that are not of
+/// the format are ignored; `confidence` must be a number and is not used otherwise. A
 /// `pregrasp_cspace_position` may be missing.
 /// @throws IoError (file, line, place, what) for anything else.
 std::vector<ImportedGrasp> read_isaac_grasps(const std::filesystem::path& path,

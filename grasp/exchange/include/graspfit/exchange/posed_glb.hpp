@@ -11,9 +11,9 @@ namespace graspfit::exchange {
 /// node "O" with a node "object" and one per link with faces under its name, posed by translation
 /// and rotation (quaternion x, y, z, w).
 ///
-/// Meters, the axes of O. (glTF's convention that +y is up is not imposed on the object.) Meshes
-/// are in the links' frames, in single precision as the format has it: rounded to 6e-8 of their
-/// extent. Faces are not smoothed. Same input, same bytes.
+/// Units are meters, and axes those of O. (glTF's convention that +y is up is not imposed on the
+/// object.) Meshes are in the links' frames, in single precision as the format has it: rounded to
+/// 6e-8 of their extent. Faces are not smoothed. The same input gives the same bytes.
 std::string posed_scene_glb(const geometry::TriangleMesh& object, const hands::HandModel& hand,
                             const hands::HandConfiguration& configuration);
 

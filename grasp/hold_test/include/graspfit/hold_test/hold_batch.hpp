@@ -14,23 +14,26 @@ namespace graspfit::hold_test {
 
 /// What a test found of one grasp of a list.
 struct TestedGrasp {
-  std::size_t index = 0;  ///< In that list.
+  std::size_t index = 0;  ///< Index of the grasp in the list.
   HoldVerdict verdict;
-  std::optional<HoldMargin> margin;  ///< Where it was asked for.
+  std::optional<HoldMargin> margin;  ///< Margin of the grasp, if it was asked for.
 };
 
 /// Which grasps of a list are tested, and how.
 struct HoldBatchOptions {
-  std::vector<std::size_t> indices;  ///< Of the grasps to test; empty: all.
-  bool margin = false;               ///< Also the smallest failing loads: a score of tests each.
-  double largest_margin = 100.0;     ///< As of HoldTest::margin [N], > 0.
-  int num_threads = 0;               ///< Each with an engine of its own; 0: one per processor.
+  std::vector<std::size_t> indices;  ///< Indices of the grasps to test; if empty, all are tested.
+  bool margin = false;  ///< Whether the smallest failing loads are searched for, too: a score of
+                        ///< tests per grasp.
+  double largest_margin = 100.0;  ///< Largest load tried, as in HoldTest::margin [N], > 0.
+  int num_threads = 0;            ///< Number of threads, each with an engine of its own; 0: one per
+                                  ///< processor.
 };
 
-/// Called now and then from any thread, one at a time, with how many grasps are done.
+/// Called now and then from any thread, but never by two at once, with the number of grasps that
+/// are done.
 using HoldProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// Tests grasps; the same results in the order of `indices` for any number of threads.
+/// Tests grasps. The results are in the order of `indices`, and the same for any number of threads.
 /// @throws InvalidInput for an index that the list does not have, a negative number of threads, a
 /// bad protocol, and in a build without MuJoCo.
 std::vector<TestedGrasp> test_grasps(const HoldHand& hand, const HoldObject& object,
@@ -42,7 +45,7 @@ std::vector<TestedGrasp> test_grasps(const HoldHand& hand, const HoldObject& obj
 /// "rejected", "approach", "load" or "held".
 const char* name_of(HoldStage stage);
 
-/// How many grasps came how far; a stage that none came to counts 0.
+/// Counts the grasps whose tests ended at each stage; a stage at which none ended counts 0.
 std::map<HoldStage, std::size_t> count_stages(std::span<const TestedGrasp> tested);
 
 /// Indices of the grasps that held, those with the largest margin of force first (without margins,

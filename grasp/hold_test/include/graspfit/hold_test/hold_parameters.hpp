@@ -12,8 +12,8 @@ namespace graspfit::hold_test {
 /// of a choice.
 using ParameterValue = std::variant<double, int, bool, std::vector<double>, std::string>;
 
-/// Names of all parameters of a protocol, units in the names: those that files and command lines
-/// use, in the order of the struct; its `name` and `source` are not parameters.
+/// Names of all parameters of a protocol, with units, as files and command lines use them, in the
+/// order of the struct. The protocol's `name` and `source` are not parameters.
 const std::vector<std::string>& parameter_names();
 
 /// The value of a parameter. @throws InvalidInput (with the names there are) for another name.

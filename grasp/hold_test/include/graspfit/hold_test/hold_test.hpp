@@ -13,58 +13,66 @@
 
 namespace graspfit::hold_test {
 
-/// Whether this build has a physics engine; without, `HoldTest` throws InvalidInput that says so.
+/// Says whether this build has a physics engine. In a build without one, `HoldTest` throws
+/// InvalidInput that says so.
 bool is_available();
 
 /// An object as the engine sees it, prepared once: convex pieces with the true solid's center of
-/// mass and inertia (uniform density). Frame O.
+/// mass and inertia (uniform density), all in frame O.
 struct HoldObject {
   geometry::ConvexDecomposition shape;
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();    ///< [m]
-  Eigen::Matrix3d inertia_per_mass_O = Eigen::Matrix3d::Zero();  ///< About it, along O's axes [m²].
+  Eigen::Matrix3d inertia_per_mass_O = Eigen::Matrix3d::Zero();  ///< Inertia over mass, about the
+                                                                 ///< center of mass along O's axes
+                                                                 ///< [m²].
 };
 HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
                                const geometry::ConvexDecompositionOptions& options = {});
 
-/// A hand as the engine sees it, prepared once: its links in convex pieces each, in L.
+/// A hand as the engine sees it, prepared once: the convex pieces of each link in the link's frame
+/// L.
 struct HoldHand {
   hands::HandModel model;
-  std::vector<geometry::ConvexDecomposition> links;  ///< One per link; no pieces without faces.
+  std::vector<geometry::ConvexDecomposition> links;  ///< Pieces of each link; none for a link
+                                                     ///< without faces.
 };
 HoldHand prepare_hold_hand(const hands::HandModel& hand,
                            const geometry::ConvexDecompositionOptions& options = {});
 
-/// How far a test came.
+/// The stage at which a test ended.
 enum class HoldStage {
-  Rejected,  ///< Deeper than allowed at the pre-grasp, or no pre-grasp or squeeze: not simulated.
-  Approach,  ///< Lost between pre-grasp and squeeze: before any load.
-  Load,      ///< Lost under load.
-  Held,      ///< Not lost.
+  Rejected,  ///< Not simulated: deeper penetration than allowed at the pre-grasp, or no pre-grasp
+             ///< or squeeze.
+  Approach,  ///< The object was lost between pre-grasp and squeeze, before any load.
+  Load,      ///< The object was lost under load.
+  Held,      ///< The object was not lost.
 };
 
-/// One load.
+/// What the test found of one load.
 struct DirectionVerdict {
-  Eigen::Vector3d direction_O = Eigen::Vector3d::Zero();  ///< Unit.
+  Eigen::Vector3d direction_O = Eigen::Vector3d::Zero();  ///< Unit direction of the load.
   HoldStage stage = HoldStage::Held;
-  std::optional<double> failed_at;  ///< Of the first failing check, since the load began [s].
-  double largest_shift = 0.0;       ///< At any check up to that one, from the squeezed pose [m].
-  double largest_turn = 0.0;        ///< [rad]
+  std::optional<double> failed_at;  ///< Time of the first failing check, since the load began [s].
+  double largest_shift = 0.0;  ///< Largest displacement from the squeezed pose at any check up to
+                               ///< that one [m].
+  double largest_turn = 0.0;   ///< Largest rotation from the squeezed pose [rad].
 };
 
 /// What the test says of one grasp.
 struct HoldVerdict {
-  HoldStage stage = HoldStage::Rejected;  ///< The earliest of all directions.
-  std::string reason;  ///< Of a rejection, or of a simulation that went wrong; empty else.
+  HoldStage stage = HoldStage::Rejected;  ///< The earliest stage of all directions.
+  std::string reason;  ///< Reason of a rejection, or why a simulation went wrong; empty otherwise.
   double approach_shift =
-      0.0;                     ///< Largest at any check before the load, from the planned pose [m].
-  double approach_turn = 0.0;  ///< [rad]
+      0.0;  ///< Largest displacement from the planned pose at any check before the load [m].
+  double approach_turn = 0.0;  ///< Largest rotation from the planned pose [rad].
   double squeeze_force = 0.0;  ///< Sum of the normal forces on the object once squeezed [N].
-  /// Six, or one for HoldLoad::Lift; none of a rejected grasp.
+  /// Verdicts of the six loads, or of the single one of HoldLoad::Lift; none for a rejected grasp.
   std::vector<DirectionVerdict> directions;
   bool held() const { return stage == HoldStage::Held; }
 };
 
-/// The smallest loads at the center of mass that fail, applied at once and held as the test's own.
+/// The smallest loads at the center of mass that fail, applied at once and held as long as the
+/// test's own.
 struct HoldMargin {
   double force = 0.0;  ///< Least over the six directions [N].
   Eigen::Vector3d force_direction_O = Eigen::Vector3d::Zero();
@@ -79,14 +87,14 @@ struct HoldFrame {
   hands::HandConfiguration hand;  ///< Palm pose and all joints as they stand.
 };
 
-/// Tests grasps of one hand on one object in MuJoCo, the hand's base fixed to the world. One thread
-/// at a time per HoldTest; build one per thread. Same grasp, same verdict, whatever was tested
-/// before. No warning or error of the engine is printed or ends the program: a simulation that
-/// diverges is a grasp that fails, and `reason` says so.
+/// Tests grasps of one hand on one object in MuJoCo, with the hand's base fixed to the world. A
+/// HoldTest serves one thread at a time; build one per thread. The same grasp gets the same
+/// verdict, whatever was tested before. No warning or error of the engine is printed or ends the
+/// program: a grasp whose simulation diverges fails, and `reason` says so.
 class HoldTest {
  public:
-  /// @throws InvalidInput for a bad protocol, a model that the engine refuses (its words), and in a
-  /// build without MuJoCo.
+  /// @throws InvalidInput for a bad protocol, a model that the engine refuses (with its message),
+  /// and in a build without MuJoCo.
   HoldTest(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol);
   ~HoldTest();
   HoldTest(HoldTest&&) noexcept;
@@ -95,13 +103,15 @@ class HoldTest {
   /// @throws InvalidInput for joint positions that do not fit the hand.
   HoldVerdict test(const grasp::Grasp& grasp);
 
-  /// The smallest failing load by bisection: what is returned fails, 2 % less holds. Up to
-  /// `largest` [N] (torques: `largest` · 0.1 m); where even that holds, it is returned. Zero where
-  /// the grasp is rejected or lost without load. @throws InvalidInput for protocols that lift.
+  /// Finds the smallest failing loads by bisection: a returned load fails, a load that is 2 %
+  /// smaller holds. Loads are tried up to `largest` [N] (torques: `largest` · 0.1 m); where even
+  /// this load holds, it is returned. The loads are zero where the grasp is rejected or lost
+  /// without load. @throws InvalidInput for protocols that lift.
   HoldMargin margin(const grasp::Grasp& grasp, double largest = 100.0);
 
-  /// The same simulation as one direction of `test`, a frame every `interval` seconds and one at
-  /// its end; empty for a rejected grasp. @throws InvalidInput for a direction that there is not.
+  /// Repeats the simulation of one direction of `test` and returns a frame every `interval` seconds
+  /// and one at the end; none for a rejected grasp. @throws InvalidInput for a direction that there
+  /// is not.
   std::vector<HoldFrame> replay(const grasp::Grasp& grasp, int direction, double interval = 0.02);
 
  private:
