@@ -320,8 +320,8 @@ struct RankedTargets::Impl {
   bool has_overflown = false;
   bool is_finished = false;
   std::array<std::int32_t, kMostParts> chosen{};
-  std::vector<RankedSet>
-      queue;  ///< Found and not yet given; the best last, a heap while searching.
+  /// Found and not yet given; the best last, a heap while searching.
+  std::vector<RankedSet> queue;
 };
 
 RankedTargets::RankedTargets(const ObjectModel& object, const PartDistances& distances,

@@ -19,8 +19,8 @@ struct ObjectSettings {
   std::string file;      ///< Mesh file in the data folder, or by an absolute path.
   std::string packaged;  ///< A mesh of libcgal-demo by the name of its file.
   std::string shape;     ///< Name of a `geometry::named_shape`, in meters.
-  std::optional<double>
-      size;  ///< Length of the bounding box along `size_axis` [m]; empty: as it is.
+  /// Length of the bounding box along `size_axis` [m]; empty: as it is.
+  std::optional<double> size;
   std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
   /// The object is scaled down further where its bounding box's shortest edge is longer than this
   /// [m], so that a hand that spans so much can close around it.

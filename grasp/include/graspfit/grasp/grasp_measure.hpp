@@ -29,8 +29,8 @@ struct MeasuringScene {
   contact::ContactEstimationOptions contact_options = {};
   /// A requested contact with a larger gap does not count as contact [m].
   std::optional<double> largest_gap = std::nullopt;
-  std::optional<double> bearing_gap =
-      std::nullopt;  ///< Contacts with a larger gap bear no force: not in ε [m].
+  /// Contacts with a larger gap bear no force: not in ε [m].
+  std::optional<double> bearing_gap = std::nullopt;
 };
 
 /// Contacts, M, ε and penetration of a configuration, from the true meshes alone: what the planner

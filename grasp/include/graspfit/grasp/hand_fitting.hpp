@@ -57,8 +57,8 @@ struct FittingOptions {
   double small_step = 0.2;   ///< Motion of the fastest point in a small step [voxels], > 0 [R].
   int max_halvings = 5;      ///< Of a step that would penetrate [R].
   int max_iterations = 400;  ///< Of the loop, ≥ 1.
-  double sample_spacing =
-      0.5;  ///< Of the points that stand for a link's occupied voxels [voxels], > 0.
+  /// Of the points that stand for a link's occupied voxels [voxels], > 0.
+  double sample_spacing = 0.5;
   PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
   ContactState contact_state = ContactState::Closed;  ///< [P]
   /// Closing onto the surface (`ContactState::Closed`) ends when its steps are shorter than this
@@ -95,8 +95,8 @@ struct FittingResult {
   /// pads with contact: what refinement would have to close.
   double largest_gap = 0.0;
   double contact_tests_s = 0.0;  ///< Time spent on contact estimation; not part of the result.
-  double smallest_distance =
-      0.0;  ///< d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
+  /// d_min at the end [voxels]; ≥ 0: no link reaches a full voxel.
+  double smallest_distance = 0.0;
 };
 
 /// Fits the hand to assigned targets: initial configuration (section 7), then the adjustment loop

@@ -84,10 +84,10 @@ struct PlannerOptions {
   /// the paper's own. All else is the same for every method.
   std::string planner = "fitting";
   GraspStyle style = GraspStyle::Precision;
-  std::vector<std::string>
-      fingers;  ///< Names from the hand, thumb anywhere; empty: `num_contacts` of them.
-  int num_contacts =
-      3;  ///< Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+  /// Names from the hand, thumb anywhere; empty: `num_contacts` of them.
+  std::vector<std::string> fingers;
+  /// Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+  int num_contacts = 3;
   /// Whether the palm must touch too, which adds one target; empty: in power grasps only [P: "if
   /// the palm may touch"].
   std::optional<bool> palm;
@@ -108,9 +108,9 @@ struct PlannerOptions {
   std::optional<Eigen::Vector3d> approach_O;
   /// Largest angle between the palm direction and `approach_O` [rad], in (0, π].
   double approach_angle = std::numbers::pi / 2;
-  std::optional<double>
-      wall_clock_limit_s;  ///< Opt-in; makes results depend on the machine, and is recorded.
-  int resolution = 30;     ///< Voxels along the object's longest extent [P].
+  /// Opt-in; makes results depend on the machine, and is recorded.
+  std::optional<double> wall_clock_limit_s;
+  int resolution = 30;                   ///< Voxels along the object's longest extent [P].
   std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   /// Pads whose contacts count; empty: in power grasps all [P: proximal links are encouraged to
@@ -140,9 +140,9 @@ struct PlannerOptions {
   /// paper's voxel-level grasp.
   bool refine = true;
   RefinementOptions refinement;
-  double self_overlap =
-      0.001;  ///< Without refinement: overlap of links of different fingers that a formed grasp may
-              ///< have before it is rejected as a self-collision [m], ≥ 0 [R].
+  /// Without refinement: overlap of links of different fingers that a formed grasp may have before
+  /// it is rejected as a self-collision [m], ≥ 0 [R].
+  double self_overlap = 0.001;
   /// Every contact's score must exceed it, in [0, 1), whether the pad had a target or not; empty:
   /// only the scores of targets count, as the paper states it [R].
   std::optional<double> contact_score_threshold;

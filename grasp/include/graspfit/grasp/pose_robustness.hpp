@@ -12,11 +12,11 @@ struct GraspMetricFacts;
 struct PoseRobustnessOptions {
   int num_samples = 100;                 ///< Poses, ≥ 1.
   double translation_deviation = 0.005;  ///< Standard deviation along each axis [m], ≥ 0.
-  double rotation_deviation =
-      0.087266462599716477;  ///< Of each component of the rotation vector [rad], ≥ 0; 5°.
-  double reach = 0.02;       ///< How far a pad goes on, or gives way, to meet the surface [m], > 0.
-  std::uint64_t seed = 1;    ///< Sample i is the same for every grasp: its stream is (seed, i).
-  void validate() const;     ///< Throws InvalidInput naming the field and its value.
+  /// Of each component of the rotation vector [rad], ≥ 0; 5°.
+  double rotation_deviation = 0.087266462599716477;
+  double reach = 0.02;     ///< How far a pad goes on, or gives way, to meet the surface [m], > 0.
+  std::uint64_t seed = 1;  ///< Sample i is the same for every grasp: its stream is (seed, i).
+  void validate() const;   ///< Throws InvalidInput naming the field and its value.
 };
 
 /// What becomes of a grasp when the object is not quite where it was thought to be [after Weisz &

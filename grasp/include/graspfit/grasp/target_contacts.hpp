@@ -66,8 +66,8 @@ struct TargetOptions {
   int max_seeds = 200;
   int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
                                ///< [R]. The ranked search never relaxes them.
-  double min_separation =
-      0.0;  ///< Between targets of different parts [m], ≥ 0; the planner sets one pad width.
+  /// Between targets of different parts [m], ≥ 0; the planner sets one pad width.
+  double min_separation = 0.0;
   /// Edge of the cubes by which the pool is thinned [m], ≥ 0: of all points in one cube whose
   /// normals have the same largest component, only the one with the best score is kept; 0: all are
   /// kept [P: "sampling by voxels"]. The ranked search needs thinning for four and more targets: a
@@ -141,8 +141,8 @@ struct PalmReach {
   /// Palm center, which is placed over the palm's target [m].
   Eigen::Vector3d center_H = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();  ///< Unit n_palm.
-  double pad_radius =
-      0.0;  ///< Of the palm's pad, from its frame's origin to the farthest corner [m].
+  /// Of the palm's pad, from its frame's origin to the farthest corner [m].
+  double pad_radius = 0.0;
   /// Per finger, the points that its tip reaches; no entries: any point in front of the palm.
   std::vector<std::optional<hands::TipReach>> tips;
 };

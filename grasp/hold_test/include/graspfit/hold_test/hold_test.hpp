@@ -62,8 +62,8 @@ struct DirectionVerdict {
 struct HoldVerdict {
   HoldStage stage = HoldStage::Rejected;  ///< The earliest stage of all directions.
   std::string reason;  ///< Reason of a rejection, or why a simulation went wrong; empty otherwise.
-  double approach_shift =
-      0.0;  ///< Largest displacement from the planned pose at any check before the load [m].
+  /// Largest displacement from the planned pose at any check before the load [m].
+  double approach_shift = 0.0;
   double approach_turn = 0.0;  ///< Largest rotation from the planned pose [rad].
   double squeeze_force = 0.0;  ///< Sum of the normal forces on the object once squeezed [N].
   /// Verdicts of the six loads, or of the single one of HoldLoad::Lift; none for a rejected grasp.

@@ -18,10 +18,9 @@ namespace graspfit::motion {
 /// for an approach direction and interpolates; the requirement that nothing is touched during the
 /// motion is ours [R].
 struct PickAndPlaceOptions {
-  grasp::PlannerOptions
-      planner;  ///< `count` grasps are tried per approach, best M first; acceptance must
-                ///< be Valid with pre-grasps. `approach_O` is set here, and pre-grasps
-                ///< are fully open (`pre_grasp.opening_steps` 1).
+  /// `count` grasps are tried per approach, best M first; acceptance must be Valid with pre-grasps.
+  /// `approach_O` is set here, and pre-grasps are fully open (`pre_grasp.opening_steps` 1).
+  grasp::PlannerOptions planner;
   hands::HandConfiguration home;  ///< Where every move begins and ends; `X_OH` is X_WH.
   /// Wanted palm directions in W, tried in order until a grasp can be used; their lengths, > 0, do
   /// not matter. If empty, they are the direction from the palm center at home to the object's
