@@ -59,7 +59,7 @@ ExitCode run(const std::vector<std::string>& arguments) {
   return run_command(kCommands, "", kUsage, arguments);
 }
 
-/// "hand show" for messages; empty where there is no such command.
+/// The command's name for messages, "hand show"; empty if there is no such command.
 std::string name_for_messages(const std::vector<std::string>& arguments) {
   if (arguments.empty() || find_command(kCommands, arguments[0]) == nullptr) return "";
   const bool has_subcommand =
@@ -69,7 +69,7 @@ std::string name_for_messages(const std::vector<std::string>& arguments) {
   return has_subcommand ? arguments[0] + ' ' + arguments[1] : arguments[0];
 }
 
-/// Every exception ends here as one line and an exit code.
+/// Runs the command; every exception ends here as one line and an exit code.
 ExitCode run_and_report(const std::vector<std::string>& arguments) {
   const std::string command = name_for_messages(arguments);
   try {
@@ -96,7 +96,8 @@ int main(int argc, char** argv) {
   graspfit::app::report_file_size_limit();
   const graspfit::app::ExitCode code =
       graspfit::app::run_and_report(std::vector<std::string>(argv + 1, argv + argc));
-  // A full disk or a closed pipe shows only now, or has shown while the buffer was filled.
+  // Errors of a full disk or a closed pipe appear only now, or appeared while the buffer was
+  // filled.
   const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (!is_written && code == graspfit::app::kSuccess) {
     std::fputs("graspfit: standard output could not be written\n", stderr);

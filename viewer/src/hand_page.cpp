@@ -46,8 +46,7 @@ Json poses(const HandScene& scene) {
   return list;
 }
 
-/// From where to look at a hand, so that fingers and palm are seen: in H, by its shape while
-/// open.
+/// Views of a hand that show fingers and palm, in H. They are chosen by the shape of the open hand.
 Json views(const hands::HandModel& hand) {
   const auto X_HL = hands::forward_kinematics(hand, hands::open_configuration(hand));
   const Eigen::Vector3d palm = hand.palm.direction_H;
@@ -67,11 +66,11 @@ Json views(const hands::HandModel& hand) {
   }
   if (num_others > 0.0) others /= num_others;
   const Eigen::Vector3d spread = thumb - others;
-  constexpr double kNothing = 1e-9;  // [m]; no direction can be had from less
+  constexpr double kNothing = 1e-9;  // [m]; a shorter vector gives no direction
   const auto unit_or = [&](const Eigen::Vector3d& v, const Eigen::Vector3d& otherwise) {
     return v.norm() > kNothing ? Eigen::Vector3d(v.normalized()) : otherwise;
   };
-  constexpr double kFlat = 0.7;  // cosine; below it the palm looks across the fingers
+  constexpr double kFlat = 0.7;  // cosine; below it the palm faces across the fingers
   const bool is_flat = std::abs(unit_or(thumb + others, palm).dot(palm)) < kFlat;
   const Eigen::Vector3d fingers = num_others > 0.0 ? others : thumb;
   const Eigen::Vector3d up =
@@ -98,7 +97,7 @@ Json views(const hands::HandModel& hand) {
   return list;
 }
 
-/// The pads as thin plates that lie on their links: what is drawn as the pad.
+/// The pads as they are drawn: thin plates that lie on their links.
 Json plates(const hands::HandModel& hand) {
   constexpr double kPlate = 2e-4;  // [m]; enough to be seen in front of the link's own surface
   Json list = Json::array();

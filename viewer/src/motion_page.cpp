@@ -51,7 +51,7 @@ std::string_view name_of(MotionCheck check) {
   return "";
 }
 
-/// Frames of a segment on which a point travels that far [m].
+/// Number of frames of a segment on which a point travels `travel` [m].
 int num_frames(double travel, double frame_step) {
   constexpr double kFewest = 4.0;  // so that a short approach can be seen
   constexpr double kMost = 1e5;
@@ -88,7 +88,7 @@ class Frames {
   std::vector<float> links_;
 };
 
-/// Adds a move's frames; the phases with the frames in which they end.
+/// Adds a move's frames. Returns the phases with the frames in which they end.
 Json add_move(const MotionInput& input, const motion::RecordedMove& move,
               const std::vector<RigidTransform>& X_WO, Frames& frames) {
   Json phases = Json::array();

@@ -19,12 +19,13 @@ std::string base64_of(std::span<const std::uint32_t> numbers);
 std::string base64_of(std::span<const float> numbers);
 
 Json to_json(const Eigen::Vector3d& v);
-// Column-major 4×4, as WebGL takes it.
+// A transform as a column-major 4×4 matrix, as WebGL takes it.
 Json to_json(const geometry::RigidTransform& X);
 // Vertices (float) and faces as base64.
 Json to_json(const geometry::TriangleMesh& mesh);
 
-// The text of `data` without any "<", so that it can stand in a script element; JSON all the same.
+// The text of `data` without any "<", so that it can stand in a script element; it is JSON all the
+// same.
 std::string script_text(const Json& data);
 
 }  // namespace graspfit::viewer::internal

@@ -28,7 +28,8 @@ std::string escaped_for_html(std::string_view text) {
 
 using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
-// One pass over the template: what is put in is never searched for places.
+// Fills a template in one pass: texts that replace placeholders are never searched for
+// placeholders.
 std::string filled(std::string_view rest, const Places& places) {
   std::string html;
   while (!rest.empty()) {

@@ -5,8 +5,9 @@
 
 namespace graspfit::viewer::internal {
 
-// The files of viewer/page/, compiled in by viewer/page/embed.cmake: the frame of a page with the
-// places {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and what goes there.
+// The files of viewer/page/, compiled in by viewer/page/embed.cmake: the template of a page with
+// the placeholders {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and the texts that
+// replace them.
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
 extern const std::string_view kStageJs;  // before a page's own script
@@ -16,17 +17,18 @@ extern const std::string_view kPlayerJs;  // before the script of a page that pl
 extern const std::string_view kReplayJs;
 extern const std::string_view kMotionJs;
 
-// What tells one page from another.
+// The parts in which pages differ.
 struct PageParts {
   std::string_view title;  // plain text
   std::string script;      // after stage.js, in one function with it
   std::string_view data;   // JSON without "<"
 };
 
-// The script of a page that plays frames: what such pages share, then its own.
+// The script of a page that plays frames: first the part that such pages share, then the page's
+// own.
 std::string script_of_player(std::string_view script);
 
-// The text of a page, with everything in it.
+// The text of a page, filled from the template.
 std::string filled_page(const PageParts& parts);
 
 }  // namespace graspfit::viewer::internal

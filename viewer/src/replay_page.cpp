@@ -47,7 +47,7 @@ void validate(const ReplayInput& input) {
   }
 }
 
-/// Pieces as one mesh: what is drawn in the place of their body.
+/// Convex pieces as one mesh, which is drawn instead of their body.
 Json pieces_json(const geometry::ConvexDecomposition& shape) {
   TriangleMesh all;
   for (const TriangleMesh& piece : shape.pieces) {
@@ -77,15 +77,15 @@ double load_start(const hold_test::HoldProtocol& protocol) {
   return protocol.approach_time + protocol.squeeze_time;
 }
 
-/// Times are sums of steps, and may miss a wanted one by a rounding error [s].
+/// Rounding error [s] by which times, which are sums of steps, may miss an exact time.
 constexpr double kTimeRounding = 1e-9;
 
 Json direction_json(const ReplayInput& input, std::size_t d) {
   const hold_test::DirectionVerdict& verdict = input.verdict.directions[d];
   const std::vector<HoldFrame>& frames = input.replays[d];
   const double start = load_start(input.protocol);
-  // Before the load, shift and turn are those from the planned pose: the object's at identity,
-  // seen by the palm as it stands at the grasp.
+  // Before the load, shift and turn are measured from the planned pose, in which the object is at
+  // the identity, as seen by the palm.
   const HoldFrame* squeezed = &frames.front();
   for (const HoldFrame& frame : frames) {
     if (frame.time <= start + kTimeRounding) squeezed = &frame;
@@ -150,7 +150,8 @@ Json protocol_json(const hold_test::HoldProtocol& protocol) {
 
 std::size_t telling_direction(const hold_test::HoldVerdict& verdict,
                               const hold_test::HoldProtocol& protocol) {
-  // Smaller says more: lost before the load, then by the time of failing, then by how near.
+  // A smaller rank is more informative: first directions lost before the load, then by the time of
+  // failure, then by how near they came to a limit.
   const auto rank = [&](const hold_test::DirectionVerdict& direction) {
     if (direction.stage != hold_test::HoldStage::Load &&
         direction.stage != hold_test::HoldStage::Held) {

@@ -52,7 +52,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 std::vector<std::string> split_at_commas(const std::string& text) { return split(text, ','); }
 
-/// `given` is the word of the command line, "--resol=10".
+/// Refuses an unknown option. `given` is the word of the command line, "--resol=10".
 [[noreturn]] void fail_unknown(const Command& command, const std::string& given) {
   std::vector<std::string> known = {"--help"};
   for (const auto& option : command.options.options()) {
@@ -107,7 +107,7 @@ Flags::Flags(const Command& command, const std::vector<std::string>& arguments)
   po::positional_options_description positional;
   positional.add(kPositional, 1);
   if (!second_positional_name_.empty()) positional.add(kSecondPositional, 1);
-  // No guessing: an abbreviation that works today may be ambiguous tomorrow.
+  // Options are not guessed: an abbreviation that works today may be ambiguous tomorrow.
   const int style = po::command_line_style::unix_style & ~po::command_line_style::allow_guessing;
   try {
     po::store(

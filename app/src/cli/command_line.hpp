@@ -14,16 +14,16 @@
 
 namespace graspfit::app {
 
-/// A command of the program: what it is called with and what its help says.
+/// A command of the program: its arguments and options, and the text of its help.
 struct Command {
   std::string name;        ///< "plan"
-  std::string positional;  ///< What the one argument without a flag is, "OBJECT"; empty: none.
+  std::string positional;  ///< Name of the argument without a flag, "OBJECT"; empty: none.
   std::string summary;     ///< One or more sentences for --help.
   boost::program_options::options_description options;
   std::string epilog;                  ///< Printed after the options.
   std::string second_positional = "";  ///< A second argument without a flag, "OUT"; empty: none.
-  /// Of the options those that --help shows, in this order; --help-all shows all. Empty: so does
-  /// --help.
+  /// The options that --help shows, in this order; --help-all shows all. Empty: --help shows all,
+  /// too.
   std::vector<std::string> basics = {};
 };
 
@@ -40,7 +40,7 @@ void add_repeatable_option(boost::program_options::options_description& options,
                            const std::string& name, const std::string& value_name,
                            const std::string& description);
 
-/// An option that is there or not.
+/// An option without a value, which is given or not.
 void add_switch(boost::program_options::options_description& options, const std::string& name,
                 const std::string& description);
 
@@ -60,9 +60,9 @@ class Flags {
 
   bool wants_help() const { return has("help") || wants_all_help(); }
   bool wants_all_help() const { return has("help-all"); }
-  /// The argument without a flag; it must be there.
+  /// The argument without a flag; it must be given.
   const std::string& positional() const;
-  /// The second one; it must be there.
+  /// The second argument without a flag; it must be given.
   const std::string& second_positional() const;
 
   bool has(const std::string& name) const { return values_.count(name) > 0; }
@@ -73,15 +73,16 @@ class Flags {
   int integer(const std::string& name) const;
   double number(const std::string& name, const base::NumberRange& range) const;
   int integer(const std::string& name, const base::NumberRange& range) const;
-  /// Whether the text is `yes`, not `no`.
+  /// True if the text is `yes`, false if it is `no`; no other text is allowed.
   bool either(const std::string& name, const char* yes, const char* no) const;
-  std::vector<std::string> texts(const std::string& name) const;  ///< Of a repeatable option.
+  /// The values of a repeatable option.
+  std::vector<std::string> texts(const std::string& name) const;
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
   std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.
 
-  /// From ranks separated by commas, which count from 1: indices, which count from 0, ascending,
-  /// each once; none where the option is not given.
+  /// Reads ranks separated by commas, which count from 1, as indices, which count from 0. They are
+  /// ascending, each once; none if the option is not given.
   std::vector<std::size_t> indices(const std::string& name) const;
 
   /// The value of an enumeration by its name.
@@ -93,7 +94,7 @@ class Flags {
     }
     return *value;
   }
-  /// NAME=VALUE,... with numbers as values.
+  /// Reads NAME=VALUE,... with numbers as values.
   std::vector<std::pair<std::string, double>> settings(const std::string& name) const;
 
  private:
@@ -102,7 +103,8 @@ class Flags {
   boost::program_options::variables_map values_;
 };
 
-/// Usage, options with their defaults, exit codes; `is_short`: only the basic options.
+/// The help of a command: usage, options with their defaults, and exit codes. If `is_short`, it has
+/// only the basic options.
 std::string help_text(const Command& command, bool is_short = false);
 
 }  // namespace graspfit::app

@@ -8,7 +8,7 @@
 namespace graspfit::app {
 namespace {
 
-/// "list, show and check".
+/// Names as text: "list, show and check".
 std::string names_text(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {

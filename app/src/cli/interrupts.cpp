@@ -18,18 +18,18 @@ extern char** environ;
 namespace graspfit::app {
 namespace {
 
-/// What the thread that waits for signals does when one comes.
+/// State that decides what the thread that waits for signals does when one comes.
 struct InterruptState {
   std::mutex mutex;
   std::vector<std::pair<const CleanupOnInterrupt*, std::function<void()>>> cleanups;
   pid_t child = -1;
-  std::optional<std::stop_source> stop;  ///< Whom the first interrupt asks to stop, if anybody.
+  std::optional<std::stop_source> stop;  ///< The stop that the first interrupt requests, if any.
   std::string stop_message;
-  std::optional<int> heard;  ///< The signal that has asked.
+  std::optional<int> heard;  ///< The signal that has requested the stop.
 };
 
 InterruptState& state() {
-  // Never destroyed: the waiting thread outlives main's statics.
+  // The state is never destroyed: the waiting thread outlives main's statics.
   static auto* const instance = new InterruptState;
   return *instance;
 }
@@ -42,7 +42,8 @@ void watch_interrupts() {
   for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     sigaction(signal, nullptr, &action);
-    // nohup and shells without job control start programs with these ignored; so they stay.
+    // nohup and shells without job control start programs with these signals ignored; they stay
+    // ignored.
     if (action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -51,11 +52,12 @@ void watch_interrupts() {
     int signal = 0;
     for (;;) {
       if (sigwait(&signals, &signal) != 0) return;
-      // Held to the end, if that comes: whoever waits for it does not go on.
+      // If this interrupt ends the program, the lock is held to the end: threads that wait for it
+      // do not go on.
       state().mutex.lock();
       if (!state().stop || state().heard) break;
       state().heard = signal;
-      // On a terminal the line holds progress, and what its driver shows of the interrupt.
+      // On a terminal the current line shows progress, and what its driver shows of the interrupt.
       std::fprintf(stderr, "%s%s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "",
                    state().stop_message.c_str());
       state().stop->request_stop();
@@ -70,7 +72,7 @@ void watch_interrupts() {
 }
 
 void report_file_size_limit() {
-  // Ignored, the signal leaves the write to fail with EFBIG.
+  // If the signal is ignored, the write fails with EFBIG.
   struct sigaction action {};
   action.sa_handler = SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);
@@ -128,7 +130,8 @@ ProgramEnd run_program(const std::vector<std::string>& arguments) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // A group of its own, so that an interrupt reaches what the program starts in turn.
+  // The program gets a process group of its own, so that an interrupt also reaches the programs
+  // that it starts.
   posix_spawnattr_setpgroup(&attributes, 0);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
   pid_t child = -1;

@@ -8,8 +8,8 @@
 
 namespace graspfit::app {
 
-/// The commands. Each takes what stands after its name, prints results on standard output, and
-/// throws UsageError or a base::Error for what it cannot use.
+/// The commands. Each takes the arguments after its name, prints results on standard output, and
+/// throws UsageError or a base::Error for arguments and files that it cannot use.
 ExitCode run_plan(const std::vector<std::string>& arguments);
 ExitCode run_options(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
@@ -30,7 +30,7 @@ bool is_experiment_command(const std::string& name);
 /// The program's version and those of the compiler and the libraries it was built with.
 std::string version_text();
 
-/// The same as pairs of name and version.
+/// The versions of `version_text` as pairs of name and version.
 std::vector<std::pair<std::string, std::string>> version_rows();
 
 }  // namespace graspfit::app

@@ -37,7 +37,8 @@ using exchange::ExchangeFormat;
 constexpr const char* kOurs = "graspfit";
 constexpr const char* kFormatNames = "graspfit|isaac|dexgraspbench|moveit|graspit|glb";
 
-/// Flags for grasps that come with neither hand nor object; with them go all of `object_options`.
+/// Flags for grasps whose file has neither hand nor object; all of `object_options` are such flags,
+/// too.
 constexpr std::array<const char*, 4> kImportFlags = {"hand", "fingers", "contacts", "palm"};
 
 Command convert_command() {
@@ -94,11 +95,11 @@ std::string lower_extension(const fs::path& file) {
   return extension;
 }
 
-/// What is to be written, and where to.
+/// What to write, and where.
 struct Target {
   fs::path path;
-  std::optional<ExchangeFormat> format;  ///< Empty: our own.
-  bool is_folder = false;                ///< A file for each grasp.
+  std::optional<ExchangeFormat> format;  ///< Empty: our own format.
+  bool is_folder = false;                ///< The path is a folder with a file per grasp.
 };
 
 Target read_target(const Flags& flags) {
@@ -138,8 +139,8 @@ Target read_target(const Flags& flags) {
 /// The grasps to write, and what was noticed in reading them.
 struct Source {
   grasp::GraspFile file;
-  std::optional<geometry::TriangleMesh> mesh_O;  ///< Of imported grasps.
-  std::vector<std::string> names;                ///< Per grasp, of imported ones.
+  std::optional<geometry::TriangleMesh> mesh_O;  ///< Object of imported grasps.
+  std::vector<std::string> names;                ///< Names of imported grasps.
   std::vector<std::string> notes;
 };
 
@@ -222,7 +223,7 @@ void select(const Flags& flags, Source& source) {
   source.names = std::move(names);
 }
 
-/// What becomes of grasp `index` (of a format of single grasps), or of all.
+/// The content of a file: of grasp `index`, for a format of single grasps, or of all grasps.
 std::string content(const Flags& flags, ExchangeFormat format, const grasp::GraspFile& file,
                     const geometry::TriangleMesh& mesh_O, std::size_t index) {
   switch (format) {
@@ -249,7 +250,7 @@ std::string file_name(std::size_t index, ExchangeFormat format) {
          std::string(exchange::extension_of(format));
 }
 
-/// What an earlier run left of the same format: files of the other one stay.
+/// Whether a file name is one of a run that wrote the same format; files of other formats stay.
 bool is_convert_file(const std::string& name, ExchangeFormat format) {
   static const std::regex pattern(R"(grasp_\d{3,}\.(.*))");
   std::smatch match;
@@ -283,7 +284,7 @@ void write(const Flags& flags, const Target& target, const Source& source) {
   out.commit(file_name(0, *target.format));
 }
 
-/// What imported grasps are worth, by our measures.
+/// The table of our measures of imported grasps.
 std::string table_of(const Source& source) {
   std::vector<std::vector<std::string>> rows = {
       {"rank", "name", "M", "epsilon", "contacts", "gap_mm", "penetration_mm", "valid"}};

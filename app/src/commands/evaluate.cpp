@@ -27,7 +27,7 @@ using base::shortest_decimal;
 /// quaternions, which moves them by about 1e-16 m; the measures follow within about 1e-12.
 constexpr double kTolerance = 1e-9;
 
-/// By what the diversity of a file's grasps is measured.
+/// Distances by which the diversity of a file's grasps is measured.
 constexpr grasp::DistinctOptions kDistinct;
 
 Command evaluate_command() {
@@ -65,16 +65,18 @@ grasp::GraspMetrics metrics_of(const Flags& flags) {
   }
 }
 
-/// What one grasp was and what it is computed to be.
+/// A grasp as stored and as computed again.
 struct Comparison {
   grasp::Grasp stored;
   grasp::Grasp computed;
   double m_difference = 0.0;
   double epsilon_difference = 0.0;
-  double gap_difference = 0.0;      ///< Of the largest requested one [m].
-  double largest_difference = 0.0;  ///< Over those, M1, M2, M3 and, if as many, contact points [m].
-  bool has_same_contacts = false;   ///< As many, on the same pads.
-  bool has_same_answers = false;    ///< What makes a grasp valid, but for M.
+  double gap_difference = 0.0;  ///< Of the largest requested gap [m].
+  /// Largest difference of M, epsilon, gap, M1, M2, M3 and, if the contacts are the same, their
+  /// points [m].
+  double largest_difference = 0.0;
+  bool has_same_contacts = false;  ///< Equally many, on the same pads.
+  bool has_same_answers = false;   ///< In all that makes a grasp valid, except M.
 
   bool is_same() const {
     return m_difference <= kTolerance && epsilon_difference <= kTolerance &&
@@ -82,7 +84,7 @@ struct Comparison {
   }
 };
 
-/// In words, for the first grasp that differs.
+/// The difference in words, for the first grasp that differs.
 std::string difference_text(const Comparison& comparison) {
   if (comparison.m_difference > kTolerance) {
     return "M differs by " + shortest_decimal(comparison.m_difference);
@@ -152,7 +154,7 @@ grasp::GraspDiversity diversity_of(const grasp::GraspFile& file) {
   return grasp::grasp_diversity(file.hand, configurations, kDistinct);
 }
 
-/// What tells clusters apart.
+/// The distances that tell clusters apart, as text.
 std::string distances_text() {
   const auto number = [](double value) { return significant_decimal(value, 4); };
   return number(kDistinct.translation) + " m, " + number(kDistinct.rotation) + " rad, joints " +

@@ -54,7 +54,7 @@ ExitCode run_list(const std::vector<std::string>& arguments) {
       std::printf("%s: %zu cells\n  %s\n", experiment.slug.c_str(), config.sweep.num_cells(),
                   config.question.c_str());
     } catch (const base::Error& error) {
-      // The others are listed all the same.
+      // The other experiments are listed all the same.
       std::fprintf(stderr, "graspfit experiment list: %s: %s\n", experiment.slug.c_str(),
                    error.what());
       code = kBadInput;

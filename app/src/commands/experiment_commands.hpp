@@ -17,15 +17,15 @@ ExitCode run_experiment_status(const std::vector<std::string>& arguments);
 ExitCode run_experiment_merge(const std::vector<std::string>& arguments);
 ExitCode run_experiment_verify(const std::vector<std::string>& arguments);
 
-/// --quick, --set, --object and --longest.
+/// The options that change a configuration: --quick, --set, --object and --longest.
 boost::program_options::options_description config_change_options();
 
-/// The configuration of an experiment with these changes, as it is described.
+/// The configuration of an experiment with the changes that these options make, to be described.
 sweep::ExperimentConfig load_experiment_config(const sweep::Experiment& experiment,
                                                const Flags& flags);
 
-/// The same, as it is run on this machine: without a data folder, values that need it are left out
-/// where others remain.
+/// The configuration with these changes, to be run on this machine: if there is no data folder,
+/// values that need it are left out where others remain.
 sweep::ExperimentConfig load_config_to_run(const sweep::Experiment& experiment, const Flags& flags);
 
 /// What a command on one experiment was called with.
@@ -34,11 +34,12 @@ struct ExperimentCall {
   const sweep::Experiment& experiment;  ///< The one that SLUG names.
 };
 
-/// None if the command's help was asked for; it is printed then.
+/// Reads the arguments of a command on one experiment. If help is requested, it is printed, and the
+/// result is empty.
 std::optional<ExperimentCall> experiment_call(const Command& command,
                                               const std::vector<std::string>& arguments);
 
-/// Prints a command's help if that is asked for.
+/// Prints a command's help if it is requested. Returns whether it is.
 bool is_help_printed(const Command& command, const Flags& flags);
 
 }  // namespace graspfit::app

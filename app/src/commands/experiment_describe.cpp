@@ -40,7 +40,7 @@ std::string columns_text(const std::vector<Column>& columns) {
   return indented_table(rows);
 }
 
-/// "barrett", "0.5", "[1, 2]"; of what is nested further only that it is there.
+/// A value as text: "barrett", "0.5", "[1, 2]"; "given" if it is nested further.
 std::string value_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_primitive()) return value.dump();
@@ -51,7 +51,7 @@ std::string value_text(const Json& value) {
   return '[' + base::list_text(value, value_text) + ']';
 }
 
-/// What a setting is where these are given: its own value, or that of the preset among them.
+/// The value of the setting `name` among `settings`: its own value, or that of a preset among them.
 std::optional<std::string> value_among(const Json& settings, const std::string& name) {
   if (settings.contains(name)) return value_text(settings.at(name));
   if (!settings.contains("preset")) return std::nullopt;
@@ -62,8 +62,8 @@ std::optional<std::string> value_among(const Json& settings, const std::string& 
   return std::nullopt;
 }
 
-/// What a setting is in the cells of an experiment: "axis resolution" where an axis sets it, itself
-/// or by a preset, else the value for all cells, else the planner's; "-" where there is none.
+/// The value of a setting in the cells of an experiment: "axis resolution" if an axis sets it,
+/// directly or by a preset, else the value for all cells, else the planner's; "-" if there is none.
 std::string value_in(const ExperimentConfig& config, const std::string& name,
                      const std::string& fallback) {
   for (const sweep::Axis& axis : config.sweep.axes) {
@@ -105,8 +105,8 @@ const char* source_text(sweep::DataSource source) {
   return "";
 }
 
-/// "data folder, built in": where what settings name comes from, each once; empty if they name no
-/// data.
+/// The sources of the data that settings name, each once: "data folder, built in"; empty if they
+/// name no data.
 std::string sources_text(const std::string& settings) {
   std::vector<std::string> sources;
   for (const sweep::DataNeed& need : sweep::data_needs(settings)) {
@@ -118,8 +118,8 @@ std::string sources_text(const std::string& settings) {
   return base::list_text(sources);
 }
 
-/// A row per axis, source of its values' data and whether they are there; and one for the settings
-/// of all cells.
+/// A table of the data that an experiment needs. It has a row per axis, source of the values' data,
+/// and whether the data exist, and rows for the settings of all cells.
 std::string data_text(const ExperimentConfig& config) {
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](const std::string& where, const std::string& settings,

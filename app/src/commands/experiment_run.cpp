@@ -26,14 +26,15 @@ using sweep::ExperimentConfig;
 
 const char* const kQuickMeaning = "a few cells only, in seconds";
 
-/// --out, and of commands that read results alone which of the two there are.
+/// Adds --out and, for commands that only read results, --quick, which chooses the results of a
+/// quick run.
 void add_results_flags(po::options_description& options, bool has_quick) {
   add_option(options, "out", "DIR", std::nullopt,
              "folder of the results; without it results/SLUG, with --quick results/SLUG_quick");
   if (has_quick) add_switch(options, "quick", std::string("of a run with ") + kQuickMeaning);
 }
 
-/// --publish and --quiet of commands that write tables.
+/// Adds --publish and --quiet, for commands that write tables.
 void add_table_flags(po::options_description& options, const std::string& quiet_meaning) {
   add_switch(
       options, "publish",
@@ -129,7 +130,7 @@ std::string minutes_text(std::size_t cells, double cells_per_s) {
          " min left";
 }
 
-/// "12 of 110 cells, 0.31 per s, 5 min left": the rate is of this run alone.
+/// Progress as text: "12 of 110 cells, 0.31 per s, 5 min left"; the rate is of this run alone.
 std::string progress_text(const sweep::RunProgress& progress,
                           std::chrono::steady_clock::time_point start) {
   const std::size_t reached = progress.num_done + progress.num_skipped;
@@ -153,7 +154,7 @@ std::string status_text(const sweep::SweepStatus& status) {
   return text;
 }
 
-/// Prints what a comparison found.
+/// Prints the result of a comparison with a published table.
 void print_comparison(const sweep::PublishedComparison& table) {
   constexpr std::size_t kMostShown = 20;
   const sweep::TableComparison& found = table.comparison;
@@ -180,7 +181,7 @@ void print_comparison(const sweep::PublishedComparison& table) {
   }
 }
 
-/// Says which values a run lacks for want of data, if any.
+/// Prints which values a run leaves out because their data is missing, if any.
 void print_left_out(const ExperimentConfig& config) {
   if (config.left_out.empty()) return;
   std::fprintf(
@@ -190,7 +191,8 @@ void print_left_out(const ExperimentConfig& config) {
       sweep::data_folder().c_str(), config.left_out.c_str());
 }
 
-/// "2 of these failed", and how many of them the next run tries again.
+/// The number of failed cells as text: "2 of these failed", and how many of them the next run tries
+/// again.
 std::string failures_text(const sweep::RunProgress& done) {
   std::string text = std::to_string(done.num_failed) + " of these failed";
   if (done.num_not_final > 0) {
@@ -347,7 +349,7 @@ ExitCode run_experiment_verify(const std::vector<std::string>& arguments) {
                                          flags.number("absolute", base::at_least(0))};
   const fs::path folder = results_folder(flags);
   const std::string otherwise = sweep::published_otherwise(experiment, folder, published);
-  // Before the tables are compared, which it may explain.
+  // This line is printed first, since it may explain differences of the tables.
   if (!otherwise.empty()) std::printf("%s: %s\n", published.c_str(), otherwise.c_str());
   bool is_equal = true;
   for (const sweep::PublishedComparison& table :

@@ -78,7 +78,7 @@ ExitCode run_hand_list(const std::vector<std::string>& arguments) {
       if (!reading.description.empty()) std::printf("  %s\n", reading.description.c_str());
       std::printf("  %s\n", hand.description_file.c_str());
     } catch (const base::Error& error) {
-      // The others are listed all the same.
+      // The other hands are listed all the same.
       std::fprintf(stderr, "graspfit hand list: %s\n", error.what());
       code = kBadInput;
     }

@@ -137,13 +137,13 @@ void print_pads(const HandModel& hand) {
   print_table("pads", rows);
 }
 
-/// "12.5 to 80.0"; "-" where there is nothing to reach.
+/// A range in millimeters as text: "12.5 to 80.0"; "-" if it is empty.
 std::string range_text(const hands::DistanceRange& range) {
   if (range.largest <= 0.0) return "-";
   return fixed_decimal(1e3 * range.smallest, 1) + " to " + fixed_decimal(1e3 * range.largest, 1);
 }
 
-/// What the fingertips reach, over all configurations.
+/// Prints what the fingertips reach over all configurations.
 void print_workspace(const HandModel& hand) {
   const hands::HandWorkspace workspace = hands::cached_hand_workspace(hand);
   const auto thumb = static_cast<std::size_t>(hand.thumb());
@@ -158,7 +158,7 @@ void print_workspace(const HandModel& hand) {
   print_table("workspace", rows);
 }
 
-/// Whether the hand passes through itself in each pose, and where most.
+/// Prints for each pose whether links of the hand overlap, and the deepest overlap.
 void print_overlaps(const HandModel& hand, const std::vector<viewer::HandPose>& poses) {
   const hands::HandCollision collision(hand);
   std::vector<std::vector<std::string>> rows = {{"pose", "links that overlap", "depth_mm"}};

@@ -84,12 +84,12 @@ bool is_hold_file(const std::string& name) {
   return std::regex_match(name, pattern);
 }
 
-/// What the command is to do, but for the files it reads.
+/// What the command is to do, without the files that it reads.
 struct Request {
   hold_test::HoldProtocol protocol;
   hold_test::HoldBatchOptions run;
   geometry::ConvexDecompositionOptions pieces;
-  std::vector<std::size_t> replays;  ///< Indices of grasps.
+  std::vector<std::size_t> replays;  ///< Indices of the grasps to replay.
   bool gif = false;
 };
 
@@ -116,8 +116,7 @@ Request read_request(const Flags& flags) {
   return request;
 }
 
-/// Throws UsageError unless the file has the grasps that are asked for, and those to replay are
-/// tested.
+/// Throws UsageError unless the file has the requested grasps, and those to replay are tested.
 void require_grasps(const Request& request, std::size_t num_grasps) {
   const auto& tested = request.run.indices;
   for (const auto* indices : {&tested, &request.replays}) {
@@ -133,7 +132,7 @@ void require_grasps(const Request& request, std::size_t num_grasps) {
   }
 }
 
-/// "+y after 0.4 s": the load that failed first; "-" if none did.
+/// The load that failed first, as text: "+y after 0.4 s"; "-" if none did.
 std::string first_failure(const hold_test::HoldVerdict& verdict,
                           const std::vector<std::string>& loads) {
   std::string text = "-";
@@ -172,7 +171,8 @@ std::string table_of(const hold_test::HoldReport& report) {
   return text_table(rows);
 }
 
-/// "12 of 30 grasps held (40.0 %) under dexgraspbench-100g: load 15, approach 2, rejected 1".
+/// The report in one line: "12 of 30 grasps held (40.0 %) under dexgraspbench-100g: load 15,
+/// approach 2, rejected 1".
 std::string rate_text(const hold_test::HoldReport& report) {
   const auto counts = hold_test::count_stages(report.tested);
   const std::size_t held = counts.at(hold_test::HoldStage::Held);
@@ -219,7 +219,7 @@ std::string replay_name(std::size_t index) {
   return "replay_" + std::string(rank.size() < 3 ? 3 - rank.size() : 0, '0') + rank;
 }
 
-/// All that a test needs, prepared.
+/// The prepared inputs of a hold test.
 struct Bench {
   grasp::GraspFile file;
   geometry::TriangleMesh mesh_O;

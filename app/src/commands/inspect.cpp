@@ -52,15 +52,15 @@ void print_row(const std::string& name, const std::string& value) {
   std::printf("%-20s%s\n", name.c_str(), value.c_str());
 }
 
-/// Four significant digits.
+/// A number as text, with four significant digits.
 std::string rounded_text(double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.4g", value);
   return text.data();
 }
 
-/// "8 vertices, 12 faces, 1 part; closed, manifold, outward; degenerate faces 2": defects only
-/// where there are any.
+/// An analysis as text: "8 vertices, 12 faces, 1 part; closed, manifold, outward; degenerate faces
+/// 2"; it names only defects that exist.
 std::string analysis_text(const MeshAnalysis& mesh) {
   std::string text = std::to_string(mesh.num_vertices) + " vertices, " +
                      std::to_string(mesh.num_faces) + " faces, " + std::to_string(mesh.num_parts) +
@@ -160,7 +160,7 @@ void print_scores(const grasp::ObjectModel& object, double threshold) {
                 "%) above " + shortest_decimal(threshold));
 }
 
-/// Thickness below which this share of the surface lies.
+/// The thickness below which `share` of the surface's area lies.
 double thickness_at(const std::vector<std::pair<double, double>>& thickness_and_area,
                     double share) {
   double total = 0.0;
@@ -228,7 +228,7 @@ void print_weak(const geometry::TriangleMesh& mesh, const geometry::WeakRegions&
   print_row("weak", text);
 }
 
-/// Values of patches as one per voxel; NaN where there is no surface.
+/// Values of patches as one value per voxel; NaN where there is no surface.
 std::vector<float> per_voxel(const grasp::ObjectModel& object, const std::vector<double>& values) {
   std::vector<float> result(object.patch_of_voxel.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t voxel = 0; voxel < result.size(); ++voxel) {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using geometry::RigidTransform;
 
-/// Frames nearer to each other than this show nothing new, and take hours [m].
+/// Smallest step between frames [m]: smaller steps show nothing new, and take hours.
 constexpr double kLeastStep = 1e-5;
 
 Command motion_command() {
@@ -52,21 +52,23 @@ Command motion_command() {
   return command;
 }
 
-/// What the frames of a move show.
+/// Result of checking the frames of a move.
 struct CheckedMove {
   std::int64_t frames = 0;
-  double hand = std::numeric_limits<double>::infinity();    ///< Smallest clearance [m].
-  double object = std::numeric_limits<double>::infinity();  ///< [m]
-  std::vector<std::string> findings;                        ///< "lift: bunny and mug".
+  /// Smallest clearance of the hand, and of the carried object [m].
+  double hand = std::numeric_limits<double>::infinity();
+  double object = std::numeric_limits<double>::infinity();
+  std::vector<std::string> findings;  ///< What is wrong: "lift: bunny and mug".
 };
 
-/// Segments that keep the file's clearance; the others touch something by their nature.
+/// Whether segments of a phase must keep the file's clearance; those of the other phases touch
+/// something by their nature.
 bool keeps_clearance(motion::MotionPhase phase) {
   return phase == motion::MotionPhase::Reach || phase == motion::MotionPhase::Transport ||
          phase == motion::MotionPhase::Retreat;
 }
 
-/// Frames of a segment on which a point travels that far, beside its start.
+/// Number of frames of a segment on which a point travels `travel`, without the frame of its start.
 int num_frames(double travel, double step) {
   constexpr double kMost = 1e6;
   const double frames = std::max(1.0, std::ceil(travel / step));
@@ -112,7 +114,7 @@ std::string millimeters(double length) {
   return std::isfinite(length) ? fixed_decimal(1000.0 * length, 3) : "-";
 }
 
-/// Prints the table of moves. Whether all are free.
+/// Prints the table of moves. Returns whether all are free of collisions.
 bool check(const viewer::MotionInput& input, double step, ProgressBar& progress) {
   const motion::MotionFile& file = input.file;
   const auto poses = motion::object_poses(file);

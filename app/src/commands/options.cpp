@@ -38,7 +38,7 @@ Command options_command() {
           std::move(options), ""};
 }
 
-/// Cells of Markdown tables are separated by |.
+/// A cell of a Markdown table, with | escaped, which separates cells.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);

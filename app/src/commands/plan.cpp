@@ -78,7 +78,7 @@ Command plan_command() {
   return command;
 }
 
-/// "missed contact 300, no stable pair 88": outcomes of attempts, most frequent first.
+/// Outcomes of attempts as text, most frequent first: "missed contact 300, no stable pair 88".
 std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
   std::vector<std::pair<std::int64_t, std::string>> counts;
   for (const auto& [outcome, count] : statistics.outcomes) {
@@ -191,7 +191,7 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
     try {
       draw_pictures(folder, grasp::difference_from_file(file.object).value_or(""));
     } catch (const base::IoError& error) {
-      // Minutes of planning are not thrown away for want of a display.
+      // If pictures cannot be drawn, the results of minutes of planning are kept all the same.
       out.commit("grasps.json");
       throw base::IoError(std::string(error.what()) + "; all other files are in " +
                           out.target().string());
@@ -200,7 +200,7 @@ void write_files(grasp::GraspFile& file, const grasp::ObjectModel& object,
   out.commit("grasps.json");
 }
 
-/// What the hand cannot do is said before any work.
+/// Refuses what the hand cannot do, before any work.
 void require_possible(const Flags& flags, const hands::HandModel& hand,
                       const grasp::PlannerOptions& options) {
   const bool has_palm = options.palm.value_or(options.style == grasp::GraspStyle::Power);
@@ -227,7 +227,8 @@ void require_means_of_output(const Flags& flags) {
   if (flags.has("pictures")) require_pictures("--pictures");
 }
 
-/// Shows how far the planner is: attempts, or, where it stops at the first grasps, these.
+/// A function that shows the planner's progress: attempts or, if the planner stops at the first
+/// grasps, grasps.
 grasp::PlannerProgress shown_by(ProgressBar& bar, const grasp::PlannerOptions& options) {
   return [&bar, &options](std::int64_t attempts, std::int64_t grasps) {
     const std::string attempt =
@@ -242,7 +243,8 @@ grasp::PlannerProgress shown_by(ProgressBar& bar, const grasp::PlannerOptions& o
   };
 }
 
-/// "in 50 attempts (all attempts made): valid 12, missed contact 38", with what the method found.
+/// The attempts as text, with what the method found: "in 50 attempts (all attempts made): valid 12,
+/// missed contact 38".
 std::string attempts_text(const grasp::PlannerResult& result) {
   std::string text = "in " + std::to_string(result.statistics.attempts) + " attempts (" +
                      stop_text(result.stop) + "): " + outcomes_text(result.statistics);
@@ -253,7 +255,7 @@ std::string attempts_text(const grasp::PlannerResult& result) {
   return found.empty() ? text : text + "; guided by " + found;
 }
 
-/// What the program ends with: an interrupt that was heard goes before what came of the work.
+/// Exit code of the program: that of an interrupt, if one requested a stop, else `code`.
 ExitCode ended_with(ExitCode code) {
   const std::optional<int> signal = interrupt_heard();
   return signal ? static_cast<ExitCode>(kInterrupted + *signal) : code;

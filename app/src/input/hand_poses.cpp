@@ -17,10 +17,10 @@ namespace {
 using base::InvalidInput;
 using base::shortest_decimal;
 
-/// A pose as the words say it.
+/// A pose as the words of --pose give it.
 struct WantedPose {
   std::string name;
-  double share = 0.0;  ///< Of closing.
+  double share = 0.0;  ///< Share of closing.
   std::map<int, double> positions;
 };
 
@@ -51,7 +51,7 @@ Eigen::VectorXd joint_positions(const hands::HandModel& hand, const WantedPose& 
   Eigen::VectorXd q = wanted.share == 0.0 ? hands::open_configuration(hand).q
                                           : hands::closed_without_overlap(hand, wanted.share).q;
   if (wanted.positions.empty()) return q;
-  // Followers start open: those that may break away would stay further closed.
+  // Followers are open at first: breakaway joints would stay further closed.
   const Eigen::VectorXd open = hands::open_configuration(hand).q;
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     if (hand.joints[j].coupling) {
@@ -60,7 +60,7 @@ Eigen::VectorXd joint_positions(const hands::HandModel& hand, const WantedPose& 
   }
   for (const auto& [joint, position] : wanted.positions) q[joint] = position;
   hands::apply_couplings(hand, q);
-  constexpr double kSame = 1e-9;  // [rad or m]; what a person types for a follower is rounded
+  constexpr double kSame = 1e-9;  // [rad or m]; positions of followers that people type are rounded
   for (const auto& [index, position] : wanted.positions) {
     const hands::Joint& joint = hand.joints[index];
     if (!joint.coupling || std::abs(q[index] - position) <= kSame) continue;

@@ -9,10 +9,10 @@
 namespace graspfit::app {
 
 /// The poses that the words of --pose name: `open`, `half` and `closed` each start a pose,
-/// JOINT=VALUE [rad or m] changes the one before it, or the open hand if there is none; coupled
-/// joints follow. Half and closed are `hands::closed_without_overlap`.
-/// @throws UsageError for other words and numbers that are none; InvalidInput for joints that the
-/// hand does not have, values outside their limits, and joints that follow another.
+/// JOINT=VALUE [rad or m] changes the pose before it, or the open hand if there is none; coupled
+/// joints follow. `half` and `closed` are poses of `hands::closed_without_overlap`.
+/// @throws UsageError for other words and for values that are no numbers; InvalidInput for joints
+/// that the hand does not have, values outside their limits, and joints that follow another.
 std::vector<viewer::HandPose> read_poses(const std::vector<std::string>& words,
                                          const hands::HandModel& hand);
 

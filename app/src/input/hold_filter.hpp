@@ -11,10 +11,10 @@
 
 namespace graspfit::app {
 
-/// Planned grasps that hold, and what became of all.
+/// The planned grasps that hold, and a record of the tests of all planned grasps.
 struct HeldGrasps {
-  std::vector<grasp::Grasp> grasps;  ///< Largest margin first; for protocols that lift, which have
-                                     ///< none, in the order of the plan.
+  std::vector<grasp::Grasp> grasps;  ///< Largest margin first; in the order of the plan for
+                                     ///< protocols that lift, which have no margins.
   grasp::HoldRecord record;
 };
 
@@ -23,7 +23,7 @@ HeldGrasps held_grasps(const geometry::TriangleMesh& object_O, const hands::Hand
                        const hold_test::HoldProtocol& protocol, int num_threads,
                        std::vector<grasp::Grasp> planned, ProgressBar& progress);
 
-/// "5 of 8 planned grasps hold under dexgraspbench-100g: load 2, rejected 1".
+/// The record as text: "5 of 8 planned grasps hold under dexgraspbench-100g: load 2, rejected 1".
 std::string hold_text(const grasp::HoldRecord& record);
 
 }  // namespace graspfit::app

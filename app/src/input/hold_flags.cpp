@@ -39,7 +39,8 @@ void apply(const ParameterChange& change, hold_test::HoldProtocol& protocol) {
   }
 }
 
-/// What is wrong with a protocol, without the type that its check names; empty: nothing.
+/// What is wrong with a protocol, without the type's name that begins the message of its check;
+/// empty if it is valid.
 std::string fault_of(const hold_test::HoldProtocol& protocol) {
   try {
     protocol.validate();
@@ -51,7 +52,8 @@ std::string fault_of(const hold_test::HoldProtocol& protocol) {
   }
 }
 
-/// Blames the first change that alone makes the protocol unusable, else all of them.
+/// Refuses an invalid protocol. The message names the first change that alone makes it invalid,
+/// else all changes.
 void require_usable(const hold_test::HoldProtocol& named,
                     const std::vector<ParameterChange>& changes,
                     const hold_test::HoldProtocol& protocol) {

@@ -11,10 +11,10 @@ namespace graspfit::app {
 /// The flags that choose a hold protocol and change its parameters.
 boost::program_options::options_description hold_protocol_options();
 
-/// The protocol of that name. @throws UsageError that names the flag and the protocols.
+/// The protocol named `name`. @throws UsageError that names the flag and the protocols.
 hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::string& name);
 
-/// What those flags say, validated. @throws UsageError.
+/// The protocol that the flags of `hold_protocol_options` give, validated. @throws UsageError.
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags);
 
 /// Throws InvalidInput unless this build can test grasps in physics; `flag`, if any, starts the

@@ -113,7 +113,7 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
   if (!flags.has("obstacle") && !flags.is_default("obstacle-unit")) {
     throw UsageError("--obstacle-unit means nothing without --obstacle");
   }
-  // Repair is as for the object, so that what a refusal advises can be done.
+  // Obstacles are repaired as the object is, so that the flags that messages advise have an effect.
   grasp::ObjectReadOptions options;
   options.repair = object_read_options(flags).repair;
   options.meters_per_file_unit = meters_per(flags, "obstacle-unit");

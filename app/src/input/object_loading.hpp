@@ -14,20 +14,21 @@ namespace graspfit::app {
 /// The flags that say how an object's file becomes a solid in meters.
 boost::program_options::options_description object_options();
 
-/// What those flags say. @throws UsageError, InvalidInput.
+/// The options that the flags of `object_options` give. @throws UsageError, InvalidInput.
 grasp::ObjectReadOptions object_read_options(const Flags& flags);
 
-/// The flags of what stands around the object.
+/// The flags of the object's surroundings: table and obstacles.
 boost::program_options::options_description surroundings_options();
 
-/// What stands around the object: as read, and as recorded.
+/// The object's surroundings, as read and as recorded.
 struct LoadedSurroundings {
   grasp::Surroundings surroundings;
   grasp::SurroundingsRecord record;
 };
 
-/// Reads what those flags name. `object_O` is what is to be grasped: one that lies wholly under the
-/// table is refused. @throws UsageError, InvalidInput, IoError, DegenerateGeometry.
+/// Reads the surroundings that the flags of `surroundings_options` give. `object_O` is the object
+/// to be grasped; an object that lies wholly under the table is refused. @throws UsageError,
+/// InvalidInput, IoError, DegenerateGeometry.
 LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O);
 
 /// Reads the object that the command names.
@@ -37,8 +38,8 @@ grasp::ObjectFile load_object(const Flags& flags);
 /// left as it is may not).
 void require_solid(const grasp::ObjectFile& object);
 
-/// Says on the error output, in a line each, where the solids of these records differ from their
-/// files, and why a wrap that was asked for was not made.
+/// Prints on standard error, a line each, where the solids of these records differ from their
+/// files, and why a wrap that was requested was not made.
 void warn_of_differences(const std::string& command, const grasp::ObjectRecord& object,
                          const std::vector<grasp::ObjectRecord>& obstacles = {});
 

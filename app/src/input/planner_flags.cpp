@@ -20,7 +20,7 @@ using grasp::OptionValue;
 using grasp::PlannerOption;
 using grasp::PlannerOptions;
 
-/// What stands for the flag's value in the help.
+/// Placeholder of the flag's value in the help.
 std::string value_name(const PlannerOption& option) {
   switch (option.kind) {
     case OptionKind::Number:
@@ -39,14 +39,14 @@ std::string value_name(const PlannerOption& option) {
   return "";
 }
 
-/// "how raw scores become comparable with the threshold [R, A1]".
+/// An option's description: "how raw scores become comparable with the threshold [R, A1]".
 std::string description_of(const PlannerOption& option) {
   std::string text(option.meaning);
   if (option.is_number()) text += ", " + option.range.text();
   return text + option.source_text();
 }
 
-/// The palm's flag is a switch, and so is its opposite.
+/// Whether an option is the palm's, whose flag is a switch, and so is the opposite flag.
 bool is_palm(const PlannerOption& option) { return option.name == "palm"; }
 
 void add_flag(po::options_description& options, const PlannerOption& option) {
@@ -74,7 +74,7 @@ std::string preset_names(std::string_view separator) {
   return base::list_text(grasp::planner_presets(), &grasp::PlannerPreset::name, separator);
 }
 
-/// "refine off" of a value of a preset.
+/// A value of a preset as a flag: "refine off".
 std::string flag_text(std::string_view name, const OptionValue& value) {
   for (const PlannerOption& option : grasp::planner_option_table()) {
     if (option.name != name) continue;
@@ -85,7 +85,7 @@ std::string flag_text(std::string_view name, const OptionValue& value) {
   return std::string(name) + ' ' + grasp::value_text(value);
 }
 
-/// "paper: the paper's grasps ... (refine off, guard voxels). fast: ...".
+/// The presets' description: "paper: the paper's grasps ... (refine off, guard voxels). fast: ...".
 std::string preset_description() {
   std::string text = "options that go together, of which flags beside it change some.";
   for (const grasp::PlannerPreset& preset : grasp::planner_presets()) {
@@ -160,8 +160,8 @@ OptionValue value_of(const Flags& flags, const PlannerOption& option) {
   return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
 }
 
-/// Sets what the flags of a group say, or those of all groups; defaults stay as they are to the
-/// last bit.
+/// Sets the options that the flags of a group give, or the flags of all groups if `group` is empty.
+/// Defaults stay as they are to the last bit.
 void read_flags(const Flags& flags, std::string_view group, PlannerOptions& options) {
   for (const PlannerOption& option : grasp::planner_option_table()) {
     const std::string name(option.name);
@@ -171,7 +171,7 @@ void read_flags(const Flags& flags, std::string_view group, PlannerOptions& opti
   }
 }
 
-/// What flags mean only together.
+/// Refuses flags that mean nothing without others.
 void require_compatible_flags(const Flags& flags, const PlannerOptions& options) {
   const auto require_meaning = [&](const char* flag, bool has_meaning, const std::string& why) {
     if (has_meaning || !flags.has(flag) || flags.is_default(flag)) return;

@@ -8,20 +8,21 @@
 
 namespace graspfit::app {
 
-/// Flags of the object's voxels and score map: part of the planner's, and all that inspect needs.
+/// Flags of the object's voxels and score map: some of the planner's flags, and all that `inspect`
+/// needs.
 boost::program_options::options_description score_map_options();
 
-/// Flags of everything else that decides what the planner does.
+/// All other flags that decide what the planner does.
 boost::program_options::options_description planner_options();
 
-/// Sets what the flags of `score_map_options` say, each checked. @throws UsageError, InvalidInput:
-/// flag, value and range.
+/// Sets the options that the flags of `score_map_options` give, and checks each.
+/// @throws UsageError, InvalidInput with flag, value and range.
 void read_score_map_flags(const Flags& flags, grasp::PlannerOptions& options);
 
-/// What all planner flags say, validated. @throws UsageError, InvalidInput.
+/// The options that all planner flags give, validated. @throws UsageError, InvalidInput.
 grasp::PlannerOptions read_planner_flags(const Flags& flags);
 
-/// "refine off, guard voxels": what a preset sets, as flags.
+/// The options that a preset sets, as flags: "refine off, guard voxels".
 std::string preset_values_text(const grasp::PlannerPreset& preset);
 
 }  // namespace graspfit::app

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kObjectFile = "the object's file";
 
-/// A recorded mesh file: where the record says, or beside the grasp file.
+/// Finds a recorded mesh file: at the recorded path, or beside the grasp file.
 std::filesystem::path find_mesh(const Flags& flags, const grasp::ObjectRecord& record,
                                 const std::string& what) {
   const std::filesystem::path file = record.file;

@@ -9,14 +9,16 @@
 
 namespace graspfit::app {
 
-/// Adds --object, which says where a grasp file's object is today.
+/// Adds --object, the present path of a grasp file's object.
 void add_object_flag(boost::program_options::options_description& options);
 
-/// The object of the grasp file that the command names: from --object, from where the file says, or
-/// from beside it. @throws IoError if it is in none of them or another one.
+/// Reads the object of the grasp file that the command names: from --object, else from the recorded
+/// path, else from beside the grasp file. @throws IoError if the file is at none of these, or has
+/// another object.
 geometry::TriangleMesh load_recorded_object(const Flags& flags, const grasp::GraspFile& file);
 
-/// The file's surroundings, their meshes looked for alike. @throws IoError as above.
+/// Reads the surroundings of the grasp file; their meshes are searched for at the recorded path,
+/// then beside the grasp file. @throws IoError as `load_recorded_object`.
 grasp::Surroundings load_recorded_surroundings(const Flags& flags, const grasp::GraspFile& file);
 
 }  // namespace graspfit::app

@@ -6,8 +6,8 @@
 
 namespace graspfit::app {
 
-/// Epsilon of a grasp for tables of people; "open" where its contacts do not close by more
-/// than rounding, whatever the convention makes of that. Not for files.
+/// Epsilon of a grasp for tables that people read; "open" if the grasp is not force closure by more
+/// than rounding, whatever value the convention gives then. Not for files.
 std::string epsilon_text(const grasp::Grasp& grasp, int decimals);
 
 }  // namespace graspfit::app

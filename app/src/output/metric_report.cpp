@@ -16,7 +16,7 @@ const char* name_of(grasp::BetterValue better) {
   return better == grasp::BetterValue::Larger ? "larger" : "smaller";
 }
 
-/// Of a metric in a table: "contact_area [m2]".
+/// Heading of a metric in a table: "contact_area [m2]".
 std::string heading(const GraspMetric& metric) {
   return metric.unit == "1" ? metric.name : metric.name + " [" + metric.unit + "]";
 }
@@ -43,8 +43,8 @@ std::string MetricReport::group_table(std::size_t first, std::size_t last) const
     rows.push_back(std::move(row));
   }
   std::string text = metrics[first].group + "\n" + text_table(rows);
-  // A convention is said once for the metrics that have it in common; one that changes from grasp
-  // to grasp, as of a tool that scales by contacts, is that of the first.
+  // A convention is printed once for the metrics that have it in common. If it changes from grasp
+  // to grasp, as for a tool that scales by contacts, the first grasp's is printed.
   std::vector<std::pair<std::string, std::string>> names_of_convention;
   for (std::size_t m = first; m < last && !values_.empty(); ++m) {
     const std::string& convention = values_[0][m].convention;

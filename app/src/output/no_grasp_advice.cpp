@@ -14,12 +14,12 @@ namespace {
 
 using grasp::AttemptOutcome;
 
-/// For people, to a tenth.
+/// A length as text for people, to a tenth of a millimeter.
 std::string in_millimeters(double meters) {
   return base::plain_decimal(std::round(meters * 1e4) / 10.0);
 }
 
-/// What most attempts ended with.
+/// The outcome of most attempts.
 AttemptOutcome most_frequent(const grasp::PlannerStatistics& statistics) {
   const auto most =
       std::max_element(statistics.outcomes.begin(), statistics.outcomes.end(),
@@ -35,7 +35,8 @@ std::string main_target_failure(const grasp::PlannerStatistics& statistics) {
   return most == failures.end() || most->second == 0 ? "" : most->first;
 }
 
-/// "these get 12 to 90 mm apart, and the object is 60 x 60 x 60 mm".
+/// The reach of the fingertips and the object's size: "these get 12 to 90 mm apart, and the object
+/// is 60 x 60 x 60 mm".
 std::string sizes_text(const geometry::TriangleMesh& object, const hands::HandModel& hand,
                        const grasp::PlannerOptions& options) {
   const grasp::RequestedParts parts = grasp::requested_parts(hand, options);

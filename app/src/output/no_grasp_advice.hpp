@@ -9,9 +9,10 @@
 
 namespace graspfit::app {
 
-/// What to change after a run without grasps, to follow its outcomes; empty where nothing stands
-/// out. Where most attempts found no targets: why, with the sizes that did not fit, and the flags.
-/// Where the hand is suspicious: that this may be why.
+/// Advice on what to change after a run without grasps, to be printed after its outcomes; empty if
+/// nothing stands out. If most attempts found no targets, it gives the reason, the sizes that did
+/// not fit, and the flags to change. If the hand is suspicious, it says that this may be the
+/// reason.
 std::string no_grasp_advice(const grasp::PlannerResult& result,
                             const grasp::PlannerOptions& options,
                             const geometry::TriangleMesh& object, const hands::HandReading& hand);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
   throw base::IoError("output folder " + target.string() + ": " + why);
 }
 
-/// The folder's absolute path without a trailing slash.
+/// The absolute path of a folder, without a trailing slash.
 fs::path absolute_path(const fs::path& folder) {
   const fs::path absolute = fs::absolute(folder).lexically_normal();
   return absolute.has_filename() ? absolute : absolute.parent_path();
@@ -56,7 +56,7 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::discard() {
   std::error_code error;
   if (staging_) staging_->remove();
-  // Folders made on the way to the target go too, unless somebody has put something there.
+  // Folders made for the target are removed too, unless somebody has put something there.
   if (first_created_.empty()) return;
   fs::path folder = absolute_path(target_).parent_path();
   while (fs::remove(folder, error) && folder != first_created_) folder = folder.parent_path();
@@ -127,7 +127,7 @@ void OutputFolder::replace_in(const fs::path& folder, const std::string& last_fi
 void require_parent_folder(const std::string& flag, const fs::path& file) {
   std::error_code error;
   fs::path folder = fs::absolute(file).parent_path();
-  // A link that leads nowhere yet.
+  // `file` may be a link whose target does not exist yet.
   if (fs::is_symlink(file, error) && !fs::exists(file, error)) {
     folder = (folder / fs::read_symlink(file, error)).parent_path();
   }

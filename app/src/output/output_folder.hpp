@@ -15,17 +15,17 @@ class CleanupOnInterrupt;
 /// A folder that gets all of a command's files or none.
 ///
 /// Files are written into a hidden temporary folder beside (or, if the folder exists, inside) the
-/// target and moved at the end. An existing folder keeps files that are not ours; ours from an
-/// earlier run are replaced one by one, each atomically, and those that the new run does not have
-/// are removed; while that goes on the folder bears a mark (see `base::set_replacement_mark`),
-/// which a kill leaves there. Without `commit`, and on an interrupt, nothing is left behind; what a
-/// kill leaves the next run removes.
+/// target and moved at the end. An existing folder keeps files that are not the command's. The
+/// command's files of an earlier run are replaced one by one, each atomically, and those that the
+/// new run does not have are removed; meanwhile the folder has a mark (see
+/// `base::set_replacement_mark`), which a kill leaves there. Without `commit`, and on an interrupt,
+/// nothing is left behind; the next run removes what a kill has left.
 class OutputFolder {
  public:
   /// Says whether a file name is one that the command writes.
   using IsOurs = std::function<bool(const std::string& file_name)>;
 
-  /// Checks that files can be written there, without leaving a trace. @throws IoError.
+  /// Checks that files can be written to the target, without leaving a trace. @throws IoError.
   OutputFolder(std::filesystem::path target, IsOurs is_ours);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -51,8 +51,8 @@ class OutputFolder {
   std::unique_ptr<CleanupOnInterrupt> cleanup_;
 };
 
-/// Throws IoError unless `file` could be written where it is said to be: its folder, behind links,
-/// is there, and it is no folder itself. `flag` names it; messages start with it.
+/// Throws IoError unless `file` can be written: its folder, links followed, must exist, and it must
+/// not be a folder itself. `flag` is the flag that names the file; messages start with it.
 void require_parent_folder(const std::string& flag, const std::filesystem::path& file);
 
 }  // namespace graspfit::app

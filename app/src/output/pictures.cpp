@@ -19,8 +19,8 @@ constexpr const char* kHandScript = "render_hand.py";
 constexpr const char* kHoldScript = "render_hold.py";
 constexpr const char* kMotionScript = "render_motion.py";
 
-/// A picture script: beside an installed program wherever it was moved, else in the sources of the
-/// build, else where it was installed.
+/// Finds a picture script: beside an installed program wherever it was moved, else in the sources
+/// of the build, else where it was installed.
 fs::path find_script(const std::string& flag, const fs::path& name) {
   std::error_code error;
   std::vector<fs::path> candidates;
@@ -37,7 +37,7 @@ fs::path find_script(const std::string& flag, const fs::path& name) {
                       candidates.front().string() + ")");
 }
 
-/// The last line with something in it.
+/// The last line that is not empty.
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of(" \n\r");
   if (end == std::string::npos) return "no reason given";
@@ -56,8 +56,8 @@ void run_script(const std::string& flag, const std::vector<std::string>& argumen
   }
 }
 
-/// Draws a scene, JSON of the viewer, by a script that takes its file and the picture's; the
-/// latter's extension says what is drawn.
+/// Draws a scene, given as JSON of the viewer, by a script that takes the paths of the scene and of
+/// the picture. The picture's extension says what is drawn.
 void draw_scene(const std::string& flag, const char* script, const std::string& scene_json,
                 const char* extension, const fs::path& picture) {
   WorkingFolder folder(fs::temp_directory_path());

@@ -17,9 +17,9 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// What is being done, without a measure of how far it is.
+  /// Shows what is being done, without a measure of progress.
   void show(const std::string& what);
-  /// `done` of `total`, then `text`; drawn at most ten times a second.
+  /// Shows `done` of `total`, then `text`; it is drawn at most ten times a second.
   void show(std::int64_t done, std::int64_t total, const std::string& text);
   void clear();
 
@@ -29,8 +29,9 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_drawn_{};
 };
 
-/// Shows what is being done, and from its first second on for how many, while it lives: for work
-/// that does not say how far it is. Where a ProgressBar shows nothing, nor does this.
+/// While this object lives, it shows what is being done and, from the first second on, for how many
+/// seconds: for work that does not report its progress. It shows nothing where a ProgressBar shows
+/// nothing.
 class SecondsBar {
  public:
   SecondsBar(bool is_wanted, std::string what);
@@ -46,7 +47,7 @@ class SecondsBar {
   std::mutex mutex_;
   std::condition_variable done_;
   bool is_done_ = false;
-  std::thread thread_;  ///< The only one that draws.
+  std::thread thread_;  ///< The only thread that draws.
 };
 
 }  // namespace graspfit::app

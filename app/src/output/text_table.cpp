@@ -8,7 +8,7 @@ namespace graspfit::app {
 
 namespace {
 
-/// Of the longest field in each column.
+/// Width of the longest field in each column.
 std::vector<std::size_t> widths_of(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {

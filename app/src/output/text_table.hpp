@@ -10,7 +10,8 @@ namespace graspfit::app {
 /// spaces apart.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
-/// The same with fields that start below one another, two blanks before each: for words.
+/// Rows of cells as lines of text with columns aligned to the left, two blanks before each: for
+/// tables of words.
 std::string indented_table(const std::vector<std::vector<std::string>>& rows);
 
 /// `value` with `decimals` digits after the point, in the C locale. Not for files.

@@ -42,7 +42,7 @@ std::string three(const Eigen::Vector3d& v) {
   return shortest_decimal(v.x()) + ' ' + shortest_decimal(v.y()) + ' ' + shortest_decimal(v.z());
 }
 
-/// Red for 0, yellow halfway, green from 1.
+/// Color of a score: red for 0, yellow halfway, green from 1.
 std::string color(double score) {
   const double s = std::clamp(score, 0.0, 1.0);
   const auto channel = [](double value) {

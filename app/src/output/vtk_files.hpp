@@ -11,11 +11,11 @@
 
 namespace graspfit::app {
 
-/// One value per voxel under a name.
+/// A named array with one value per voxel.
 struct CellArray {
   std::string name;
-  std::string_view type;  ///< VTK's: "UInt8" or "Float32".
-  std::string bytes;      ///< Of the values in index order, little-endian.
+  std::string_view type;  ///< VTK's name of the type: "UInt8" or "Float32".
+  std::string bytes;      ///< The values in index order, little-endian.
 };
 CellArray cell_array(const std::string& name, const std::vector<std::uint8_t>& values);
 CellArray cell_array(const std::string& name, const std::vector<float>& values);

@@ -48,16 +48,16 @@ WorkingFolder::WorkingFolder(const fs::path& parent) {
   for (;;) {
     std::string name = (parent / (std::string(kPrefix) + "XXXXXX")).string();
     if (::mkdtemp(name.data()) == nullptr) throw base::IoError(std::strerror(errno));
-    // Its mode is to be that of any new folder.
+    // The folder is to have the mode of any new folder.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::chmod(name.c_str(), 0777 & ~mask);
     path_ = name;
     lock_ = open_folder(path_);
     if (lock_ < 0) throw base::IoError(std::strerror(errno));
-    // Without locks nobody takes it for abandoned.
+    // Where there are no locks, nobody takes the folder for abandoned.
     if (base::lock_file(lock_, path_) != FileLock::Others) return;
-    // Somebody took it for abandoned before it was locked.
+    // Somebody took the folder for abandoned before it was locked.
     ::close(lock_);
   }
 }

@@ -4,12 +4,13 @@
 
 namespace graspfit::app {
 
-/// A new folder with a hidden name that nobody else has, gone with all that is in it when the
-/// object is. While it lives it is locked: by that, others know that its process does.
+/// A new folder with a unique hidden name, which is removed with all its content when the object is
+/// destroyed. While the object lives the folder is locked, which tells other processes that its
+/// process lives.
 class WorkingFolder {
  public:
-  /// In `parent`, where those that killed processes have left are removed first. @throws IoError
-  /// with the system's reason alone.
+  /// Makes the folder in `parent`, where folders that killed processes have left are removed first.
+  /// @throws IoError with the system's reason alone.
   explicit WorkingFolder(const std::filesystem::path& parent);
   ~WorkingFolder();
   WorkingFolder(const WorkingFolder&) = delete;
@@ -17,15 +18,15 @@ class WorkingFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Before its time. Does nothing a second time.
+  /// Removes the folder early. A second call does nothing.
   void remove();
 
-  /// Gives it another name, under which it stays. @throws IoError with the system's reason alone.
+  /// Renames the folder to `path`, where it stays. @throws IoError with the system's reason alone.
   void keep_as(const std::filesystem::path& path);
 
  private:
-  std::filesystem::path path_;  ///< Empty: it is gone, or has another name.
-  int lock_ = -1;               ///< Descriptor; −1 where the file system locks nothing.
+  std::filesystem::path path_;  ///< Empty: the folder was removed or renamed.
+  int lock_ = -1;               ///< Descriptor of the folder, which holds its lock.
 };
 
 }  // namespace graspfit::app

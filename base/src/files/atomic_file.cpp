@@ -30,7 +30,7 @@ std::string read_file(const std::filesystem::path& file) {
     if (stream.bad()) internal::fail_to_read(file, std::strerror(errno));
     if (stream.eof()) return content;
   }
-  // Files that grow and those of /proc have no size to trust.
+  // The size of files that grow, and of those in /proc, is not reliable.
   std::array<char, 1 << 16> block;
   while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
     content.append(block.data(), static_cast<std::size_t>(stream.gcount()));

@@ -21,9 +21,9 @@ constexpr std::size_t kBlockSize = std::size_t{1} << 16;
 
 std::string reason() { return std::strerror(errno); }
 
-/// Where bytes go that are meant for a name.
+/// The file to which the bytes of a path are written.
 struct Destination {
-  fs::path path;                ///< Behind all links, unless it is a stream.
+  fs::path path;                ///< All links followed, unless it is a stream.
   bool is_stream = false;       ///< A pipe, a device, or an open file: not to be replaced.
   const char* fault = nullptr;  ///< Why nothing can be written there.
 };
@@ -46,7 +46,7 @@ Destination destination_of(const fs::path& file) {
   constexpr int kMostLinks = 40;  // as many as Linux follows
   fs::path path = file;
   for (int links = 0; fs::is_symlink(fs::symlink_status(path, error)); ++links) {
-    // The links there lead to open files, which may have other names by now or none.
+    // Links in /proc lead to open files, which may have another path by now, or none.
     if (*std::next(fs::absolute(path).begin()) == "proc") return {file, true};
     if (links == kMostLinks) return {file, false, "too many symbolic links"};
     const fs::path target = fs::read_symlink(path, error);
@@ -55,9 +55,9 @@ Destination destination_of(const fs::path& file) {
   return {path, false};
 }
 
-/// A new file at `path`, or the one that a killed writer has left there: a writer that lives has
-/// locked its own. −1, with the reason in errno, if there is none to have: EEXIST if somebody has
-/// it.
+/// Opens a new file at `path`, or the file that a killed writer has left there; living writers have
+/// locked theirs. Returns −1, with the reason in errno, if this fails: EEXIST if somebody else has
+/// the file.
 int open_own(const std::string& path) {
   int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   const bool is_new = descriptor >= 0;
@@ -68,7 +68,7 @@ int open_own(const std::string& path) {
     if (descriptor < 0) return -1;
   }
   const FileLock lock = lock_file(descriptor, path);
-  // Where nothing can be locked, only a new file is known to be ours.
+  // Where the file system has no locks, only a new file is known to be ours.
   const bool is_ours = lock == FileLock::Ours || (lock == FileLock::Unavailable && is_new);
   if (is_ours && ::ftruncate(descriptor, 0) == 0) return descriptor;
   ::close(descriptor);
@@ -134,7 +134,7 @@ void AtomicFileWriter::write(std::string_view content) {
 
 void AtomicFileWriter::commit() {
   flush();
-  // Pipes and devices know no flushing.
+  // Only files are flushed to disk, not pipes and devices.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(reason());
   const int descriptor = descriptor_;
   descriptor_ = -1;

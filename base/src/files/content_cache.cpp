@@ -89,7 +89,7 @@ void ContentCache::write(std::string_view kind, std::string_view key,
       write_file_atomically(*file, content + std::string(kSeal) + sha256_hex(content) + '\n');
     }
   } catch (const IoError&) {
-    // The value is right all the same; only the next run pays for it again.
+    // The value is right all the same; only the next run must find it again.
   }
 }
 

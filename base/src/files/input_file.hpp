@@ -14,9 +14,9 @@ namespace graspfit::base::internal {
   throw IoError("cannot read " + file.string() + ": " + why);
 }
 
-/// A file opened for reading its bytes. Pipes and devices are refused: they may never end, and
-/// whoever reads a file twice, as for its hash, would get other bytes.
-/// @throws IoError if it is not there or not a regular file.
+/// Opens a file for reading its bytes. Pipes and devices are refused: they may never end, and
+/// reading them twice, as for a hash, gives other bytes.
+/// @throws IoError if the file does not exist or is not a regular file.
 inline std::ifstream open_input_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);

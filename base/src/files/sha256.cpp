@@ -35,7 +35,7 @@ std::string sha256_hex(std::string_view bytes) {
   Digest digest;
   unsigned int size = 0;
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1) {
-    throw std::bad_alloc();  // The only way in which hashing memory fails.
+    throw std::bad_alloc();  // Hashing fails only if there is not enough memory.
   }
   return hexadecimal({digest.data(), size});
 }
@@ -44,7 +44,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   std::ifstream stream = internal::open_input_file(file);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> hash(EVP_MD_CTX_new(),
                                                                      EVP_MD_CTX_free);
-  // Hashing memory fails for want of memory alone.
+  // Hashing fails only if there is not enough memory.
   if (!hash || EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
   std::array<char, 1 << 16> block;
   while (stream.read(block.data(), block.size()), stream.gcount() > 0) {

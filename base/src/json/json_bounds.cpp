@@ -18,7 +18,7 @@ void require_bounded_size(std::uintmax_t size, const std::string& name) {
                 std::to_string(kLargestJson) + " bytes");
 }
 
-/// "line 3, column 70", both from 1.
+/// A position as text, "line 3, column 70"; both numbers count from 1.
 std::string place_text(std::string_view text, std::size_t at) {
   const std::string_view before = text.substr(0, at);
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
@@ -27,7 +27,7 @@ std::string place_text(std::string_view text, std::size_t at) {
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// Where a string that begins at `at` ends: its closing quote, or the end of the text.
+/// Index of the end of the string that begins at `at`: its closing quote, or the end of the text.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; at < text.size() && text[at] != '"'; ++at) {
     if (text[at] == '\\') ++at;  // whatever is escaped, a quote too
@@ -43,7 +43,7 @@ void require_bounded_json(std::string_view text, const std::string& name,
   const auto refuse = [&](std::size_t at, const std::string& what) {
     throw IoError(name + ": " + place_text(text, at) + ": " + what);
   };
-  std::array<std::size_t, kDeepestJson + 1> num_members{};  // of what is open, by depth
+  std::array<std::size_t, kDeepestJson + 1> num_members{};  // of each open object, by depth
   int depth = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {
     const char c = text[at];
@@ -59,7 +59,7 @@ void require_bounded_json(std::string_view text, const std::string& name,
       refuse(at, "an object has more than " + std::to_string(most_members) +
                      " members, which is as many as are read");
     } else if (c == ']' || c == '}') {
-      --depth;  // below zero it is no JSON, and the parser stops there
+      --depth;  // below zero, the text is no JSON, and the parser stops there
     }
   }
 }

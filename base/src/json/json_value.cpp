@@ -29,7 +29,7 @@ std::string shown(const JsonValue::Json& json) {
   return text.substr(0, end) + "...";
 }
 
-/// Keys of a file may hold line breaks.
+/// Replaces line breaks, which keys of a file may hold.
 std::string in_one_line(std::string text) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
   std::replace_if(text.begin(), text.end(), is_control, ' ');

@@ -48,7 +48,7 @@ std::optional<std::string> nearest_name(std::string_view name,
   std::size_t least = std::max<std::size_t>(1, wanted.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = alignment_distance(wanted, in_lower_case(candidate));
-    // A name of which no letter is left is no mistyped one.
+    // A name that differs in as many letters as it has is not a mistyped one.
     if (distance >= least || distance >= wanted.size()) continue;
     least = distance;
     nearest = &candidate;

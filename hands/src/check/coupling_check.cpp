@@ -18,7 +18,7 @@ std::string advice(const Joint& follower, const Joint& leader, double ratio) {
          "\", \"ratio\": " + rounded(ratio) + "} to the sidecar's couplings, if not, an empty list";
 }
 
-/// The end of a finger and the joint before it, if both are free and flex in one plane.
+/// Pairs of the last joint of a finger and the joint before it that are free and flex in one plane.
 std::vector<std::pair<int, int>> free_end_pairs(const JointTree& joints) {
   std::vector<std::pair<int, int>> pairs;
   for (int j = 0; j < joints.num_joints(); ++j) {
@@ -43,7 +43,7 @@ std::vector<int> chain_from(const JointTree& joints, int j) {
 }
 
 /// Whether the plane halfway between the parallel axes of two joints mirrors the joints after the
-/// one onto those after the other, at zero.
+/// one onto the joints after the other, while all joints are at zero.
 bool are_mirrored(const JointTree& joints, int a, int b) {
   constexpr double kSamePlace = 2e-3;  // [m]; CAD of twin fingers differs by tenths of a mm
   const std::vector<int> of_a = chain_from(joints, a);
@@ -68,7 +68,8 @@ bool are_mirrored(const JointTree& joints, int a, int b) {
   return true;
 }
 
-/// The ends of fingers that move much less than the joint before them. Whether there are any.
+/// Reports last joints of fingers that move much less than the joint before them. Returns whether
+/// there are any.
 bool report_geared_ends(const JointTree& joints, const std::vector<std::pair<int, int>>& ends,
                         Findings& findings) {
   constexpr double kShortRange = 0.5;  // of the joint before
@@ -87,7 +88,8 @@ bool report_geared_ends(const JointTree& joints, const std::vector<std::pair<int
   return is_any;
 }
 
-/// Whether two joints on the palm swing fingers that are mirror images of each other, as far.
+/// Whether two joints on the palm swing fingers that are mirror images of each other, by equal
+/// angles.
 bool swing_mirrored_fingers(const JointTree& joints, int a, int b) {
   constexpr double kWideSwing = 0.5 * std::numbers::pi;  // [rad]
   constexpr double kSameAngle = 0.02;                    // [rad]; limits with two digits
@@ -98,7 +100,7 @@ bool swing_mirrored_fingers(const JointTree& joints, int a, int b) {
          joints.range(a) >= kWideSwing - kSameAngle && are_mirrored(joints, a, b);
 }
 
-/// Whether two joints on the palm slide as far and carry no further ones: jaws of a gripper.
+/// Whether two joints on the palm slide equally far and carry no further joints: jaws of a gripper.
 bool slide_like_jaws(const JointTree& joints, int a, int b) {
   constexpr double kSameStroke = 1e-4;  // [m]
   return !joints.is_revolute(a) && !joints.is_revolute(b) &&
@@ -106,7 +108,8 @@ bool slide_like_jaws(const JointTree& joints, int a, int b) {
          joints.next(b).empty();
 }
 
-/// Independent joints on the palm that look like one drive. Whether there are any.
+/// Reports independent joints on the palm that look as if one drive moved them. Returns whether
+/// there are any.
 bool report_twins(const JointTree& joints, Findings& findings) {
   bool is_any = false;
   const std::vector<int> on_root = joints.next(std::nullopt);
@@ -127,8 +130,8 @@ bool report_twins(const JointTree& joints, Findings& findings) {
       } else {
         continue;
       }
-      // A mirror image turns the other way about an axis in the mirror, and slides the other way
-      // along an axis across it.
+      // A mirror image turns in the opposite sense about an axis in the mirror's plane, and slides
+      // in the opposite direction along an axis normal to it.
       const double ratio = joints.axis(a).dot(joints.axis(b)) > 0.0 ? -1.0 : 1.0;
       findings.suspicious("joint " + joints.joint(b).name,
                           what + advice(joints.joint(b), joints.joint(a), ratio));

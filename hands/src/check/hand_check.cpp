@@ -33,10 +33,12 @@ using internal::rounded;
 // ---- Links
 // ----------------------------------------------------------------------------------------
 
-/// `has_geometry`: links whose description names a shape, whether or not it could be read.
+/// Reports bodies without mesh. `has_geometry` are the links whose description names a shape,
+/// whether or not it could be read.
 void report_missing_meshes(const JointTree& joints, const std::set<std::string>& has_geometry,
                            Findings& findings) {
-  // Links that move as one: those of the root first.
+  // A body is the links that move as one, named by the joint that moves them; the root's comes
+  // first.
   std::vector<std::optional<int>> bodies = {std::nullopt};
   for (int j = 0; j < joints.num_joints(); ++j) bodies.emplace_back(j);
   for (const std::optional<int>& body : bodies) {
@@ -60,7 +62,8 @@ void report_missing_meshes(const JointTree& joints, const std::set<std::string>&
 }
 
 void check_inertia(const Link& link, Findings& findings) {
-  // Of the diagonal of the link's box; a solid box has 1/sqrt(12) = 0.29 of it, whatever its shape.
+  // Radii of gyration relative to the diagonal of the link's box; a solid box has 1/sqrt(12)
+  // = 0.29, whatever its shape.
   constexpr double kSmallestGyration = 0.05;
   constexpr double kLargestGyration = 1.0;
   constexpr double kOutside = 0.5;
@@ -111,7 +114,8 @@ void check_masses(const HandModel& tree, Findings& findings) {
 
 constexpr int kClosingSteps = 16;  // per range: under 10 degrees each
 
-/// Whether a joint's travel, all others open, takes the pad along where it looks or backward.
+/// Reports a joint that closes by too little, or moves the pad backward, against its normal, while
+/// all other joints are open.
 void check_closing_joint(const HandModel& hand, int j, Findings& findings) {
   constexpr double kShortestTurn = 0.1;    // [rad]
   constexpr double kShortestSlide = 1e-3;  // [m]
@@ -151,8 +155,8 @@ void check_closing_joint(const HandModel& hand, int j, Findings& findings) {
   }
 }
 
-/// How near a finger's tip comes when it closes, over how near it is when open: to the palm's
-/// center line, the palm center, and the tips of the other fingers, which close too.
+/// Reports a finger whose tip does not come nearer when it closes than when it is open: to the
+/// palm's center line, to the palm center, or to the tips of the other fingers, which close too.
 void check_closing_finger(const HandModel& hand, std::size_t f, Findings& findings) {
   constexpr double kNearer = 0.9;
   const Finger& finger = hand.fingers[f];
@@ -197,9 +201,9 @@ void check_closing_finger(const HandModel& hand, std::size_t f, Findings& findin
                       "to another tip; its closing signs or limits are wrong");
 }
 
-/// Fingers that self-collision keeps open: whoever closes the hand finds them straight.
+/// Reports fingers that self-collision keeps open: closing the hand leaves them straight.
 void report_blocked_fingers(const HandModel& hand, Findings& findings) {
-  constexpr double kStillOpen = 0.1;  // of the way
+  constexpr double kStillOpen = 0.1;  // of the closing motion
   const auto name = [&](int link) { return hand.links[link].name; };
   for (const ClosingStop& stop : closing_stops(hand, 1.0)) {
     if (!stop.finger || stop.share >= kStillOpen) continue;
@@ -219,7 +223,7 @@ void report_tips_that_never_meet(const HandModel& hand, Findings& findings) {
     findings.suspicious("", "one finger only: nothing to hold an object against but the palm");
     return;
   }
-  // Whether tips face each other at all needs no fine grid: its ends are moved on.
+  // A coarse grid shows whether tips face each other at all, since local search improves its ends.
   constexpr std::int64_t kCoarse = std::int64_t{1} << 16;
   const HandWorkspace workspace = hand_workspace(hand, {.max_configurations = kCoarse});
   const auto thumb = static_cast<std::size_t>(hand.thumb());

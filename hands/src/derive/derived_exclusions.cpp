@@ -16,13 +16,13 @@ constexpr std::size_t kNumPostures = 100;
 constexpr double kAlwaysShare = 0.95;
 constexpr std::uint64_t kPostureSeed = 20;
 
-/// Links that may collide: queries and boxes of their surfaces.
+/// Surfaces of the links, prepared for collision tests, and their boxes.
 struct Surfaces {
   std::vector<std::optional<geometry::MeshQuery>> queries;
   std::vector<Eigen::AlignedBox3d> boxes;
 };
 
-/// Whether two links share a point, boxes first.
+/// Whether two links share a point; their boxes are tested first.
 bool meet(const Surfaces& surfaces, std::size_t a, std::size_t b,
           const std::vector<RigidTransform>& X_HL) {
   const RigidTransform X_AB = X_HL[a].inverse() * X_HL[b];
@@ -54,7 +54,7 @@ HandConfiguration random_configuration(const HandModel& model, std::size_t sampl
   return configuration;
 }
 
-/// The nearest body above that has a surface, if any has.
+/// The nearest body between `body` and the root that has a surface, if there is one.
 std::optional<int> body_above(const std::vector<Body>& bodies, int body) {
   std::optional<int> at = bodies[body].parent;
   while (at && bodies[*at].mesh.faces.empty()) {

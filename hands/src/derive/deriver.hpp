@@ -17,9 +17,9 @@
 #include "model/hand_bodies.hpp"
 
 /// \file
-/// How what a hand's sidecar does not say is derived from its tree and meshes: fingers
-/// (deriver_fingers.cpp), which way joints close them (deriver_closing.cpp), where the palm is and
-/// looks (deriver_palm.cpp), and pads (deriver_pads.cpp).
+/// Derives, from a hand's tree and meshes, what its sidecar does not say: fingers
+/// (deriver_fingers.cpp), closing signs of the joints (deriver_closing.cpp), center and direction
+/// of the palm (deriver_palm.cpp), and pads (deriver_pads.cpp).
 
 namespace graspfit::hands::internal {
 
@@ -30,25 +30,25 @@ using geometry::MeshQuery;
 
 inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-/// A finger: bodies from the one on the palm to the tip, and what moves them.
+/// A finger: its bodies from the palm to the tip, and the joints that move them.
 struct Chain {
   std::vector<int> bodies;
-  std::vector<int> joints;            ///< Above each of the bodies.
-  Vector3d tip_B = Vector3d::Zero();  ///< In the frame of the last body's first link.
-  std::vector<int> leaders;           ///< Independent joints that move it, proximal to distal.
+  std::vector<int> joints;            ///< The joint above each body.
+  Vector3d tip_B = Vector3d::Zero();  ///< Fingertip in the frame of the last body's first link.
+  std::vector<int> leaders;  ///< Independent joints that move the finger, proximal to distal.
 };
 
 /// What an independent joint does to the hand.
 enum class Role { None, Bend, Other };
 
-/// Where a body of a finger goes when it closes.
+/// What a body of a finger faces when the finger closes.
 struct Facing {
   Vector3d direction_H;  ///< Unit.
   Vector3d along_H;      ///< Unit, toward the tip.
   Vector3d point_H;      ///< Middle of the body.
 };
 
-/// What is found out on the way; each step uses those before it.
+/// Derives a sidecar in steps, each of which uses the results of those before it.
 class Deriver {
  public:
   Deriver(const HandModel& tree, const Sidecar& given, Findings& findings)
@@ -60,27 +60,30 @@ class Deriver {
   [[noreturn]] void fail(const std::string& what) const;
 
   // Kinematics
-  /// With followers where their leaders put them (breakaway is not counted).
+  /// The configuration with positions `q`, and followers where their leaders put them (breakaway is
+  /// ignored).
   HandConfiguration followed(const VectorXd& q) const;
   std::vector<RigidTransform> poses(const VectorXd& q) const;
-  /// Every joint at the value nearest zero.
+  /// Positions of all joints at the value nearest zero.
   VectorXd rest() const;
-  /// Closing joints this far from open to closed, the others at rest.
+  /// Positions of closing joints at `share` of their range from open to closed, and of the others
+  /// at rest.
   VectorXd closed_by(double share) const;
   const RigidTransform& pose_of_body(const std::vector<RigidTransform>& X_HL, int body) const;
   Vector3d tip(const Chain& chain, const std::vector<RigidTransform>& X_HL) const;
   Vector3d axis_H(int joint, const std::vector<RigidTransform>& X_HL) const;
 
   // Fingers
-  /// Middle of the part of a body that is farthest from its joint: of a slide, of all of it.
+  /// Center of the part of a body that is farthest from its joint; of a body on a prismatic joint,
+  /// the center of the whole body.
   Vector3d tip_of(const Body& body) const;
   double reach_of(const Chain& chain) const;
   void chains();
   void given_chains();
   void complete(Chain& chain) const;
-  /// Bars of a linkage: a chain that only follows, on joints that another chain follows too, and
-  /// that touches that chain beyond their common part in all sampled configurations, is no finger
-  /// of its own if the other reaches farther.
+  /// Drops bars of linkages. A chain all of whose joints follow is no finger of its own if another
+  /// chain has the same leaders, reaches farther, and touches it beyond their common part in all
+  /// sampled configurations.
   void drop_linkage_members();
   double reach_from_palm(const Chain& chain) const;
   bool always_touch(const Chain& a, const Chain& b,
@@ -91,63 +94,65 @@ class Deriver {
 
   // Closing
   VectorXd sampled(std::size_t sample) const;
-  /// How far apart the hand is: of every fingertip its distance from the palm and the mean one from
-  /// the other tips.
+  /// How far apart the fingertips are: the sum of every fingertip's distance from the palm and its
+  /// mean distance from the other tips.
   double spread(const std::vector<RigidTransform>& X_HL) const;
-  /// Which joints bend fingers, and which way closes.
+  /// Finds which joints bend fingers, and in which direction they close them.
   void signs();
-  /// +1 if a growing leader turns the finger as its last joint does when growing, −1 if against.
+  /// +1 if the finger turns in the same sense when `leader` grows as when the finger's last joint
+  /// grows, −1 if in the opposite sense.
   double side_of(const Chain& chain, int leader, const std::vector<RigidTransform>& X_HL) const;
   std::map<std::string, int> closing() const;
-  /// The model's own signs, as the reader will resolve them.
+  /// Sets the closing signs of `tree_` as the reader will resolve them.
   void take_signs(const std::map<std::string, int>& signs);
   void note_closing(const std::map<std::string, int>& signs);
 
   // Palm
-  /// How a body of a finger faces in a configuration, if its closing joints move it.
+  /// What a body of a finger faces in a configuration, if closing joints of the finger move it.
   std::optional<Facing> facing(const Chain& chain, std::size_t number, const VectorXd& q) const;
-  /// Where the half-closed fingers face: the point nearest to all lines along which their bodies
-  /// face, drawn a little to the middle of the bodies, so that parallel lines have one too.
+  /// The point that the half-closed fingers face: the one nearest to all lines along which their
+  /// bodies face. A small weight pulls it toward the middles of the bodies, so that it also exists
+  /// for parallel lines.
   Vector3d facing_center() const;
   void palm_direction();
-  /// The way in which more than half of the fingers face at rest, if they agree within 45°.
+  /// The direction that more than half of the fingers face at rest, if they agree within 45°.
   std::optional<Vector3d> resting_direction() const;
-  /// The side of the palm that is seen from the fingers' center: the direction that most of the
-  /// field of view faces.
+  /// Sets the palm direction to the normal of the side of the palm that fills most of the view from
+  /// the point that the half-closed fingers face.
   void find_palm_direction_by_view();
-  /// Joints that bend no finger but bring its half-closed tip before the palm (a thumb's
-  /// opposition) close it that way: of every finger first the one that does so most, then, with
-  /// that one half closed, the next.
+  /// Finds closing signs of joints that bend no finger but move its half-closed tip in front of the
+  /// palm (a thumb's opposition). The joint of a finger that does so most comes first, then the
+  /// next one, while the first is half closed.
   void fore_joints();
-  /// How far a joint moves the half-closed finger's tip along the palm's direction, lower limit to
-  /// upper; 0 if that is less than kForwardShare of the tip's way.
+  /// How far a joint moves the half-closed finger's tip along the palm's direction from its lower
+  /// limit to its upper one; 0 if that is less than kForwardShare of the length of the tip's path.
   double forward_of(const Chain& chain, int leader) const;
 
   // Names and thumb
-  /// The finger whose tip, when closing, goes against the others'; none if no one does so clearly,
-  /// or if there are only two.
+  /// The finger whose tip moves against the others' when the hand closes; empty if no finger does
+  /// so clearly, or if there are only two.
   std::optional<int> thumb() const;
-  /// What the names of a finger's links begin with, up to a separator; finger_1, … where that does
-  /// not tell the fingers apart.
+  /// Names of the fingers: for each finger the common prefix of its links' names, up to a
+  /// separator. They are finger_1, … where the prefixes do not tell the fingers apart.
   std::vector<std::string> names() const;
   std::vector<SidecarFinger> fingers();
 
   // Pads
   std::vector<SidecarPad> pads(const std::vector<SidecarFinger>& fingers);
-  /// How far the palm goes from its center: as far as the fingers' first joints and half-closed
-  /// tips, seen along its direction. Leaves out a wrist.
+  /// How far the palm extends from its center: as far as the fingers' first joints and half-closed
+  /// tips, seen along the palm's direction. This leaves out a wrist.
   double palm_reach() const;
-  /// Whether a pad looks at its own finger, the palm or a bar of a linkage close by, the hand being
-  /// open and half closed: then nothing can get between.
+  /// Whether a pad faces its own finger, the palm or a bar of a linkage close by, both while the
+  /// hand is open and while it is half closed: no object can get between them.
   bool is_shut_in(const FittedPad& pad, int link, const Chain& chain) const;
-  /// A direction in the palm's plane: of the root link's axes the one most across its direction.
+  /// The axis of the root link that is most nearly normal to the palm's direction.
   Vector3d palm_axis() const;
   void add_pad(std::vector<SidecarPad>& list, const std::optional<FittedPad>& found,
                const std::string& link, const std::string& finger);
   SidecarPalm palm(const std::vector<SidecarPad>& found,
                    const std::optional<std::vector<SidecarPad>>& given);
 
-  HandModel tree_;  ///< A copy: closing signs are set on the way.
+  HandModel tree_;  ///< A copy, whose closing signs are set by the steps.
   const Sidecar& given_;
   Findings& findings_;
   std::vector<Body> bodies_;

@@ -72,8 +72,8 @@ void Deriver::signs() {
       gain[j] -= spread(poses(q));
     }
   }
-  // All joints that bend one finger bend it the same way: the sum decides, each turned to the
-  // last joint's axis.
+  // All joints that bend one finger bend it in the same sense: the sum of their gains decides in
+  // which, each with the sign that turns the joint's axis to the last joint's.
   std::vector<double> vote(tree_.joints.size(), 0.0);
   for (const Chain& chain : chains_) {
     double sum = 0.0;

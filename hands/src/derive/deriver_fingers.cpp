@@ -35,8 +35,8 @@ void Deriver::chains() {
   if (given_.fingers) {
     given_chains();
   } else {
-    // A leaf of the tree of bodies ends a finger, if it has a surface; else the last body above
-    // it that has one.
+    // A leaf of the tree of bodies ends a finger if it has a surface; else the last body before it
+    // that has one does.
     std::vector<bool> is_end(bodies_.size(), false);
     std::vector<bool> has_end_below(bodies_.size(), false);
     for (std::size_t b = bodies_.size(); b-- > 1;) {
@@ -256,8 +256,8 @@ std::vector<SidecarFinger> Deriver::fingers() {
                 return tree_.link_index(a) < tree_.link_index(b);
               });
     for (const int joint : chain.joints) finger.joints.push_back(tree_.joints[at(joint)].name);
-    // Of the joints that neither close nor open, the one whose axis is nearest to the palm's
-    // direction; a tenth of a cosine decides nothing, then the proximal one does.
+    // The swing joint is, of the joints that neither close nor open, the one whose axis is nearest
+    // to the palm's direction. If cosines differ by less than a tenth, the proximal joint is.
     double nearest = -0.1;
     for (const int joint : chain.joints) {
       if (tree_.joints[at(joint)].closing_sign != 0) continue;

@@ -38,7 +38,7 @@ std::vector<SidecarPad> Deriver::pads(const std::vector<SidecarFinger>& fingers)
       }
     }
   }
-  // A tip pad that is given by name alone is the one on the last link that has a pad.
+  // A tip pad that is given by name alone is the pad on the last link that has one.
   for (const SidecarFinger& finger : fingers) {
     if (!finger.tip_pad) continue;
     for (auto pad = result.rbegin(); pad != result.rend(); ++pad) {

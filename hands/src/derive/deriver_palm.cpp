@@ -8,8 +8,10 @@
 namespace graspfit::hands::internal {
 namespace {
 
-constexpr double kForwardShare = 0.5;  // of a tip's way: toward the palm's front, or not
-constexpr double kTranslation = 0.2;   // rotation times length over way: hardly turning
+// Least motion along the palm's direction, relative to the length of a tip's path.
+constexpr double kForwardShare = 0.5;
+// A body hardly turns if its rotation times its length is at most this share of its motion.
+constexpr double kTranslation = 0.2;
 
 }  // namespace
 
@@ -17,8 +19,8 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
                                       const VectorXd& q) const {
   const Body& body = bodies_[at(chain.bodies[number])];
   if (body.mesh.faces.empty()) return std::nullopt;
-  // The nearest closing joint above says what drives it. What only an opposing joint moves faces
-  // nothing: its leading side faces away from the palm.
+  // The body is driven by the nearest closing joint before it. A body that only an opposing joint
+  // moves faces nothing: its leading side faces away from the palm.
   std::optional<int> leader;
   for (std::size_t i = 0; i <= number; ++i) {
     const int candidate = leader_of(tree_, chain.joints[i]);
@@ -28,14 +30,14 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   if (!leader) return std::nullopt;
   const auto X_HL = poses(q);
   const RigidTransform& X_HB = pose_of_body(X_HL, chain.bodies[number]);
-  // From its joint to the next one, of the last body to its tip.
+  // The body reaches from its joint to the next joint, the last body to its tip.
   Vector3d end_B = chain.tip_B;
   Vector3d start_B = Vector3d::Zero();
   if (number + 1 < chain.bodies.size()) {
     end_B = X_HB.inverse() * pose_of_body(X_HL, chain.bodies[number + 1]).translation();
   }
   if (end_B.norm() < 0.2 * geometry::longest_extent(body.mesh)) {
-    // Its frame stands at its end (or both joints in one place).
+    // The body's frame is at its end (or both joints are at the same position).
     end_B = geometry::bounding_box(body.mesh).center();
   }
   const Eigen::MatrixXd jacobian =
@@ -95,7 +97,7 @@ void Deriver::palm_direction() {
     constexpr double kAgree = 0.64;  // cosine of 50°
     if (resting->dot(palm_direction_.normalized()) >= kAgree) palm_direction_ = *resting;
   }
-  // What nearly is an axis of the root link is meant to be that axis.
+  // A direction that is nearly an axis of the root link is meant to be that axis.
   constexpr double kAxis = 0.9986;  // cosine of 3°
   for (int k = 0; k < 3; ++k) {
     if (std::abs(palm_direction_[k]) < kAxis * palm_direction_.norm()) continue;
@@ -170,7 +172,8 @@ void Deriver::find_palm_direction_by_view() {
     if (normal.dot(ray) < 0.0) seen.push_back({normal, -normal.dot(ray)});
   }
   if (seen.empty()) return;
-  // The normal with most of the view within kSameSide, then the mean of those.
+  // Finds the normal with most of the view within kSameSide of it, and takes the mean of these
+  // normals.
   constexpr double kSameSide = 0.94;  // cosine of 20°
   const auto mean_around = [&](const Vector3d& normal) {
     Vector3d sum = Vector3d::Zero();

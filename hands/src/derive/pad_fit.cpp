@@ -69,7 +69,7 @@ std::vector<Vector2d> hull_of(std::vector<Vector2d> points) {
   return hull;
 }
 
-/// The corner whose removal costs least area goes, until `count` are left.
+/// Removes the corner whose removal costs least area, until `count` corners are left.
 void simplify(std::vector<Vector2d>& outline, std::size_t count) {
   while (outline.size() > count) {
     std::size_t least = 0;
@@ -95,7 +95,7 @@ bool is_inside(const std::vector<Vector2d>& outline, const Vector2d& point) {
   return !outline.empty();
 }
 
-/// Share of the grid's cells inside an outline that are set.
+/// Share of the cells inside an outline that are set in `cells`.
 double fill_share(const RayGrid& grid, const std::vector<bool>& cells,
                   const std::vector<Vector2d>& outline) {
   std::size_t inside = 0;
@@ -110,7 +110,7 @@ double fill_share(const RayGrid& grid, const std::vector<bool>& cells,
   return inside == 0 ? 0.0 : static_cast<double>(set) / static_cast<double>(inside);
 }
 
-/// The largest rectangle of set cells, its corners on cell centers: the surface goes on for half a
+/// The largest rectangle of set cells, with its corners at cell centers: the surface extends half a
 /// cell beyond it.
 std::vector<Vector2d> largest_rectangle(const RayGrid& grid, const std::vector<bool>& cells) {
   int best = 0;
@@ -245,7 +245,7 @@ std::optional<FittedPad> flat_pad(const MeshQuery& link, const RayGrid& grid,
   if (outline_S.size() < 3 || fill_share(grid, on, outline_S) < kFillShare) {
     outline_S = largest_rectangle(grid, on);
   }
-  // A rectangle that holds little of a jagged plane stands for none of it.
+  // A rectangle that holds only little of a jagged plane is no pad.
   const double part_area = size * grid.step * grid.step;
   const double least_area = is_most ? 0.0 : 0.5 * kFrontShare * part_area;
   if (outline_S.size() < 3 || !(area_of(outline_S) > least_area)) return std::nullopt;
@@ -276,7 +276,7 @@ std::vector<Vector3d> dome(const std::vector<Vector2d>& outline,
   for (std::size_t i = 0; i < outline.size(); ++i) {
     if (points_C[i].z() > 0.0) pad.surface.push_back(points_C[i]);
   }
-  // What a step would make too many of is taken back.
+  // A step that would make too many planes is undone.
   std::vector<Vector3d> accepted = pad.surface;
   while (true) {
     pad.planes = surface_planes(pad);
@@ -292,7 +292,7 @@ std::vector<Vector3d> dome(const std::vector<Vector2d>& outline,
     }
     if (next == nullptr) break;
     pad.surface.push_back(*next);
-    // Points that the new one covers are no corners any more.
+    // Points that are inside the hull with the new point are no corners any more.
     pad.planes = surface_planes(pad);
     constexpr double kCovered = 1e-9;  // [m]; rounding of the planes
     std::erase_if(pad.surface,
@@ -350,8 +350,8 @@ std::optional<FittedPad> bulging_pad(const MeshQuery& link, const std::vector<Me
   return pad;
 }
 
-/// The bulging pad of a part, or of less and less of it around its center until it stands off the
-/// mesh by at most kMaxBridge; the last one tried if none does.
+/// The bulging pad of a part, or of less and less of the part around its center, until the pad
+/// stands off the mesh by at most kMaxBridge; the last pad tried if none does.
 std::optional<FittedPad> bulging_pad_without_hollow(const MeshQuery& link,
                                                     const std::vector<MeshQuery>& others,
                                                     const RayGrid& grid, std::vector<bool> part,
@@ -382,8 +382,8 @@ std::optional<FittedPad> bulging_pad_without_hollow(const MeshQuery& link,
   return pad;
 }
 
-/// Coordinates in whole micrometers, as a person would write them; corners and points that this
-/// puts into a line or outside the outline go.
+/// The pad with coordinates in whole micrometers, as a person would write them. Corners and points
+/// that rounding puts on a straight line or outside the outline are removed.
 FittedPad tidied(FittedPad pad) {
   constexpr double kPerMeter = 1e6;
   const auto rounded = [&](auto v) {

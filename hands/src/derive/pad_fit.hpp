@@ -9,12 +9,12 @@
 
 namespace graspfit::hands::internal {
 
-/// Where a pad is looked for.
+/// Where to search for a pad.
 struct PadSearch {
-  Eigen::Vector3d direction;  ///< Unit: what the pad is to face, in the link's frame.
-  Eigen::Vector3d along;      ///< What the pad's x axis is to follow; not parallel to `direction`.
-  /// Line of sight along `direction` through this point marks the part of the surface that is meant
-  /// where several face that way; empty: the largest.
+  Eigen::Vector3d direction;  ///< Unit vector that the pad is to face, in the link's frame.
+  Eigen::Vector3d along;      ///< The pad's x axis is to follow it; not parallel to `direction`.
+  /// If several parts of the surface face `direction`, the part nearest to the line through this
+  /// point along `direction` is used. Empty: the largest part is.
   std::optional<Eigen::Vector3d> center;
   double reach = 0.0;  ///< Surface farther than this from `center` is left out [m]; 0: no limit.
 };
@@ -31,14 +31,15 @@ struct FittedPad {
 
 /// The pad of a surface that faces a direction: flat where the surface is, else a convex dome.
 ///
-/// The surface is what rays against `direction` on a grid (kNumRays along the longer side) meet
-/// first, so that of overlapping parts only the outside counts; what `others` (the rest of the same
-/// rigid body, in the same frame) hide does not. Of the parts whose normal leans by at most
-/// kMaxLean from `direction` the largest connected one is taken, or the one at the search's center.
+/// The surface is sampled by rays against `direction` on a grid (kNumRays along the longer side).
+/// Only the first hit of a ray counts, so that of overlapping parts only the outside does; surface
+/// that `others` (the rest of the same rigid body, in the same frame) hide does not count. Of the
+/// parts whose normal leans by at most kMaxLean from `direction` the largest connected one is
+/// taken, or the one at the search's center.
 ///
-/// 1. Flat: if a plane holds at least kFlatShare of the part, or kFrontShare of it and nothing
-///    stands before that plane, the pad lies in it. Its outline is the hull of the plane's mesh
-///    faces where rays find at least kFillShare of the hull's inside to be surface, else the
+/// 1. Flat: if a plane holds at least kFlatShare of the part, or kFrontShare of it and no surface
+///    is in front of the plane, the pad lies in the plane. Its outline is the hull of the plane's
+///    mesh faces where rays find at least kFillShare of the hull's inside to be surface, else the
 ///    largest rectangle of the grid that is surface.
 /// 2. Bulging: the outline is the hull of the part (at most kMaxCorners corners, the same fall-back
 ///    to a rectangle), and the dome the hull of mesh points, added one after the other where the
@@ -46,7 +47,8 @@ struct FittedPad {
 ///    reached. Dents and hollows are bridged; where the pad then stands off the mesh by more than
 ///    kMaxBridge, less of the part is taken, around its center.
 ///
-/// Empty where nothing faces the direction. Approximate: to the spacing of the grid.
+/// The result is empty if no surface faces the direction, and approximate to the spacing of the
+/// grid.
 std::optional<FittedPad> fit_pad(const geometry::MeshQuery& link,
                                  const std::vector<geometry::MeshQuery>& others,
                                  const PadSearch& search);

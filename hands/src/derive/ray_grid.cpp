@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kNumRays = 40;       // along the longer side; 1 to 2 mm on a finger
 constexpr double kMaxLean = 0.87;  // [rad], 50°: beyond it a fingertip touches with its side
-constexpr double kMaxStep = 1.2;   // [rad]: a steeper step between neighbors parts a surface
+constexpr double kMaxStep = 1.2;   // [rad]: a steeper step between neighbors separates two parts
 
 }  // namespace
 
@@ -123,7 +123,7 @@ std::vector<bool> facing_part(const RayGrid& grid, const std::optional<Vector2d>
   }
   std::optional<std::size_t> best;
   for (std::size_t p = 0; p < size.size(); ++p) {
-    // Specks that happen to lie nearest are no part.
+    // Parts much smaller than the largest are ignored, even if they are nearest.
     const std::size_t largest = *std::max_element(size.begin(), size.end());
     if (10 * size[p] < largest) continue;
     if (!best) {

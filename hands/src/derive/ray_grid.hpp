@@ -8,12 +8,14 @@
 #include "graspfit/geometry/mesh_query.hpp"
 
 /// \file
-/// What of a link's surface is seen from the side to which its pad is to look, on a grid of rays.
-/// Frame S of the search: z is that direction, x follows the pad's.
+/// Samples, by a grid of rays, the part of a link's surface that is visible from the side that its
+/// pad is to face. In the search frame S, z is the direction that the pad is to face, and x follows
+/// the pad's x axis.
 
 namespace graspfit::hands::internal {
 
-/// Heights up to here are not told apart [m]: below the 1 mm voxels of the planner.
+/// Differences of height up to this value count as flat [m]; it is below the 1 mm voxels of the
+/// planner.
 inline constexpr double kFlatTolerance = 3e-4;
 
 /// What a ray met, in the frame of the search (z against the rays).
@@ -37,7 +39,7 @@ struct RayGrid {
   }
 };
 
-/// Corners of the surface that is seen, and the height from which rays start.
+/// Box of the surface that is searched, in S, and the height from which rays start.
 struct SearchBox {
   Eigen::AlignedBox3d box_S;
   double top = 0.0;
@@ -47,12 +49,12 @@ SearchBox search_box(const geometry::MeshQuery& link,
                      const std::vector<geometry::MeshQuery>& others, const Eigen::Matrix3d& R_LS,
                      const PadSearch& search);
 
-/// The ray against z at a place of the search frame: what it meets of the link, if the others do
-/// not stand before it.
+/// Casts the ray against z at the position `place` of the search frame: returns its hit on the
+/// link, unless the others hide it.
 Sample probe(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,
              const Eigen::Matrix3d& R_LS, const Eigen::Vector2d& place, double top);
 
-/// The rays over the box; no samples where it has no area.
+/// Casts the rays over the box; the grid has no samples if the box has no area.
 RayGrid cast(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,
              const Eigen::Matrix3d& R_LS, const SearchBox& box);
 

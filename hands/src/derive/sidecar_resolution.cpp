@@ -115,7 +115,8 @@ class SidecarResolver {
     if (sidecar_.palm->pad) model_.palm.pad = pad(*sidecar_.palm->pad, "palm");
   }
 
-  /// Where the sidecar names no tip pad: the last pad on the most distal link that has one.
+  /// Sets the tip pads. Where the sidecar names none, it is the last pad on the most distal link
+  /// that has one.
   void tip_pads() {
     for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
       Finger& finger = model_.fingers[f];
@@ -146,7 +147,7 @@ class SidecarResolver {
       exclude(link(a, "exclusions"), link(b, "exclusions"));
     }
     // Links that are fixed to each other never collide, whatever the file says. Frames without a
-    // surface cannot; there may be many.
+    // surface cannot collide and are not listed; there may be many.
     std::vector<int> body(model_.links.size());
     std::map<int, std::vector<int>> solid_links;  // of each body
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
@@ -189,7 +190,7 @@ void set_couplings(const std::vector<SidecarCoupling>& couplings, const std::str
 }
 
 void follow_first_leaders(const std::string& file, HandModel& model) {
-  // q = a (b q0 + c) + d.
+  // A follower of a follower is at q = a (b q0 + c) + d.
   for (Joint& follower : model.joints) {
     if (!follower.coupling) continue;
     Coupling& own = *follower.coupling;

@@ -25,7 +25,7 @@ std::optional<fs::path> declared_package(const fs::path& description_file) {
   return std::nullopt;
 }
 
-/// The deepest folder that holds both.
+/// The deepest folder that contains both `file` and `folder`.
 fs::path common_folder(const fs::path& file, const fs::path& folder) {
   const auto [ours, theirs] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
   fs::path common;
@@ -51,7 +51,7 @@ std::string outside_text(const fs::path& description_file, const fs::path& file)
   const std::string text =
       "lies outside the description's package " + package.value_or(own).string();
   const fs::path common = common_folder(file, own);
-  // All that the machine has would be one package.
+  // A package.xml in the root folder would make all files of the machine one package.
   if (!common.has_relative_path()) return text + "; copy it there";
   return text + "; " + (package ? "move its package.xml to " : "an empty file package.xml in ") +
          common.string() + (package ? ", where a package of both begins" : " makes one of both");

@@ -10,20 +10,22 @@ namespace graspfit::hands::internal {
 /// the file's own folder. Symbolic links resolved.
 std::filesystem::path package_folder(const std::filesystem::path& description_file);
 
-/// The folders that a description may refer to, and no others: whoever opens a stranger's hand does
-/// not open the files of his own that it names. They are the package's folder and, where no
+/// The only folders that a description may refer to, so that reading a stranger's hand does not
+/// open other files of the user that it names. They are the package's folder and, where no
 /// package.xml says what the package is, `meshes` beside the description's own folder: the layout
 /// of most packages, "urdf/hand.urdf" with "../meshes/". Symbolic links resolved.
 std::vector<std::filesystem::path> readable_folders(const std::filesystem::path& description_file);
 
-/// After the name of a file that lies in none of them: where that is not, and what would let the
-/// description refer to it. `file` with symbolic links resolved.
+/// Text for messages, to follow the name of a file that lies in none of the readable folders: where
+/// the file is not, and what would let the description refer to it. `file` must have its symbolic
+/// links resolved.
 std::string outside_text(const std::filesystem::path& description_file,
                          const std::filesystem::path& file);
 
-/// Whether a path is `folder` or below it, by their texts: both with symbolic links resolved.
+/// Whether a path is `folder` or below it. Only the texts are compared, so both must have their
+/// symbolic links resolved.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
-/// The same of any of several folders.
+/// Whether a path is any of several folders, or below one.
 bool lies_in(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders);
 
 }  // namespace graspfit::hands::internal

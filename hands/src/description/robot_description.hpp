@@ -17,12 +17,13 @@ namespace graspfit::hands::internal {
 struct BoxShape {
   Eigen::Vector3d size;  ///< Full lengths.
 };
-/// About z, centered.
+/// A cylinder about the z axis, centered at the origin.
 struct CylinderShape {
   double radius = 0.0;
   double length = 0.0;
 };
-/// About z, centered; `length` between the centers of its two half balls.
+/// A capsule about the z axis, centered at the origin; `length` is between the centers of its two
+/// hemispheres.
 struct CapsuleShape {
   double radius = 0.0;
   double length = 0.0;
@@ -33,13 +34,14 @@ struct EllipsoidShape {
 struct SphereShape {
   double radius = 0.0;
 };
-/// A mesh file as the description names it: relative to it, `package://` or `file://`.
+/// A mesh file as the description names it: a path relative to the description, `package://` or
+/// `file://`.
 struct MeshFileShape {
   std::string filename;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
 };
-/// A mesh that the format's reader has loaded itself, and the file that it came from, if any:
-/// relative to the description's folder.
+/// A mesh that the format's reader has loaded itself, and the path, relative to the description's
+/// folder, of the file that it came from, if any.
 struct LoadedMeshShape {
   TriangleMesh mesh;
   std::string filename;
@@ -75,7 +77,7 @@ struct DescribedJoint {
   std::string child;
   geometry::RigidTransform X_PJ = geometry::RigidTransform::Identity();
   Eigen::Vector3d axis =
-      Eigen::Vector3d::UnitX();  ///< Unit; as the format says where none is given.
+      Eigen::Vector3d::UnitX();  ///< Unit vector; the format's default where none is given.
   double lower = 0.0;
   double upper = 0.0;
   std::optional<DescribedCoupling> coupling;
@@ -85,7 +87,7 @@ struct RobotDescription {
   std::string name;
   std::vector<DescribedLink> links;
   std::vector<DescribedJoint> joints;
-  double meters_per_unit = 1.0;  ///< Of the lengths in its file, which are meters here.
+  double meters_per_unit = 1.0;  ///< Unit of the file's lengths; here all are in meters.
   /// Pairs of links that the description itself takes out of collision.
   std::vector<std::pair<std::string, std::string>> exclusions;
 };

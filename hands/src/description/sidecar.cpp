@@ -18,7 +18,7 @@ using base::JsonValue;
 constexpr const char* kFormat = "graspfit hand sidecar";
 constexpr int kVersion = 1;
 
-/// A name as it may be shown in messages of one line.
+/// Returns a name that one-line messages may show: one without control characters.
 std::string checked(const std::string& name, const JsonValue& item) {
   if (std::any_of(name.begin(), name.end(), is_control)) item.fail("has a control character");
   return name;
@@ -199,7 +199,7 @@ Sidecar parse_sidecar(const std::string& text, const std::string& file) {
   const auto root = JsonValue::parsed<base::InvalidInput>(text, file);
   root.require_members({}, {"format", "hand", "description", "conventions", "fingers", "pads",
                             "palm", "closing", "couplings", "exclusions"});
-  // A person who writes down a coupling or two need not write what this is: the file's name says.
+  // A person who writes down a coupling or two need not give the format: the file's name tells it.
   if (const auto format = root.find("format")) check_format(*format);
 
   Sidecar sidecar;
@@ -255,7 +255,7 @@ std::string sidecar_text(const Sidecar& sidecar, const std::string& hand,
     root["exclusions"] = nlohmann::ordered_json::array();
     for (const auto& [a, b] : *sidecar.exclusions) root["exclusions"].push_back({a, b});
   }
-  // The name of a hand may be that of a file, whose bytes are anything.
+  // The name of a hand may be a file's name, which may contain any bytes.
   return root.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 

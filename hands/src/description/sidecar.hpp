@@ -54,11 +54,12 @@ struct Sidecar {
   std::optional<std::vector<SidecarPad>> pads;
   std::optional<SidecarPalm> palm;
   std::optional<std::map<std::string, int>> closing;
-  /// Over the description's own; not there: the description's alone.
+  /// Couplings that replace the description's of the same joints; not set: only the description's
+  /// count.
   std::optional<std::vector<SidecarCoupling>> couplings;
   std::optional<std::vector<std::pair<std::string, std::string>>> exclusions;
 
-  /// Nothing is left to derive.
+  /// Whether nothing is left to derive.
   bool is_complete() const { return fingers && pads && palm && closing && exclusions; }
 };
 

@@ -8,8 +8,9 @@
 
 namespace graspfit::hands::internal {
 
-/// An XML file and how to complain about it: every message names the file, the line and the item.
-/// Numbers are read in the C locale whatever the program's locale is, and must be finite.
+/// An XML file, and functions that read values of it and report errors: every message names the
+/// file, the line and the item. Numbers are read in the C locale whatever the program's locale is,
+/// and must be finite.
 class XmlSource {
  public:
   explicit XmlSource(std::string file) : file_(std::move(file)) {}
@@ -32,7 +33,7 @@ class XmlSource {
   std::string text_of(const tinyxml2::XMLElement& e, const char* attribute,
                       const std::string& item) const;
 
-  /// `text`, a name that messages of one line will show: without control characters.
+  /// Returns `text`, a name that one-line messages will show; it must not have control characters.
   std::string plain(const tinyxml2::XMLElement& e, const std::string& text,
                     const std::string& item) const;
 

@@ -30,7 +30,8 @@ using tinyxml2::XMLElement;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMillimeter = 1e-3;
-/// How far from a rotation a matrix may be, the norm of R R^T - I; three decimals give 3e-3.
+/// Largest norm of R R^T - I of a matrix that is taken for a rotation; entries of three decimals
+/// give 3e-3.
 constexpr double kRotationSlack = 1e-2;
 
 RigidTransform turn(double angle, const Eigen::Vector3d& axis) {
@@ -38,7 +39,7 @@ RigidTransform turn(double angle, const Eigen::Vector3d& axis) {
 }
 RigidTransform shift(const Eigen::Vector3d& by) { return RigidTransform(Eigen::Translation3d(by)); }
 
-/// dK * ratio + offset, ratio and offset as the file writes them.
+/// An expression dK * ratio + offset, with ratio and offset as the file writes them.
 struct Expression {
   int dof = -1;
   double ratio = 1.0;
@@ -49,8 +50,10 @@ struct Expression {
 struct ChainJoint {
   DescribedJoint described;
   Expression value;
-  RigidTransform before = RigidTransform::Identity();  ///< From the link before to the joint frame.
-  RigidTransform after = RigidTransform::Identity();   ///< On to GraspIt!'s frame of the link.
+  /// Joint frame in GraspIt!'s frame of the link before it.
+  RigidTransform before = RigidTransform::Identity();
+  /// GraspIt!'s frame of the link in our frame of the link.
+  RigidTransform after = RigidTransform::Identity();
 };
 
 struct ChainLink {
@@ -126,7 +129,8 @@ class Reader : private XmlSource {
     if (dofs_.empty()) fail(root, "no <dof>");
   }
 
-  /// Names of palm and links: stems of body files, made unique by chain and place in it.
+  /// Sets the names of palm and links: stems of body files, made unique by the chain and the index
+  /// in it.
   void name_links(const XMLElement& root) {
     const auto stem = [&](const XMLElement& e) {
       return plain(e, fs::path(content(e, "link")).stem().string(), "link");
@@ -158,7 +162,7 @@ class Reader : private XmlSource {
     }
   }
 
-  /// A <transform>: its parts one after the other, each in the frame that those before it reach.
+  /// Reads a <transform>: each part is a transform in the frame that the parts before it end in.
   RigidTransform transform(const XMLElement& e, const std::string& item) const {
     RigidTransform X = RigidTransform::Identity();
     for (const XMLElement* part = e.FirstChildElement(); part; part = part->NextSiblingElement()) {
@@ -181,7 +185,7 @@ class Reader : private XmlSource {
     return X;
   }
 
-  /// "-90 y": degrees about an axis.
+  /// Reads a rotation such as "-90 y": degrees about an axis.
   RigidTransform rotation(const XMLElement& e, const std::string& text,
                           const std::string& item) const {
     const char axis = text.back();
@@ -192,7 +196,7 @@ class Reader : private XmlSource {
     return turn(angle * kDegree, Eigen::Vector3d::Unit(axis - 'x'));
   }
 
-  /// Nine numbers, column by column; the nearest rotation.
+  /// Reads nine numbers, column by column, and returns the nearest rotation.
   RigidTransform rotation_matrix(const XMLElement& e, const std::string& text,
                                  const std::string& item) const {
     const std::vector<double> v = numbers(e, text, 9, item);
@@ -209,7 +213,7 @@ class Reader : private XmlSource {
     return X;
   }
 
-  /// "(w x y z)[x y z]": unit quaternion and millimeters.
+  /// Reads "(w x y z)[x y z]": a unit quaternion and a translation in millimeters.
   RigidTransform full_transform(const XMLElement& e, std::string text,
                                 const std::string& item) const {
     for (char& c : text) {
@@ -223,7 +227,7 @@ class Reader : private XmlSource {
     return shift(kMillimeter * Eigen::Vector3d(v[4], v[5], v[6])) * RigidTransform(q.normalized());
   }
 
-  /// d1, d1*0.33, d1+40, d1*-1+-2.46; blanks do not count.
+  /// Reads an expression such as d1, d1*0.33, d1+40 or d1*-1+-2.46; blanks do not count.
   Expression expression(const XMLElement& e, const std::string& item) const {
     const std::string text = content(e, item);
     std::string packed;
@@ -340,7 +344,8 @@ class Reader : private XmlSource {
       fail(e, item + ": its links hang on " + std::to_string(num_used) + " joints, but it has " +
                   std::to_string(joints.size()));
     }
-    // From the frame of the last link (its own joint's) to GraspIt!'s, where the next one starts.
+    // Transform from our frame of the last link (at its own joint) to GraspIt!'s, where the next
+    // joint starts.
     RigidTransform X_PG = base ? transform(*base, item) : RigidTransform::Identity();
     std::string parent = palm_name_;
     auto next = joints.begin();
@@ -379,7 +384,7 @@ class Reader : private XmlSource {
     }
   }
 
-  /// Couplings and limits of joints that share a degree of freedom.
+  /// Sets couplings and limits of joints that share a degree of freedom.
   void share_dofs(const XMLElement& root) {
     for (std::size_t d = 0; d < dofs_.size(); ++d) {
       const Dof& dof = dofs_[d];
@@ -420,7 +425,8 @@ class Reader : private XmlSource {
     }
   }
 
-  /// The geometry that a body file names, if both are there and it is a mesh that can be read.
+  /// Adds the geometry that a body file names, if both files exist and the geometry is a mesh that
+  /// can be read.
   void body_geometry(const std::string& body, const RigidTransform& X_LG, DescribedLink& link) {
     const fs::path folder = fs::absolute(path_).parent_path();
     std::error_code error;

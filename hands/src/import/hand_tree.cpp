@@ -33,7 +33,7 @@ class TreeBuilder {
     for (const DescribedLink& link : description_.links) {
       if (!added_.contains(link.name)) {
         fault("the links form a cycle: link " + link.name + " is not reached from root " + root);
-        break;  // the rest of the cycle says no more
+        break;  // other links of the cycle would repeat the fault
       }
     }
     if (!is_tree_) return std::nullopt;
@@ -47,14 +47,14 @@ class TreeBuilder {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(file_ + ": " + what); }
 
-  /// What keeps the links from being one tree with something to move.
+  /// Reports what keeps the links from being one tree with a movable joint.
   void fault(const std::string& what) {
     is_tree_ = false;
     findings_.attempt([&] { fail(what); });
   }
 
-  /// The only link without a joint above it. Whatever is wrong with the links' connections becomes
-  /// a fault, but for cycles apart from the root.
+  /// The only link without a joint above it. Everything wrong with the links' connections becomes a
+  /// fault here, except for cycles that are not connected to the root.
   std::string checked_root() {
     if (description_.links.empty()) {
       fault("no links");
@@ -116,7 +116,8 @@ class TreeBuilder {
     model_.links.push_back(std::move(link));
   }
 
-  /// The link and all below it, depth first. No recursion: a chain may be longer than the stack.
+  /// Adds a link and all links below it, depth first. It does not recurse, since a chain may be too
+  /// long for the stack.
   void add_tree(const std::string& root) {
     struct Next {
       std::string name;
@@ -137,8 +138,8 @@ class TreeBuilder {
     }
   }
 
-  /// Movable joints on a link and on those that are fixed to it, depth first. No recursion, as in
-  /// `add_tree`.
+  /// Movable joints on a link and on the links that are fixed to it, depth first. It does not
+  /// recurse, as `add_tree`.
   std::vector<const DescribedJoint*> joints_on(const std::string& link) const {
     std::vector<const DescribedJoint*> result;
     std::vector<const DescribedJoint*> waiting;

@@ -10,18 +10,19 @@
 namespace graspfit::hands::internal {
 
 /// The kinematic tree of a description: links and joints parents first (depth first, children in
-/// the order of the description), its couplings and exclusions. Without surfaces, fingers, pads.
+/// the order of the description), its couplings and exclusions. It has no surfaces, fingers or
+/// pads.
 ///
 /// The root link is `root` if given; what does not hang below it is left out. Else it is the
-/// description's root, except that an arm before the hand is left out: while only one movable joint
-/// hangs on the root (and the links fixed to it), its child becomes the root, if joints branch
-/// further on. What is left out is noted, and so is a coupling to a joint that is: the follower
-/// then becomes independent.
+/// description's root, except that an arm before the hand is left out: as long as only one movable
+/// joint hangs on the root (and the links fixed to it), the child of this joint becomes the root,
+/// if joints branch further on. What is left out is noted. A coupling to a joint that is left out
+/// is noted too; its follower becomes independent.
 ///
-/// Faults, prefixed by `file`: a cycle, two roots, no movable joint, names that nothing bears.
-/// Empty after a fault of the tree itself where they are collected; couplings with a fault are left
-/// out.
-/// @throws InvalidInput at the first fault where they are thrown.
+/// Faults, prefixed by `file`, are a cycle, two roots, no movable joint, and names of links or
+/// joints that do not exist. Where faults are collected, the result is empty after a fault of the
+/// tree itself, and couplings with a fault are left out.
+/// @throws InvalidInput at the first fault where faults are thrown.
 std::optional<HandModel> build_tree(const RobotDescription& description, const std::string& file,
                                     const std::optional<std::string>& root, Findings& findings);
 

@@ -29,8 +29,9 @@ struct Overloaded : Alternatives... {
 template <typename... Alternatives>
 Overloaded(Alternatives...) -> Overloaded<Alternatives...>;
 
-/// The file that `name` of a <mesh> means. `package://NAME/rest` is looked for in the folders named
-/// NAME above the description, then in the package's folder, the description's own, and beside it.
+/// The file that `name` of a <mesh> means. `package://NAME/rest` is searched for in the folders
+/// named NAME above the description, then in the package's folder, in the description's own folder,
+/// and beside this folder.
 fs::path mesh_path(const fs::path& description_file, const std::string& name,
                    const std::string& item) {
   const std::string scheme = "package://";
@@ -38,7 +39,7 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
   const fs::path folder = fs::weakly_canonical(description_file).parent_path();
   const std::vector<fs::path> readable = readable_folders(description_file);
   struct Candidate {
-    std::vector<fs::path> folders;  ///< One of which the file must lie in.
+    std::vector<fs::path> folders;  ///< The file must lie in one of these.
     fs::path path;
   };
   std::vector<Candidate> candidates;
@@ -71,7 +72,7 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
   throw IoError(item + ": mesh " + name + " is not there");
 }
 
-/// A link's mesh; what is wrong with it is said with the description and the link.
+/// Reads a link's mesh; errors name the description and the link.
 TriangleMesh read_link_mesh(const fs::path& file, const std::string& item) {
   try {
     return geometry::read_mesh(file).mesh;
@@ -120,8 +121,8 @@ TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_
   return transformed(mesh_G, part.X_LG);
 }
 
-/// The connected parts of a mesh, corners being the same where their coordinates are; the mesh
-/// itself if there are more than kMostParts.
+/// The connected parts of a mesh, where corners with equal coordinates are one; the mesh itself if
+/// there are more than kMostParts parts.
 std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
   constexpr std::size_t kMostParts = 200;  // more is a soup of triangles
   const auto less = [&](std::int32_t a, std::int32_t b) {
@@ -173,11 +174,11 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
   return parts;
 }
 
-/// What was done to one link, for its note.
+/// What was done to the surface of one link, for the note about it.
 struct ClosingReport {
   std::size_t num_boundary_edges = 0;
   std::size_t num_inward_parts = 0;
-  std::map<std::string, std::size_t> steps;  ///< By name, counts added up.
+  std::map<std::string, std::size_t> steps;  ///< Number of repairs by name.
   double farthest = 0.0;                     ///< [m]
   double wrap_offset = 0.0;                  ///< [m]; 0: nothing was wrapped.
 
@@ -194,8 +195,8 @@ struct ClosingReport {
   }
 };
 
-/// A closed, outward surface of a mesh that is neither: each connected part is mended (holes of any
-/// size are filled), and one that cannot be, or has no volume, is wrapped.
+/// Makes a mesh closed and outward. Each connected part is mended (holes of any size are filled); a
+/// part that cannot be mended, or has no volume, is wrapped.
 TriangleMesh closed_surface(const TriangleMesh& mesh, ClosingReport& report) {
   geometry::MeshRepairOptions options;
   options.max_hole_extent_rel = 1.0;  // the ends of a tube are as wide as the tube
@@ -206,7 +207,7 @@ TriangleMesh closed_surface(const TriangleMesh& mesh, ClosingReport& report) {
     report.add(repaired, 0.0);
     return repaired.mesh;
   } catch (const base::Error&) {
-    // Part by part then, so that only what is broken is wrapped.
+    // The mesh is now mended part by part, so that only broken parts are wrapped.
   }
   std::vector<TriangleMesh> closed;
   options.wrap = geometry::AlphaWrap{.alpha_rel = 0.05, .offset_rel = 0.005};
@@ -254,7 +255,7 @@ void read_link_surface(const DescribedLink& source, const std::filesystem::path&
       }
     }
     const bool is_known = std::find(meshes.begin(), meshes.end(), mesh) != meshes.end();
-    if (!is_known) meshes.push_back(std::move(mesh));  // the same twice is once
+    if (!is_known) meshes.push_back(std::move(mesh));  // equal parts are taken once
   }
   if (!report.steps.empty()) findings.note("link " + source.name, text_of(report));
   link.mesh_L = geometry::concatenated(meshes);

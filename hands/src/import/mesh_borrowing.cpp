@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// How far apart two lines may be that are the same axis: rotations are written with four decimals,
-/// 5e-5 each, which over the 0.2 m of a finger is 1e-5 m.
+/// Largest differences of two lines that count as the same axis. Rotations are written with four
+/// decimals, an error of 5e-5 each, which over the 0.2 m of a finger is 1e-5 m.
 constexpr double kSameDirection = 5e-4;  // [rad]
 constexpr double kSamePlace = 5e-5;      // [m]
-/// Limits of equal width: written with three digits.
+/// Largest difference of limits of equal width, which are written with three digits.
 constexpr double kSameWidth = 1e-3;  // [rad] or [m]
 
 struct AxisLine {
@@ -41,7 +41,7 @@ bool are_parallel(const AxisLine& a, const AxisLine& b) {
   return a.direction.cross(b.direction).norm() < kSameDirection;
 }
 
-/// A tree, how its joints branch, and the positions at which it is compared.
+/// A tree of joints, and the joint positions at which it is compared.
 struct Skeleton : JointTree {
   explicit Skeleton(const HandModel& tree)
       : JointTree(tree), q(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree.joints.size()))) {}
@@ -59,14 +59,14 @@ struct Skeleton : JointTree {
   Eigen::VectorXd q;
 };
 
-/// Finds the joint of `theirs` for every joint of `ours`, and the positions of theirs at which both
-/// trees stand alike while ours are at zero.
+/// Finds the joint of `theirs` for every joint of `ours`, and the positions of the joints of
+/// `theirs` at which both trees have the same pose while the joints of `ours` are at zero.
 class JointMatcher {
  public:
   JointMatcher(const Skeleton& ours, Skeleton& theirs)
       : ours_(ours), theirs_(theirs), match_(ours.tree().joints.size()) {}
 
-  /// Empty if they match, or else why not.
+  /// Matches the joints. Empty if they match, else the reason why they do not.
   std::optional<std::string> find() {
     if (ours_.tree().joints.size() != theirs_.tree().joints.size()) {
       return "it has " + std::to_string(theirs_.tree().joints.size()) + " joints, not " +
@@ -118,12 +118,13 @@ class JointMatcher {
     if (ours_.joint(a).type != theirs_.joint(b).type) return false;
     const AxisLine ours = ours_.axis_line(a);
     const AxisLine theirs = theirs_.axis_line(b);
-    // Where a sliding joint's axis lies says nothing.
+    // The position of a prismatic joint's axis does not matter.
     return are_parallel(ours, theirs) && (ours_.joint(a).type == JointType::Prismatic ||
                                           distance(ours, theirs.point) < kSamePlace);
   }
 
-  /// Positions of their joint that could correspond to zero of ours, the likeliest first.
+  /// Positions of joint b of `theirs` that could correspond to zero of joint a of `ours`, the
+  /// likeliest first.
   std::vector<double> candidates(int a, int b) const {
     const std::vector<int> ours = ours_.next(a);
     const std::vector<int> theirs = theirs_.next(b);
@@ -152,12 +153,14 @@ class JointMatcher {
     const double at = theirs_.q[b];
     const Vector3d& z = axis.direction;
     if (theirs_.joint(b).type == JointType::Prismatic) {
-      // Along z until the lines meet: the part of the shift across `to` must vanish.
+      // The joint moves `from` along z until the lines meet: the part of the offset across `to`
+      // must vanish.
       const Vector3d across = z - z.dot(to.direction) * to.direction;
       if (across.norm() < kSameDirection) return {};
       return {at + (to.point - from.point).dot(across) / across.squaredNorm()};
     }
-    // Seen along the axis: turn the direction, or, where that is parallel to the axis, the point.
+    // The angle is measured in the plane normal to the axis, between the directions of the lines,
+    // or between their points if the lines are parallel to the axis.
     const auto flat = [&](const Vector3d& v) { return Vector3d(v - z.dot(v) * z); };
     const auto angle = [&](const Vector3d& u, const Vector3d& v) {
       return std::atan2(z.dot(u.cross(v)), u.dot(v));
@@ -190,7 +193,8 @@ std::string name_of(const DescribedGeometry& part) {
   return mesh ? mesh->filename : "a primitive";
 }
 
-/// The first link that hangs on no joint: the whole tree is wanted, not from the palm on.
+/// The first link that is no child of a joint: the whole tree is compared, not only from the palm
+/// on.
 std::optional<std::string> root_of(const RobotDescription& description) {
   for (const DescribedLink& link : description.links) {
     if (std::none_of(description.joints.begin(), description.joints.end(),
@@ -218,7 +222,7 @@ fs::path urdf_in(const fs::path& folder) {
 void borrow(const fs::path& file, RobotDescription& description, Findings& findings) {
   const fs::path folder = fs::absolute(file).parent_path();
   const fs::path urdf_file = urdf_in(folder);
-  Findings strict(Findings::AtFault::Throw);  // what is odd about the URDF's joints is of no matter
+  Findings strict(Findings::AtFault::Throw);  // suspicious joints of the URDF do not matter
   const RobotDescription urdf = parse_urdf(base::read_file(urdf_file), urdf_file.string(), strict);
   const HandModel our_tree = *build_tree(description, file.string(), root_of(description), strict);
   const HandModel their_tree = *build_tree(urdf, urdf_file.string(), root_of(urdf), strict);

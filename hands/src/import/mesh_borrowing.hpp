@@ -7,13 +7,13 @@
 
 namespace graspfit::hands::internal {
 
-/// Gives every link of `description` that has no geometry that of the only URDF in the folder of
-/// its file, with mass and inertia where one link of the URDF has them, if the joints of both stand
-/// in the same places: every joint axis of the one is, as a line in the root link's frame, one of
-/// the other's, branching alike. Where a joint's angle is counted from does not matter: it is found
-/// from the axis that comes next, or at the end of a finger from limits of equal width; failing
-/// that both zeros are taken to be the same. Every mesh taken is noted; why none could be is
-/// suspicious. Throws nothing.
+/// Gives every link of `description` that has no geometry the geometry of the only URDF in the
+/// folder of `file`, with mass and inertia where one link of the URDF has them. The joints of both
+/// must be in the same positions: every joint axis of the one is, as a line in the root link's
+/// frame, a joint axis of the other, and the joints branch alike. Their zero positions may differ.
+/// The difference is found from the axis of the next joint, or at the end of a finger from limits
+/// of equal width; failing that, both zeros are taken to be the same. Every borrowed mesh is noted;
+/// if none could be borrowed, the reason is a suspicious finding. Throws nothing.
 void borrow_meshes(const std::filesystem::path& file, RobotDescription& description,
                    Findings& findings);
 

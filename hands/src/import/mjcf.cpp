@@ -28,8 +28,8 @@ using base::InvalidInput;
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
-/// An anchor this near to the axis through the body's origin is on it [m]: far below any length
-/// that a file gives, far above rounding.
+/// An anchor nearer than this to the axis through the body's origin counts as on the axis [m]. This
+/// is far below any length that a file gives, and far above rounding.
 constexpr double kOnAxis = 1e-12;
 
 class MjcfReader {
@@ -89,7 +89,7 @@ class MjcfReader {
     return "body " + (name.empty() ? std::to_string(body) : name);
   }
 
-  /// Which bodies belong to the hand, and which is its root.
+  /// Finds which bodies belong to the hand, and which one is its root.
   ///
   /// The hand is what hangs on the one child of the world that has movable joints on it or below
   /// it; its root is that child, or the world where a movable joint joins the two. If several
@@ -144,7 +144,7 @@ class MjcfReader {
     return name;
   }
 
-  /// Names in the file go first: those that we give must differ from them.
+  /// Names in the file come first: names that we give must differ from them.
   void name_links_and_joints() {
     std::set<std::string> links;
     std::set<std::string>& joints = joint_names_taken_;
@@ -216,9 +216,9 @@ class MjcfReader {
   /// Joins a body to its parent. MuJoCo's pose of a body in its parent is
   ///   X(body) · Π over its joints of  T(anchor) · R(axis, q − ref) · T(−anchor)  or
   ///   T((q − ref) · axis),
-  /// anchors and axes in the body's frame as it stands before the joint moves. A link of ours ends
-  /// where its joint is, so a body with several joints, or with an anchor beside its origin,
-  /// hangs on links without mass or surface.
+  /// with anchors and axes in the body's frame before the joint moves. The frame of a link is at
+  /// its own joint here, so a body with several joints, or with an anchor beside its origin, needs
+  /// intermediate links without mass or surface.
   void add_joints(int body, const std::string& item) {
     std::string parent = link_names_.at(model_.body_parentid[body]);
     RigidTransform X_P = pose(model_.body_pos + 3 * body, model_.body_quat + 4 * body, item);
@@ -234,7 +234,7 @@ class MjcfReader {
       is_joined = j + 1 == end && anchor == Vector3d::Zero();
       joint.child = is_joined ? link_names_.at(body) : between_names_.at(j);
       if (!is_joined) description_.links.push_back(DescribedLink{joint.child, {}, {}, {}});
-      // R(q − ref) = R(−ref) · R(q): about one axis.
+      // Rotations about one axis satisfy R(q − ref) = R(−ref) · R(q).
       joint.X_PJ = X_P * Eigen::Translation3d(anchor) *
                    joint_motion(joint, -model_.qpos0[model_.jnt_qposadr[j]]);
       parent = joint.child;
@@ -277,7 +277,7 @@ class MjcfReader {
       if (type == mjJNT_SLIDE) {
         findings_.attempt([&] { fail(item + ": no limits"); });
       } else {
-        // One turn: what lies beyond is the same pose.
+        // The range is one turn: positions beyond it give the same poses.
         joint.type = DescribedJoint::Type::Continuous;
         joint.lower = -std::numbers::pi;
         joint.upper = std::numbers::pi;
@@ -352,7 +352,7 @@ class MjcfReader {
     return result;
   }
 
-  /// <exclude>. A signature holds both bodies, each plus one, in 16 bits each.
+  /// Reads <exclude>. A signature holds the indices of both bodies, each plus one, in 16 bits each.
   void excluded_pairs() {
     for (int e = 0; e < model_.nexclude; ++e) {
       const int signature = model_.exclude_signature[e];
@@ -367,10 +367,11 @@ class MjcfReader {
     description_.exclusions.emplace_back(a->second, b->second);
   }
 
-  /// Links none of whose geoms MuJoCo tests against each other, by contype and conaffinity: the
-  /// bits of one must meet those of the other. A <pair> is tested whatever they are.
+  /// Excludes pairs of links whose geoms MuJoCo never tests against each other. It tests two geoms
+  /// if contype of one and conaffinity of the other share a bit, and a <pair> whatever its bits
+  /// are.
   void pairs_kept_apart_by_masks() {
-    if (model_.opt.collision == mjCOL_PAIR) return;  // the masks are not looked at
+    if (model_.opt.collision == mjCOL_PAIR) return;  // MuJoCo ignores the masks
     std::set<std::pair<int, int>> may_touch;
     for (int p = 0; p < model_.npair; ++p) {
       const int a = model_.geom_bodyid[model_.pair_geom1[p]];
@@ -414,7 +415,7 @@ class MjcfReader {
   std::vector<int> bodies_;                   ///< Those of the hand, parents first.
   std::map<int, std::string> link_names_;     ///< Of bodies.
   std::map<int, std::string> joint_names_;    ///< Of joints.
-  std::map<int, std::string> between_names_;  ///< Of the link that a joint moves, if not a body.
+  std::map<int, std::string> between_names_;  ///< Of the link that a joint moves, if it is no body.
   std::set<std::string> joint_names_taken_;   ///< Names of joints that are taken.
   std::vector<int> link_of_;
   std::vector<int> joint_of_;

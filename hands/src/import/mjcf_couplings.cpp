@@ -15,7 +15,7 @@ namespace {
 
 using base::shortest_decimal;
 
-/// Coefficients from the constant one up.
+/// Coefficients of a polynomial, from the constant one up.
 using Polynomial = std::array<double, 5>;
 
 double value(const Polynomial& p, double x) {
@@ -24,7 +24,7 @@ double value(const Polynomial& p, double x) {
 
 bool is_linear(const Polynomial& p) { return p[2] == 0.0 && p[3] == 0.0 && p[4] == 0.0; }
 
-/// q(follower) = ratio · q(leader) + offset.
+/// The line q(follower) = ratio · q(leader) + offset.
 struct Line {
   double ratio = 0.0;
   double offset = 0.0;
@@ -50,7 +50,7 @@ Line nearest_line(const Polynomial& p, double lower, double upper) {
 
 /// A joint and its factor in a tendon's length.
 struct Term {
-  int joint = -1;  ///< MuJoCo's.
+  int joint = -1;  ///< Index in MuJoCo's model.
   double coefficient = 0.0;
 };
 
@@ -120,7 +120,7 @@ class CouplingReader {
     }
   }
 
-  /// q1 = ref1 + p(q2 − ref2).
+  /// Couples joint 1, the follower, to joint 2, the leader, by q1 = ref1 + p(q2 − ref2).
   void couple(int follower, int leader, const Polynomial& p, const std::string& item) {
     const double lower = described(leader).lower - ref(leader);
     const double upper = described(leader).upper - ref(leader);
@@ -223,7 +223,8 @@ class CouplingReader {
     return result;
   }
 
-  /// L1 − L1(ref) = p(L2 − L2(ref)), with L = Σ c q.
+  /// Reads the constraint L1 − L1(ref) = p(L2 − L2(ref)) between the lengths L = Σ c q of two
+  /// tendons.
   void tendon_equality(int first, int second, const Polynomial& p, const std::string& item) {
     const std::vector<Term> left = terms(first);
     const std::vector<Term> right = second < 0 ? std::vector<Term>{} : terms(second);
@@ -315,7 +316,7 @@ class CouplingReader {
   const std::vector<int>& joint_of_;
   RobotDescription& description_;
   Findings& findings_;
-  std::map<std::string, double> fixed_;  ///< Joints that constraints hold, and where.
+  std::map<std::string, double> fixed_;  ///< Joints that constraints hold, and their positions.
 };
 
 }  // namespace

@@ -9,15 +9,15 @@
 
 namespace graspfit::hands::internal {
 
-/// Sets what joins the joints of `description`: <equality> constraints and tendons driven by
-/// actuators. `link_of[b]` and `joint_of[j]` are the indices in the description of MuJoCo's body b
-/// and joint j, −1 if they are left out. `findings` gets what cannot be kept.
+/// Sets the couplings of the joints of `description`, from <equality> constraints and from tendons
+/// driven by actuators. `link_of[b]` and `joint_of[j]` are the indices in the description of
+/// MuJoCo's body b and joint j, −1 if they are left out. Constraints that cannot be kept are
+/// reported in `findings`.
 ///
 /// - <equality><joint>: q1 = ref1 + p(q2 − ref2); a polynomial of higher degree becomes the
-/// straight
-///   line that is nearest in the least squares over the leader's limits. Without joint2, or with a
-///   constant polynomial, the joint is fixed there.
-/// - <equality><tendon> of fixed tendons: the same if two joints are concerned, or one.
+///   straight line that is nearest in the least squares over the leader's limits. Without joint2,
+///   or with a constant polynomial, the joint becomes a fixed joint at that position.
+/// - <equality><tendon> of fixed tendons: the same, if the constraint involves one or two joints.
 /// - A fixed tendon with an actuator: its joints that have no actuator of their own and follow no
 ///   other joint go through their ranges together, led by the first in the tree, and break away:
 ///   such a tendon lets one joint go on when another is blocked.

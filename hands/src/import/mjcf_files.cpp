@@ -26,7 +26,7 @@ using base::InvalidInput;
 using base::IoError;
 using tinyxml2::XMLElement;
 
-/// Attributes of numbers that shape a hand.
+/// Attributes whose numbers determine a hand.
 constexpr std::array<std::string_view, 22> kNumbers = {
     "axis",  "axisangle", "coef", "density", "diaginertia", "euler", "fromto", "fullinertia",
     "mass",  "polycoef",  "pos",  "quat",    "range",       "ref",   "refpos", "refquat",
@@ -48,7 +48,7 @@ bool names_no_number(std::string_view text) {
 /// An attribute of an asset that names a file.
 struct NamedFile {
   std::string element;
-  std::string asset;  ///< Its name; empty where the file gives it one.
+  std::string asset;  ///< Name of the asset; empty: named by the file.
   std::string file;
 };
 
@@ -111,7 +111,8 @@ class FileChecker {
     }
   }
 
-  /// Wherever it stands: an included file may hold the children of an <asset> alone.
+  /// Whether an element names files, wherever it is: an included file may hold only the children of
+  /// an <asset>.
   static bool names_files(std::string_view element) {
     return element == "mesh" || element == "texture" || element == "hfield" || element == "skin";
   }
@@ -125,7 +126,7 @@ class FileChecker {
     }
   }
 
-  /// What an included file includes is relative to the main one's folder, too.
+  /// Paths in an included file are relative to the main file's folder, too.
   void include(const XMLElement& e) {
     const char* name = e.Attribute("file");
     if (name == nullptr || !included_.insert(name).second) return;  // MuJoCo refuses both

@@ -6,8 +6,8 @@
 
 namespace graspfit::hands::internal {
 
-/// The mesh files that an MJCF description and what it includes name, by the name of the mesh;
-/// relative to the description's folder, symbolic links resolved.
+/// The mesh files that are named by an MJCF description and the files that it includes, by the name
+/// of the mesh. Their paths are relative to the description's folder, with symbolic links resolved.
 using MjcfMeshFiles = std::map<std::string, std::string>;
 
 /// Follows the includes and folders of an MJCF description as MuJoCo does, before MuJoCo opens

@@ -15,7 +15,7 @@ namespace {
 using base::IoError;
 using Handler = void (*)(const char*);
 
-/// MuJoCo's texts have several lines.
+/// Joins the lines of one of MuJoCo's messages.
 std::string one_line(const std::string& text) {
   std::string line;
   bool is_break = false;
@@ -31,7 +31,7 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
-/// Where this thread's warnings go; the handlers are the same for all threads.
+/// The list for this thread's warnings; the handlers are the same for all threads.
 thread_local std::vector<std::string>* warnings_of_this_thread = nullptr;
 std::mutex handlers_mutex;
 int num_handlers_wanted = 0;
@@ -46,7 +46,7 @@ void take_warning(const char* message) {
   }
 }
 
-/// MuJoCo does not go on after an error: its handler must not return.
+/// MuJoCo does not go on after an error: the error handler must not return.
 void take_error(const char* message) {
   if (warnings_of_this_thread == nullptr && others_error_handler != nullptr) {
     others_error_handler(message);
@@ -54,9 +54,10 @@ void take_error(const char* message) {
   throw MujocoError(one_line(message));
 }
 
-/// Decimal points in new streams, while it lives. MuJoCo reads numbers through streams of C++'s
-/// global locale; for C's functions it takes care itself. Does nothing in the usual program, whose
-/// global locale is the classic one, whatever `setlocale` was told.
+/// While such an object lives, new streams read numbers with decimal points. MuJoCo reads numbers
+/// through streams of C++'s global locale; the locale of C's functions it handles itself. The
+/// object does nothing in the usual program, whose global C++ locale is the classic one whatever
+/// `setlocale` was called with.
 class ClassicNumbers {
  public:
   ClassicNumbers() {
@@ -77,7 +78,7 @@ class ClassicNumbers {
   ClassicNumbers& operator=(const ClassicNumbers&) = delete;
 
  private:
-  std::locale before_;  ///< The global one.
+  std::locale before_;  ///< The global C++ locale.
   bool is_changed_ = false;
 };
 
@@ -92,13 +93,13 @@ MujocoModel load(const std::string& file, const mjVFS* files) {
   try {
     result.model.reset(
         mj_loadXML(file.c_str(), files, message.data(), static_cast<int>(message.size())));
-  } catch (const std::exception& error) {  // MuJoCo's own are all caught by it
+  } catch (const std::exception& error) {  // MujocoError among others
     throw IoError(file + ": MuJoCo: " + error.what());
   }
   mj_freeLastXML();
   if (!result.model) throw IoError(file + ": MuJoCo: " + one_line(message.data()));
   result.warnings = messages.warnings();
-  // A warning of the model's compiler.
+  // The message is a warning of the model's compiler.
   if (message.front() != '\0') result.warnings.push_back(one_line(message.data()));
   return result;
 }

@@ -10,16 +10,17 @@
 
 namespace graspfit::hands::internal {
 
-/// What MuJoCo calls an error, after which its own handler would end the program.
+/// An error that MuJoCo reports. MuJoCo's own handler would end the program after it.
 class MujocoError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// While it lives, MuJoCo's errors on this thread are MujocoErrors (one line), and its warnings are
-/// kept instead of printed. MuJoCo's handlers belong to the whole program: they are ours while any
-/// thread has one of these, then the caller's again; meanwhile other threads' messages go to the
-/// caller's. At most one per thread at a time.
+/// While such an object lives, MuJoCo's errors on its thread are thrown as MujocoErrors (one line),
+/// and MuJoCo's warnings are kept instead of printed. MuJoCo's handlers are global to the program:
+/// they are ours while any thread has such an object, and the caller's again afterward; meanwhile
+/// messages of other threads go to the caller's handlers. A thread may have only one such object at
+/// a time.
 class MujocoMessages {
  public:
   MujocoMessages();
@@ -37,7 +38,7 @@ struct MujocoModelDeleter {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
 };
 
-/// A model as MuJoCo compiles it, and what it warned of meanwhile, a line each.
+/// A model that MuJoCo has compiled, and the warnings of the compilation, a line each.
 struct MujocoModel {
   std::unique_ptr<mjModel, MujocoModelDeleter> model;
   std::vector<std::string> warnings;
@@ -46,12 +47,12 @@ struct MujocoModel {
 /// Lets MuJoCo load an MJCF file. Nothing is printed or written, and MuJoCo's errors do not end the
 /// program. Numbers are read in the C locale whatever the program's is.
 ///
-/// Calls of other threads wait for each other. What the program loaded before is no longer there
-/// for `mj_saveLastXML`.
-/// @throws IoError (file, MuJoCo's words in one line) if it is refused.
+/// Calls from several threads wait for each other. A model that the program loaded before is no
+/// longer available to `mj_saveLastXML`.
+/// @throws IoError (file, MuJoCo's words in one line) if MuJoCo refuses the file.
 MujocoModel load_mujoco_model(const std::filesystem::path& file);
 
-/// The same for the text of an MJCF file, which errors call `name`.
+/// Lets MuJoCo load the text of an MJCF file, as `load_mujoco_model`; errors name it `name`.
 MujocoModel load_mujoco_text(const std::string& name, const std::string& text);
 
 }  // namespace graspfit::hands::internal

@@ -8,8 +8,9 @@
 
 namespace graspfit::hands::internal {
 
-/// Parses a robot description of any known format, told by its root element. `text` is the file's.
-/// @throws IoError prefixed by the file where it is none of them; as the format's reader.
+/// Parses a robot description of any known format, which its root element tells. `text` is the
+/// content of `file`.
+/// @throws IoError prefixed by the file where the format is not known; as the format's reader.
 RobotDescription parse_robot_file(const std::string& text, const std::filesystem::path& file,
                                   Findings& findings);
 

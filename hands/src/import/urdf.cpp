@@ -17,15 +17,15 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-/// How far from 1 the length of an axis may be that means a unit vector: 0.577 0.577 0.577, with
-/// three digits, has the length 0.9994.
+/// Largest difference from 1 of the length of an axis that is meant as a unit vector: 0.577 0.577
+/// 0.577, with three digits, has the length 0.9994.
 constexpr double kUnitSlack = 2e-3;
-/// Revolute limits beyond a turn [rad], and prismatic ones beyond the reach of any hand [m]: other
-/// units, degrees and millimeters.
+/// Revolute limits beyond a turn [rad], and prismatic limits beyond the reach of any hand [m],
+/// suggest degrees and millimeters.
 constexpr double kFullTurn = 2.0 * std::numbers::pi + 1e-3;
 constexpr double kLongestStroke = 1.0;
 
-/// For people: four digits.
+/// A number as text for people, with four significant digits.
 std::string rounded(double value) {
   char text[32];
   const auto [end, error] =
@@ -33,7 +33,7 @@ std::string rounded(double value) {
   return {text, end};
 }
 
-/// Reads one file. Where faults are collected, an item keeps whatever of it can be read.
+/// Reads one file. Where faults are collected, an item keeps those of its values that can be read.
 class Parser : private XmlSource {
  public:
   Parser(std::string file, Findings& findings) : XmlSource(std::move(file)), findings_(findings) {}
@@ -116,7 +116,8 @@ class Parser : private XmlSource {
     return result;
   }
 
-  /// Mass, and where given center of mass and inertia; the latter turned into the link's axes.
+  /// Reads the mass and, where given, the center of mass and the inertia, which is rotated into the
+  /// link's axes.
   LinkInertia inertia(const XMLElement& e, const std::string& item) const {
     LinkInertia result;
     const XMLElement* mass = e.FirstChildElement("mass");
@@ -128,7 +129,8 @@ class Parser : private XmlSource {
     if (const XMLElement* tensor = e.FirstChildElement("inertia")) {
       const auto entry = [&](const char* name) { return number_or(*tensor, name, 0.0, item); };
       Eigen::Matrix3d inertia_I;
-      // Read before they are put in: Eigen asserts that a list once begun is completed.
+      // The entries are read before they are assigned: Eigen asserts that a list once begun is
+      // completed.
       const double xx = entry("ixx"), xy = entry("ixy"), xz = entry("ixz");
       const double yy = entry("iyy"), yz = entry("iyz"), zz = entry("izz");
       inertia_I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
@@ -185,7 +187,7 @@ class Parser : private XmlSource {
 
   void limits(const XMLElement& e, const std::string& item, DescribedJoint& result) {
     if (result.type == DescribedJoint::Type::Continuous) {
-      // One turn: what lies beyond is the same pose.
+      // The range is one turn: positions beyond it give the same poses.
       result.lower = -std::numbers::pi;
       result.upper = std::numbers::pi;
       return;

@@ -78,19 +78,19 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
     });
   }
   for (const DescribedLink& source : links) {
-    Link aside;  // without a tree too: a mesh that is not there is worth saying at once
+    Link aside;  // without a tree meshes are read too, so that missing ones are reported at once
     Link* link = &aside;
     if (sources.tree) {
       const auto found =
           std::find_if(sources.tree->links.begin(), sources.tree->links.end(),
                        [&](const Link& candidate) { return candidate.name == source.name; });
-      if (found == sources.tree->links.end()) continue;  // left out before the palm
+      if (found == sources.tree->links.end()) continue;  // the link is before the palm and left out
       link = &*found;
     }
     findings.attempt([&] { read_link_surface(source, description_file, *link, findings); },
                      "link " + source.name);
   }
-  // Faults of the tree leave limits and couplings that no configuration can have.
+  // After faults of the tree there may be limits and couplings that no configuration satisfies.
   if (sources.tree && !findings.has_faults()) {
     findings.attempt(
         [&] { check_size(*sources.tree, sources.description.meters_per_unit, findings); });
@@ -110,7 +110,7 @@ std::string completed_sidecar_text(const HandSources& sources, Findings& finding
 }
 
 std::optional<HandModel> assemble(const HandSources& sources, Findings& findings) {
-  // After a fault names can still be checked, but nothing sensible derived.
+  // After a fault names can still be checked, but nothing sensible can be derived.
   if (!sources.tree || (findings.has_faults() && !sources.sidecar.is_complete())) {
     return std::nullopt;
   }
@@ -119,7 +119,8 @@ std::optional<HandModel> assemble(const HandSources& sources, Findings& findings
   const bool is_whole = findings.attempt([&] {
     Sidecar sidecar = sources.sidecar;
     if (!sidecar.is_complete()) {
-      // By way of its text, so that the hand is the same once the text is a file.
+      // The derived sidecar is written as text and parsed, so that the hand is the same once the
+      // text is a file.
       const std::string text = completed_sidecar_text(sources, findings);
       sidecar = parse_sidecar(text, file + " (derived)");
       model.sidecar_sha256 = base::sha256_hex(text);

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 using base::InvalidInput;
 using base::shortest_decimal;
 
-/// A URDF must state them, a hand model does not know them: enough not to stop a simulated joint.
+/// Limits of effort and velocity, which a URDF must state and a hand model does not know: they are
+/// large enough not to stop a simulated joint.
 constexpr const char* kEffort = "10";   // [N or N m]
 constexpr const char* kVelocity = "1";  // [m/s or rad/s]
 
@@ -92,7 +93,7 @@ std::string inertial(const LinkInertia& inertia) {
          entry("iyy", 1, 1) + entry("iyz", 1, 2) + entry("izz", 2, 2) + "/>\n    </inertial>\n";
 }
 
-/// A pair of tags around parent and child of a joint, and the child's place.
+/// The beginning of a <joint>: its name and type, parent and child, and the child's pose.
 std::string joint_head(const std::string& name, const char* type, const std::string& parent,
                        const std::string& child, const RigidTransform& X_PJ) {
   return "  <joint name=\"" + escaped(name) + "\" type=\"" + type + "\">\n    <parent link=\"" +
@@ -213,7 +214,7 @@ std::vector<fs::path> export_hand(const HandModel& model, const fs::path& folder
   base::write_file_atomically(
       files.back(), internal::sidecar_text(sidecar_of(model), model.name,
                                            "Exported by graspfit from hand " + model.name + '.'));
-  // Last: who finds it finds everything that it names.
+  // The URDF is written last: when it exists, all files that it names do.
   files.push_back(urdf);
   base::write_file_atomically(files.back(), urdf_text(model));
   return files;

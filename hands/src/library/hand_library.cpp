@@ -23,14 +23,15 @@ fs::path program_folder() {
   return error ? fs::path() : program.parent_path();
 }
 
-/// What GRASPFIT_HANDS says; empty: nothing.
+/// The value of GRASPFIT_HANDS; empty if it is not set.
 std::string library_setting() {
   const char* const setting = std::getenv("GRASPFIT_HANDS");
   return setting == nullptr ? "" : setting;
 }
 
-/// Where the hand library may be, best first. A program of the build tree uses the sources' hands,
-/// so that a change there counts at once; an installed one those beside it, wherever it was moved.
+/// Folders in which the hand library may be, best first. A program of the build tree uses the hands
+/// of the source tree, so that a change there counts at once; an installed program uses the hands
+/// beside it, wherever it was moved.
 std::vector<fs::path> library_candidates() {
   if (const std::string setting = library_setting(); !setting.empty()) return {setting};
   std::vector<fs::path> candidates;

@@ -24,7 +24,8 @@ double distance_inside(const std::vector<Side>& lines, const Eigen::Vector2d& po
   return lines.empty() ? 0.0 : std::max(least, 0.0);
 }
 
-/// Corners of the hull whose upper side is the pad: the outline at z = 0, then the surface's.
+/// Corners of the hull whose upper side is the pad: first the outline's at z = 0, then the
+/// surface's.
 std::vector<Eigen::Vector3d> hull_points(const ContactPad& pad) {
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector2d& corner : pad.outline) {
@@ -77,7 +78,7 @@ std::vector<geometry::HalfSpace> surface_planes(const ContactPad& pad) {
   std::vector<geometry::HalfSpace> planes;
   if (pad.surface.empty()) return planes;
   const std::vector<Eigen::Vector3d> points = hull_points(pad);
-  // Facets steeper than this stand on the outline: walls that the outline's sides give already.
+  // Facets steeper than this are walls over the outline, which the outline's sides give already.
   constexpr double kWall = 1e-6;  // cosine; a facet of the bulge leans by far more
   constexpr double kSame = 1e-9;  // difference of unit normals of coplanar facets
   for (const geometry::HullFacet& facet : geometry::convex_hull(points).facets) {
@@ -119,7 +120,7 @@ geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
   }
   volume.push_back({-Eigen::Vector3d::UnitZ(), 0.0});
   if (pad.planes.empty()) volume.push_back({Eigen::Vector3d::UnitZ(), thickness});
-  // Seen along z the surface ends at the outline, so that moving it along z sweeps no further
+  // The surface ends at the outline as seen along z, so that moving it along z adds no further
   // walls.
   for (const geometry::HalfSpace& plane : pad.planes) {
     volume.push_back({plane.normal, plane.offset + plane.normal.z() * thickness});
@@ -135,7 +136,7 @@ TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness) {
     points.push_back(points[i] + thickness * Eigen::Vector3d::UnitZ());
   }
   const geometry::ConvexHull3 hull = geometry::convex_hull(points);
-  // Corners only: points of the pad that ended up inside the hull are left out.
+  // The mesh has the hull's corners only: points of the pad inside the hull are left out.
   std::vector<std::int32_t> number(points.size(), -1);
   TriangleMesh mesh;
   for (const std::size_t vertex : hull.vertices) {

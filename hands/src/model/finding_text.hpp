@@ -5,7 +5,7 @@
 
 namespace graspfit::hands::internal {
 
-/// For people: three digits.
+/// A number as text for people, with three significant digits.
 inline std::string rounded(double value) {
   char text[32];
   const auto [end, error] =

@@ -9,8 +9,8 @@
 
 namespace graspfit::hands::internal {
 
-/// Where the readers of descriptions put what they notice, and what a fault means to them: the end
-/// for `read_hand`, one more line for `check_hand`.
+/// Collects what the readers of descriptions notice, and decides what a fault does: it ends
+/// `read_hand`, and is one more line for `check_hand`.
 class Findings {
  public:
   enum class AtFault { Throw, Collect };
@@ -24,8 +24,8 @@ class Findings {
     list_.push_back({FindingKind::Note, std::move(item), std::move(what)});
   }
 
-  /// Runs a step that can be left out. Its base::Error goes on to the caller, or, when faults
-  /// are collected, becomes one about `item`. Returns whether the step went through.
+  /// Runs a step that can be left out. A base::Error of the step is passed on to the caller or,
+  /// where faults are collected, becomes a fault about `item`. Returns whether the step succeeded.
   template <class Step>
   bool attempt(const Step& step, const std::string& item = "") {
     try {

@@ -7,11 +7,11 @@
 
 namespace graspfit::hands::internal {
 
-/// Links that fixed joints join: what moves as one.
+/// Links that are joined by fixed joints, and so move as one rigid body.
 struct Body {
-  std::vector<int> links;     ///< Ascending; the first is the one that hangs on `joint`.
+  std::vector<int> links;     ///< Ascending; the first is the child of `joint`.
   std::optional<int> joint;   ///< The movable joint above it; empty for the root.
-  std::optional<int> parent;  ///< Body that the joint hangs on; empty for the root.
+  std::optional<int> parent;  ///< Body before the joint; empty for the root.
   std::vector<int> children;
   TriangleMesh mesh;  ///< All its links' surfaces, in the frame of its first link.
 };

@@ -46,7 +46,7 @@ HandConfiguration closed_configuration(const HandModel& model, double share) {
     double& position = configuration.q[j];
     position = (1.0 - share) * position + share * joint.closed_limit();
   }
-  // Followers start open: one that may break away would keep a position that is further closed.
+  // Followers are open at first: a breakaway joint would keep a position that is further closed.
   apply_couplings(model, configuration.q);
   return configuration;
 }

@@ -40,7 +40,7 @@ int index_of(const HandModel& model, const Items& items, const std::string& name
                      names_of(items) + base::did_you_mean(name, names));
 }
 
-/// Collects what every check of `validate` needs: the hand's name and a way to complain.
+/// Collects what every check of `validate` needs: the model, and errors that name the hand.
 class Checker {
  public:
   explicit Checker(const HandModel& model) : model_(model) {}
@@ -218,7 +218,8 @@ class Checker {
     const double area = area_of(points);
     require(area != 0.0, what + ": outline has no area");
     require(area > 0.0, what + ": outline is clockwise");
-    // Convex: no corner lies to the right of any side, up to the rounding of decimal input.
+    // In a convex outline no corner lies to the right of any side, up to the rounding of decimal
+    // input.
     const double slack = 1e-9 * std::sqrt(area);
     const std::vector<Side> lines = sides(points);
     double turn = 0.0;
@@ -230,7 +231,7 @@ class Checker {
       const Eigen::Vector2d& next = lines[(i + 1) % lines.size()].inward;
       turn += std::atan2(cross(lines[i].inward, next), lines[i].inward.dot(next));
     }
-    // Corners that go around twice lie left of every side, too.
+    // The corners of an outline that goes around twice lie left of every side, too.
     require(turn < 3.0 * std::numbers::pi, what + ": outline goes around more than once");
   }
 
@@ -239,10 +240,10 @@ class Checker {
             what + ": surface and planes do not belong together");
     if (pad.surface.empty()) return;
     const std::vector<Side> lines = sides(pad.outline);
-    // Rounding of decimal input, relative to the pad's size.
+    // Allows for the rounding of decimal input, relative to the pad's size.
     const double slack = 1e-9 * std::sqrt(area_of(pad.outline));
-    // The pad is the hull: what lies this little below it may stay, as rounding of points on a
-    // straight line does.
+    // The pad is the hull: points this little below it are allowed, such as rounded points of a
+    // straight line.
     constexpr double kDentRel = 1e-3;  // of the pad's size
     double height = 0.0;
     for (std::size_t i = 0; i < pad.surface.size(); ++i) {
@@ -328,11 +329,11 @@ void validate(const HandModel& model) {
 }
 
 double largest_reach(const HandModel& model) {
-  // A link whose pose in H never changes is measured from the palm center as it stands; every joint
-  // after that adds at most the length of its fixed part and its stroke.
+  // A link whose pose in H never changes is measured from the palm center; every joint after such
+  // links adds at most the length of its fixed part and its stroke.
   struct Bound {
     bool is_fixed = true;
-    RigidTransform X_HL = RigidTransform::Identity();  ///< Where fixed.
+    RigidTransform X_HL = RigidTransform::Identity();  ///< Only if fixed.
     double distance = 0.0;  ///< Upper bound of |link origin − palm center| [m].
   };
   std::vector<Bound> bounds(model.links.size());

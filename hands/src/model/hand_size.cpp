@@ -27,8 +27,8 @@ struct Unit {
 constexpr std::array<Unit, 3> kUnits = {
     {{"millimeters", 1e-3}, {"centimeters", 1e-2}, {"inches", 0.0254}}};
 
-/// The unit that makes a hand of this extent: too large, its lengths were read as meters; too
-/// small, they were meters and taken for that unit.
+/// The unit with which this extent is that of a hand. If the extent is too large, lengths in this
+/// unit were read as meters; if it is too small, lengths in meters were taken for this unit.
 std::optional<Unit> likely_unit(double extent) {
   constexpr double kTypical = 0.15;     // [m]
   constexpr double kWithinRatio = 3.5;  // grippers of 5 cm, hands with a forearm of 50 cm

@@ -12,7 +12,7 @@ namespace graspfit::hands::internal {
 
 using Eigen::Vector3d;
 
-/// How the joints of a tree follow each other, whatever links fixed joints join.
+/// The order of the movable joints in a hand's tree; links that fixed joints join count as one.
 class JointTree {
  public:
   explicit JointTree(const HandModel& tree) : tree_(tree), above_(tree.links.size()) {
@@ -30,11 +30,11 @@ class JointTree {
   const Joint& joint(int j) const { return tree_.joints[j]; }
   int num_joints() const { return static_cast<int>(tree_.joints.size()); }
 
-  /// The joint that moves a link; empty for what the root carries.
+  /// The joint that moves a link; empty for the root and links fixed to it.
   std::optional<int> above_link(std::size_t link) const { return above_[link]; }
   /// The joint before a joint, if there is one.
   std::optional<int> above(int j) const { return above_[joint(j).parent_link]; }
-  /// The joints next after a joint; of none: those on the root.
+  /// The joints next after a joint; without a joint, those on the root.
   std::vector<int> next(std::optional<int> j) const {
     std::vector<int> result;
     for (int k = 0; k < num_joints(); ++k) {
@@ -43,7 +43,8 @@ class JointTree {
     return result;
   }
 
-  /// At zero of all joints, in the root link's frame.
+  /// A point on a joint's axis and its direction while all joints are at zero, in the root link's
+  /// frame.
   Vector3d point(int j) const { return X_HJ(j).translation(); }
   Vector3d axis(int j) const { return X_HJ(j).linear() * joint(j).axis_J; }
   bool are_parallel(int a, int b) const {
@@ -52,7 +53,7 @@ class JointTree {
   }
 
   double range(int j) const { return joint(j).upper - joint(j).lower; }
-  /// Follows no joint, and none follows it.
+  /// Whether the joint follows no other joint, and none follows it.
   bool is_free(int j) const {
     return !joint(j).coupling &&
            std::none_of(tree_.joints.begin(), tree_.joints.end(), [&](const Joint& other) {

@@ -18,10 +18,10 @@ struct Side {
   double offset = 0.0;
 };
 
-/// Of all edges that have a length.
+/// The sides of an outline, without edges of length zero.
 std::vector<Side> sides(const std::vector<Eigen::Vector2d>& outline);
 
-/// Negative of a clockwise outline.
+/// The area of an outline; it is negative if the outline is clockwise.
 double area_of(const std::vector<Eigen::Vector2d>& outline);
 
 }  // namespace graspfit::hands::internal

@@ -14,11 +14,12 @@ namespace {
 
 /// Independent joints that close together and stop together.
 struct Group {
-  std::optional<int> finger;  ///< Empty: of none.
+  std::optional<int> finger;  ///< Empty: they belong to none.
   std::vector<int> joints;
 };
 
-/// One group per finger that has a closing joint of its own, then one per closing joint of none.
+/// One group per finger that has a closing joint of its own, then one per closing joint of no
+/// finger.
 std::vector<Group> closing_groups(const HandModel& model) {
   std::vector<bool> is_taken(model.joints.size(), false);
   const auto take = [&](int joint, Group& group) {
@@ -42,7 +43,7 @@ std::vector<Group> closing_groups(const HandModel& model) {
   return groups;
 }
 
-/// The model with every pair excluded that touches while the hand is open.
+/// The model, with all pairs of links excluded that touch while the hand is open.
 HandModel without_open_overlaps(HandModel model) {
   const auto X_HL = forward_kinematics(model, open_configuration(model));
   while (true) {

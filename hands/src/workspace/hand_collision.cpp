@@ -9,10 +9,11 @@ namespace graspfit::hands {
 
 namespace {
 
-// Room for rounding [m]: of coordinates of a hand and its object, below 1e-14.
+// Margin for rounding [m], which is below 1e-14 for coordinates of a hand and its object.
 constexpr double kSlack = 1e-9;
 
-/// Box in frame A around a box in frame B: conservative, widened by far more than its own rounding.
+/// A box in frame A around a box in frame B. It is conservative: it is widened by far more than its
+/// rounding.
 Eigen::AlignedBox3d box_around(const Eigen::AlignedBox3d& box_B, const RigidTransform& X_AB) {
   const Eigen::Vector3d center_A = X_AB * box_B.center();
   const Eigen::Vector3d half_A =
@@ -20,7 +21,7 @@ Eigen::AlignedBox3d box_around(const Eigen::AlignedBox3d& box_B, const RigidTran
   return {center_A - half_A, center_A + half_A};
 }
 
-/// False only if the boxes are apart: neither frame's axes separate them.
+/// False only if the boxes are apart: the axes of one of the frames separate them.
 bool may_meet(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B,
               const RigidTransform& X_AB) {
   return box_A.intersects(box_around(box_B, X_AB)) &&

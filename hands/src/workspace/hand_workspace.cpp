@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Overlap of links that counts as touching [m].
+// Overlap of links up to which they count as touching [m].
 constexpr double kTouchDepth = 1e-4;
 
 void append(base::ContentKey& key, const RigidTransform& pose) {
@@ -35,7 +35,7 @@ void append(base::ContentKey& key, const Vector3d& vector) {
   for (int i = 0; i < 3; ++i) key.number(vector[i]);
 }
 
-// Raised whenever the same hand and options may give another workspace.
+// The number is raised whenever the same hand and options may give another workspace.
 constexpr const char* kAlgorithm = "hand workspace 1";
 constexpr const char* kKind = "hand_workspace";
 

@@ -24,22 +24,23 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Configurations tried for collisions are this far apart in distance [m].
 constexpr double kDiameterStep = 1e-3;
-constexpr double kFarthest = 1e4;  // [m]; a bin for every step up to it is as many as are kept
-// Contact points nearer than this have no line between them [m]; rounding is a millionth of it.
+constexpr double kFarthest = 1e4;  // [m]; bounds the number of bins, one per step
+// Contact points nearer than this count as one, with no line between them [m]; rounding is a
+// millionth of it.
 constexpr double kSamePoint = 1e-9;
 // Most grid points of one finger; each costs forward kinematics.
 constexpr double kMostPoses = 1 << 14;
-// Grid points moved on from each end of a range.
+// Number of grid points at each end of a range from which local search starts.
 constexpr std::size_t kStarts = 4;
-// Between two of them where they are bins of distance.
+// Distance, in bins, between two of these starts where bins of distance are searched.
 constexpr std::ptrdiff_t kBinsBetweenStarts = 4;
-// Moving on ends at this share of a grid step; what is left is of second order in it.
+// Local search ends at this share of a grid step; the remaining error is of second order in it.
 constexpr double kFinestShare = 1e-5;
 constexpr int kMostRounds = 2000;
-// Steps in all joints at once, per joint.
+// Number of random steps in all joints at once, per joint.
 constexpr int kDrawnPerJoint = 4;
 
-/// Positions of some independent joints: a grid, or, with `per_joint` 0, `count` random ones.
+/// Positions of some independent joints: a grid or, if `per_joint` is 0, `count` random positions.
 class Samples {
  public:
   Samples(const HandModel& model, std::vector<int> joints, int per_joint, std::int64_t count)
@@ -75,10 +76,10 @@ class Samples {
   std::int64_t size_;
 };
 
-/// Improves positions of `joints` as long as that makes their value grow, by steps in one joint at
-/// a time, then by `num_drawn` steps in all at once (along a border of what is allowed one joint
-/// alone may be stuck), larger steps first. `value(q, best)` is empty where q is not allowed or not
-/// better. Deterministic; ends near a local best.
+/// Local search: improves positions of `joints` as long as their value grows, by steps in one joint
+/// at a time, then by `num_drawn` random steps in all joints at once (at the border of the allowed
+/// positions, steps in one joint may not help), larger steps first. `value(q, best)` is empty where
+/// q is not allowed or not better than `best`. Deterministic; ends near a local best.
 template <class Value>
 double move_on(const HandModel& model, const std::vector<int>& joints, double first_share,
                int num_drawn, double best, VectorXd& q, const Value& value) {
@@ -119,11 +120,12 @@ double move_on(const HandModel& model, const std::vector<int>& joints, double fi
   return best;
 }
 
-/// The independent joints that move one tip against another: those of both, of the one and of the
-/// other; and what carries both alike.
+/// The independent joints that move one tip relative to another: those that move both, and those
+/// that move only the one or only the other. Also the joints that carry both tips alike.
 struct PairJoints {
   std::vector<int> shared, only_a, only_b, all;
-  std::vector<int> carrying;  ///< Joints, coupled ones too, from the root to where the ways part.
+  /// Joints, coupled ones too, from the root to where the chains of the two tips part.
+  std::vector<int> carrying;
 };
 
 PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b) {
@@ -142,7 +144,7 @@ PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b) {
   };
   std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result.all));
   for (const int joint : result.all) {
-    // One that also sets a joint before the parting has to have one position for both.
+    // A joint that also sets a joint before the chains part must have one position for both tips.
     const bool is_shared = (has(a, joint) && has(b, joint)) || has(carriers, joint);
     (is_shared ? result.shared : has(a, joint) ? result.only_a : result.only_b).push_back(joint);
   }
@@ -163,13 +165,13 @@ int grid_of(const PairJoints& joints, const WorkspaceOptions& options) {
   return fits(n) ? n : 0;
 }
 
-/// A configuration of the grid and what it is worth.
+/// A configuration from which local search starts, and its value.
 struct Start {
   double value = -kInfinity;
   VectorXd q;
 };
 
-/// The few best of many starts, first ones first where they are equal.
+/// The few best of many starts; of equal ones the first come first.
 class BestStarts {
  public:
   bool takes(double value) const {
@@ -224,10 +226,11 @@ class TipPair {
     return range;
   }
 
-  /// Range of the distances at which the pads face each other; `is_clear(q)` is asked of as few
-  /// configurations as may be.
+  /// Range of the distances at which the pads face each other; `is_clear(q)` is called for as few
+  /// configurations as possible.
   DistanceRange facing_distances(const IsClear& is_clear) const {
-    // Of each millimeter of distance, the configuration whose pads face each other best.
+    // For each millimeter of distance, a bin holds the configuration whose pads face each other
+    // best.
     std::vector<Start> bins;
     for_each_row(
         [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
@@ -287,8 +290,8 @@ class TipPair {
   }
 
   /// Cosine of the larger of the angles between the pads' normals and the line between them; empty
-  /// where it is beyond the facing angle. Points in one place face each other along some line if
-  /// their normals are opposite within twice that angle.
+  /// if this angle is beyond the facing angle. If the points coincide, the pads face each other
+  /// along some line if their normals are opposite within twice the facing angle.
   std::optional<double> facing_cosine(const Tip& a, const Tip& b, double distance) const {
     const double least = std::cos(options_.facing_angle);
     if (distance < kSamePoint) {
@@ -306,7 +309,7 @@ class TipPair {
   }
 
   /// Calls `visit(q, tip of a, all tips of b, the samples of b)` for every position of the joints
-  /// that move a; q holds it, and may be changed in the joints of b alone.
+  /// that move a; q holds this position, and `visit` may change only the joints of b in it.
   template <class Visit>
   void for_each_row(const Visit& visit) const {
     const Samples shared = samples_of(joints_.shared);
@@ -334,7 +337,8 @@ class TipPair {
     return move_on(hand_.model(), joints_.all, step, num_drawn, best, q, value);
   }
 
-  /// The best of some starts, moved on where the grid had to be coarser than asked for.
+  /// The best of some starts, improved by local search where the grid had to be coarser than
+  /// requested.
   double best_of(const BestStarts& starts, double sign) const {
     double best = starts.list().front().value;
     if (per_joint_ == options_.samples_per_joint) return best;
@@ -348,8 +352,8 @@ class TipPair {
     return best;
   }
 
-  /// Every configuration is within half a step of a grid point in each joint (a whole range of a
-  /// random one).
+  /// Bound of the error: every configuration is within half a step of a grid point in each joint
+  /// (within the whole range of a random one).
   double error() const {
     double sum = 0.0;
     for (const int joint : joints_.all) {
@@ -376,7 +380,8 @@ SampledHand::SampledHand(const HandModel& model)
   for (const ContactPad& pad : model.pads) {
     contact_points_C_.push_back(pad_contact_point_C(pad));
   }
-  // Where a breakaway joint keeps nothing but what its coupling asks for.
+  // Coupled joints start at their open limits, so that breakaway joints keep only what their
+  // couplings ask for.
   for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
     const Joint& description = model.joints[joint];
     if (!description.coupling) continue;

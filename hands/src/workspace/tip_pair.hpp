@@ -9,11 +9,12 @@
 #include "graspfit/hands/hand_workspace.hpp"
 
 /// \file
-/// Two tips of a hand, or one and the palm: how far apart they get over all joint positions.
+/// Distances between two tips of a hand, or between a tip and the palm, over all joint positions.
 
 namespace graspfit::hands::internal {
 
-/// A tip pad's contact point and outward normal, in H; of no pad, the palm's center and direction.
+/// A tip pad's contact point and outward normal, in H; without a pad, the palm's center and
+/// direction.
 struct Tip {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
@@ -25,7 +26,7 @@ class SampledHand {
   explicit SampledHand(const HandModel& model);
 
   const HandModel& model() const { return model_; }
-  /// Positions to start from: set independent joints alone.
+  /// Joint positions of the open hand, to start from: only independent joints may be changed.
   const Eigen::VectorXd& open() const { return open_; }
 
   std::vector<RigidTransform> poses(const Eigen::VectorXd& q) const;
@@ -33,25 +34,25 @@ class SampledHand {
 
   int link_of(std::optional<int> pad) const { return pad ? model_.pads[*pad].link : 0; }
 
-  /// Most that a tip moves per unit of the independent joint `leader` if the joints in `standing`
-  /// do not move: the sum, over the joints that follow it, of the tip's largest distance from them.
+  /// Largest distance that a tip moves per unit of the independent joint `leader`, if the joints in
+  /// `standing` do not move: the sum, over `leader` and the joints that follow it, of the tip's
+  /// largest distance from the joint, times the joint's ratio.
   double speed(std::optional<int> pad, int leader, const std::vector<int>& standing) const;
 
  private:
   const HandModel& model_;
   Eigen::VectorXd open_;
-  std::vector<Eigen::Vector3d>
-      contact_points_C_;  ///< Of every pad: its surface over the frame's origin.
+  std::vector<Eigen::Vector3d> contact_points_C_;  ///< Per pad, see `pad_contact_point_C`.
 };
 
-/// Range of the distances of two tips; no pad stands for the palm's center.
+/// Range of the distances between two tips; an empty pad stands for the palm's center.
 DistanceRange tip_distance_range(const SampledHand& hand, std::optional<int> pad_a,
                                  std::optional<int> pad_b, const WorkspaceOptions& options);
 
 using IsClear = std::function<bool(const Eigen::VectorXd& q)>;
 
-/// Range of the distances at which two pads face each other; `is_clear` is asked of as few
-/// configurations as may be.
+/// Range of the distances at which two pads face each other; `is_clear` is called for as few
+/// configurations as possible.
 DistanceRange facing_distance_range(const SampledHand& hand, int pad_a, int pad_b,
                                     const WorkspaceOptions& options, const IsClear& is_clear);
 

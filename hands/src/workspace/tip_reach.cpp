@@ -17,18 +17,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCell = 0.006;  // [m] finer than any fingertip is wide
-// Around the visited cells [cells]: places that a finger all but reaches are looked up, not
-// bounded.
+constexpr double kCell = 0.006;  // [m] less than the width of any fingertip
+// Width of the border around the visited cells [cells]: there, distances of points that a finger
+// nearly reaches are looked up, not bounded.
 constexpr int kRoom = 4;
 constexpr double kMostCells = 0x1p26;  // 2.4 m cubed, in cells of 6 mm
 constexpr int kMostSamples = 1 << 14;
 constexpr int kMostPerJoint = 128;
-// A pad looks along a direction if its normal is within 50 degrees of it.
+// A pad faces along a direction if its normal is within 50 degrees of it.
 constexpr double kCosLooking = 0.64278760968653936;
 
-/// The faces and corners of a cube: no direction is farther than 35.3 degrees from one of them, the
-/// angle between the middle of an edge and a corner.
+/// Directions to the faces and corners of a cube: every direction is within 35.3 degrees of one of
+/// them, the angle between the middle of an edge and a corner.
 std::vector<Vector3d> looking_directions() {
   std::vector<Vector3d> directions;
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,8 +42,8 @@ std::vector<Vector3d> looking_directions() {
   return directions;
 }
 
-/// The nearest of `looking_directions`: the face of the largest component, or the corner of the
-/// signs. Equally near: any.
+/// Index of the nearest of `looking_directions`: the face of the largest component, or the corner
+/// given by the signs. Of equally near ones it is any.
 std::size_t nearest_direction(const Vector3d& normal) {
   Eigen::Index axis = 0;
   const double to_face = normal.cwiseAbs().maxCoeff(&axis);
@@ -75,7 +75,7 @@ std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
       configuration.q[joint] = limits.lower + share * (limits.upper - limits.lower);
     }
     apply_couplings(model, configuration.q);
-    // The hand's base is the frame.
+    // The poses are in H, the frame of the hand's base.
     const std::vector<RigidTransform> X_HL = forward_kinematics(model, configuration);
     poses.push_back({pad_contact_point(model, *finger.tip_pad, X_HL),
                      pad_pose(model, *finger.tip_pad, X_HL).linear().col(2)});

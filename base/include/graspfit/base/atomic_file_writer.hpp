@@ -6,14 +6,16 @@
 
 namespace graspfit::base {
 
-/// Writes a file piece by piece so that a reader, a crash or a kill never sees half of it: to a
-/// temporary name in the same folder, renamed over `file` by `commit`. Without `commit` nothing
-/// happens to `file`. Memory holds one block, whatever the size of the file. What a killed writer
-/// has left under a temporary name (`FILE.part0`) is taken over by the next one of the same file.
+/// Writes a file piece by piece so that nobody ever reads half of it, even after a crash or a kill:
+/// the pieces go to a temporary file in the same folder, which `commit` renames to `file`. Without
+/// `commit` nothing happens to `file`. Memory holds one block, whatever the size of the file. A
+/// temporary file that a killed writer has left (`FILE.part0`) is taken over by the next writer of
+/// the same file.
 ///
-/// A symbolic link stays: what it leads to is written in that way. Pipes, character devices and
-/// what `/dev/stdout` and its like stand for cannot be replaced; the pieces go into them as they
-/// come, and opening a pipe waits for its reader. Folders, block devices and sockets are refused.
+/// A symbolic link stays: the file that it leads to is written in this way. Pipes, character
+/// devices and the open files that `/dev/stdout` and the like stand for cannot be replaced; the
+/// pieces are written to them as they come, and opening a pipe waits for its reader. Folders, block
+/// devices and sockets are refused.
 class AtomicFileWriter {
  public:
   /// @throws IoError (file and reason) if no file can be made there.
@@ -22,7 +24,7 @@ class AtomicFileWriter {
   AtomicFileWriter(const AtomicFileWriter&) = delete;
   AtomicFileWriter& operator=(const AtomicFileWriter&) = delete;
 
-  /// Appends. @throws IoError.
+  /// Appends `content`. @throws IoError.
   void write(std::string_view content);
 
   /// Flushes to disk and renames. Nothing may be written afterwards. @throws IoError.
@@ -33,11 +35,11 @@ class AtomicFileWriter {
   void flush();
   [[noreturn]] void fail(const std::string& what) const;
 
-  std::filesystem::path file_;      ///< As the caller names it.
-  std::filesystem::path replaced_;  ///< What `commit` renames over: `file_` behind its links.
-  std::string temporary_;           ///< Empty: the pieces go into what is there.
+  std::filesystem::path file_;      ///< The path that the caller gave.
+  std::filesystem::path replaced_;  ///< What `commit` replaces: `file_`, links followed.
+  std::string temporary_;           ///< Temporary file; empty: `file_` is written to directly.
   int descriptor_ = -1;
-  std::string block_;  ///< Not on disk yet.
+  std::string block_;  ///< The bytes that are not on disk yet.
 };
 
 }  // namespace graspfit::base

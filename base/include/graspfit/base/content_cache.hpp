@@ -10,11 +10,11 @@
 
 namespace graspfit::base {
 
-/// Where results that are costly to find are kept between runs.
+/// A cache on disk, which keeps results that are costly to find between runs.
 ///
 /// An entry has a kind, which is the name of a folder, and a key, which is the SHA-256 of all that
-/// its value depends on: so an entry is never out of date, and the whole folder may be deleted at
-/// any time.
+/// its value depends on. An entry is therefore never out of date, and the whole folder may be
+/// deleted at any time.
 struct ContentCache {
   bool is_on = true;
   std::optional<std::filesystem::path> folder = {};  ///< Default: `$GRASPFIT_CACHE`, or else
@@ -23,25 +23,25 @@ struct ContentCache {
                                                      ///< these only absolute paths count.
 
   /// The file of an entry, `<folder>/<kind>/<key>.txt`; empty if the cache is off or there is no
-  /// home to put it in.
+  /// folder for it.
   /// @throws InvalidInput unless the kind is of a-z, 0-9 and _, and the key of 64 lower-case
   /// hexadecimal digits, as `sha256_hex` and `ContentKey` give them.
   std::optional<std::filesystem::path> file_of(std::string_view kind, std::string_view key) const;
 
   /// The value of an entry as it was written. Empty if there is none, if it cannot be read, or if
-  /// it is damaged: not exactly what `write` wrote under this kind and key (it carries both, and
-  /// the SHA-256 of its content). @throws as `file_of`.
+  /// it is damaged: not exactly what `write` wrote under this kind and key (the file holds both,
+  /// and the SHA-256 of its content). @throws as `file_of`.
   std::optional<std::string> read(std::string_view kind, std::string_view key) const;
 
-  /// Keeps a value, any bytes, atomically: a reader, a crash or another program writing the same
-  /// entry never sees half of it. A folder that cannot be made or written to is no error: nothing
-  /// is kept. @throws as `file_of`.
+  /// Keeps a value, which may be any bytes. The entry is written atomically: nobody reads half of
+  /// it, even after a crash or while another program writes the same entry. A folder that cannot be
+  /// made or written to is no error; nothing is kept then. @throws as `file_of`.
   void write(std::string_view kind, std::string_view key, std::string_view value) const;
 
   /// The value of an entry, or else what `find()` returns, which is then kept.
   ///
-  /// `from_text(text)` returns an optional, empty where the text is no such value: the entry is
-  /// then as good as none and replaced. `to_text(value)` is its inverse.
+  /// `from_text(text)` returns an optional, empty if the text is no such value: the entry then
+  /// counts as missing, and is replaced. `to_text(value)` is its inverse.
   template <class Find, class FromText, class ToText>
   auto value(std::string_view kind, std::string_view key, const Find& find,
              const FromText& from_text, const ToText& to_text) const {
@@ -58,8 +58,8 @@ struct ContentCache {
 /// if they are the same calls with the same values, bit by bit.
 class ContentKey {
  public:
-  /// `algorithm` names what finds the value and its version, raised whenever the same input may
-  /// give another value.
+  /// `algorithm` names the algorithm that finds the value, and its version, which is raised
+  /// whenever the same input may give another value.
   explicit ContentKey(std::string_view algorithm) { text(algorithm); }
 
   void number(double value) { append(&value, sizeof value); }
@@ -68,7 +68,7 @@ class ContentKey {
     number(static_cast<std::int64_t>(value.size()));
     append(value.data(), value.size());
   }
-  /// The elements' own bytes: for types without padding.
+  /// Appends the bytes of the elements, whose type must not have padding.
   template <class T>
   void list(const std::vector<T>& values) {
     number(static_cast<std::int64_t>(values.size()));
@@ -87,8 +87,8 @@ class ContentKey {
 class NumberWriter {
  public:
   void number(std::int64_t value);
-  void number(double value);  ///< Any but NaN; infinities read back too.
-  void indices(const std::vector<std::int32_t>& values);  ///< Their number, then they.
+  void number(double value);  ///< Any value but NaN; infinities read back too.
+  void indices(const std::vector<std::int32_t>& values);  ///< The number of values, then these.
   void end_line() { text_ += '\n'; }
   const std::string& text() const { return text_; }
 
@@ -96,8 +96,8 @@ class NumberWriter {
   std::string text_;
 };
 
-/// Reads what `NumberWriter` wrote. The first number that is not there or out of range makes it
-/// bad for good; all that is read from then on is the least allowed.
+/// Reads what `NumberWriter` wrote. The first number that is missing or out of range makes the
+/// reader bad for good: from then on it returns the least allowed value.
 class NumberReader {
  public:
   explicit NumberReader(std::string_view text) : text_(text) {}
@@ -105,10 +105,10 @@ class NumberReader {
   std::int64_t integer(std::int64_t least, std::int64_t most);
   double real(double least = -std::numeric_limits<double>::infinity(),
               double most = std::numeric_limits<double>::infinity());
-  /// Each in [0, size); at most `size` of them.
+  /// Reads indices, each in [0, size); at most `size` of them.
   std::vector<std::int32_t> indices(std::int64_t size);
   bool is_good() const { return is_good_; }
-  /// Good, and nothing is left.
+  /// Whether the reader is good and no text is left.
   bool is_finished() const;
 
  private:

@@ -4,16 +4,16 @@
 
 namespace graspfit::base {
 
-/// Who has the lock of a file or folder that every process finds by its name.
+/// Who holds the lock of a file or folder that every process finds by its path.
 enum class FileLock {
-  Ours,         ///< And the name still leads to what is locked: nobody has removed it meanwhile.
-  Others,       ///< Somebody else has it, or has removed or replaced what was opened.
-  Unavailable,  ///< The file system locks nothing.
+  Ours,         ///< We hold it, and the path still leads to the locked file.
+  Others,       ///< Somebody else holds it, or has removed or replaced the file.
+  Unavailable,  ///< The file system has no locks.
 };
 
-/// Locks what is open as `descriptor` and was found at `path`, without waiting. The lock lasts
-/// until the descriptor is closed, at the latest when the process ends: what is not locked belongs
-/// to nobody that lives.
+/// Locks the file or folder that is open as `descriptor` and was found at `path`, without waiting.
+/// The lock lasts until the descriptor is closed, at the latest when the process ends: a file that
+/// is not locked belongs to no living process.
 FileLock lock_file(int descriptor, const std::filesystem::path& path);
 
 }  // namespace graspfit::base

@@ -20,19 +20,20 @@ constexpr std::size_t kLargestJson = std::size_t{256} << 20;
 constexpr std::size_t kMostOrderedMembers = 10000;
 
 /// Refuses a text that no parser of JSON should build a tree from: longer than `kLargestJson`,
-/// nested deeper than `kDeepestJson`, or with an object of more than `most_members`. What is inside
-/// of strings does not count. What is no JSON is left for the parser to find: up to its first
-/// error, this counts as a parser does.
+/// nested deeper than `kDeepestJson`, or with an object of more than `most_members`. The content of
+/// strings does not count. Errors of syntax are left for the parser to find: up to the first one,
+/// this function counts as a parser does.
 /// @throws IoError "<name>: line 3, column 70: nests deeper than 64 levels, ...".
 void require_bounded_json(std::string_view text, const std::string& name,
                           std::size_t most_members = kLargestJson);
 
-/// The text of a JSON file that anybody may have written: every such file is read by this.
-/// @throws IoError if it cannot be read, or is refused by `require_bounded_json`; one that is too
-/// large is not read first.
+/// The text of a JSON file that anybody may have written; all such files are read by this function.
+/// @throws IoError if it cannot be read, or is refused by `require_bounded_json`; a file that is
+/// too large is refused before it is read.
 std::string read_json_file(const std::filesystem::path& file);
 
-/// What a parser of nlohmann's has said, without its prefix "[json.exception.parse_error.101] ".
+/// A parse error's message of nlohmann's library, without its prefix
+/// "[json.exception.parse_error.101] ".
 std::string json_fault(const std::string& what);
 
 }  // namespace graspfit::base

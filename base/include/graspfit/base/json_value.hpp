@@ -13,28 +13,28 @@
 
 namespace graspfit::base {
 
-/// A value of JSON together with where it stands, so that every complaint names both:
-/// "grasps.json: /results/grasps/0/quality/m: is missing". What its members find wrong they throw
-/// as the document's `Fault` does.
+/// A JSON value together with its location, which begins every error message about it:
+/// "grasps.json: /results/grasps/0/quality/m: is missing". Faults that its members find are thrown
+/// by the document's `Fault`.
 class JsonValue {
  public:
   using Json = nlohmann::ordered_json;
-  /// Throws. `location` is that of the root and a JSON pointer from there, `what` says what is
-  /// wrong there; both are of one line.
+  /// A function that throws an error. `location` is the root's location and a JSON pointer from
+  /// there, `what` says what is wrong there; both are one line.
   using Fault = std::function<void(const std::string& location, const std::string& what)>;
 
-  /// The root of a document of its own; `location` stands before the locations of all its values.
+  /// The root of a document of its own; `location` begins the locations of all its values.
   JsonValue(const Json& root, Fault fault, std::string location = "");
 
-  /// The root of a file with this text, which messages call `file`. Its faults are thrown as
-  /// `Exception`. @throws IoError "<file>: is not JSON: ..." or if
-  /// `require_bounded_json` refuses it, with at most `kMostOrderedMembers` in an object.
+  /// The root of a file with this text, which messages call `file`. Faults of its values are thrown
+  /// as `Exception`. @throws IoError "<file>: is not JSON: ..." or if `require_bounded_json`
+  /// refuses it, with at most `kMostOrderedMembers` in an object.
   template <class Exception>
   static JsonValue parsed(const std::string& text, const std::string& file) {
     return parsed(text, file, [](const std::string& message) { throw Exception(message); });
   }
 
-  /// The root of another tree whose faults are told as those of this document.
+  /// The root of another tree, whose faults are thrown as those of this document.
   JsonValue with_root(const Json& root) const;
 
   const Json& json() const { return *json_; }
@@ -55,21 +55,21 @@ class JsonValue {
                        const std::vector<std::string>& optional) const;
   /// The items of this array.
   std::vector<JsonValue> items() const;
-  /// Those of an array that is not empty.
+  /// The items of this array, which must not be empty.
   std::vector<JsonValue> some_items() const;
 
   double number() const;
-  double positive_number() const;  ///< > 0.
+  double positive_number() const;  ///< A number > 0.
   std::int64_t integer() const;
   std::uint64_t unsigned_integer() const;
   int small_integer() const;
   bool flag() const;  ///< true or false.
   std::string text() const;
   std::string name() const;                ///< A text that is not empty.
-  std::string path() const;                ///< Of a file, as `path_text` writes it.
-  std::vector<std::string> texts() const;  ///< Of an array.
+  std::string path() const;                ///< A file's path, as `path_text` writes it.
+  std::vector<std::string> texts() const;  ///< The texts of an array.
   template <std::size_t N>
-  std::array<double, N> numbers() const {  ///< Of an array with N of them.
+  std::array<double, N> numbers() const {  ///< The numbers of an array of N.
     std::array<double, N> values{};
     const std::vector<JsonValue> given = items();
     if (given.size() != N) refuse_count(given.size(), N);
@@ -77,7 +77,7 @@ class JsonValue {
     return values;
   }
 
-  /// Throws: `what` is wrong here.
+  /// Throws the fault that `what` is wrong with this value.
   [[noreturn]] void fail(const std::string& what) const;
   /// Throws "is <value>, <rule>", such as "is 3, must be a text".
   [[noreturn]] void refuse(const std::string& rule) const;

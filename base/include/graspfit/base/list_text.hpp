@@ -6,8 +6,8 @@
 
 namespace graspfit::base {
 
-/// The texts of some items one after the other, "a, b, c". `text` gives that of an item: a function
-/// or a member; without it the items are texts.
+/// The texts of some items one after the other, "a, b, c". `text` is a function or a member that
+/// gives the text of an item; without it the items are texts.
 template <class Items, class Text = std::identity>
 std::string list_text(const Items& items, const Text& text = {},
                       std::string_view separator = ", ") {

@@ -15,10 +15,11 @@ struct NumberRange {
   /// Only finite numbers are in any range.
   bool contains(double value) const;
 
-  /// After "must be": "in [4, 512]", "in (0, 1]", "> 0", ">= 1", "< 90"; "finite" without bounds.
+  /// The range as text after "must be": "in [4, 512]", "in (0, 1]", "> 0", ">= 1", "< 90"; "finite"
+  /// without bounds.
   std::string text() const;
 
-  /// `value` itself. @throws InvalidInput "<name> is <value>, must be <range>" if it is outside.
+  /// Returns `value`. @throws InvalidInput "<name> is <value>, must be <range>" if it is outside.
   double checked(const std::string& name, double value) const;
 };
 

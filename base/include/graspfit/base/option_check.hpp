@@ -36,7 +36,7 @@ void require(bool is_met, std::string_view where, std::string_view field, const 
   throw InvalidInput(message);
 }
 
-/// `require` that a number is in [least, most].
+/// Throws as `require` unless a number is in [least, most].
 template <typename Value>
 void require_between(Value least, Value most, std::string_view where, std::string_view field,
                      Value value) {

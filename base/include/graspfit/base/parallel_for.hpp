@@ -11,8 +11,8 @@
 namespace graspfit::base {
 
 /// Calls `body(i)` for every i in [0, count), on `num_threads` threads (0: as many as the machine
-/// has). Each call writes results of its own only, so that they do not depend on the threads. The
-/// first exception of a body is thrown again here.
+/// has). Each call must write only results of its own, so that results do not depend on the number
+/// of threads. The first exception that `body` throws is thrown again by this function.
 template <typename Body>
 void parallel_for(std::size_t count, int num_threads, const Body& body) {
   constexpr std::size_t kChunk = 64;

@@ -3,7 +3,7 @@
 #include <numbers>
 
 /// \file
-/// Everything inside is in meters and radians; people and files may use others.
+/// The code computes in meters and radians; people and files may use other units.
 
 namespace graspfit::base {
 

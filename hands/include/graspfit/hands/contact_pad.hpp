@@ -14,15 +14,16 @@ namespace graspfit::hands {
 using geometry::RigidTransform;
 using geometry::TriangleMesh;
 
-/// A surface meant to touch, on one link: flat, or bulging from a flat base like a fingertip.
+/// A surface of one link that is meant to touch objects. It is flat, or it bulges from a flat base
+/// like a fingertip.
 ///
-/// Pad frame C: origin in the pad's plane, z leaving the link toward what it touches, x and y in
-/// the plane. The outline bounds the pad seen along z; distances from the pad's border are measured
-/// in the plane for both kinds.
+/// The pad frame C has its origin in the pad's plane, z pointing out of the link toward the touched
+/// object, and x and y in the plane. The outline bounds the pad as seen along z; for both kinds of
+/// pads, distances from the pad's border are measured in the plane.
 struct ContactPad {
   std::string name;
   int link = -1;
-  std::optional<int> finger;                         ///< Of the hand model; empty: the palm.
+  std::optional<int> finger;  ///< Index of its finger; empty: the palm's pad.
   RigidTransform X_LC = RigidTransform::Identity();  ///< Pad frame in the link's frame.
   std::vector<Eigen::Vector2d>
       outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].
@@ -30,10 +31,10 @@ struct ContactPad {
   /// seen along z, and in convex position together with the outline's corners at z = 0. The pad is
   /// the upper side of the hull of both. Empty: the pad is flat.
   std::vector<Eigen::Vector3d> surface;
-  /// That upper side's facets as half-spaces with normal z > 0, what `surface_planes` makes of
-  /// outline and surface; the reader does so. Empty: the pad is flat.
+  /// Facets of a bulging pad's upper side as half-spaces whose normals have z > 0, as the reader
+  /// computes them with `surface_planes`. Empty: the pad is flat.
   std::vector<geometry::HalfSpace> planes;
-  /// Explicit thickness of the clip volume [m]; empty: the planner's rule.
+  /// Explicit thickness of the clip volume [m]; empty: the planner chooses it.
   std::optional<double> clip_thickness;
 };
 
@@ -46,34 +47,35 @@ double boundary_distance(const ContactPad& pad, const Eigen::Vector2d& point_C);
 /// Largest value of `boundary_distance` over the pad: the outline's inradius [m]. Rounded.
 double largest_boundary_distance(const ContactPad& pad);
 
-/// Planes of the facets with normal z > 0 of the hull of the outline (z = 0) and the surface's
-/// points, coplanar ones once, unit normals; empty for a flat pad. The hull's facets are exact, the
-/// planes rounded.
+/// Half-spaces with unit normals of those facets of the convex hull of the outline (at z = 0) and
+/// the surface's points whose normals have z > 0; coplanar facets give one half-space. Empty for a
+/// flat pad. The hull's facets are exact, their planes are rounded.
 std::vector<geometry::HalfSpace> surface_planes(const ContactPad& pad);
 
 /// Height of a point over the pad's surface along z of C [m], negative behind it. Beside the
-/// outline: over the surface's outermost facets, extended.
+/// outline it is the height over the surface's outermost facets, extended.
 double height_over_pad(const ContactPad& pad, const Eigen::Vector3d& point_C);
 
-/// Height of the pad's highest point over its plane [m]; 0 for a flat one.
+/// Height of the pad's highest point over its plane [m]; 0 for a flat pad.
 double pad_height(const ContactPad& pad);
 
-/// The point of the pad that is meant to touch, in C: over the origin of the pad's frame, on its
-/// surface; the origin itself of a flat pad, and where the surface does not reach over it. Whatever
-/// is to be brought to an object is this point. Rounded.
+/// The contact point of the pad, in C: the point that is brought to an object. It lies on the pad's
+/// surface over the origin of the pad's frame. For a flat pad, and where the surface does not reach
+/// over the origin, it is the origin itself. Rounded.
 Eigen::Vector3d pad_contact_point_C(const ContactPad& pad);
 
-/// The paper's clip volume in frame C, the pad's surface offset by `thickness` along its normal
-/// (> 0, else InvalidInput), as half-spaces: of a flat pad the prism over the outline, of a bulging
-/// one the hull of the surface and of the same moved by `thickness` along z. The bulge itself is
-/// part of it: no object gets there without entering the link.
+/// The paper's clip volume in frame C, as half-spaces: the pad's surface offset by `thickness`
+/// (> 0, else InvalidInput) along its normal. For a flat pad it is the prism over the outline; for
+/// a bulging pad it is the hull of the surface and of the surface moved by `thickness` along z. The
+/// volume includes the bulge itself, where no object gets without entering the link.
 geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness);
 
-/// The clip volume as a closed outward mesh in frame C, for showing it: corners of the pad, then
-/// the same moved by `thickness` along z. @throws as `clip_volume_C`.
+/// The clip volume as a closed mesh with outward normals in frame C, for display. Its vertices are
+/// the corners of the pad, then the same corners moved by `thickness` along z. @throws as
+/// `clip_volume_C`.
 TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness);
 
-/// The same volume in a frame A in which the pad's frame has pose `X_AC`.
+/// A convex volume given in the pad's frame C, expressed in a frame A in which C has pose `X_AC`.
 geometry::ConvexVolume transformed(const geometry::ConvexVolume& volume_C,
                                    const RigidTransform& X_AC);
 

@@ -12,8 +12,8 @@ namespace graspfit::hands {
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration);
 
-/// Pose of one link, given in `X_OL` that of its parent: a step of `forward_kinematics`, for those
-/// who move few links of many.
+/// Pose of one link, computed from the pose of its parent link in `X_OL`. This is one step of
+/// `forward_kinematics`, for callers that move only a few of many links.
 RigidTransform link_pose(const HandModel& model, int link, const std::vector<RigidTransform>& X_OL,
                          const HandConfiguration& configuration);
 
@@ -23,13 +23,13 @@ inline RigidTransform pad_pose(const HandModel& model, int pad,
   return X_OL[model.pads[pad].link] * model.pads[pad].X_LC;
 }
 
-/// The point of a pad that is meant to touch (`pad_contact_point_C`), given the link poses. Of a
-/// flat pad exactly the origin of its frame.
+/// The contact point of a pad (`pad_contact_point_C`) in O, given the link poses. For a flat pad it
+/// is exactly the origin of the pad's frame.
 Eigen::Vector3d pad_contact_point(const HandModel& model, int pad,
                                   const std::vector<RigidTransform>& X_OL);
 
-/// Links that move when joint `joint` moves (children of its child link, through couplings of other
-/// joints too), ascending.
+/// Indices of the links that move when joint `joint` moves, ascending: its child link, the child
+/// links of the joints that follow it by a coupling, and all links below these.
 std::vector<int> links_moved_by(const HandModel& model, int joint);
 
 }  // namespace graspfit::hands

@@ -12,9 +12,9 @@ namespace graspfit::hands {
 
 /// The link meshes of a hand, prepared once for collision tests.
 ///
-/// A link is the solid that its mesh bounds; what a reader added to close an open mesh counts as
-/// part of it (its findings say what and how much). Touching counts as intersecting. Links without
-/// faces touch nothing.
+/// A link is the solid that its mesh bounds; surface that a reader added to close an open mesh is
+/// part of the solid (the reader's findings say what was added and how much). Touching counts as
+/// intersecting. Links without faces touch nothing.
 class HandCollision {
  public:
   explicit HandCollision(const HandModel& model);
@@ -22,7 +22,8 @@ class HandCollision {
   /// The solid of one link in its own frame; empty for a link without faces.
   const std::optional<geometry::MeshQuery>& link_solid(int link) const { return links_[link]; }
 
-  /// A deepest overlap and where it is. Of pairs equally deep, the first by link_a, then link_b.
+  /// The deepest overlap and the links that have it. Of several equally deep pairs it is the first
+  /// by link_a, then by link_b.
   struct Result {
     bool intersects = false;    ///< Exact on the true meshes (see geometry::do_intersect).
     double depth = 0.0;         ///< Largest depth over all pairs [m]; a lower bound.
@@ -41,19 +42,21 @@ class HandCollision {
                                          const RigidTransform& X_OL, double floor,
                                          const geometry::PenetrationOptions& options) const;
 
-  /// Hand against object, all links. `X_OL` from forward kinematics.
+  /// Collision of all links with the object. `X_OL` are the link poses from forward kinematics.
   Result against_object(const geometry::MeshQuery& object,
                         const std::vector<RigidTransform>& X_OL) const;
 
-  /// Link against link, exclusions of the model left out.
+  /// Collision of the links with each other, without the pairs that the model excludes.
   Result against_self(const std::vector<RigidTransform>& X_OL) const;
 
-  /// Whether some link overlaps another, exclusions left out, by more than `depth` [m] > 0: true is
-  /// certain, false may be wrong by half of it. Much cheaper than a depth where they do.
+  /// Whether some link overlaps another by more than `depth` [m] > 0, without the pairs that the
+  /// model excludes. True is certain; false may be wrong by half of `depth`. Where links overlap,
+  /// this is much cheaper than `against_self`.
   bool overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const;
 
  private:
-  /// Calls `visit(a, b, X_AB)` for pairs whose boxes are not apart, until it returns false.
+  /// Calls `visit(a, b, X_AB)` for the pairs of links whose boxes are not apart, until `visit`
+  /// returns false.
   template <class Visit>
   void for_each_near_pair(const std::vector<RigidTransform>& X_OL, const Visit& visit) const;
 

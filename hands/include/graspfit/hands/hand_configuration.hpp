@@ -7,25 +7,28 @@
 
 namespace graspfit::hands {
 
-/// All that varies of a hand: where its palm is and what its joints read.
+/// All that varies of a hand: the pose of its palm and the positions of its joints.
 struct HandConfiguration {
   RigidTransform X_OH = RigidTransform::Identity();  ///< Palm (root link) pose in the object frame.
   Eigen::VectorXd q;  ///< One position per joint of the model, coupled ones included [rad or m].
 };
 
-/// Every joint at the limit that opens the hand (`closing_sign`), neutral ones (spread, abduction)
-/// at the value nearest zero; coupled joints follow.
+/// The open hand. Every joint that opens or closes it (`closing_sign`) is at its open limit,
+/// neutral joints (spread, abduction) are at the value nearest zero, and coupled joints follow.
 HandConfiguration open_configuration(const HandModel& model);
 
-/// Every joint that closes the hand at `share` of the way from open (0) to the limit that closes it
-/// (1), neutral ones as in `open_configuration`; coupled joints follow. Fingers may pass through
-/// each other: `closed_without_overlap` stops them. @throws InvalidInput unless 0 ≤ share ≤ 1.
+/// The hand closed by `share`. Every joint that closes it is at `share` of the range from its open
+/// limit (0) to its closed limit (1), neutral joints are as in `open_configuration`, and coupled
+/// joints follow. Fingers may pass through each other here, but not in `closed_without_overlap`.
+/// @throws InvalidInput unless 0 ≤ share ≤ 1.
 HandConfiguration closed_configuration(const HandModel& model, double share);
 
-/// Where the leader puts a joint, whatever its own limits are.
+/// Position that a coupling gives a joint: ratio · q[leader] + offset. The joint's own limits do
+/// not count.
 double led_position(const Coupling& coupling, const Eigen::VectorXd& q);
 
-/// Where a coupled joint stands as long as it follows: there, clamped to its limits.
+/// Position of a coupled joint that follows its leader: `led_position`, clamped to the joint's
+/// limits.
 double followed_position(const Joint& joint, const Eigen::VectorXd& q);
 
 /// Sets every coupled joint from its leader, clamped to its own limits, except that a breakaway

@@ -9,7 +9,7 @@
 
 namespace graspfit::hands {
 
-/// A hand and what its reader noticed and did on the way.
+/// A hand, and what its reader noticed and did.
 struct HandReading {
   HandModel model;
   std::string description;            ///< A sentence for people, from the sidecar; may be empty.
@@ -22,26 +22,29 @@ struct HandReading {
 /// exclusions. Members that the sidecar leaves out are derived from the tree and the meshes (see
 /// hands/README.md for the rules) and noted. Couplings of the sidecar override the description's.
 ///
-/// Descriptions, told apart by their root element: URDF (`<robot>` with links), MJCF (`<mujoco>`;
-/// needs a build with MuJoCo), GraspIt! robot XML (`<robot>` with `<palm>` and `<chain>`s).
+/// The root element tells the format of the description: URDF (`<robot>` with links), MJCF
+/// (`<mujoco>`; needs a build with MuJoCo), GraspIt! robot XML (`<robot>` with `<palm>` and
+/// `<chain>`s).
 ///
-/// Link meshes are the collision geometry (visual geometry where a link has none): mesh files
-/// relative to the description or `package://`, with scale; primitives are tessellated. Several
-/// geometries of one link are concatenated. Open ones are closed and noted.
+/// Link meshes are the collision geometry (visual geometry where a link has none). Paths of mesh
+/// files are relative to the description or begin with `package://`; their scale is applied.
+/// Primitives are tessellated, and several geometries of one link are concatenated. Open surfaces
+/// are closed, which is noted.
 /// @throws IoError (file, what) for missing or malformed files and meshes.
 /// @throws InvalidInput (file, item, value) for a description that makes no sense: cyclic tree, no
 /// movable joint, NaN, duplicate names, zero axis, limits missing or reversed, unknown names in the
 /// sidecar, pads without area.
 HandReading read_hand(const std::filesystem::path& description_file);
 
-/// The model of `read_hand`. @throws the same.
+/// The model that `read_hand` reads. @throws as `read_hand`.
 HandModel read_hand_model(const std::filesystem::path& description_file);
 
-/// Where the sidecar of a description is looked for: its extension replaced by `.graspfit.json`.
+/// Path of the sidecar of a description: the description's path with the extension
+/// `.graspfit.json`.
 std::filesystem::path sidecar_file_of(const std::filesystem::path& description_file);
 
-/// The text of a complete sidecar for a description: what is beside it already is kept, the rest
-/// derived. @throws as `read_hand`.
+/// The text of a complete sidecar for a description. Members of the sidecar that is already beside
+/// it are kept, the others are derived. @throws as `read_hand`.
 std::string derived_sidecar_text(const std::filesystem::path& description_file);
 
 }  // namespace graspfit::hands

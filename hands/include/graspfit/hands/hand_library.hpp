@@ -15,13 +15,14 @@ std::vector<std::string> shipped_hands();
 /// of that name.
 std::filesystem::path shipped_hand_file(const std::string& name);
 
-/// A file of a shipped hand, by its path, relative to the folder of shipped hands, wherever that
-/// is: "barrett/barrett.urdf". Any other path as it is. By the texts of the paths.
+/// The path of a shipped hand's file relative to the folder of shipped hands
+/// ("barrett/barrett.urdf"), wherever that folder is. Any other path is returned as it is. Only the
+/// texts of the paths are compared.
 std::filesystem::path path_in_library(const std::filesystem::path& file);
 
-/// The description of a hand by the name of a shipped one ("barrett"), or the path as given.
-/// @throws InvalidInput that lists the shipped hands, if it is neither a name of one nor looks like
-/// a path nor is there.
+/// The description file of the shipped hand of that name ("barrett"), else the argument as a path.
+/// @throws InvalidInput that lists the shipped hands, if the argument neither names one, nor looks
+/// like a path, nor exists as a file.
 std::filesystem::path find_hand_file(const std::string& name_or_file);
 
 /// A hand by the name of a shipped one ("barrett") or by the path of a description; shipped hands

@@ -39,7 +39,7 @@ struct Joint {
   int closing_sign = 0;
   std::optional<Coupling> coupling;  ///< Empty for an independent joint (an intrinsic DOF).
 
-  /// The limits that open and close the hand; of a joint that does neither they mean nothing.
+  /// The limits at which the joint opens and closes the hand; meaningless if closing_sign is 0.
   double open_limit() const { return closing_sign > 0 ? lower : upper; }
   double closed_limit() const { return closing_sign > 0 ? upper : lower; }
 };
@@ -48,7 +48,7 @@ struct Joint {
 struct LinkInertia {
   double mass = 0.0;                                    ///< [kg], ≥ 0.
   Eigen::Vector3d center_L = Eigen::Vector3d::Zero();   ///< Center of mass [m].
-  Eigen::Matrix3d inertia_L = Eigen::Matrix3d::Zero();  ///< About it, along L's axes [kg m²].
+  Eigen::Matrix3d inertia_L = Eigen::Matrix3d::Zero();  ///< About center_L, along L's axes [kg m²].
 };
 
 /// A rigid link. Links joined by fixed joints in the file are links of their own here.
@@ -61,8 +61,8 @@ struct Link {
       RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
   TriangleMesh mesh_L;             ///< Closed surface in the link's frame [m]; may have no faces.
   std::optional<LinkInertia> inertia;  ///< Empty where the description gives none.
-  /// The mesh files that it came from, in the order of the description and relative to the folder
-  /// of the description itself (symbolic links resolved); none for primitives.
+  /// The mesh files that mesh_L came from, in the order of the description and relative to the
+  /// folder of the description itself (symbolic links resolved); none for primitives.
   std::vector<std::string> mesh_files;
 };
 
@@ -109,7 +109,7 @@ struct HandModel {
 
   /// Number of independent joints.
   int num_intrinsic_dof() const;
-  /// Index by name; InvalidInput that lists the names there are, if there is none.
+  /// Index by name. @throws InvalidInput that lists the existing names, if there is no such name.
   int finger_index(const std::string& finger_name) const;
   int joint_index(const std::string& joint_name) const;
   int link_index(const std::string& link_name) const;
@@ -124,8 +124,8 @@ struct HandModel {
 void validate(const HandModel& model);
 
 /// Upper bound of the distance of any point of the hand from the palm center over all
-/// configurations [m]: sum of chain lengths. It bounds from how far
-/// a hand may have to come.
+/// configurations [m]: the sum of chain lengths. It bounds the distance from which a hand may have
+/// to approach.
 double largest_reach(const HandModel& model);
 
 }  // namespace graspfit::hands

@@ -9,7 +9,7 @@
 
 namespace graspfit::hands {
 
-/// A range of distances over a hand's configurations [m]; both ends 0 where there is none.
+/// A range of distances over a hand's configurations [m]; both ends are 0 where there is no range.
 ///
 /// Both ends belong to configurations that were found, so the true range is no smaller (up to
 /// rounding), and larger by at most `error` at either end.
@@ -23,24 +23,26 @@ struct DistanceRange {
 /// One range per pair of fingers, `[a][b]`.
 using TipDistances = std::vector<std::vector<DistanceRange>>;
 
-/// What a hand can reach, whatever it holds: computed once per hand. Couplings are kept; a
-/// breakaway joint goes no farther than its coupling.
+/// What a hand can reach, whatever it holds; it is computed once per hand. Coupled joints follow
+/// their leaders; a breakaway joint goes no farther than its coupling.
 struct HandWorkspace {
-  /// Between the tip pads' contact points of two fingers, where a pad's surface is over the origin
-  /// of its frame (the origin itself, if it is flat): symmetric, zero on the diagonal and for
-  /// fingers without a tip pad. The hand may touch itself.
+  /// Distances between the contact points of two fingers' tip pads (`pad_contact_point`). The
+  /// matrix is symmetric, and zero on the diagonal and for fingers without a tip pad.
+  /// Self-collision is allowed.
   TipDistances tip_to_tip;
-  /// Palm center to a finger's tip pad; zero without one. The hand may touch itself.
+  /// Distances from the palm center to the contact point of each finger's tip pad; zero for a
+  /// finger without tip pad. Self-collision is allowed.
   std::vector<DistanceRange> palm_to_tip;
   /// Widths that fit between the tip pads of the thumb (`HandModel::thumb`) and of a finger where
-  /// they face each other: one range per finger, zero for the thumb itself and where the pads never
-  /// do; and over all fingers. No `error` is known (infinite).
+  /// these pads face each other. There is one range per finger, zero for the thumb itself and for
+  /// fingers whose pads never face the thumb's; `any_graspable_diameter` is the range over all
+  /// fingers. No `error` is known (infinite).
   ///
-  /// Pads face each other at distance D where both contact points look along the line between them
-  /// within `facing_angle`, so that a ball of diameter D, or a wall D thick, held there is held by
-  /// forces inside both friction cones. The hand is clear of itself: no two links overlap deeper
-  /// than 0.1 mm (pads that close on each other just touch); the other fingers stand open.
-  /// In between there may be gaps that a range does not show.
+  /// Pads face each other at distance D if both normals are within `facing_angle` of the line
+  /// between the contact points, so that forces inside both friction cones hold a ball of diameter
+  /// D, or a wall D thick, between them. No two links overlap deeper than 0.1 mm in these
+  /// configurations (pads that close on each other just touch), and the other fingers are open. A
+  /// range does not show gaps between its ends.
   std::vector<DistanceRange> graspable_diameter;
   DistanceRange any_graspable_diameter;
   bool operator==(const HandWorkspace&) const = default;
@@ -48,34 +50,36 @@ struct HandWorkspace {
 
 /// How configurations are sampled.
 struct WorkspaceOptions {
-  /// On a grid from limit to limit, per independent joint that moves one tip against the other,
-  /// ≥ 2.
+  /// Number of samples per independent joint that moves one tip relative to the other, on a grid
+  /// from limit to limit; ≥ 2.
   int samples_per_joint = 24;
-  /// Most grid points per pair of tips, ≥ 4: with more joints, fewer samples per joint. 2²³ leaves
-  /// the Barrett hand its 24 (also with 7 DOFs, five of them per pair) and human fingers, eight
-  /// joints per pair, 7.
+  /// Largest number of grid points per pair of tips, ≥ 4: with more joints there are fewer samples
+  /// per joint. With 2²³ points the Barrett hand keeps its 24 samples (also with 7 DOFs, five of
+  /// them per pair), and human fingers, with eight joints per pair, get 7.
   std::int64_t max_configurations = std::int64_t{1} << 23;
-  /// Between a pad's normal and the line to the other pad [rad], in (0, π/2): by default the
-  /// paper's friction cone of 45° (`grasp::TargetOptions::theta_max`), the planner's own condition
-  /// for two targets.
+  /// Largest angle between a pad's normal and the line to the other pad [rad], in (0, π/2). The
+  /// default is the paper's friction cone of 45° (`grasp::TargetOptions::theta_max`), the planner's
+  /// own condition for two targets.
   double facing_angle = std::numbers::pi / 4;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Ranges of the distances between fingertips, `HandWorkspace::tip_to_tip` alone.
 ///
-/// Approximate: the ends of a grid in the independent joints of each pair of fingers. Joints that
-/// carry both tips alike (a wrist) count for nothing, and the tips' positions are found once per
-/// finger for each position of the joints that they share (Barrett's spread). Where the grid is
-/// coarser than `samples_per_joint`, the best few of its points at either end are moved on, joint
-/// by joint, until nothing gains: then the ends are usually right to 0.1 mm.
+/// The ranges are approximate: their ends are the best points of a grid in the independent joints
+/// of each pair of fingers. Joints that carry both tips alike (a wrist) are not sampled, and the
+/// tips' positions are computed once per finger for each position of the joints that they share
+/// (Barrett's spread). Where the grid is coarser than `samples_per_joint`, the best few of its
+/// points at either end are improved by local search, one joint at a time, until no step gains;
+/// then the ends are usually right to 0.1 mm.
 ///
-/// `error` is a bound, not an estimate: half a grid step of every joint, times the tips' largest
-/// distances from its axis. It does not count what moving on gains.
+/// `error` is a bound, not an estimate: the sum, over the joints, of half a grid step times the
+/// tips' largest distances from the joint's axis. It does not take the gain of the local search
+/// into account.
 ///
 /// A finger gets at most 2¹⁴ points of the grid; with more than 23 joints per pair, where not even
-/// 2 samples each fit, configurations are random (seeded). Cost: one distance per grid point, some
-/// nanoseconds each: milliseconds for the Barrett hand, half a second for a human hand.
+/// 2 samples per joint fit, configurations are random (seeded). Cost: one distance per grid point,
+/// some nanoseconds each: milliseconds for the Barrett hand, half a second for a human hand.
 /// @throws InvalidInput as the options' and the model's `validate`.
 TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& options = {});
 
@@ -84,15 +88,15 @@ TipDistances tip_distances(const HandModel& model, const WorkspaceOptions& optio
 std::vector<DistanceRange> palm_distances(const HandModel& model,
                                           const WorkspaceOptions& options = {});
 
-/// The whole workspace of a hand. Ends of `graspable_diameter` are always moved on, as long as the
-/// pads face each other and the hand is clear of itself; whether it is, is tested for one
-/// configuration per millimeter of distance, the one whose pads face each other best, from either
-/// end, and for each step from there.
+/// The whole workspace of a hand. The ends of `graspable_diameter` are always improved by local
+/// search, as long as the pads face each other and no links overlap. Overlap is tested from either
+/// end of the range for one configuration per millimeter of distance, the one whose pads face each
+/// other best, and for each step of the search from there.
 /// @throws InvalidInput as the options' and the model's `validate`.
 HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& options = {});
 
-/// The same, kept in the user's cache by all of the model that it depends on (not its name or
-/// files) and the options.
+/// The result of `hand_workspace`, kept in the user's cache. Its key is made of the options and of
+/// all of the model that the workspace depends on (not its name or files).
 HandWorkspace cached_hand_workspace(const HandModel& model, const WorkspaceOptions& options = {},
                                     const base::ContentCache& cache = {});
 

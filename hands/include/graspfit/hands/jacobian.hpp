@@ -14,8 +14,8 @@ struct JointVelocity {
   Eigen::Vector3d angular;
 };
 
-/// What one joint does to a point that it carries. `X_OJ` is the pose of the joint's frame or of
-/// its child link: the axis is fixed to both, so that they differ by rounding only.
+/// Velocity that one joint gives a point that it carries. `X_OJ` is the pose of the joint's frame
+/// or of its child link: the axis is fixed in both, so that the results differ by rounding only.
 JointVelocity joint_velocity(const Joint& joint, const RigidTransform& X_OJ,
                              const Eigen::Vector3d& point_O);
 
@@ -34,11 +34,12 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
 /// Indices of the independent joints (the intrinsic DOFs), ascending.
 std::vector<int> independent_joints(const HandModel& model);
 
-/// A matrix with one column per joint made into one with one column per independent joint, in the
-/// order of `independent_joints`: a leader's column takes up its followers', times their ratio.
+/// Turns a matrix with one column per joint into one with one column per independent joint, in the
+/// order of `independent_joints`: the columns of followers, times their ratios, are added to the
+/// column of their leader.
 ///
-/// The derivative of `apply_couplings` followed by forward kinematics wherever no follower stands
-/// at its own limit or has broken away; there the follower's share has to be left out.
+/// A folded Jacobian is the derivative of `apply_couplings` followed by forward kinematics where no
+/// follower is at its own limit or has broken away. Where one is, its column has to be left out.
 /// @throws InvalidInput if the columns are not the model's joints.
 Eigen::MatrixXd folded(const HandModel& model, const Eigen::MatrixXd& per_joint);
 

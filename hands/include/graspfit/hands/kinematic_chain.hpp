@@ -5,7 +5,7 @@
 #include "graspfit/hands/hand_model.hpp"
 
 /// \file
-/// How links and joints of a hand hang together, whatever its configuration is.
+/// How links and joints of a hand are connected, whatever its configuration is.
 
 namespace graspfit::hands {
 

@@ -6,22 +6,25 @@
 #include "graspfit/hands/hand_configuration.hpp"
 
 /// \file
-/// Where a palm stands for methods that place the hand without target contacts.
+/// Palm poses for planning methods that place the hand without target contacts.
 
 namespace graspfit::hands {
 
-/// The axis about which the fingers close, unit, normal to the palm direction, in H: of the hand
-/// half closed, the direction from the thumb's tip to the middle of the other fingertips, turned
-/// into the palm's plane and by a right angle in it. Of the Barrett hand the line through the bases
-/// of the fingers that spread. A direction of its own choice where the thumb faces nothing.
+/// The axis about which the fingers close, in H: a unit vector normal to the palm direction. It is
+/// the direction from the thumb's tip to the mean of the other fingertips of the half-closed hand,
+/// projected onto the palm's plane and turned by a right angle in this plane. For the Barrett hand
+/// it is the direction of the line through the bases of the fingers that spread. It is an arbitrary
+/// normal of the palm direction where the projection vanishes or there is no finger but the thumb.
 Eigen::Vector3d closing_axis_H(const HandModel& hand);
 
-/// The point that is to lie in the middle of what the hand holds, in H: on the palm's axis, half
-/// way between the palm center and the fingertips of the hand half closed [R].
+/// The point that is to lie in the middle of the held object, in H. It is on the line from the palm
+/// center along the palm direction, at half the mean height of the half-closed hand's fingertips
+/// over the palm center [R].
 Eigen::Vector3d grasp_center_H(const HandModel& hand);
 
 /// The pose of the palm in which its direction is `direction_O`, `axis_H` lies along `axis_O`, and
-/// the point `point_H` is at `point_O`. Both directions unit, both axes unit and normal to them.
+/// the point `point_H` is at `point_O`. `direction_O` and both axes are unit vectors; the axes are
+/// normal to the palm direction.
 geometry::RigidTransform palm_pose(const HandModel& hand, const Eigen::Vector3d& axis_H,
                                    const Eigen::Vector3d& point_H,
                                    const Eigen::Vector3d& direction_O,
@@ -31,8 +34,8 @@ geometry::RigidTransform palm_pose(const HandModel& hand, const Eigen::Vector3d&
 /// a share of its range.
 hands::HandConfiguration open_hand_spread_by(const HandModel& hand, double share);
 
-/// Angle between a direction of the palm and the one asked for [rad]; 0 where none is. Lengths do
-/// not matter.
+/// Angle between a palm direction and the requested approach direction [rad]; 0 without a request.
+/// The lengths of the vectors do not matter.
 double angle_from_approach(const Eigen::Vector3d& direction_O,
                            const std::optional<Eigen::Vector3d>& approach_O);
 

@@ -9,7 +9,7 @@
 
 namespace graspfit::viewer {
 
-/// Joint positions under a name, such as "half closed".
+/// Named joint positions, such as "half closed".
 struct HandPose {
   std::string name;
   Eigen::VectorXd q;  ///< One position per joint of the hand [rad or m].
@@ -23,20 +23,22 @@ struct HandScene {
   double clip_thickness = 0.0;  ///< Of clip volumes whose pad states none [m]; 0: not drawn.
 };
 
-/// What the page and the picture script (viewer/render_hand.py) know of the scene, as JSON: link
+/// The data of the scene for the page and the picture script (viewer/render_hand.py), as JSON: link
 /// meshes, tree, joints and couplings, fingers, pads, palm, and each pose with its link poses in
-/// the palm's frame H. Same input, same bytes.
+/// the palm's frame H. The same input gives the same bytes.
 /// @throws InvalidInput if there is no pose, a pose does not fit the hand, or the thickness is
 /// negative or NaN.
 std::string hand_scene_json(const HandScene& scene);
 
-/// The page's text: one HTML document with everything in it, for any browser with WebGL 2, from
-/// disk and without a network. Links are posed in the browser: a slider per independent joint,
-/// couplings applied, a button per pose; joints as dots with their axes, palm center and direction
-/// as an arrow, pads and clip volumes. Same input, same bytes. @throws as `hand_scene_json`.
+/// The page: one self-contained HTML document for any browser with WebGL 2, from disk and without a
+/// network. Links are posed in the browser: there is a slider per independent joint, whose
+/// followers move with it, and a button per pose. The page shows joints as dots with their axes,
+/// palm center and direction as an arrow, pads and clip volumes. The same input gives the same
+/// bytes. @throws as `hand_scene_json`.
 std::string hand_page_html(const HandScene& scene);
 
-/// Writes `hand_page_html` atomically. @throws IoError if that fails; InvalidInput as above.
+/// Writes `hand_page_html` atomically. @throws IoError if that fails; InvalidInput as
+/// `hand_scene_json`.
 void write_hand_page(const std::filesystem::path& file, const HandScene& scene);
 
 }  // namespace graspfit::viewer

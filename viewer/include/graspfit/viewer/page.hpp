@@ -14,13 +14,13 @@
 
 namespace graspfit::viewer {
 
-/// What a page shows. All positions in the object frame O, in meters.
+/// What a page shows. All positions are in the object frame O, in meters.
 struct PageInput {
-  std::string title;                 ///< Heading and window title, plain text in UTF-8.
-  std::string note;                  ///< A line below the heading, plain text; empty: none.
-  geometry::TriangleMesh object_O;   ///< With at least one face.
-  hands::HandModel hand;             ///< Link meshes are stored once, poses per grasp: of itself,
-                                     ///< and of its pre-grasp and squeeze where it has them.
+  std::string title;                ///< Heading and window title, plain text in UTF-8.
+  std::string note;                 ///< A line below the heading, plain text; empty: none.
+  geometry::TriangleMesh object_O;  ///< With at least one face.
+  hands::HandModel hand;  ///< Link meshes are stored once; poses are stored per grasp, also for its
+                          ///< pre-grasp and squeeze.
   std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
   /// Voxels, patches and scores; without it the page has no voxel and score map layers.
   const grasp::ObjectModel* model = nullptr;
@@ -28,17 +28,16 @@ struct PageInput {
       0.0;  ///< Of clip volumes whose pad states none [m]; 0: those are not drawn.
   /// Table and obstacles, drawn where there are any; null: none.
   const grasp::Surroundings* surroundings = nullptr;
-  /// Drawn where given; empty: the model's, or none without a model.
+  /// Center of mass to draw; empty: the model's, or none without a model.
   std::optional<Eigen::Vector3d> center_of_mass_O;
 };
 
-/// The page's text: one HTML document with everything in it, for any browser with WebGL 2, from
-/// disk
-/// (`file://`) and without a network. Same input, same bytes.
+/// The page: one self-contained HTML document for any browser with WebGL 2, from disk (`file://`)
+/// and without a network. The same input gives the same bytes.
 ///
-/// About 48 bytes per vertex of the object and of the hand's links, and 60 KB of page: 2.2 MB for
-/// 35 000 vertices and the Barrett hand. Nothing is decimated; coordinates are rounded to float
-/// (relative 6e-8).
+/// The page takes about 48 bytes per vertex of the object and of the hand's links, and 60 KB
+/// besides: 2.2 MB for 35 000 vertices and the Barrett hand. Nothing is decimated; coordinates are
+/// rounded to float (relative 6e-8).
 /// @throws InvalidInput if the object has no faces or an index of it is out of range, if a grasp
 /// does not fit the hand (number of joints, indices of contacts), or for a negative or NaN
 /// thickness.
