@@ -17,8 +17,8 @@ namespace graspfit::grasp {
 
 /// Voxels of margin around the object where `ObjectModelOptions::margin` is empty.
 ///
-/// Enough for any hand: beyond the lattice the distance map goes on as a lower bound, so that a hand
-/// farther away only takes shorter steps than it could.
+/// Enough for any hand: beyond the lattice the distance map goes on as a lower bound, so that a
+/// hand farther away only takes shorter steps than it could.
 inline constexpr int kMarginVoxels = 8;
 
 /// How an object is prepared for planning.
