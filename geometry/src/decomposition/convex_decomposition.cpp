@@ -35,24 +35,25 @@ constexpr double kAimedRel = 0.9;  // sampled depths miss some of the true one
 constexpr double kHullToleranceRel = 0.05;
 constexpr double kLeastMeasuredRel = 0.5;  // outward deviations below cost too many cubes
 constexpr double kMeasuredRel = 0.05;      // of the outward deviation's bound
-// Of volumes: pieces that cover the solid and are no larger together are the solid, cut.
+// Largest relative difference of volumes at which the pieces together count as the solid itself:
+// they cover it and are no larger.
 constexpr double kSameVolumeRel = 1e-12;
 constexpr int kDepthResolution = 128;
 constexpr int kVolumeLines = 128;
-// Of a part's depth: cuts that leave more of it, and nothing beside it, bring nothing.
+// Share of a part's depth: a cut that leaves a single piece with more than this share is useless.
 constexpr double kLeastGainRel = 0.9;
 
-// More parts than pieces: cuts that were right at first part what later may be united.
+// There are more parts than pieces, because early cuts may separate what can be united later.
 constexpr std::size_t kPartsPerPiece = 3;
 
 struct Piece {
   std::vector<Vector3d> points;  ///< Their hull holds all parts of the piece.
   PieceHull hull;
   double depth = 0.0;      ///< Sampled, or a proven bound [m].
-  bool is_proven = false;  ///< The latter.
+  bool is_proven = false;  ///< Whether `depth` is a proven bound.
 };
 
-/// Without vertices of no face.
+/// The mesh without the vertices that belong to no face.
 TriangleMesh used_part(const TriangleMesh& mesh) {
   std::vector<std::int32_t> index(mesh.vertices.size(), -1);
   TriangleMesh used;
@@ -79,7 +80,7 @@ class Decomposer {
         extent_(solid.box().sizes().maxCoeff()),
         depth_(solid, kDepthResolution) {}
 
-  /// At most so many pieces, none deeper than wanted if these suffice.
+  /// Cuts the solid into at most `most` pieces, none deeper than wanted if that many suffice.
   std::vector<Piece> parts(std::size_t most) {
     add(internal::whole_solid(solid_));
     while (pieces_.size() < most) {
@@ -98,7 +99,7 @@ class Decomposer {
   }
 
   double largest_deviation() const { return options_.largest_deviation; }
-  /// Pieces farther apart are no neighbors [m].
+  /// Pieces farther apart than this are no neighbors [m].
   double reach() const { return options_.largest_deviation; }
 
   double depth_between(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b,
@@ -119,12 +120,12 @@ class Decomposer {
     return Piece{std::move(points), *hull, depth, false};
   }
 
-  /// What sampling found shallow is looked at closely.
+  /// Proves the depth of a piece that is shallow enough according to samples.
   void verify(Piece& piece) const {
     if (piece.depth <= options_.largest_deviation) prove(piece, aimed());
   }
 
-  /// The depth from a proven bound, for which no less than `floor` [m] matters.
+  /// Replaces the depth by a proven bound, where depths below `floor` [m] do not matter.
   void prove(Piece& piece, double floor) const {
     piece.is_proven = true;
     piece.depth = internal::outward_deviation(
@@ -154,11 +155,12 @@ class Decomposer {
     const auto plane = internal::choose_cut(parts_[index], pieces_[index].hull, depth_,
                                             solid_.mesh(), allowed, index);
     if (plane && cut_at(index, *plane)) return;
-    // Of long slivers the planes of faces shave layers; cut in the middle they become shallower.
+    // From long slivers the planes of faces only shave layers; slivers cut in the middle become
+    // shallower.
     if (!cut_at(index, across(pieces_[index].hull))) can_split_[index] = false;
   }
 
-  /// Halfway between the two corners that are the farthest apart.
+  /// The perpendicular plane halfway between the two corners that are the farthest apart.
   static internal::CutPlane across(const PieceHull& hull) {
     const std::vector<Vector3d>& corners = hull.mesh.vertices;
     Vector3d longest = Vector3d::Zero();
@@ -175,14 +177,15 @@ class Decomposer {
     return {normal, normal.dot(middle)};
   }
 
-  /// Whether that brought anything: without, the part is as it was.
+  /// Cuts a part by a plane. Returns whether that improved anything; if not, the part is unchanged.
   bool cut_at(std::size_t index, const internal::CutPlane& plane) {
     auto [below, above] = internal::cut(parts_[index], plane, kOnPlaneRel * extent_, solid_);
     if (below.num_polygons() == 0 || above.num_polygons() == 0) return false;
     std::optional<Piece> lower = piece_of(below.hull_points());
     std::optional<Piece> upper = piece_of(above.hull_points());
     if (!lower && !upper) {
-      // Of a sliver, which may still reach far out, nothing is left that is thick enough.
+      // The part is a sliver, which may still reach far out, and neither side of it is thick
+      // enough.
       remove(index);
       return true;
     }
@@ -191,7 +194,8 @@ class Decomposer {
       std::swap(below, above);
     }
     verify(*lower);
-    // Where only a layer too thin for a piece comes off, the next cut would take the next one.
+    // If this cut takes off only a layer too thin for a piece, the next one would take the next
+    // layer.
     if (!upper && lower->depth > kLeastGainRel * pieces_[index].depth) return false;
     pieces_[index] = *std::move(lower);
     parts_[index] = std::move(below);
@@ -222,7 +226,7 @@ class Merger {
   }
 
   std::vector<Piece> merged(std::size_t most_pieces) {
-    constexpr double kRaise = 1.25;  // of the depth that is allowed while there are too many
+    constexpr double kRaise = 1.25;  // factor on the allowed depth while there are too many pieces
     double limit = decomposer_.aimed();
     std::size_t count = pieces_.size();
     for (std::size_t a = 0; a < pieces_.size(); ++a) {
@@ -255,8 +259,8 @@ class Merger {
   struct Pair {
     std::size_t a = 0;
     std::size_t b = 0;
-    double depth = 0.0;     ///< Of the common hull, or less [m].
-    bool is_known = false;  ///< Not less.
+    double depth = 0.0;     ///< Lower bound of the depth of the common hull [m].
+    bool is_known = false;  ///< Whether `depth` is the depth of the common hull itself.
   };
 
   void add_pair(std::size_t a, std::size_t b) {
@@ -277,7 +281,8 @@ class Merger {
     pair.is_known = pair.depth <= limit;
   }
 
-  /// What samples missed shows here: a union deeper than the limit waits for its turn.
+  /// Unites two pieces, unless a proven bound shows their union deeper than allowed, which samples
+  /// may have missed; such a pair is kept with its proven depth until the limit allows it.
   bool unite(const Pair& pair, double limit) {
     std::vector<Vector3d> points = pieces_[pair.a].points;
     points.insert(points.end(), pieces_[pair.b].points.begin(), pieces_[pair.b].points.end());

@@ -20,8 +20,8 @@ namespace {
 // Raised whenever the same input may give another result.
 constexpr std::string_view kAlgorithm = "convex decomposition 3";
 
-/// Held by whoever looks for an entry: what takes seconds to find is found by one, thread or
-/// process, while the others wait for it. Where no lock can be had there is none, and both do it.
+/// Lock on an entry, held while the entry is read or computed: one thread or process does the work
+/// of seconds, while the others wait for it. Where no lock can be obtained, each does the work.
 class EntryLock {
  public:
   explicit EntryLock(const std::optional<std::filesystem::path>& entry) {
@@ -38,7 +38,8 @@ class EntryLock {
       descriptor_ = -1;
     }
   }
-  /// The entry is there by now: who waits on the removed file, or makes a new one, reads it.
+  /// The entry exists by now: a process that waits on the removed file, or makes a new one, reads
+  /// the entry.
   ~EntryLock() {
     if (descriptor_ < 0) return;
     unlink(file_.c_str());

@@ -18,14 +18,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kNumSamples = 500;       // points of the part's surface
-constexpr std::size_t kNumSegments = 3000;     // between them
+constexpr std::size_t kNumSegments = 3000;     // segments between these points
 constexpr int kNumSteps = 5;                   // depths along each segment
 constexpr int kNumDirections = 32;             // spread evenly, beside the axes
 constexpr std::size_t kNumFacePlanes = 24;     // planes of faces
 constexpr double kFacePlanePreference = 0.97;  // share of the best score that is good enough
 
-constexpr double kNumBoundarySamples = 600.0;  // of a hull, about
-constexpr int kMostPerSide = 24;               // of a face: what is long and thin gets no more
+constexpr double kNumBoundarySamples = 600.0;  // samples on a hull's boundary, about
+constexpr int kMostPerSide = 24;               // most samples along a side of a face, however long
 
 struct Sample {
   Vector3d point;
@@ -34,14 +34,14 @@ struct Sample {
 
 /// Something a cut should separate: its points span an interval along any direction.
 struct Obstacle {
-  std::vector<std::int32_t> ends;  ///< Of `Evidence::points`.
+  std::vector<std::int32_t> ends;  ///< Indices into `Evidence::points`.
   double weight = 0.0;
 };
 
 struct Evidence {
   std::vector<Vector3d> points;
   std::vector<Obstacle> obstacles;
-  std::vector<std::int32_t> faces;  ///< Behind the heaviest obstacles.
+  std::vector<std::int32_t> faces;  ///< Faces of the mesh at the ends of the heaviest segments.
 };
 
 std::vector<Sample> samples_of(const SolidPart& part, base::Random& random) {
@@ -172,7 +172,8 @@ std::vector<Vector3d> directions_for(const std::vector<Sample>& samples) {
   return directions;
 }
 
-/// What ends on the plane of a face is below it, where the solid is.
+/// Weight of the obstacles that the plane of a face separates. Ends on the plane count as below it,
+/// where the solid is.
 double separated_weight(const Evidence& evidence, const CutPlane& plane, double on_plane) {
   double sum = 0.0;
   for (const Obstacle& o : evidence.obstacles) {
@@ -185,7 +186,7 @@ double separated_weight(const Evidence& evidence, const CutPlane& plane, double 
   return sum;
 }
 
-/// The offset along a direction that separates the most, and how much.
+/// The offset along a direction that separates the largest weight of obstacles, and this weight.
 std::pair<double, double> best_offset(const Evidence& evidence, const Vector3d& direction) {
   const std::size_t n = evidence.points.size();
   std::vector<std::pair<double, std::int32_t>> order(n);

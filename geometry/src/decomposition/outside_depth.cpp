@@ -11,8 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Normals that tell inside from outside at the point of a surface nearest to another: that of the
-// face, the sum of both at an edge, weighted by angle at a vertex [Bærentzen & Aanæs 2005].
+// Normals at the surface point nearest to a query point, which tell whether the latter is inside or
+// outside: the normal of the face, at an edge the sum of both faces' normals, at a vertex the sum
+// weighted by angle [Bærentzen & Aanæs 2005].
 std::vector<Vector3d> vertex_normals_of(const TriangleMesh& mesh) {
   std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {

@@ -9,18 +9,19 @@
 
 namespace graspfit::geometry::internal {
 
-/// How far points near a solid are outside of it, quickly: from the face nearest to the lattice
-/// point beside them. For choices among many, not for decisions.
+/// Tells quickly how far points near a solid are outside of it: by the distance to the face that is
+/// nearest to the center of the point's voxel. It serves to choose among many candidates, not to
+/// decide anything exactly.
 ///
 /// Approximate: never less than the distance to that face's solid side allows, and too large by at
-/// most the spacing of the lattice, where another face is nearer. Faces are looked up when first
-/// asked for: for one thread at a time.
+/// most the spacing of the lattice, where another face is nearer. The nearest faces are found on
+/// first use, without a lock: only one thread at a time may use an object.
 class OutsideDepth {
  public:
   /// `resolution` voxels along the longest extent. The mesh is closed and outward.
   OutsideDepth(const MeshQuery& solid, int resolution);
 
-  /// Zero inside [m].
+  /// How far `point` is outside the solid [m]; zero inside.
   double operator()(const Eigen::Vector3d& point) const;
 
  private:

@@ -145,7 +145,7 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
   for (std::size_t i = 0; i < points.size(); ++i) outside[i] = i;
   PieceHull hull = hull_of(polytope);
   while (true) {
-    // A face of a nearly flat hull is only certain to some ulps.
+    // The plane of a face of a nearly flat hull is only known to some ulps.
     const double tolerance =
         std::max(options.tolerance, 1e-15 * hull.offsets.cwiseAbs().maxCoeff());
     const auto farthest = farthest_outside(points, hull, tolerance, outside);
@@ -157,7 +157,8 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
     std::vector<Vector3d> kept = hull.mesh.vertices;
     for (std::size_t k = 0; k < std::min(room, farthest.size()); ++k) {
       kept.push_back(points[farthest[k].second]);
-      // Once is enough: the hull holds it, even if the rounded plane of a sharp needle says else.
+      // A point is added once: the hull then holds it, even if the rounded plane of a face of a
+      // sharp needle says otherwise.
       std::erase(outside, farthest[k].second);
     }
     chosen.resize(kept.size());

@@ -15,26 +15,27 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kToleranceRel = 0.05;  // of a bound, for what is deeper than the tolerance
+constexpr double kToleranceRel = 0.05;  // tolerance over the bound, if above the absolute one
 
 struct Cube {
   Vector3d center;
   double half = 0.0;  ///< Half an edge.
 };
 
-/// In the solid; none of radius 0.
+/// A ball in the solid; radius 0 means that there is none.
 struct Ball {
   Vector3d center = Vector3d::Zero();
   double radius = 0.0;
 };
 
 struct Candidate {
-  double most = 0.0;  ///< No place of the piece in the cube is farther out [m].
+  double most = 0.0;  ///< No point of the piece in the cube is farther out of the solid than this
+                      ///< [m].
   std::size_t piece = 0;
   Cube cube;
   double distance = 0.0;  ///< Of the cube's center from the surface [m].
   bool is_outside = false;
-  Ball ball;  ///< The one below the cube that bounds it best.
+  Ball ball;  ///< The ball below the cube that gives the best bound.
   bool operator<(const Candidate& other) const { return most < other.most; }
 };
 
@@ -48,7 +49,7 @@ struct FacePlane {
 
 const double kToCorner = std::sqrt(3.0);
 
-/// A hull with what it takes to ask it about cubes.
+/// A hull with precomputed data for queries about cubes.
 class CubeFilter {
  public:
   explicit CubeFilter(const PieceHull& hull)
@@ -56,9 +57,10 @@ class CubeFilter {
         surface_(hull.mesh),
         reach_(hull.normals.cwiseAbs().colwise().sum().transpose()) {}
 
-  /// The face's plane over which the cube's center is highest, or lies least deep below; empty if
-  /// the cube and the hull have nothing in common. Planes of faces alone do not tell that of cubes
-  /// beyond a sharp edge: above a sliver of 10 µm they would leave cubes of that size everywhere.
+  /// The plane of the face over which the cube's center is highest, or below which it is least
+  /// deep; empty if the cube and the hull are disjoint. Planes of faces alone do not show that
+  /// cubes beyond a sharp edge are disjoint from the hull: above a sliver of 10 µm they would leave
+  /// cubes of that size everywhere.
   std::optional<FacePlane> plane_at(const Cube& cube) const {
     const Eigen::VectorXd heights = hull_.normals.transpose() * cube.center - hull_.offsets;
     if ((heights.array() > cube.half * reach_.array()).any()) return std::nullopt;
@@ -79,9 +81,10 @@ class CubeFilter {
   Eigen::VectorXd reach_;  ///< Half width of a cube of half edge 1 along each normal.
 };
 
-/// No place of the cube below the plane is farther from the ball [m]: farther out than that it
-/// cannot be, as the ball is in the solid. On a flat surface, over a ball of radius t, places of a
-/// small cube of radius r are at most about r² / 2t out: far less than the r of the cube alone.
+/// Upper bound of the distance from the ball to any point of the cube below the plane [m]. As the
+/// ball is in the solid, no such point is farther out of the solid than that. On a flat surface,
+/// over a ball of radius t, the bound for a small cube of radius r is about r² / 2t, far less than
+/// the bound r from the cube alone.
 double distance_bound(const Cube& cube, const FacePlane& plane, const Ball& ball) {
   if (!(ball.radius > 0.0)) return std::numeric_limits<double>::infinity();
   const Vector3d away = cube.center - ball.center;
@@ -148,10 +151,10 @@ double length_inside(const MeshQuery& solid, const Vector3d& origin) {
 double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
                          const OutwardOptions& options) {
   constexpr double kSlack = 1.0 + 1e-9;                  // more than rounding of distances
-  constexpr std::array<double, 2> kDepths = {4.0, 1.0};  // of balls, over the cube's radius
+  constexpr std::array<double, 2> kDepths = {4.0, 1.0};  // depths of balls, over the cube's radius
   std::vector<CubeFilter> filters(pieces.begin(), pieces.end());
   std::vector<Candidate> pending;  // a heap, the one that may reach farthest on top
-  double known = options.floor;    // or reached by a point of a piece
+  double known = options.floor;    // the floor, or what a point of a piece reaches
   const auto ball_at = [&](const Vector3d& center) {
     const double distance = std::sqrt(solid.closest_point(center).squared_distance);
     return Ball{center, solid.containment(center) == Containment::Inside ? distance : 0.0};
@@ -166,7 +169,7 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
     const double radius = kToCorner * cube.half;
     next.distance = std::sqrt(solid.closest_point(cube.center).squared_distance);
     if (next.distance + radius <= enough) return;
-    // The centers of a cube and of its eighths are as far apart as the eighth is large.
+    // The centers of a cube and of one of its eighths are as far apart as the radius of the eighth.
     next.is_outside = parent != nullptr && parent->distance > kSlack * radius
                           ? parent->is_outside
                           : solid.containment(cube.center) == Containment::Outside;
@@ -190,7 +193,8 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
   for (std::size_t p = 0; p < pieces.size(); ++p) add(p, cube_around(pieces[p]), nullptr);
   while (!pending.empty()) {
     const Candidate top = pending.front();
-    // A deep hollow may be as deep over a whole sheet of places, too many for a small tolerance.
+    // A deep hollow may be equally deep over a whole sheet, which has too many cubes for a small
+    // tolerance.
     if (top.most <= known + std::max(options.tolerance, kToleranceRel * known)) {
       return std::max(known, top.most);
     }
@@ -202,7 +206,7 @@ double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& sol
       add(top.piece, {top.cube.center + top.cube.half * step, 0.5 * top.cube.half}, &top);
     }
   }
-  // What was left out cannot reach farther than this.
+  // The cubes that were left out cannot reach farther than this.
   return std::max(known, pieces.empty() ? 0.0 : options.tolerance);
 }
 

@@ -8,17 +8,17 @@
 
 namespace graspfit::geometry::internal {
 
-/// How far `outward_deviation` looks.
+/// How precise `outward_deviation` is.
 struct OutwardOptions {
   double tolerance = 0.0;  ///< Of the bound [m], > 0.
-  double floor = 0.0;      ///< What is less does not matter: the answer is at least this [m].
+  double floor = 0.0;  ///< Deviations below this do not matter: the result is at least this [m].
 };
 
 /// A proven upper bound of how far any of the pieces reaches out of the solid, at most `tolerance`
 /// or 5 % above the truth or the floor [m].
 ///
-/// Cubes are cut into eight, the one that may reach farthest first: no point of a cube is farther
-/// out than its center by more than half its diagonal.
+/// Branch and bound: cubes are cut into eight, first the one whose points may reach farthest out.
+/// No point of a cube is farther out than the cube's center by more than half the cube's diagonal.
 double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
                          const OutwardOptions& options);
 

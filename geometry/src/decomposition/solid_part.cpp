@@ -96,8 +96,8 @@ ConvexCell half_cell(const ConvexCell& cell, const CutPlane& plane, double sign,
   return half;
 }
 
-/// Corners deeper inside than `on_plane`: where a cut ran along a face, corners lie on that face,
-/// and rounding must not count them as inside.
+/// Corners of a cell that are deeper inside the solid than `on_plane`: where a cut ran along a
+/// face, corners lie on that face, and rounding must not count them as inside.
 std::vector<Vector3d> corners_inside(const ConvexCell& cell, double on_plane,
                                      const MeshQuery& solid) {
   std::vector<Vector3d> all;

@@ -139,8 +139,9 @@ Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vect
 
 bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  // In a plane of coordinates that sees the triangle with area, and only in its own plane, being
-  // inside is a matter of three signs.
+  // In a coordinate plane where the projection of the triangle has area, three signs tell whether
+  // the projection of the point is inside; a fourth sign tells whether the point is in the
+  // triangle's plane.
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;

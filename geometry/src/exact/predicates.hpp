@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 
 /// \file
-/// Exact signs on doubles: a floating-point filter with a proven error bound [Shewchuk 1997],
-/// rationals where it fails. They are right for all finite input whose exact value a rational can
-/// hold.
+/// Exact signs of expressions in doubles, by a floating-point filter with a proven error bound
+/// [Shewchuk 1997] and by rationals where the filter fails. The signs are right for all finite
+/// input whose exact value a rational can hold.
 
 namespace graspfit::geometry::internal {
 
@@ -31,9 +31,10 @@ bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
 bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
-/// Vector area of (a, b, c): along its normal, as long as its area, within 2^-42 of its length.
-/// Unlike a cross product in doubles it keeps that promise for slivers: they are computed in
-/// rationals. Never zero unless the corners are collinear.
+/// Vector area of (a, b, c): the vector along the triangle's normal whose length is the triangle's
+/// area, with an error of at most 2^-42 of that length. Unlike for a cross product in doubles this
+/// bound also holds for slivers, which are computed in rationals. The vector is never zero unless
+/// the corners are collinear.
 Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                      const Eigen::Vector3d& c);
 

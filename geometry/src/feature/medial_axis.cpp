@@ -32,17 +32,18 @@ std::optional<MedialBall> shrunken_ball(const MeshQuery& object, const SurfaceSa
     ball.center = p - ball.radius * sample.normal;
     const ClosestPoint closest = object.closest_point(ball.center);
     const double intrusion = ball.radius - std::sqrt(closest.squared_distance);
-    // The ball that touches at p and goes through q: |p − q|² = 2 r n·(p − q). Without a smaller
-    // one the closest point is p itself, to rounding.
+    // The ball that touches the surface at p and passes through q has |p − q|² = 2 r n·(p − q). If
+    // it is not smaller, the closest point is p itself, to rounding.
     const Vector3d to_sample = p - closest.point;
     const double rise = sample.normal.dot(to_sample);
     const double radius = rise > 0.0 ? 0.5 * to_sample.squaredNorm() / rise : ball.radius;
-    // Against the smaller radius: a thin part is no shallow dent in a large ball.
+    // The intrusion is compared with the smaller radius, so that a thin part does not count as a
+    // shallow dent in a large ball.
     const bool is_empty =
         !(radius < ball.radius) || intrusion <= options.emptiness_tolerance * radius;
     if (is_empty) {
-      // The first ball has no second contact, the others the point that stopped the last larger
-      // one.
+      // The first ball has no second contact; that of the others is the point that stopped the
+      // previous, larger ball.
       if (step == 0) return std::nullopt;
       ball.object_angle_deg = angle_deg(p - ball.center, ball.contacts[1] - ball.center);
       ball.contacts[0] = p;

@@ -61,7 +61,7 @@ double trimmed_mean(std::vector<double>& lengths, double deviations) {
     sum += length;
     ++count;
   }
-  // Two clusters may leave the gap around the median empty.
+  // Between two clusters there may be no length near the median.
   return count > 0 ? sum / count : median;
 }
 

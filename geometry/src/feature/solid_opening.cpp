@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 constexpr double kHalfDiagonal = 0.8660254037844387;  // Of a voxel, in voxels: √3 / 2.
-// Of the radius: depth of residue along a crease that is no feature.
+// Depth over the radius of the residue along a crease that is no feature.
 constexpr double kFillet = 0.5;
 
 /// Whether a ball of `radius` inside the solid has its center in the voxel: starting at the voxel's
@@ -38,11 +38,11 @@ bool holds_ball_center(const MeshQuery& object, const VoxelLattice& lattice, Ind
   return false;
 }
 
-/// Blocks of voxels around some of them.
+/// The voxels near some given ones, by blocks.
 class NearVoxels {
  public:
   /// All voxels at most `reach` voxels from one that is added are near, and some farther ones: all
-  /// there are, where it reaches as far as the lattice.
+  /// voxels, where `reach` is as large as the lattice.
   NearVoxels(const VoxelLattice& lattice, double reach)
       : edge_(base::bounded_integer(std::ceil(reach), 1, lattice.counts.maxCoeff())),
         counts_((lattice.counts.array() + edge_ - 1) / edge_),
@@ -99,15 +99,16 @@ std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid&
                                        double radius, int num_threads) {
   const VoxelLattice& lattice = grid.lattice;
   const double in_voxels = radius / lattice.voxel_size;
-  // A voxel is opened if it may be within the radius of a ball's center, and a fillet more: that
-  // lies up to half a diagonal from the center of its voxel, and the solid's part of a partial
-  // voxel again as far. The fillet keeps neighbors apart that share a crease at their roots.
+  // A voxel is opened if it may be within the radius plus a fillet of a ball's center. A ball's
+  // center lies up to half a diagonal from the center of its voxel, and so does the solid's part of
+  // a partial voxel. The fillet keeps apart neighboring features that share a crease at their
+  // roots.
   const double slack = std::max(kHalfDiagonal, kFillet * in_voxels);
   const auto reach = [&](Index i) {
     return in_voxels + slack + (grid.classes[i] == VoxelClass::Partial ? kHalfDiagonal : 0.0);
   };
 
-  // Centers that are sure, and voxels that only the surface can decide.
+  // Voxels that surely hold a ball's center, and voxels that only the surface can decide.
   SolidOpening result;
   std::vector<Index> unsure;
   {
@@ -135,7 +136,8 @@ std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid&
   }
   if (residue.empty()) return result;
 
-  // Others matter only where they may open a voxel, or be nearest to one beside an opened one.
+  // Other voxels matter only where they may open a voxel, or be nearest to one next to an opened
+  // one.
   const double farthest = in_voxels + slack + 3.0 * kHalfDiagonal;
   NearVoxels near(lattice, farthest);
   for (const Index index : residue) near.add(lattice.voxel(index));

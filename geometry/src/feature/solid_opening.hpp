@@ -8,8 +8,8 @@
 
 namespace graspfit::geometry::internal {
 
-/// A solid opened by a ball: which of its voxels a ball that rolls inside it reaches, with a
-/// fillet.
+/// The morphological opening of a solid by a ball: the voxels that a ball inside the solid can
+/// reach, grown by a fillet.
 struct SolidOpening {
   std::vector<char> is_opened;   ///< One per voxel.
   std::vector<float> to_center;  ///< Distance [voxels] to the nearest voxel that holds a ball's
@@ -17,8 +17,9 @@ struct SolidOpening {
                                  ///< is; elsewhere at least that distance.
 };
 
-/// Opens a solid; empty if no ball fits. `grid` has its classes. See `find_weak_regions` for what
-/// is approximate. Balls are only looked for where they can make a difference.
+/// Opens a solid by a ball of `radius` [m]; empty if no ball fits. `grid` holds the classes of the
+/// solid's voxels. `find_weak_regions` explains what is approximate. Balls are only searched for
+/// where they can change the result.
 std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid& grid,
                                        double radius, int num_threads);
 

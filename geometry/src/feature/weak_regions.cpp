@@ -23,7 +23,7 @@ using internal::Index;
 using internal::label_sets;
 
 constexpr int kLeastResolution = 16;               // Enough for any object smaller than a ball.
-constexpr double kFewestVoxelsPerThickness = 2.0;  // Fewer do not show the ball as one.
+constexpr double kFewestVoxelsPerThickness = 2.0;  // Fewer do not resolve a ball.
 
 /// Voxel of the solid in which the middle of a face lies; −1 if there is none near.
 Index voxel_of_face(const TriangleMesh& mesh, std::size_t face, const VoxelGrid& grid) {
@@ -34,7 +34,7 @@ Index voxel_of_face(const TriangleMesh& mesh, std::size_t face, const VoxelGrid&
       lattice.voxel_at(middle).cwiseMax(0).cwiseMin(lattice.counts - Vector3i::Ones());
   const Index index = lattice.index(voxel);
   if (grid.classes[index] != VoxelClass::Empty) return index;
-  // Rounding put it beside the voxel that has its surface.
+  // By rounding the point is in an empty voxel, beside the voxel that has the surface.
   Index best = -1;
   double best_distance = std::numeric_limits<double>::infinity();
   for_each_neighbor(lattice, index, [&](Index neighbor) {
@@ -60,7 +60,7 @@ double median_by_area(std::vector<std::pair<double, double>>& thickness_and_area
   return std::numeric_limits<double>::infinity();
 }
 
-/// Regions of a solid, piece by piece of what its opening leaves.
+/// Searches the regions of a solid, one connected piece of the opening's residue after the other.
 class RegionSearch {
  public:
   RegionSearch(const MeshQuery& object, const WeakRegionOptions& options, const VoxelGrid& grid,
@@ -127,7 +127,7 @@ class RegionSearch {
     return median_by_area(thickness_and_area);
   }
 
-  /// How what hangs on `neck` is held.
+  /// How the region behind a neck is attached.
   struct Hold {
     int num_necks = 0;
     bool is_ring = false;
@@ -137,7 +137,8 @@ class RegionSearch {
     std::sort(neck.begin(), neck.end());
     neck.erase(std::unique(neck.begin(), neck.end()), neck.end());
     if (neck.empty()) return {};
-    // A ring around less than the thickness is that of a hollow leg, or of a dent in a solid one.
+    // A ring around an opening narrower than the thickness is the neck of a hollow leg, or
+    // surrounds a dent in a solid one.
     const int growth = base::bounded_integer(std::ceil(radius_), 0, lattice_.counts.maxCoeff());
     Hold result{internal::topology(lattice_, neck, 1).num_pieces, false};
     if (result.num_necks == 1) {

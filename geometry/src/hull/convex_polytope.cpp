@@ -81,7 +81,7 @@ struct ExactSide {
   double distance = 0.0;  // from the facet's plane, negative outside. Rounded
 };
 
-/// The side of a point of the span, by integers.
+/// The side of a facet on which a point of the span lies, by integers.
 ExactSide exact_side(const PolytopeData& data, Index facet,
                      const Eigen::Ref<const VectorXd>& point) {
   const auto rank = static_cast<Index>(data.axes.size());
@@ -110,12 +110,12 @@ ExactSide exact_side(const PolytopeData& data, Index facet,
   const double scaled =
       std::ldexp(mantissa, static_cast<int>(std::clamp(exponent - largest, -2000L, 2000L)));
   ExactSide side;
-  // A single corner has no order that could tell outside.
+  // At rank 1 a facet has a single corner, whose order cannot tell which side is outside.
   const int orientation = rank == 1 && data.gradients(0, facet) < 0.0 ? -1 : 1;
   side.sign = orientation * ((mantissa > 0.0) - (mantissa < 0.0));
   side.distance =
       -orientation * scaled / (internal::directions_on_axes(data).transpose() * gradient).norm();
-  if (side.sign != 0 && side.distance == 0.0) {  // too small for a double is not nothing
+  if (side.sign != 0 && side.distance == 0.0) {  // a distance too small for a double is not zero
     side.distance = -side.sign * std::numeric_limits<double>::min();
   }
   return side;

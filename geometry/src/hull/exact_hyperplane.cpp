@@ -67,8 +67,8 @@ struct Row {
   std::array<unsigned, kMaxDimension> is_negative;
 };
 
-/// sum += number · factor. The last of several digits of `number` only extends its sign: minus one
-/// times a factor is no multiplication.
+/// sum += number · factor. The last of several digits of `number` only extends its sign: it is 0 or
+/// minus one, so that its product needs no multiplication.
 template <int NumDigits>
 void add_product(const Digits& number, std::uint64_t factor, std::uint64_t* sum) {
   if constexpr (NumDigits == 1) {
@@ -109,8 +109,8 @@ void expand_minor(const Row& row, SignedDigits* minors, std::index_sequence<J...
   }
 }
 
-/// All minors of the first |S| rows in the columns S, for 0 < S < 2^d − 1 in order, so that the
-/// smaller ones are there; unrolled.
+/// All minors of the first |S| rows in the columns S, for 0 < S < 2^d − 1 in order, so that smaller
+/// minors are computed first; the loop is unrolled.
 template <int Dimension, std::size_t... S>
 void expand_minors(const std::array<Row, kMaxDimension - 1>& rows, SignedDigits* minors,
                    std::index_sequence<S...>) {

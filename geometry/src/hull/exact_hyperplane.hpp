@@ -65,7 +65,7 @@ struct IntegerHyperplane {
   std::array<BinaryParts, kMaxDimension> normal_parts;
   BinaryParts offset_parts;
 
-  // The numbers themselves, one way or the other: see IntegerPoints.
+  // The exact numbers, as `base` and `digits` or as `normal` and `offset`: see IntegerPoints.
   int base = 0;  // a corner
   std::array<SignedDigits, kMaxDimension> digits;
   IntegerVector normal;
@@ -83,13 +83,14 @@ class IntegerPoints {
   int scale(int axis) const { return scales_[axis]; }
   const IntegerVector& point(int index) const { return points_[index]; }
 
-  /// The hyperplane through as many points as there are axes. All zero if they are dependent.
+  /// The hyperplane through as many points as there are axes. All zero if these points are affinely
+  /// dependent.
   void hyperplane(std::span<const int> corners, IntegerHyperplane& result);
 
   /// normal · z_index − offset.
   BinaryParts evaluate(const IntegerHyperplane& plane, int index);
 
-  /// The normal of one of these hyperplanes.
+  /// The exact normal of a hyperplane through these points.
   IntegerVector normal(const IntegerHyperplane& plane) const;
 
  private:
@@ -117,11 +118,11 @@ class IntegerPoints {
 /// 1968].
 class IntegerEchelon {
  public:
-  /// `scales` as in IntegerPoints: of the columns left, the one where a row is largest is taken.
+  /// `scales` are those of IntegerPoints: the pivot of a row is its largest entry after scaling.
   IntegerEchelon(int dimension, std::array<int, kMaxDimension> scales)
       : dimension_(dimension), scales_(scales) {}
 
-  /// Whether `row` is independent of those before; then it counts.
+  /// Adds `row` if it is linearly independent of the rows before; returns whether it is.
   bool add(const IntegerVector& row);
 
   int rank() const { return static_cast<int>(rows_.size()); }

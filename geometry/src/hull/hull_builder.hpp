@@ -20,8 +20,9 @@
 
 namespace graspfit::geometry::internal {
 
-/// Of the largest permanent that bounds the determinants below, with unit rows: an n × n matrix
-/// has at most n! / n^(n/2) times the product of its rows' lengths [Carlen, Lieb & Loss 2006].
+/// Upper bound of the permanent of an n × n matrix with unit rows, which bounds the determinants
+/// below: the permanent is at most n! / n^(n/2) times the product of the rows' lengths [Carlen,
+/// Lieb & Loss 2006].
 inline constexpr std::array<double, kMaxDimension + 1> kPermanentFactor = {1.0, 1.0,  1.0, 1.16,
                                                                            1.5, 2.15, 3.34};
 
@@ -34,11 +35,12 @@ inline constexpr double kSideUnits = 64.0;
 /// What underflow may add where coordinates are scaled to about one.
 inline constexpr double kUnderflowSlack = 0x1p-960;
 
-/// Coefficients that are less certain than this, relative to their length, are taken from integers
-/// before they become a normal: 1.5e-11.
+/// A plane's coefficients that are less precise than this (1.5e-11), relative to their length, are
+/// recomputed from integers before they become a normal.
 inline constexpr double kNormalPrecision = 0x1p-36;
 
-/// Side values of scaled points x: normal · (x − x_0) − offset, positive outside.
+/// Plane of a facet, which gives a scaled point x its side value normal · (x − x_0) − offset,
+/// positive outside.
 template <int D>
 struct FacetPlane {
   std::array<double, D> normal;
@@ -132,7 +134,7 @@ class HullBuilder {
 
   const HullSimplex<D>& simplex(int facet) const { return simplices_[facet]; }
 
-  /// The facet's plane with a direction within `kNormalPrecision`.
+  /// The facet's plane, with a direction precise to `kNormalPrecision`.
   const FacetPlane<D>& precise_plane(int facet) {
     if (planes_[facet].bound > kNormalPrecision * radius_ * length(planes_[facet])) refine(facet);
     return planes_[facet];
@@ -162,7 +164,7 @@ class HullBuilder {
     return sum;
   }
 
-  /// Bound of side values per length of the difference of a point from a corner.
+  /// Error bound of a side value per length of the difference of a point from a corner.
   double unit_bound(int facet) const { return planes_[facet].bound / radius_; }
 
   int num_created() const { return static_cast<int>(simplices_.size()); }
@@ -187,7 +189,7 @@ class HullBuilder {
     return value;
   }
 
-  /// 0 if the filter does not decide.
+  /// Sign of the side value in doubles; 0 if the filter does not decide.
   int filtered_side(int facet, int point) const {
     const double value = side_value(facet, point);
     const double bound = planes_[facet].bound;
@@ -227,8 +229,8 @@ class HullBuilder {
     return sum;
   }
 
-  /// All minors of the first |S| rows in the columns S, for 0 < S < 2^D − 1 in order, so that the
-  /// smaller ones are there; unrolled.
+  /// All minors of the first |S| rows in the columns S, for 0 < S < 2^D − 1 in order, so that
+  /// smaller minors are computed first; the loop is unrolled.
   template <std::size_t... S>
   static void expand_minors(const std::array<Point, D - 1>& rows, double* minors,
                             std::index_sequence<S...>) {
@@ -268,7 +270,7 @@ class HullBuilder {
                       : std::numeric_limits<double>::infinity();
   }
 
-  /// Takes the plane from integers: the direction is then right to an ulp, the offset too.
+  /// Recomputes the plane from integers: direction and offset are then right to an ulp.
   void refine(int facet) {
     if (exact_index_[facet] >= 0) return;
     if (free_planes_.empty()) {
@@ -334,8 +336,9 @@ class HullBuilder {
     return true;
   }
 
-  /// Puts a point on the list of the first facet from `first` on that it is strictly beyond. A
-  /// point beyond none of the facets that replaced those it was beyond is in the hull for good.
+  /// Puts a point on the list of the first facet from `first` on that it is strictly beyond. If a
+  /// point is beyond none of the facets that replaced the ones it was beyond, it is in the hull
+  /// from then on.
   void assign(int point, int first) {
     uncertain_.clear();
     for (int f = first; f < static_cast<int>(simplices_.size()); ++f) {
@@ -376,8 +379,8 @@ class HullBuilder {
     return static_cast<int>(std::find(all.begin(), all.end(), neighbor) - all.begin());
   }
 
-  /// Replaces what is visible from `point`, a connected piece around `seed`, by the cone over its
-  /// rim.
+  /// Replaces the facets visible from `point`, a connected set that holds `seed`, by the cone from
+  /// `point` over the rim of that set.
   void insert(int point, int seed) {
     ++step_;
     const int first_new = static_cast<int>(simplices_.size());
@@ -423,8 +426,9 @@ class HullBuilder {
     }
   }
 
-  /// The new facet that shares with that over the rim ridge (f, i) all but corner j: turn around
-  /// the corners of f other than i and j through visible facets until the rim is met again.
+  /// The neighbor opposite to corner j of the new facet over the rim ridge (f, i). The search turns
+  /// around the corners of f other than i and j through visible facets until it meets the rim
+  /// again.
   int across_rim(int f, int i, int j) const {
     int kept = simplices_[f].corners[i];
     int exit = j;
@@ -456,8 +460,8 @@ class HullBuilder {
   std::vector<HullSimplex<D>> simplices_;
   std::vector<Plane> planes_;
   std::vector<int> exact_index_;    // into integer_planes_, −1 until needed
-  std::vector<int> first_outside_;  // per facet a list of the points that it will see inserted
-  std::vector<int> next_outside_;   // per point
+  std::vector<int> first_outside_;  // per facet the first of a list of points beyond it, or −1
+  std::vector<int> next_outside_;   // per point the next one of its list, or −1
   std::vector<int> visible_step_;   // when the facet was replaced
   std::vector<int> seen_step_;      // when last found not visible
   std::deque<IntegerHyperplane> integer_planes_;

@@ -19,8 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Facets that are nearest to the origin get their farthest points together, so many at a time: a
-/// hull is built for each round.
+/// Most points that are added per round. The points of the sum farthest beyond the facets nearest
+/// to the origin are added together, since a hull is built for each round.
 constexpr int kPointsPerRound = 12;
 
 /// Checked copies of the summands, rounded to a grid on which sums of one column of each are exact.
@@ -51,7 +51,7 @@ struct Support {
   double value = 0.0;
 };
 
-/// Of summands that the origin is added to.
+/// The support of a sum of summands, each with the origin added to its points.
 Support support(const std::vector<MatrixXd>& summands, const VectorXd& direction) {
   Support result{VectorXd::Zero(direction.size()), 0.0};
   for (const MatrixXd& summand : summands) {
@@ -118,7 +118,7 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
   const Index dimension = rounded.front().rows();
 
   // The origin is within the sum exactly if it is within the hull of all columns: in both cases
-  // every direction has a column that goes that way.
+  // every direction has a positive dot product with some column.
   Index num_columns = 0;
   for (const MatrixXd& summand : rounded) num_columns += summand.cols();
   MatrixXd all(dimension, num_columns);
@@ -155,7 +155,7 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
     }
     bool has_grown = false;
     if (hull.rank() < dimension) {
-      // Out of the hull's span, either way.
+      // The hull lacks a dimension: it grows out of its span, in both directions.
       const MatrixXd centered = points.columns().colwise() - points.columns().col(0);
       const MatrixXd basis = Eigen::FullPivHouseholderQR<MatrixXd>(centered).matrixQ();
       has_grown = add_support(basis.rightCols(1));

@@ -61,9 +61,9 @@ bool scale_rows(MatrixXd& points, std::array<int, kMaxDimension>& exponents) {
   return is_exact;
 }
 
-/// Whether the normals of some facets span all of the space, by doubles with room to spare:
-/// their determinant, the product of what each adds to the span of those before, is far above
-/// what errors of 2^-36 in unit vectors can make of zero.
+/// Whether the normals of some facets span all of the space, by doubles with a safety margin: their
+/// determinant, the product of the distances of each normal from the span of those before, is far
+/// above what errors of 2^-36 in unit vectors can make of zero.
 template <int D>
 bool certainly_span(std::vector<Eigen::Matrix<double, D, 1>> normals) {
   double determinant = 1.0;
@@ -91,7 +91,8 @@ class SpanHull {
         is_exactly_scaled_(scale_rows(scaled_, exponents_)),
         builder_(scaled_, exponents_, exact_, is_exactly_scaled_) {}
 
-  /// With `simplex` empty a spread one is tried; false if that is degenerate.
+  /// Builds the hull from `simplex`, or from a spread simplex if `simplex` is empty; false if the
+  /// simplex is degenerate.
   bool build(std::vector<int> simplex) {
     if (simplex.empty()) simplex = builder_.spread_simplex();
     if (simplex.size() != D + 1 || !builder_.build(simplex)) return false;
@@ -100,7 +101,7 @@ class SpanHull {
     return true;
   }
 
-  /// Corners of facets that are no extreme points: they lie within larger facets.
+  /// The corners of facets that are extreme points; the others lie within larger facets.
   std::vector<int> extreme_corners() {
     std::vector<std::vector<int>> stars(static_cast<std::size_t>(coordinates_.cols()));
     for (const int f : facets_) {
@@ -176,7 +177,7 @@ class SpanHull {
   }
 
  private:
-  /// A corner is extreme if the planes of the facets around it meet nowhere else.
+  /// A corner is extreme if the planes of the facets around it have no other common point.
   bool is_extreme(const std::vector<int>& star) {
     using Normal = Eigen::Matrix<double, D, 1>;
     // A few facets from all over the star nearly always suffice.
@@ -296,8 +297,8 @@ bool build_in_axes(const std::vector<int>& chosen, PolytopeData& data) {
   }
 }
 
-/// What is measured in the space rather than on its axes: normals, distances, the volume of the
-/// span.
+/// Computes what is measured in the space rather than on `axes`: normals, distances, the volume in
+/// the span.
 void measure_in_space(PolytopeData& data) {
   const auto rank = static_cast<Index>(data.axes.size());
   const bool is_full = rank == data.dimension();

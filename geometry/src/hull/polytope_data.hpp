@@ -10,9 +10,9 @@ namespace graspfit::geometry::internal {
 
 /// What a `ConvexPolytope` holds, which its copies share.
 ///
-/// Points, coordinates and facets are those of the hull in its span. There points are seen in
-/// `axes`, as many coordinates as the rank that tell all points of the span apart: an affine image
-/// of the hull, computed without rounding.
+/// The hull is that in the affine span of the points. Points of the span are given by their
+/// coordinates on `axes`, as many axes as the rank, which tell all points of the span apart: this
+/// projection is an affine image of the hull, computed without rounding.
 struct PolytopeData {
   Eigen::MatrixXd points;
   int rank = -1;
@@ -23,10 +23,10 @@ struct PolytopeData {
   Eigen::VectorXd offsets;
   double measure = 0.0;
 
-  std::vector<int> independent;  ///< points that span the span, the first as origin
+  std::vector<int> independent;  ///< affinely independent points of the span, the first as origin
   std::vector<int> axes;
   std::array<int, kMaxDimension> exponents = {};  ///< coordinates are divided by 2^exponent
-  bool has_scaled_points = true;                  ///< without rounding
+  bool has_scaled_points = true;                  ///< whether that division is exact
   Eigen::MatrixXd directions;  ///< dimension × rank, orthonormal; the identity at full rank
   Eigen::MatrixXd gradients;  ///< rank × facets: side value = gradient · (x − corner 0), scaled
   Eigen::VectorXd unit_bounds;       ///< of the error of that value, per length of x − corner 0
@@ -38,7 +38,7 @@ struct PolytopeData {
 /// The hull of the columns of `points`: 2 to 6 coordinates each, all finite.
 PolytopeData polytope_data(const Eigen::Ref<const Eigen::MatrixXd>& points);
 
-/// Rows of the directions of the span that belong to the axes.
+/// The rows of `directions` that belong to `axes`.
 Eigen::MatrixXd directions_on_axes(const PolytopeData& data);
 
 /// The scale of every axis.

@@ -31,8 +31,8 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Whether the plumb line through `center` along the normal of a counter-clockwise triangle meets
-/// it, its border included.
+/// Whether the line through `center` along the normal of a counter-clockwise triangle meets the
+/// triangle, border included.
 bool is_plumb_over(const std::array<Vector3d, 3>& triangle, const Vector3d& normal,
                    const Vector3d& center) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -44,8 +44,8 @@ bool is_plumb_over(const std::array<Vector3d, 3>& triangle, const Vector3d& norm
   return true;
 }
 
-/// Distance of `center`'s plumb point from the border of the convex hull of the supporting corners
-/// seen along `up`; negative outside.
+/// Distance of `center` from the border of the convex hull of the supporting corners, all projected
+/// along `up`; negative outside.
 double support_margin(const std::vector<Vector3d>& support, const Vector3d& up,
                       const Vector3d& center) {
   const Vector3d x = up.unitOrthogonal();
@@ -102,7 +102,7 @@ std::vector<RestPose> rest_poses(const TriangleMesh& mesh, const Vector3d& cente
     const std::array<Vector3d, 3> triangle = {surface[facet[0]], surface[facet[1]],
                                               surface[facet[2]]};
     const Vector3d across = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-    if (!(across.norm() > 0.0)) continue;  // thinner than rounding: a neighbor is plumb as well
+    if (!(across.norm() > 0.0)) continue;  // thinner than rounding: a neighbor will do
     const Vector3d normal = across.normalized();
     if (!is_plumb_over(triangle, normal, center_of_mass)) continue;
     const double offset = normal.dot(triangle[0]);

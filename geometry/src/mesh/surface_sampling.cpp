@@ -36,12 +36,13 @@ class AreaSampler {
 
   SurfaceSample draw(std::uint64_t index) const {
     base::Random random = base::Random::stream(seed_, index);
-    // The first face whose sum exceeds the place: never one without area.
+    // The first face for which the area up to and including it exceeds `place`: never a face
+    // without area.
     const double place = random.uniform() * area();
     const auto found = std::upper_bound(area_below_.begin(), area_below_.end(), place);
     const auto face = std::min<std::ptrdiff_t>(found - area_below_.begin(), last_with_area());
-    // [Osada et al. 2002]: the root turns a uniform number into one that grows with the width of
-    // the triangle.
+    // The root turns a uniform number into one whose density grows with the width of the triangle
+    // [Osada et al. 2002].
     const double across = std::sqrt(random.uniform());
     const double along = random.uniform();
     SurfaceSample sample;
@@ -55,7 +56,7 @@ class AreaSampler {
   }
 
  private:
-  // A product that rounds up to the whole area must not fall behind the last face that has some.
+  // A product that rounds up to the whole area must not select a face after the last one with area.
   std::ptrdiff_t last_with_area() const {
     return std::lower_bound(area_below_.begin(), area_below_.end(), area()) - area_below_.begin();
   }

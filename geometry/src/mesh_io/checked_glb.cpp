@@ -120,14 +120,14 @@ uint64_t element_size(const std::string& type, uint64_t component, const std::st
   fail(where + ": unknown type " + name_in_quotes(type));
 }
 
-/// What of an accessor matters for its users.
+/// The properties of an accessor that matter to its users.
 struct Accessor {
   uint64_t component_type = 0;
   std::string type;
   uint64_t count = 0;
 };
 
-/// A document on its way into a GLB of its own.
+/// A glTF document that is checked and written as a GLB of its own.
 class Document {
  public:
   Document(std::string_view content, const std::filesystem::path& folder)
@@ -326,7 +326,7 @@ class Document {
         const auto indices = index_member(primitives[k], "indices", accessors_.size(), where);
         const uint64_t mode = *whole_member(primitives[k], "mode", where, 4);
         if (mode > 6) fail(where + ": unknown mode " + std::to_string(mode));
-        if (!position || mode < 4) continue;  // Points, lines, and what has no place.
+        if (!position || mode < 4) continue;  // Points, lines, and primitives without positions.
         const Accessor& points = accessors_[*position];
         if (points.component_type != 5126 || points.type != "VEC3") {
           fail(where +
@@ -405,7 +405,7 @@ class Document {
       copy_numbers(nodes[i], "scale", 3, node, where);
       target_["nodes"].push_back(std::move(node));
     }
-    // With one parent each, the nodes that no root leads to are in circles.
+    // As no node has two parents, the nodes that are reached from no root form cycles.
     std::size_t num_reached = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!has_parent[i]) num_reached += below(i).num_nodes;
@@ -428,7 +428,7 @@ class Document {
     }
   };
 
-  /// What hangs below a node, itself included.
+  /// Size of what is below a node, the node included.
   Size below(std::size_t root) const {
     Size sum;
     std::vector<std::pair<std::size_t, int>> rest = {{root, 1}};

@@ -9,7 +9,7 @@ namespace graspfit::geometry::internal::gltf {
 /// Throws IoError "not a glTF mesh: <what>".
 [[noreturn]] void fail(const std::string& what);
 
-/// "chunk 3".
+/// `what` with its number, as in "chunk 3".
 std::string numbered(const char* what, std::size_t index);
 
 /// A name for a message.
@@ -21,10 +21,10 @@ struct Container {
   std::optional<std::string_view> binary;
 };
 
-/// What a glTF file (all of it JSON) or a GLB holds. @throws IoError if the GLB is no whole one.
+/// What a glTF file (all of it JSON) or a GLB holds. @throws IoError if the GLB is incomplete.
 Container opened(std::string_view content);
 
-/// A GLB of these.
+/// A GLB that holds this JSON text and these bytes.
 std::string packed(std::string json, const std::string& binary);
 
 }  // namespace graspfit::geometry::internal::gltf

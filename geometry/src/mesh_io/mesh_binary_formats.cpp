@@ -142,7 +142,7 @@ class PlyBody {
   PlyHeader::Format format_;
 };
 
-// "face 3"; names that are not PLY's own may be any bytes.
+// An element and its number, as in "face 3". Names that are not PLY's own may be any bytes.
 std::string numbered(const PlyElement& element, std::int64_t i) {
   const bool is_known =
       element.name == "vertex" || element.name == "face" || element.name == "tristrips";
@@ -185,8 +185,9 @@ std::int32_t checked_index(double number, const std::string& where) {
   return static_cast<std::int32_t>(number);
 }
 
-/// Triangles of a list of strips, which end with −1 each: every three neighbors are a triangle, and
-/// every second one runs the other way round. Those with a repeated corner only lead on.
+/// Adds the triangles of a list of strips, each of which ends with −1: every three consecutive
+/// corners are a triangle, and every second triangle has the opposite orientation. Triangles with a
+/// repeated corner only continue the strip and are left out.
 void add_strips(const std::vector<double>& corners, const std::string& where, PolygonSoup& soup) {
   std::vector<std::int32_t> strip;
   for (const double corner : corners) {

@@ -37,7 +37,7 @@ struct PolygonSoup {
   }
 };
 
-/// What is wrong with a face whose vertex is not one of the `count` that there are.
+/// Message about a face that uses a vertex that is not one of the `count` existing ones.
 inline std::string out_of_range(std::size_t face, std::int64_t vertex, std::size_t count) {
   return "face " + std::to_string(face) + " uses vertex " + std::to_string(vertex) + " of " +
          std::to_string(count);
@@ -52,8 +52,8 @@ PolygonSoup parse_obj(std::string_view content);
 PolygonSoup parse_ply(std::string_view content);
 PolygonSoup parse_stl(std::string_view content);
 
-/// glTF and GLB, by assimp, as the format has single precision anyway. What assimp sees is checked
-/// and made by `checked_glb`; buffers in other files are those in `folder`.
+/// glTF and GLB, by assimp, as the format has single precision anyway. assimp reads only what
+/// `checked_glb` has checked and written; buffers in other files are searched for in `folder`.
 PolygonSoup import_gltf(std::string_view content, const std::filesystem::path& folder);
 
 /// `read_mesh` of a file's bytes: `format` is "off", "obj", "ply" or "stl". Throws like the

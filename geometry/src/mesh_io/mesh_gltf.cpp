@@ -25,7 +25,7 @@ void add(const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
     const aiVector3D& v = mesh.mVertices[i];
     soup.add_vertex((X * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>());
   }
-  // A mirrored part has its triangles the other way round.
+  // The triangles of a mirrored part have the opposite orientation.
   const bool is_mirrored = X.topLeftCorner<3, 3>().determinant() < 0.0;
   for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];

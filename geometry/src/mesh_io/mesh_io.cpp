@@ -40,7 +40,7 @@ PolygonSoup parse(std::string_view content, const std::string& format) {
 }
 
 // Cuts a polygon into triangles: from its first corner if it is convex, else by cutting off ears,
-// in the coordinate plane that sees most of its area.
+// in the coordinate plane where its projection has the largest area.
 void triangulate(const std::vector<Eigen::Vector3d>& vertices,
                  std::span<const std::int32_t> polygon, std::vector<Face>& faces) {
   if (polygon.size() == 3) {

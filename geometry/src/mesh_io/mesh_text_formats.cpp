@@ -18,8 +18,8 @@ Eigen::Vector3d read_point(TextScanner& text) {
   return {x, y, z};
 }
 
-// Room to reserve for a stated number of things that take at least `bytes` each: a false number
-// must not cost memory.
+// Number of elements to reserve memory for, of a stated number of elements that take at least
+// `bytes` each in a file of `size` bytes: a false number must not cost memory.
 std::size_t believable(std::int64_t count, std::size_t size, std::size_t bytes) {
   return std::min(static_cast<std::size_t>(count), size / bytes + 1);
 }

@@ -12,14 +12,14 @@
 
 namespace graspfit::geometry::internal {
 
-/// The text after the mark that some editors put in front of UTF-8.
+/// The text without the byte order mark that some editors put in front of UTF-8.
 inline std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
   return text;
 }
 
-/// Text for a message: printable and no longer than `most`.
+/// The text in quotes, for a message: printable and cut to `most` characters.
 inline std::string in_quotes(std::string_view text, std::size_t most) {
   std::string result = "'";
   for (const char c : text.substr(0, most)) result += c >= ' ' && c <= '~' ? c : '?';
@@ -118,8 +118,9 @@ class TextScanner {
  private:
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-  // Of the first such character, or the size of `text`. Lines and words are short: `find_first_of`,
-  // which calls memchr for every character, took more than half of the time of reading.
+  // Index of the first character for which `is_it` holds, or the size of `text`. Lines and words
+  // are short: `find_first_of`, which calls memchr for every character, took more than half of the
+  // time of reading.
   template <typename Predicate>
   static std::size_t find_if(std::string_view text, Predicate is_it) {
     return static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_it) - text.begin());

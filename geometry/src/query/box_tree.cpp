@@ -190,7 +190,7 @@ TrianglePoint nearest_on_triangle(const Eigen::Vector3d& point,
     const double w = vc / sum;
     return {a + v * ab + w * ac, {std::max(0.0, 1.0 - v - w), v, w}};
   }
-  // Rounding has the last word in a sliver: the nearest of its edges is then as near as the inside.
+  // In a sliver rounding prevails: the nearest point of its edges is then as near as any inside.
   TrianglePoint best{a, {1, 0, 0}};
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;

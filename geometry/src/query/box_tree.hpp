@@ -9,7 +9,7 @@
 
 namespace graspfit::geometry::internal {
 
-/// More than any tree is deep: the builder halves below level 48.
+/// Larger than the depth of any tree: below level 48 the builder halves the set of triangles.
 inline constexpr int kMostTreeDepth = 128;
 
 /// A binary tree of axis-aligned boxes over the faces of a mesh. Boxes are exact: the least and
@@ -33,8 +33,8 @@ struct BoxTree {
   explicit BoxTree(const TriangleMesh& mesh);
 };
 
-/// Calls visit(triangle) for all triangles in leaves to which enter(node) lets pass, in the order
-/// of the tree.
+/// Calls visit(triangle) for all triangles in leaves that are reached through nodes for which
+/// enter(node) holds, in the order of the tree.
 template <typename Enter, typename Visit>
 void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
   std::array<std::int32_t, kMostTreeDepth> open;
@@ -101,7 +101,7 @@ inline Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& point,
   return nearest_on_triangle(point, corners).point;
 }
 
-/// First triangle on a ray, and where, in units of the direction.
+/// First triangle that a ray meets, and the ray parameter t there, in units of the direction.
 struct QuickHit {
   std::int32_t triangle = -1;  ///< Index into `BoxTree::triangles`; −1: none.
   double t = 0.0;
@@ -111,7 +111,8 @@ struct QuickHit {
 /// doubles: for statistics over many rays, not for decisions.
 ///
 /// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
-/// of them; one seen edge-on is missed, its neighbors are not. Of equal hits the lowest face.
+/// of them; a triangle seen edge-on is missed, but not its neighbors. Of equal hits the one with
+/// the lowest face is returned.
 QuickHit quick_first_hit(const BoxTree& tree, const Eigen::Vector3d& origin,
                          const Eigen::Vector3d& direction, std::int32_t skipped_face);
 

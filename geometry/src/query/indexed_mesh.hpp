@@ -17,7 +17,7 @@ struct IndexedMesh {
   TriangleMesh mesh;
   BoxTree tree;
   Eigen::AlignedBox3d box;                  ///< Of the faces; unused vertices do not count.
-  std::vector<std::int32_t> part_vertices;  ///< One vertex of each set of faces that hang together
+  std::vector<std::int32_t> part_vertices;  ///< One vertex of each set of faces that are connected
                                             ///< by common vertices, ascending.
 };
 

@@ -24,7 +24,7 @@ using internal::BoxTree;
 using Corners = std::array<Vector3d, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// A node of B's tree seen from frame A: a box that holds it, rounding included.
+/// A box in frame A that holds a node of B's tree, rounding included.
 struct SeenBox {
   Vector3d lower;
   Vector3d upper;
@@ -33,7 +33,7 @@ struct SeenBox {
 SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
   const Vector3d center = X_AB * Vector3d(0.5 * (node.lower + node.upper));
   const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (node.upper - node.lower));
-  // Generous against the few ulps that the two products and the mapped vertices are off.
+  // The slack is far above the few ulps by which the two products and the mapped vertices are off.
   const double slack =
       1e-14 * (center.cwiseAbs().sum() + half.sum() + X_AB.translation().cwiseAbs().sum() +
                node.lower.cwiseAbs().sum() + node.upper.cwiseAbs().sum());
@@ -54,9 +54,9 @@ Kernel::Triangle_3 to_cgal(const Corners& c) {
   return {point(c[0]), point(c[1]), point(c[2])};
 }
 
-/// Whether all corners of `b` are strictly on one side of the plane of `a`, certain in doubles: a
-/// quick no for most pairs near a touch. The bound covers the rounding of every difference and
-/// product below.
+/// Whether all corners of `b` are strictly on one side of the plane of `a`, certain in doubles:
+/// this quickly rules out most pairs near a contact. The bound covers the rounding of every
+/// difference and product below.
 bool is_clearly_beside(const Corners& a, const Corners& b) {
   const Vector3d ab = a[1] - a[0];
   const Vector3d ac = a[2] - a[0];
@@ -74,8 +74,8 @@ bool is_clearly_beside(const Corners& a, const Corners& b) {
   return above == 3 || below == 3;
 }
 
-/// Exact. Degenerate faces bound nothing that their neighbors do not, and CGAL's test needs proper
-/// triangles: they are left out.
+/// Whether two faces intersect. Exact. Degenerate faces bound nothing that their neighbors do not,
+/// and CGAL's test needs proper triangles, so that they are left out.
 bool triangles_intersect(const Corners& a, const Corners& b) {
   if (!internal::box_of(a).intersects(internal::box_of(b))) return false;
   if (is_clearly_beside(a, b) || is_clearly_beside(b, a)) return false;
@@ -84,7 +84,8 @@ bool triangles_intersect(const Corners& a, const Corners& b) {
   return !first.is_degenerate() && !second.is_degenerate() && CGAL::do_intersect(first, second);
 }
 
-/// The inverse of a pose whose rotation may be one up to the digits of a file only: not transposed.
+/// The inverse of a pose whose rotation matrix may be orthogonal only up to the digits of a file,
+/// so that the inverse of the matrix is not its transpose.
 RigidTransform inverse_of(const RigidTransform& X_AB) {
   RigidTransform X_BA = RigidTransform::Identity();
   X_BA.linear() = X_AB.linear().inverse();
@@ -147,7 +148,8 @@ Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
   return winding.result();
 }
 
-/// Whether some part of `inner` (surfaces do not cross) lies inside `outer`, both in one frame.
+/// Whether some part of another mesh, whose surface does not cross that of `outer`, lies inside
+/// `outer`; `part_points` has a point of each part, in the frame of `outer`.
 bool holds_a_part(const MeshQuery& outer, const std::vector<Vector3d>& part_points) {
   return std::any_of(part_points.begin(), part_points.end(), [&](const Vector3d& point) {
     return outer.indexed().box.contains(point) && outer.containment(point) != Containment::Outside;
@@ -165,7 +167,7 @@ std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& 
 /// Best-first search for the point of one surface that is deepest inside another solid.
 class DeepestPoint {
  public:
-  /// What is not deeper than `depth_known` is not looked for.
+  /// Points that are not deeper than `depth_known` are not searched for.
   DeepestPoint(const MeshQuery& solid, const RigidTransform& X_solid_surface,
                const PenetrationOptions& options, double depth_known = 0.0)
       : depth(depth_known),
@@ -174,13 +176,14 @@ class DeepestPoint {
         tolerance_(options.tolerance),
         enough_(options.enough) {}
 
-  double depth;                       ///< Deepest point found.
+  double depth;                       ///< Depth of the deepest point found.
   double bound = 0.0;                 ///< No point is deeper.
   Vector3d point = Vector3d::Zero();  ///< In the solid's frame.
 
   void search(const BoxTree& surface) {
     push_node(surface, 0);
-    // Ties over a wide flat overlap would be cut forever; the bound says honestly how far this got.
+    // Equally deep triangles over a wide flat overlap would be cut forever; the bound stays valid
+    // when the search ends early.
     constexpr int kLargestWork = 50000;
     for (int work = 0; work < kLargestWork && !open_.empty(); ++work) {
       if (open_.top().bound <= depth + tolerance_ || depth > enough_) break;
@@ -222,12 +225,12 @@ class DeepestPoint {
     const BoxTree::Node& node = surface.nodes[index];
     const SeenBox box = seen_from(node, X_);
     const Eigen::AlignedBox3d& solid_box = solid_.indexed().box;
-    // What is deeper lies as far inside the solid's box.
+    // A point deeper than `depth` lies at least that far inside the solid's box.
     const Vector3d inset = Vector3d::Constant(depth);
     if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
     const Vector3d center = 0.5 * (box.lower + box.upper);
     const double radius = 0.5 * (node.upper - node.lower).norm();
-    // The distance to a surface changes by at most the distance gone.
+    // The distance to a surface is 1-Lipschitz.
     push(radius - solid_.signed_distance(center), index, kNoCorners, -1);
   }
 
@@ -244,8 +247,8 @@ class DeepestPoint {
       depth = distance;
       point = center;
     }
-    // Nor can any point be farther from the surface than from the one face nearest to the center,
-    // and that distance, convex, is largest at a corner.
+    // No point is farther from the surface than from the face nearest to the center, and the
+    // distance to this face, which is convex, is largest at a corner.
     const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(closest.face));
     double to_face = 0.0;
     for (const Vector3d& corner : corners) {
@@ -256,9 +259,10 @@ class DeepestPoint {
     push(most, -1, corners, closest.face);
   }
 
-  /// Whether a triangle whose middle is outside the solid cannot enter it: it would have to pass
-  /// through the plane of a face near it, but lies on one side of each. Sees at once what touches
-  /// the solid from outside along an edge or a face. False means nothing.
+  /// Whether a triangle whose middle is outside the solid certainly does not enter the solid: to
+  /// enter, it would have to pass through the plane of a face near it, but it lies on one side of
+  /// each of these planes. This settles at once triangles that touch the solid from outside along
+  /// an edge or a face. False decides nothing.
   bool stays_outside(const Corners& corners) const {
     // Rounding of the corners, which is that of the largest coordinate far from the origin.
     const Eigen::AlignedBox3d& whole = solid_.indexed().box;
@@ -288,8 +292,9 @@ class DeepestPoint {
   }
 
   /// Cuts a triangle where it leaves the prism over a face of the solid on which it nearly lies:
-  /// the part over the face is then no deeper than its height, at once, where halves would have to
-  /// become as small as the tolerance all along the edge. False if that does not apply.
+  /// the part over the face is then at once known to be no deeper than its height over the face,
+  /// whereas quarters would have to become as small as the tolerance all along the edge. False if
+  /// no such cut applies.
   bool split_along_face(const Item& item) {
     const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(item.face));
     const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
@@ -305,7 +310,7 @@ class DeepestPoint {
       std::array<double, 3> side;
       for (int i = 0; i < 3; ++i) side[i] = outward.dot(item.corners[i] - face[edge]);
       const auto [least, most] = std::minmax_element(side.begin(), side.end());
-      // Slivers that a cut would leave are not worth one.
+      // A cut that would leave a sliver is not made.
       if (-*least <= 1e-3 * *most || *most <= 1e-3 * -*least || *most <= farthest) continue;
       farthest = *most;
       beyond = side;

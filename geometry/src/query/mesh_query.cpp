@@ -35,9 +35,8 @@ std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
 }
 
 // The line through an origin and a point `ahead`, both doubles. `ahead` is so far that rounding it
-// turns the line by rounding error only; after that all signs are exact on this very line, and
-// faces on both sides of an edge ask for the same one, so that no line slips through a closed
-// surface.
+// turns the line by rounding error only; from then on all signs are exact for this line, and faces
+// on both sides of an edge use the same sign, so that no line slips through a closed surface.
 class Line {
  public:
   struct Meeting {

@@ -15,7 +15,8 @@ struct OneSidedDistance {
   Eigen::Vector3d nearest = Eigen::Vector3d::Zero();  ///< On the surface.
 };
 
-/// Triangles may be degenerate; none of them: zero.
+/// Bounds of the greatest distance of a point of `triangles` from `surface`. Triangles may be
+/// degenerate; without triangles the bounds are zero.
 OneSidedDistance one_sided_distance(const std::vector<std::array<Eigen::Vector3d, 3>>& triangles,
                                     const MeshQuery& surface, const HausdorffOptions& options);
 

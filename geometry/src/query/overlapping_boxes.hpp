@@ -9,7 +9,7 @@
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 /// \file
-/// The cheap first question about a mesh of several parts: can any two of them meet?
+/// A cheap first test of a mesh of several parts: whether the boxes of any two parts overlap.
 
 namespace graspfit::geometry::internal {
 

@@ -48,8 +48,9 @@ class Search {
       found_.point = center;
       found_.nearest = closest.point;
     }
-    // No point is farther from the surface than the center is, plus the way to it; nor farther than
-    // from the one face nearest to the center, and that distance, convex, is largest at a corner.
+    // No point of the triangle is farther from the surface than the center's distance plus the
+    // distance to the center. Nor is it farther than from the face nearest to the center, and the
+    // distance to this face, which is convex, is largest at a corner.
     double radius = 0.0;
     for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
     double bound = distance + radius;

@@ -39,7 +39,7 @@ std::pair<Vector3d, Vector3d> closest_on_segments(const Vector3d& p0, const Vect
   return {p0 + s * u, q0 + t * v};
 }
 
-/// Where an edge of `a` passes through `b`, in rounded numbers.
+/// The point where an edge of `a` passes through `b`, if one does, in rounded numbers.
 std::optional<Vector3d> piercing(const Corners& a, const Corners& b) {
   const Vector3d normal = (b[1] - b[0]).cross(b[2] - b[0]);
   const std::array<double, 3> side = {normal.dot(a[0] - b[0]), normal.dot(a[1] - b[0]),
@@ -58,7 +58,7 @@ std::optional<Vector3d> piercing(const Corners& a, const Corners& b) {
   return std::nullopt;
 }
 
-/// Two triangles, what their planes say of each other.
+/// Heights of a triangle's corners over the plane of another triangle.
 struct Heights {
   Heights(const Corners& plane, const Corners& points) {
     const Vector3d normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
@@ -68,9 +68,9 @@ struct Heights {
     const double highest = std::max({of[0], of[1], of[2]});
     beyond = std::max({lowest, -highest, 0.0});
   }
-  // Asked so that a triangle without area, whose plane tells nothing, answers "near" even where
-  // there is no bound yet and 0 times infinity is not a number.
-  /// Whether all of the points' triangle is as far from the plane as that.
+  // The comparisons are such that a triangle without area, whose plane tells nothing, counts as
+  // near even where there is no bound yet and 0 times infinity is not a number.
+  /// Whether the whole triangle is farther from the plane than the bound.
   bool are_beyond(double squared_bound) const {
     return beyond * beyond > squared_bound * squared_normal;
   }
@@ -86,12 +86,13 @@ struct Heights {
   }
 
   double squared_normal = 0.0;
-  std::array<double, 3> of{};  ///< Times the normal's length.
-  double beyond = 0.0;         ///< Of the nearest point of the triangle, likewise; 0: it crosses.
+  std::array<double, 3> of{};  ///< Height of each corner, times the normal's length.
+  double beyond = 0.0;  ///< Distance of the nearest point of the triangle from the plane, times the
+                        ///< normal's length; 0 if the triangle crosses the plane.
 };
 
-/// One search for nearest points, depth first, the nearer children first. What surely is no nearer
-/// than `share` of the best is left out.
+/// One search for nearest points, depth first, the nearer children first. Pairs of nodes that are
+/// surely no nearer than `share` times the best distance are left out.
 class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
@@ -127,7 +128,7 @@ class Search {
   }
 
   const std::optional<SurfaceProximity>& best() const { return best_; }
-  /// Of a search to its end: no pair of points is nearer than this.
+  /// After a search that ran to its end no pair of points is nearer than this.
   double at_least() const {
     return std::sqrt(std::min({squared_best_, squared_left_out_, squared_enough_}));
   }
@@ -191,7 +192,7 @@ class Search {
       push(open, pair.node_a, pair.node_b + 1);
       push(open, pair.node_a, node_b.first);
     }
-    // The last one is looked at first.
+    // The last pair of the list is visited first.
     if (open.size() == size + 2 && open[size].squared_gap < open[size + 1].squared_gap) {
       std::swap(open[size], open[size + 1]);
     }
@@ -224,8 +225,9 @@ class Search {
     best_ = {std::sqrt(squared), on_a, on_b, face_a, face_b};
   }
 
-  /// Of two triangles that do not cross: a corner and a triangle, or two edges, are nearest. What
-  /// the other's plane tells to be farther than the best is not looked at.
+  /// Offers the nearest points of two triangles. If the triangles do not cross, these points are on
+  /// a corner and a triangle, or on two edges. Corners and edges are skipped if they are farther
+  /// from the other triangle's plane than the best distance.
   void improve(const Corners& a, std::int32_t face_a, const Corners& b, std::int32_t face_b) {
     const Heights of_b(a, b);
     if (of_b.are_beyond(squared_best_)) return;

@@ -10,9 +10,9 @@ namespace graspfit::geometry::internal {
 /// Counts the crossings of the ray from `point` along +x with the triangles given to `add`,
 /// exactly.
 ///
-/// Rays through edges and vertices: the ray is thought moved by (ε, ε²) in (y, z) for an infinitely
-/// small ε, so that it meets every closed surface in the inside of triangles only; a point that is
-/// not on the surface stays on its side of it.
+/// Rays through edges and vertices are resolved by symbolic perturbation: the ray counts as moved
+/// by (ε, ε²) in (y, z) for an infinitesimal ε, so that it meets every closed surface in the
+/// interior of triangles only; a point that is not on the surface stays on the same side of it.
 class Winding {
  public:
   explicit Winding(const Eigen::Vector3d& point) : point_(point) {}
@@ -30,7 +30,8 @@ class Winding {
     if (lower[0] <= point_[0] && is_on_triangle(point_, a, b, c)) is_on_surface_ = true;
     const int around = turn(a, b);
     if (around == 0 || turn(b, c) != around || turn(c, a) != around) return;
-    // Seen along the ray the triangle holds its start; ahead if the start is behind its plane.
+    // Seen along the ray the triangle holds the ray's start; the triangle is ahead if the start is
+    // behind its plane.
     if (lower[0] > point_[0] || around * orientation(a, b, c, point_) < 0) number_ += around;
   }
 
@@ -44,8 +45,8 @@ class Winding {
   int number() const { return number_; }
 
  private:
-  // On which side of the line from u to v the moved point is, in the (y, z) plane: the first of
-  // the value, its derivative by y and its derivative by z that is not zero.
+  // On which side of the line from u to v the moved point is, in the (y, z) plane: the sign of the
+  // first that is not zero of the orientation, its derivative by y and its derivative by z.
   int turn(const Eigen::Vector3d& u, const Eigen::Vector3d& v) const {
     const int side = orientation_2d(u, v, point_, 1, 2);
     if (side != 0) return side;
@@ -59,7 +60,7 @@ class Winding {
   bool is_on_surface_ = false;
 };
 
-/// The surface of a closed mesh around a point.
+/// The winding of a closed mesh's surface around a point.
 Winding winding_around(const MeshQuery& query, const Eigen::Vector3d& point);
 
 }  // namespace graspfit::geometry::internal

@@ -33,8 +33,8 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
   return (p - a - t * ab).norm();
 }
 
-// From a point of the plane to a rectangle of the given half extents with rounded corners: outside
-// positive. Its absolute value is the distance to the outline everywhere.
+// Function of a point of the plane that is positive outside a rectangle of the given half extents
+// with rounded corners. Its absolute value is the distance to the outline everywhere.
 double rounded_rectangle_distance(const Vector2d& p, const Vector2d& half, double corner) {
   const Vector2d q = p.cwiseAbs() - half + Vector2d::Constant(corner);
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - corner;
@@ -93,8 +93,8 @@ std::array<Hole, 3> holes(const BowlingBallDimensions& d) {
           hole(finger, offset, d.finger_depth, d.finger_diameter)};
 }
 
-// An octopus' arm in the half-plane (distance from the z axis, z): an arc of a circle run through
-// by its heading above the horizontal.
+// An octopus' arm in the half-plane (distance from the z axis, z): an arc of a circle,
+// parameterized by its heading above the horizontal.
 struct Arm {
   static constexpr double kFirst = -55.0 * pi / 180.0;
   static constexpr double kLast = 35.0 * pi / 180.0;
@@ -130,7 +130,8 @@ struct Arm {
     return center + radius * Vector2d(std::sin(heading), -std::cos(heading));
   }
 
-  // Of a point (s, z) of the arm's plane and its distance from that plane.
+  // Distance from the arm of the point at distance `across` from the arm's plane and with
+  // projection (s, z) to that plane.
   double distance(double s, double z, double across) const {
     const Vector2d p = Vector2d(s, z) - center;
     const double heading = std::atan2(p[0], -p[1]);
@@ -191,8 +192,8 @@ TriangleMesh mug(const MugDimensions& d, int segments) {
   solid.field = [=](const Vector3d& p) {
     const double from_axis = std::hypot(p[0], p[1]);
     const double wall = mug_sheet_distance(d, {from_axis, p[2]}) - half_wall;
-    // Inside the middle of the wall only the wall counts: the handle does not come through. Both
-    // sides are −half_wall where they meet.
+    // Closer to the axis than the middle of the wall only the wall counts, so that the handle does
+    // not come through. Both expressions are −half_wall where they meet.
     if (from_axis <= middle) return wall;
     const double to_line =
         rounded_rectangle_distance({p[0] - middle, p[2] - 0.5 * d.height}, half, d.handle_radius);

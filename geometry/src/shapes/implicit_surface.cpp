@@ -23,7 +23,7 @@ constexpr int kBlock = 8;                        // lattice points a side that a
 constexpr std::int64_t kMostPoints = 1LL << 28;  // of a lattice: 2 GB of values
 constexpr int kQuadRounds = 14;                  // relaxation rounds; more change nothing visible
 constexpr int kTriangleRounds = 6;               // the same, each followed by flips
-constexpr double kRelaxation = 0.6;              // share of the way to the neighbors' mean
+constexpr double kRelaxation = 0.6;              // share of the distance to the neighbors' mean
 constexpr double kVertexTolerance = 1e-12;       // over the longest extent
 
 [[noreturn]] void refuse_coarse(const ImplicitSolid& solid, double edge_length) {
@@ -128,7 +128,7 @@ class Lattice {
     return is_connected(mask) && is_connected(~mask & 255);
   }
 
-  // Whether the corners of a set hang together over edges of the cube.
+  // Whether the corners of a set are connected over edges of the cube.
   static bool is_connected(int set) {
     int reached = set & -set;
     for (int step = 0; step < 8; ++step) {
@@ -233,7 +233,7 @@ class Surface {
   Surface(const ImplicitSolid& solid, double edge_length)
       : solid_(solid), edge_length_(edge_length), step_(1e-4 * edge_length) {}
 
-  // Forward differences: good enough for a direction.
+  // Gradient by forward differences, which are good enough for a direction.
   Vector3d gradient(const Vector3d& p, double value) const {
     Vector3d g;
     for (int axis = 0; axis < 3; ++axis) {
@@ -261,7 +261,7 @@ class Surface {
       Vector3d shift = kRelaxation * (mean / degree - p);
       shift -= g * (g.dot(shift) / squared);
       const Vector3d q = p + shift;
-      // No farther than half an edge: on a fold the field is no distance.
+      // The step is no longer than half an edge, since on a fold the field is no distance.
       const double back = std::clamp(-solid_.field(q) / std::sqrt(squared), -0.5 * edge_length_,
                                      0.5 * edge_length_);
       vertices[i] = q + g * (back / std::sqrt(squared));

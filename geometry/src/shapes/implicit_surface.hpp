@@ -26,17 +26,18 @@ struct ImplicitSolid {
 /// Surface of the solid as a closed outward manifold with edges of about `edge_length` [m].
 ///
 /// Surface nets [Gibson 1998]: one vertex per lattice cell that the surface passes, one
-/// quadrilateral per lattice edge that it crosses; manifold since no face of a cell is left with
-/// alternating signs and no cell with two sheets. Then vertices move along the surface towards the
-/// middle of their neighbors, and diagonals are flipped to be Delaunay. Vertices lie on the zero
-/// level, by bisection, to 1e-12 of the box's longest edge.
+/// quadrilateral per lattice edge that it crosses. The net is a manifold, since no face of a cell
+/// is left with alternating signs and no cell with two sheets. Then vertices move along the surface
+/// towards the middle of their neighbors, and diagonals are flipped to be Delaunay. Vertices lie on
+/// the zero level, by bisection, to 1e-12 of the box's longest edge.
 /// @throws InvalidInput if the lattice is too coarse for the solid: sheets merge or faces turn
 /// over.
 TriangleMesh polygonize(const ImplicitSolid& solid, double edge_length);
 
-/// Union of solids with the concave edges between them filled to radius `fillet`. Where no more
-/// than one solid is nearer than `fillet`, it is that solid's own distance; otherwise all distances
-/// d_i < fillet are in it: r − √Σ(r − d_i)², whose slope is at most √n.
+/// Union of solids with the concave edges between them filled to radius `fillet`. Where at most one
+/// solid is nearer than `fillet`, the distance of the union is the least distance of a solid;
+/// otherwise it is r − √Σ(r − d_i)² with r = fillet over the n distances d_i < r, a function whose
+/// slope is at most √n.
 class FilletedUnion {
  public:
   explicit FilletedUnion(double fillet) : fillet_(fillet) {}
@@ -60,7 +61,8 @@ class FilletedUnion {
   double least_ = std::numeric_limits<double>::infinity();
 };
 
-/// What is in both solids, with the convex edge between them rounded to radius `rounding`.
+/// Distance of the intersection of two solids with distances `a` and `b`, with the convex edge
+/// between them rounded to radius `rounding`.
 double rounded_intersection(double a, double b, double rounding);
 
 }  // namespace graspfit::geometry::internal

@@ -18,7 +18,7 @@ namespace {
 struct NamedShape {
   ShapeDescription description;
   std::size_t num_lengths;
-  // Of the values of all dimensions, in the order of the description.
+  // Builds the shape from the values of all dimensions, in the order of the description.
   std::function<TriangleMesh(const std::vector<double>&)> build;
 };
 
@@ -45,7 +45,7 @@ NamedShape shape_of(const char* name, const char* what,
   return shape;
 }
 
-// One whose only count is its segments.
+// A shape of this kind whose only count is its number of segments.
 template <class Dimensions, std::size_t n>
 NamedShape shape_of(const char* name, const char* what,
                     const std::array<internal::DimensionField<Dimensions>, n>& fields,

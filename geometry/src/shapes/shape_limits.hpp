@@ -7,7 +7,7 @@
 #include "graspfit/base/number_text.hpp"
 
 /// \file
-/// What the numbers of shapes must be, in one wording.
+/// Checks of the numbers that define shapes, with messages in one wording.
 
 namespace graspfit::geometry::internal {
 

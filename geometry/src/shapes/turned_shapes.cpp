@@ -19,7 +19,8 @@ using internal::require_positive;
 using internal::require_range;
 using std::numbers::pi;
 
-// Four-fold, so that the widest ring touches all sides of the box.
+// The number of segments is a multiple of four, so that the widest ring touches all sides of the
+// box.
 void require_segments(const char* shape, int segments) {
   require_range(shape, "segments", segments, 12, 2048);  // 10 million faces of a bottle
   if (segments % 4 != 0) {
@@ -130,8 +131,8 @@ std::vector<Vector2d> pin_profile_inches(double edge_length) {
       Spline(knots(0, kBelly), std::nan(""), 0.0), Spline(knots(kBelly, kNeck), 0.0, 0.0),
       Spline(knots(kNeck, kHead), 0.0, 0.0), Spline(head, 0.0, -(kCapStart - cap_center) / cap_r)};
 
-  // The arc at the base touches the floor and the side: the side's point at z whose inward normal
-  // of length kBaseRadius ends at that height.
+  // The arc at the base touches the floor and the side. It touches the side at the height z where
+  // the inward normal of length kBaseRadius ends at the height kBaseRadius.
   double low = 0.0;
   double high = kBaseRadius;
   for (int i = 0; i < 60; ++i) {

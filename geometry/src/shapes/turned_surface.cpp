@@ -46,7 +46,7 @@ std::vector<Vector2d> rounded_profile(const char* shape, const std::vector<Profi
     for (int i = 1; i < steps; ++i) points.push_back(start + (end - start) * i / steps);
     points.push_back(end);
   };
-  // Length of the line before a corner that its predecessors' rounding leaves.
+  // Length of the line before a corner that the rounding of the previous corner takes.
   double used = 0.0;
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
     const Vector2d& corner = corners[k].point;
@@ -84,8 +84,9 @@ std::vector<Vector2d> rounded_profile(const char* shape, const std::vector<Profi
 TriangleMesh turned_surface(const std::vector<Vector2d>& profile, int segments,
                             double edge_length) {
   const auto rings = static_cast<std::int32_t>(profile.size()) - 2;
-  // How often the vertices of each ring are halved: while edges stay below 1.4 edge lengths, so
-  // that they end between 0.7 and 1.4, and by one between neighbors.
+  // How often the number of vertices of each ring is halved: while edges stay below 1.4 edge
+  // lengths, so that they end between 0.7 and 1.4, and at most once more than for the neighboring
+  // rings.
   std::vector<int> halvings(rings, 0);
   for (std::int32_t ring = 0; ring < rings; ++ring) {
     int& h = halvings[ring];

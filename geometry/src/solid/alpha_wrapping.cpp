@@ -22,8 +22,8 @@ namespace {
 using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// Ends a wrap that does not end by itself: CGAL's refinement goes round in circles where rounding
-/// puts a new point on an old one, as on a needle of 3e8 times its thickness.
+/// Stops a wrap that does not terminate: CGAL's refinement cycles where rounding puts a new point
+/// on an old one, as on a needle 3e8 times as long as thick.
 class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor {
  public:
   struct Exceeded {};
@@ -84,7 +84,7 @@ TriangleMesh alpha_wrap(const TriangleMesh& given, double alpha_rel, double offs
   } catch (const WrapLimit::Exceeded&) {
     return {};
   } catch (const CGAL::Failure_exception&) {
-    // In builds with assertions CGAL says where rounding defeated it before it starts going round.
+    // In builds with assertions CGAL reports where rounding defeated it before it starts to cycle.
     return {};
   }
   TriangleMesh result;

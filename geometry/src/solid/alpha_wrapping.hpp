@@ -4,8 +4,9 @@
 
 namespace graspfit::geometry::internal {
 
-/// Wraps the faces and orients the wrap outward; alpha and offset over `extent`, the longest of the
-/// mesh [m]. No faces if CGAL does not come to a good end.
+/// Wraps the faces of a mesh and orients the wrap outward. `alpha_rel` and `offset_rel` are
+/// relative to `extent`, the longest extent of the mesh [m]. The result has no faces if CGAL fails
+/// or does not terminate.
 TriangleMesh alpha_wrap(const TriangleMesh& given, double alpha_rel, double offset_rel,
                         double extent);
 

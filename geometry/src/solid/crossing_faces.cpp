@@ -31,8 +31,9 @@ bool is_beside(const Corners& a, const Corners& b) {
          orientation(a[0], a[1], a[2], b[2]) == side;
 }
 
-/// Triangles that share their corner 0 and no other: another common point p lies on a ray from that
-/// corner, which leaves one of them through the opposite side while still in the other.
+/// Whether two triangles that share their corner 0 and no other have another common point p: the
+/// ray from that corner through p then leaves one triangle through the opposite side while it is
+/// still in the other.
 bool fans_cross(const Corners& a, const Corners& b) {
   const auto stays_beside = [](const Corners& plane, const Corners& other) {
     const int side = orientation(plane[0], plane[1], plane[2], other[1]);
@@ -46,7 +47,8 @@ bool fans_cross(const Corners& a, const Corners& b) {
   return side_meets(a, b) || side_meets(b, a);
 }
 
-/// Triangles that share the edge from corner 0 to 1: folded onto each other, or not at all.
+/// Whether two triangles that share the edge from corner 0 to 1 overlap: they do exactly if they
+/// are folded onto each other.
 bool hinge_overlaps(const Corners& a, const Corners& b) {
   if (orientation(a[0], a[1], a[2], b[2]) != 0) return false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +104,7 @@ class PairTest {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<std::int32_t> place_of_;  ///< Equal for vertices at the same place.
+  std::vector<std::int32_t> place_of_;  ///< Equal for vertices with the same coordinates.
 };
 
 }  // namespace

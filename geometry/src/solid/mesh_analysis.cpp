@@ -18,7 +18,7 @@ using internal::FaceSide;
 
 /// Faces beyond the first with the same three vertices, in whatever order.
 std::size_t count_doubled(const TriangleMesh& mesh, const std::vector<FaceSide>& sides) {
-  // Such faces share their edges, and there the vertex across.
+  // Such faces share their edges, and for each edge the opposite vertex.
   std::vector<std::int32_t> candidates;
   const auto across = [&mesh](const FaceSide& side) {
     return mesh.faces[side.face][side.corner == 0 ? 2 : side.corner - 1];
@@ -50,7 +50,7 @@ std::size_t count_doubled(const TriangleMesh& mesh, const std::vector<FaceSide>&
   return candidates.size() - seen.size();
 }
 
-/// Vertices whose faces form more than one fan.
+/// Whether the faces of any vertex form more than one fan.
 bool has_pinched_vertex(const TriangleMesh& mesh, const std::vector<FaceSide>& sides) {
   // Corners (3 · face + k) are one fan if they are joined through shared edges at their vertex.
   DisjointSets fans(3 * mesh.faces.size());

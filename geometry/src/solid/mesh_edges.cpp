@@ -134,9 +134,10 @@ std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
     own.insert(own.end(), mesh.faces[face].begin(), mesh.faces[face].end());
   }
   const auto is_enclosed = [&](std::int32_t part) {
-    // Parts that keep clear of this one's box hold all of it or nothing: one point tells, and one
-    // off the lines through vertices that boxes are made of needs no rational numbers. Parts that
-    // come near are asked for every vertex.
+    // A part whose faces stay clear of this part's box encloses all of the box or nothing of it, so
+    // that one point of the box decides. The point is off the lines through the vertices that
+    // define the box, so that no rational numbers are needed. Parts that come near are tested at
+    // every vertex.
     const Eigen::AlignedBox3d& box = boxes[part];
     const std::vector<std::int32_t> near = parts_near(tree, parts, box);
     const auto is_near = [&near](std::int32_t other) {

@@ -8,7 +8,7 @@
 #include "query/box_tree.hpp"
 
 /// \file
-/// Edges of a mesh with their faces, and its parts: what analysis and repair both stand on.
+/// Edges of a mesh with their faces, and the parts of a mesh, as analysis and repair both use them.
 
 namespace graspfit::geometry::internal {
 
@@ -54,20 +54,20 @@ void for_each_edge(const std::vector<FaceSide>& sides, Visit visit) {
 std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
                                          const std::vector<FaceSide>& sides);
 
-/// Whether every edge is run through as often up as down; so it is without faces.
+/// Whether every edge is run through as often up as down, as in a mesh without faces.
 bool bounds_solid(const TriangleMesh& mesh);
 
-/// Exact: a repeated index, or three collinear corners.
+/// Whether a face has a repeated index or three collinear corners. Exact.
 bool is_degenerate(const TriangleMesh& mesh, std::size_t face);
 
-/// Parts whose own surface winds around `point`, ascending; not those on whose surface it lies.
-/// Exact. `tree` is that of the mesh whose faces `parts` numbers.
+/// Parts whose own surface winds around `point`, ascending; parts on whose surface `point` lies are
+/// left out. Exact. `tree` is that of the mesh whose faces `parts` numbers.
 std::vector<std::int32_t> parts_around(const BoxTree& tree, const std::vector<std::int32_t>& parts,
                                        const Eigen::Vector3d& point);
 
 /// Closed parts that are inside-out, ascending: negative signed volume and no other closed part
-/// that holds all their vertices. A part inside another one that is inside-out bounds a cavity and
-/// is right.
+/// that holds all their vertices. An inside-out part inside another part bounds a cavity and is
+/// correct.
 std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
                                            const std::vector<std::int32_t>& parts,
                                            const std::vector<bool>& is_part_closed);

@@ -16,7 +16,8 @@
 namespace graspfit::geometry::internal {
 namespace {
 
-/// Where sides with one face lead from each vertex, in the direction of faces that would fill.
+/// For each vertex the vertices to which sides with one face lead, in the direction in which faces
+/// that fill a hole would run.
 using Ways = std::map<std::int32_t, std::vector<std::int32_t>>;
 
 Ways boundary_ways(const TriangleMesh& mesh) {
@@ -27,7 +28,7 @@ Ways boundary_ways(const TriangleMesh& mesh) {
   return ways;
 }
 
-/// Vertices to or from which more than one way leads.
+/// Vertices to or from which more than one boundary side leads.
 std::set<std::int32_t> junctions_of(const Ways& ways) {
   std::set<std::int32_t> junctions;
   std::set<std::int32_t> reached;
@@ -40,7 +41,7 @@ std::set<std::int32_t> junctions_of(const Ways& ways) {
   return junctions;
 }
 
-/// A way along the boundary from one junction to the next.
+/// A path along the boundary from one junction to the next.
 struct Chain {
   std::vector<std::int32_t> vertices;
   double length = 0.0;
@@ -50,8 +51,8 @@ struct Chain {
   std::int32_t end() const { return vertices.back(); }
 };
 
-/// Chains from every junction, shortest first; no two share a side. Ways that come to an end are
-/// none.
+/// Chains from every junction, shortest first; no two share a side. Paths that end at no junction
+/// are no chains.
 std::vector<Chain> chains_between_junctions(const TriangleMesh& mesh, const Ways& ways) {
   const std::set<std::int32_t> junctions = junctions_of(ways);
   std::vector<Chain> chains;
@@ -78,9 +79,9 @@ std::vector<Chain> chains_between_junctions(const TriangleMesh& mesh, const Ways
   return chains;
 }
 
-/// Numbers of the unused chains that lead back from the end of `start` to its beginning on the
-/// shortest way [Dijkstra 1959]; empty if it starts where it ends or no way is found among the
-/// nearest junctions.
+/// Indices of the unused chains on the shortest path from the end of `start` back to its beginning
+/// [Dijkstra 1959]; empty if `start` begins where it ends, or if no path is found among the nearest
+/// junctions.
 std::vector<std::size_t> shortest_way_back(
     const std::vector<Chain>& chains, const std::map<std::int32_t, std::vector<std::size_t>>& from,
     const Chain& start) {
@@ -112,7 +113,7 @@ std::vector<std::size_t> shortest_way_back(
     }
   }
   std::vector<std::size_t> way;
-  // Ways that are longer than any number lead nowhere.
+  // A path of infinite length does not count.
   const auto back = reached.find(start.begin());
   if (back == reached.end() || std::isinf(back->second.distance)) return way;
   for (std::int32_t at = start.begin(); at != start.end();) {
@@ -123,7 +124,7 @@ std::vector<std::size_t> shortest_way_back(
   return way;
 }
 
-/// Takes the side from one vertex to another out of the ways.
+/// Removes the side from one vertex to another from the boundary sides.
 void erase_way(Ways& ways, std::int32_t from, std::int32_t to) {
   const auto entry = ways.find(from);
   entry->second.erase(std::find(entry->second.begin(), entry->second.end(), to));

@@ -28,8 +28,8 @@ bool is_even(const Face& f) {
 void flip(Face& face) { std::swap(face[1], face[2]); }
 
 /// Sides of one edge in the order in which their faces stand around it, counter-clockwise seen from
-/// its higher vertex; exact. Of faces in one place those that run up come first: seen along the
-/// edge they end a wedge of solid, and the others begin one.
+/// its higher vertex; exact. Of coincident faces those that run up come first: seen along the edge
+/// they end a wedge of solid, and the others begin one.
 std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSide> sides) {
   const Vector3d& low = mesh.vertices[sides.front().low()];
   const Vector3d& high = mesh.vertices[sides.front().high()];
@@ -44,7 +44,8 @@ std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSi
   const Vector3d reference = third(*found);
   struct Item {
     FaceSide side;
-    int half;  ///< From the reference: 0 there, 1 up to half a turn, 2 there, 3 beyond; −1 no area.
+    int half;  ///< Angle from the reference: 0 none, 1 below half a turn, 2 half a turn, 3 beyond;
+               ///< −1 no area.
   };
   std::vector<Item> items;
   for (const FaceSide& side : sides) {
@@ -74,8 +75,8 @@ std::vector<FaceSide> sorted_around(const TriangleMesh& mesh, std::vector<FaceSi
   return sides;
 }
 
-/// Triangles that close a hole, by their places in its rim. A rim without area, as where a vertex
-/// of one face lies on an edge of another, gets triangles without area.
+/// Triangles that close a hole, as indices into its rim. A rim without area, as where a vertex of
+/// one face lies on an edge of another, gets triangles without area.
 std::vector<Face> patch_of(const TriangleMesh& mesh, const HoleRim& rim) {
   const auto point = [&](std::size_t i) -> const Vector3d& { return mesh.vertices[rim[i]]; };
   std::size_t num_on_line = 2;
@@ -189,7 +190,7 @@ std::size_t make_consistent(TriangleMesh& mesh) {
         component.push_back(neighbor);
       }
     }
-    // The majority was right.
+    // The orientation of the majority is kept.
     const auto turned =
         std::count_if(component.begin(), component.end(), [&](auto f) { return state[f] < 0; });
     if (2 * turned > static_cast<std::ptrdiff_t>(component.size())) {

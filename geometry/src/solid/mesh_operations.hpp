@@ -8,22 +8,23 @@
 #include "solid/mesh_holes.hpp"
 
 /// \file
-/// What a repair is made of. Each function changes the mesh and returns how many things it changed.
+/// The steps of a repair. Each function changes the mesh and returns how many elements it changed.
 
 namespace graspfit::geometry::internal {
 
-/// Vertices up to `distance` [m] apart become one; 0: those with equal coordinates. Returns how
-/// many became another one, and the farthest way of one of them [m].
+/// Welds vertices that are up to `distance` [m] apart; 0 welds vertices with equal coordinates.
+/// Returns how many vertices were merged into another one, and the largest distance by which one of
+/// them moved [m].
 std::pair<std::size_t, double> weld(TriangleMesh& mesh, double distance);
 
 /// Removes vertices of no face.
 std::size_t remove_unused_vertices(TriangleMesh& mesh);
 
-/// Faces with a repeated vertex bound nothing and go. Collinear faces with three vertices carry the
-/// connection between their neighbors and stay: removing one would open the surface.
+/// Removes faces with a repeated vertex, which bound nothing. Collinear faces with three vertices
+/// connect their neighbors and stay: removing one would open the surface.
 std::size_t remove_collapsed_faces(TriangleMesh& mesh);
 
-/// What becomes of a surface of which every face has its opposite.
+/// What becomes of a surface in which every face has an opposite one on the same vertices.
 enum class TwoSided {
   Halved,  ///< It was drawn on both sides throughout: one of each pair stays.
   Removed  ///< It is a sheet without thickness.
@@ -33,7 +34,8 @@ enum class TwoSided {
 /// stays.
 std::size_t remove_doubled_faces(TriangleMesh& mesh, TwoSided two_sided);
 
-/// Turns faces until neighbors over two-face edges agree, as the majority of each part is.
+/// Turns faces until neighbors over two-face edges have the same orientation, that of the majority
+/// of each part.
 std::size_t make_consistent(TriangleMesh& mesh);
 
 /// Gives every fan of faces around a vertex a vertex of its own. Around an edge with more than two

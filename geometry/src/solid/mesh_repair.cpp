@@ -90,7 +90,7 @@ std::vector<HoleRim> concatenation(std::vector<HoleRim> rims, const std::vector<
   return rims;
 }
 
-/// Of the longest extent of the mesh, as the limit of filling is.
+/// Extent of a rim over the longest extent of the mesh, as in `max_hole_extent_rel`.
 double rim_extent_rel(const TriangleMesh& mesh, const HoleRim& rim) {
   return internal::rim_extent(mesh, rim) / longest_extent(mesh);
 }
@@ -198,15 +198,15 @@ class Repair {
 
   /// When holes that meet at vertices are filled.
   enum class MeetingHoles {
-    AfterSplitting,  ///< The surface is split there, and each patch closed for itself.
-    BeforeSplitting  ///< What the file holds together stays together.
+    AfterSplitting,  ///< The surface is split at these vertices, and each patch closed by itself.
+    BeforeSplitting  ///< Patches that the file connects stay connected.
   };
 
   /// Mends the mesh and judges the result. Where holes meet at vertices, there are two ways to
   /// close the surface. Solids that only touch come apart as they should; a surface of patches
-  /// that hang together by vertices does so too, and then every patch is closed by a filling along
-  /// its own inside, which leaves a hollow skin. So where the first way is no success, the other
-  /// is tried.
+  /// that are connected by vertices only does so too, and then every patch is closed by a filling
+  /// along its own inside, which leaves a hollow skin. So where the first way is no success, the
+  /// other is tried.
   void mend_either_way() {
     mend(MeetingHoles::AfterSplitting);
     if (largest_meeting_rel_ == 0.0 || is_solid()) return;
@@ -241,7 +241,8 @@ class Repair {
     add_step("split non-manifold vertices", internal::split_nonmanifold(mesh), 0.0);
     const internal::Holes holes = internal::holes_of(mesh);
     num_filled += fill(concatenation(holes.single, holes.meeting));
-    // A sheet without thickness is closed by its own mirror image: both go, it bounds nothing.
+    // A sheet without thickness is closed by its own mirror image: both are removed, as they bound
+    // nothing.
     if (num_filled > 0) drop_doubled_faces(TwoSided::Removed);
     add_step("removed unused vertices", internal::remove_unused_vertices(mesh), 0.0);
     add_step("turned parts", internal::turn_inside_out_parts(mesh), 0.0);
@@ -251,8 +252,8 @@ class Repair {
     removed_rel_ = removed_share();
   }
 
-  /// Area of what was removed, over that of the surface with it. Walls inside the solid do not
-  /// count: where solids share faces, they go and nothing is lost.
+  /// Area that was removed, over the area of the surface with it. Walls inside the solid do not
+  /// count: where solids share faces, these are removed and nothing is lost.
   double removed_share() const {
     if (removed_.empty()) return 0.0;
     const MeshQuery solid(result_.mesh);
@@ -402,9 +403,9 @@ class Repair {
     }
   }
 
-  /// Extent of the largest hole that is left, over that of the mesh. Where holes that meet were too
-  /// large to be filled, those are the holes, and not the borders of the patches that came apart
-  /// there.
+  /// Extent of the largest hole that is left, over that of the mesh. If holes that meet were too
+  /// large to be filled, they are the ones that count, and not the borders of the patches that came
+  /// apart at their vertices.
   double largest_hole_rel() const {
     if (largest_meeting_rel_ > options_.max_hole_extent_rel) return largest_meeting_rel_;
     double largest = 0.0;
@@ -415,7 +416,7 @@ class Repair {
     return largest;
   }
 
-  /// What a larger limit for holes would do: tried out, so that it is true.
+  /// What a larger limit for holes would do. It is tried out, so that the message is true.
   std::string advice_to_fill(double share) const {
     if (advice_ == Advice::None || options_.mode != RepairMode::Repair) return "";
     if (!(share > options_.max_hole_extent_rel)) return "";
@@ -454,12 +455,12 @@ class Repair {
   RepairedMesh result_;
   double volume_ = 0.0;  ///< Of the mesh as it is now, holes closed by cones [m³].
   std::vector<Triangle> fillings_;
-  std::vector<Triangle> removed_;     ///< For being without thickness.
+  std::vector<Triangle> removed_;     ///< Triangles removed for lack of thickness.
   double misfilled_rel_ = 0.0;        ///< See `misfilled_share`.
   double removed_rel_ = 0.0;          ///< See `removed_share`.
   double largest_meeting_rel_ = 0.0;  ///< Extent of the largest hole that meets another, over
                                       ///< that of the mesh that it was in.
-  double largest_open_rel_ = 0.0;     ///< Of the hole that the other way left.
+  double largest_open_rel_ = 0.0;     ///< Extent of the hole that the other order left, likewise.
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ double winding_number(const std::vector<Triangle>& triangles, const Vector3d& or
 
 double misfilled_share(const TriangleMesh& closed, const std::vector<Triangle>& fillings) {
   constexpr std::uint64_t kSeed = 1;
-  constexpr int kEnoughInside = 1'000;  // Deviation of a share of a quarter: 0.014.
+  constexpr int kEnoughInside = 1'000;  // Standard deviation of a share of a quarter: 0.014.
   // A thin object fills a hundredth of its box and less; of a sheet without volume no point is
   // inside.
   constexpr int kMostPoints = 200'000;
@@ -48,7 +48,8 @@ double misfilled_share(const TriangleMesh& closed, const std::vector<Triangle>& 
   const Vector3d size = query.box().sizes();
   const double extent = size.maxCoeff();
   if (fillings.empty() || !(extent > 0.0) || !std::isfinite(extent)) return 0.0;
-  // At an extent of one products of lengths are doubles.
+  // The triangles are scaled to an extent of one, where products of lengths stay in the range of
+  // doubles.
   std::vector<Triangle> scaled = fillings;
   for (Triangle& triangle : scaled) {
     for (Vector3d& p : triangle) p = (p - corner) / extent;

@@ -41,8 +41,8 @@ Exact::Point_3 to_exact(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 int sign_of(const Rational& value) { return static_cast<int>(CGAL::sign(value)); }
 
-/// A point with exact coordinates, which are computed when a sign is in doubt, and doubles near
-/// them: each within `error`.
+/// A point with exact coordinates, which are computed when a sign is in doubt, and with doubles
+/// that are within `error` of them.
 struct ExactPoint {
   std::array<Exact::FT, 3> exact;
   Vector3d near;
@@ -111,8 +111,8 @@ struct Sides {
 };
 
 /// Winding numbers on both sides of a point within a piece, by the crossings of the ray from it
-/// along `axis`. As in `internal::Winding` the ray is thought moved by (ε, ε²), so that it meets
-/// the inside of triangles only. Faces that hold the point lie in the piece's plane, or they would
+/// along `axis`. As in `internal::Winding` the ray counts as moved by (ε, ε²), so that it meets the
+/// interior of triangles only. Faces that hold the point lie in the piece's plane, or they would
 /// have cut it there.
 Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, int axis) {
   const int a = (axis + 1) % 3;
@@ -130,8 +130,8 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
     const Vector3d low = node.lower.array() - point.error;
     const Vector3d high = node.upper.array() + point.error;
     const Vector3d& p = point.near;
-    // Not the comparisons turned round: of a sliver the bounds may be infinite and the place NaN,
-    // which has to be looked for everywhere.
+    // The comparisons are not inverted: for a sliver the error may be infinite and the coordinates
+    // NaN, and such a point has to be searched for everywhere.
     return !(high[axis] < p[axis] || low[a] > p[a] || high[a] < p[a] || low[b] > p[b] ||
              high[b] < p[b]);
   };
@@ -153,14 +153,15 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
   return sides;
 }
 
-/// The axis along which a face is seen largest.
+/// The axis along which the projection of a face is largest.
 int main_axis(const Corners& corners) {
   int axis = 0;
   internal::accurate_vector_area(corners[0], corners[1], corners[2]).cwiseAbs().maxCoeff(&axis);
   return axis;
 }
 
-/// Faces with area on vertices with different places, and whether they bound a solid.
+/// The faces that have area, on vertices with distinct coordinates. @throws InvalidInput if the
+/// faces bound no solid.
 TriangleMesh welded(const TriangleMesh& mesh) {
   TriangleMesh result = mesh;
   internal::weld(result, 0.0);
@@ -205,8 +206,8 @@ class Builder {
     return {to_exact(a), to_exact(b), to_exact(c)};
   }
 
-  /// Faces that cross nothing: what is on their sides is the same all over those that hang together
-  /// by edges with no third face.
+  /// Adds the faces that cross nothing and bound the solid. The sides of such faces are the same
+  /// throughout a set of them that is connected by edges with two faces.
   void add_whole_faces(const std::vector<std::vector<Common>>& met) {
     internal::DisjointSets regions(mesh_.faces.size());
     internal::for_each_edge(internal::sorted_sides(mesh_), [&](auto first, auto last) {
@@ -214,7 +215,8 @@ class Builder {
         regions.unite(first->face, (first + 1)->face);
       }
     });
-    // Whether faces stay as they are (1), turned (−1) or not at all, by the region's first face.
+    // Whether faces stay as they are (1), stay turned (−1) or are dropped (0), by the region's
+    // first face.
     std::vector<int> fate(mesh_.faces.size(), 0);
     for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
       if (!met[f].empty()) continue;
@@ -276,7 +278,7 @@ class Builder {
     std::map<Cut::Face_handle, bool> is_done;
     for (const Cut::Face_handle start : cut.finite_face_handles()) {
       if (is_done[start]) continue;
-      // The piece: all triangles up to the next cuts. Its largest one is asked for the sides.
+      // A piece is all triangles up to the next cuts. The sides are found at its largest triangle.
       std::vector<Cut::Face_handle> piece = {start};
       is_done[start] = true;
       Cut::Face_handle largest = start;
@@ -293,7 +295,7 @@ class Builder {
       }
       const Cut::Triangle t = cut.triangle(largest);
       const Sides sides = sides_at(*tree_, lifted(CGAL::centroid(t[0], t[1], t[2])), face, axis);
-      // Where faces cover each other the first one speaks for all.
+      // Where faces cover each other only the first one adds the piece.
       if (sides.first_face != face || sides.is_solid_above == sides.is_solid_below) continue;
       for (const Cut::Face_handle part : piece) {
         Face added;
@@ -335,7 +337,7 @@ class Builder {
     return CGAL::to_double(cut.triangle(face).area());
   }
 
-  /// Equal places one vertex, nothing collapsed, no vertex without a face.
+  /// The result with equal vertices welded, and without collapsed faces and unused vertices.
   TriangleMesh cleaned() {
     internal::weld(result_, 0.0);
     internal::remove_collapsed_faces(result_);

@@ -33,7 +33,7 @@ LinearProgramSolution maximize_linear(const Eigen::Ref<const Eigen::VectorXd>& o
     program.set_c(static_cast<int>(j), -objective[j]);
   }
   for (Index i = 0; i < b.size(); ++i) program.set_b(static_cast<int>(i), b[i]);
-  // The default choice of the entering variable goes round in circles on some degenerate programs.
+  // With the default choice of the entering variable some degenerate programs cycle.
   CGAL::Quadratic_program_options options;
   options.set_pricing_strategy(CGAL::QP_BLAND);
   const auto solved = CGAL::solve_nonnegative_linear_program(program, CGAL::Gmpzf(), options);

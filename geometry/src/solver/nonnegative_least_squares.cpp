@@ -22,8 +22,8 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
   std::vector<Index> passive;  // columns that may be positive, ascending
   const VectorXd lengths = a.colwise().norm();
   const double target_length = b.norm();
-  // Each round lowers the residual, so that no set of columns comes twice; rounding could make it
-  // turn in circles all the same.
+  // Each round lowers the residual, so that no set of columns recurs in real arithmetic; the limit
+  // guards against cycles by rounding.
   const Index most_rounds = 10 * (a.rows() + a.cols());
   std::vector<bool> is_refused(static_cast<std::size_t>(a.cols()), false);
   for (Index round = 0; round < most_rounds; ++round) {
@@ -58,7 +58,8 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
       }
       const auto place = std::lower_bound(passive.begin(), passive.end(), entering);
       if (is_new && best[place - passive.begin()] <= 0.0) {
-        // Steep by rounding alone: nearly in the span of the others.
+        // Only rounding made this column lower the residual: it is nearly in the span of the
+        // others.
         is_refused[entering] = true;
         passive.erase(place);
         break;

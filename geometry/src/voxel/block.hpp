@@ -4,7 +4,7 @@
 
 namespace graspfit::geometry::internal {
 
-/// Calls visit(place) for all places of a lattice from `low` to `high`, both included, x fastest.
+/// Calls visit(p) for all lattice points p from `low` to `high`, both included, x fastest.
 template <typename Visit>
 void for_each_in_block(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
                        const Visit& visit) {

@@ -28,7 +28,7 @@ class Envelope {
     int k = -1;
     for (int q = 0; q < n; ++q) {
       if (f[q] == kNone) continue;
-      // First whole place at which q is strictly below p < q.
+      // First integer at which the parabola of q is strictly below that of p < q.
       const auto first_below = [&](int p) {
         const Squared numerator = Squared{q} * q + f[q] - Squared{p} * p - f[p];
         const Squared denominator = 2 * (Squared{q} - p);

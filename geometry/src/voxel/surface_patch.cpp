@@ -16,8 +16,8 @@ using internal::CutPiece;
 using internal::CutPieceName;
 using internal::VoxelCutter;
 
-// Squared distances within this of each other, relatively, are not told apart by the rounded radius
-// of a piece (a float) and the rounding of the distances.
+// Factor on squared distances that covers the rounding of a piece's radius to a float and the
+// rounding of the distances.
 constexpr double kRadiusRoom = 1.0 + 1e-6;
 
 // The point of some pieces nearest to `point`; of equally near ones that of the first. A piece lies
@@ -85,9 +85,10 @@ class PatchProjection {
   std::int32_t piece_ = -1;
 };
 
-// About as many as there will be patches: a surface of area A meets 1.5 A / h² voxels of edge h on
-// average over its directions; from every 16th face, with an eighth to spare. Where sheets lie
-// close, voxels share them: no more than the surface of a box of the lattice's size would have.
+// About the number of patches: a surface of area A meets 1.5 A / h² voxels of edge h on average
+// over its directions. The area is estimated from every 16th face, and an eighth is added. Where
+// sheets lie close, voxels share them, so that the number is limited to that of the surface of a
+// box of the lattice's size.
 std::size_t expected_patches(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   constexpr std::size_t kStride = 16;
   double area = 0.0;

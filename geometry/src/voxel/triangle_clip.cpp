@@ -14,8 +14,8 @@ constexpr double kEps = 0x1p-53;  // Half an ulp of 1.
 
 // A line's values carry at most 5 kEps of its sizes (three products, three additions; one
 // subtraction for axis-aligned planes), two factors and their difference 12 kEps of h_size, a third
-// factor and the sum 20 kEps of the product; the sizes themselves are rounded. These cover it with
-// room.
+// factor and the sum 20 kEps of the product; the sizes themselves are rounded. The bounds below
+// cover this with a margin.
 constexpr double kValueBound = 8.0 * kEps;
 constexpr double kSignBound = 32.0 * kEps;
 
@@ -23,13 +23,13 @@ constexpr double kSignBound = 32.0 * kEps;
 constexpr double kLambdaBound = 32.0 * kEps;
 constexpr double kLambdaTolerance = 0x1p-44;
 
-// The bound in the wider type, in the same proportion.
+// The bound for long double, in the same proportion to its precision.
 constexpr double kLongLambdaBound =
     16.0 * static_cast<double>(std::numeric_limits<long double>::epsilon());
 
 // A coordinate v0 + λ1 e1 + λ2 e2 is off by the λ's errors times the extents (2^-43 of the
 // triangle's), as many roundings of numbers no longer than the extents, and two of numbers no
-// larger than the coordinates. Twice that, and a number that no underflow reaches.
+// larger than the coordinates. The slack is twice that, plus a number that no underflow reaches.
 constexpr double kExtentSlack = 0x1p-42;
 constexpr double kSizeSlack = 0x1p-51;
 constexpr double kLeastSlack = 0x1p-1000;
@@ -325,8 +325,8 @@ CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {
   }
   double lambda_1 = 0.0;
   double lambda_2 = 0.0;
-  // Rounded corners bound an area that is off by about as much as they are; far above that, the
-  // weights are good.
+  // The area of a polygon with rounded corners is off by about as much as the corners are; if it is
+  // far above that, the weights are good.
   if (result.fraction > 64.0 * kLambdaTolerance) {
     const double scale = 1.0 / (3.0 * result.fraction);
     lambda_1 = first.lambda_1 + sum_1 * scale;

@@ -20,8 +20,8 @@
 ///     two planes      lines G, G'
 ///
 /// Three stages decide that sign, each where the one before cannot: the distance of the corner's
-/// rounded place from the plane, if it is more than the place can be off; the determinant in
-/// doubles with its error bound; the determinant in rationals.
+/// rounded position from the plane, if it exceeds the error bound of the position; the determinant
+/// in doubles with its error bound; the determinant in rationals.
 
 namespace graspfit::geometry::internal {
 
@@ -51,19 +51,24 @@ struct CutMeasure {
   Eigen::Vector3d centroid;
 };
 
-/// How often doubles could not decide or place something. Every entry counts, none sums.
+/// How often doubles could not decide a sign or compute a corner or an area. Every entry counts,
+/// none sums.
 struct ClipStatistics {
-  std::int64_t signs_by_determinant = 0;  ///< Too near for the rounded corner to say.
-  std::int64_t signs_in_rationals = 0;    ///< Of these, in doubles not certain.
-  std::int64_t corners_in_rationals = 0;  ///< Too flat a cut for doubles and for long doubles.
+  std::int64_t signs_by_determinant = 0;  ///< Signs at corners too near the plane to decide by the
+                                          ///< rounded corner.
+  std::int64_t signs_in_rationals = 0;    ///< Signs of these whose determinant in doubles was not
+                                          ///< certain.
+  std::int64_t corners_in_rationals = 0;  ///< Corners of cuts too flat for doubles and for long
+                                          ///< doubles.
   std::int64_t areas_in_rationals = 0;    ///< Pieces too small for their rounded corners.
 };
 
 /// One triangle and the planes that cut it.
 ///
-/// Bounds: signs are exact. Barycentric coordinates are within 2^-44 of their exact places, so that
-/// a corner is within 2^-42 of the longest edge plus two ulps of the largest coordinate of its own;
-/// a corner on an axis-aligned plane has that plane's coordinate exactly, a vertex is the vertex.
+/// Bounds: signs are exact. Barycentric coordinates are within 2^-44 of their exact values, so that
+/// a corner is off its exact position by at most 2^-42 of the longest edge plus two ulps of the
+/// largest coordinate. A corner on an axis-aligned plane has that plane's coordinate exactly, and a
+/// corner at a vertex of the triangle is exactly that vertex.
 class TriangleCutter {
  public:
   TriangleCutter();
@@ -74,16 +79,16 @@ class TriangleCutter {
   /// The whole triangle.
   void whole(CutPolygon& polygon) const;
 
-  /// Line of the plane normal · p = offset, inside where normal · p ≤ offset. Returns its name;
-  /// names are consecutive, from 3 on: those below are the edges', each the name of the vertex that
-  /// it does not touch.
+  /// Adds the line of the plane normal · p = offset, inside where normal · p ≤ offset. Returns the
+  /// line's name. Names are consecutive from 3 on; the names 0 to 2 are those of the triangle's
+  /// edges, each the name of the vertex that the edge does not touch.
   std::uint32_t add_plane(const Eigen::Vector3d& normal, double offset);
 
-  /// Line of the plane p[axis] = coordinate, inside where p[axis] ≤ coordinate.
+  /// Adds the line of the plane p[axis] = coordinate, inside where p[axis] ≤ coordinate.
   std::uint32_t add_axis_plane(int axis, double coordinate);
 
   /// The part of `polygon` inside `line`, and, unless null, the part on its other side; parts
-  /// without area are empty. A polygon in the plane goes to `in_plane`: to the inside or the other.
+  /// without area are empty. A polygon in the plane goes to the side that `in_plane` names.
   enum class InPlane { Inside, Outside };
   void split(const CutPolygon& polygon, std::uint32_t line, InPlane in_plane, CutPolygon& inside,
              CutPolygon* outside);

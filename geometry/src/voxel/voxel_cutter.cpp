@@ -18,8 +18,9 @@ constexpr int kOutside = -1;  // Cell of a coordinate below the first plane.
 // Vertices of a face lie apart in memory: they are fetched this many faces ahead.
 constexpr std::size_t kAhead = 16;
 
-// The least i with x < plane(i + 1): the voxel that holds x, one in a plane being in the higher.
-// Exact, since it ends by comparing with the planes themselves. −1 and counts stand for all beyond.
+// The least i with x < plane(i + 1): the voxel that holds x, where an x in a plane belongs to the
+// higher voxel. Exact, since the search ends by comparing with the planes themselves. −1 and counts
+// stand for all x beyond the lattice.
 int cell_of(const VoxelLattice& lattice, int axis, double x) {
   const int count = lattice.counts[axis];
   const double quotient = (x - lattice.origin[axis]) / lattice.voxel_size;
@@ -196,7 +197,7 @@ void VoxelCutter::cut_along(int first, int last) {
 }
 
 // Narrows the cells of the axis to those that the polygon may reach: outer bounds, so that no
-// exact decision is skipped. One plane is as quickly tried as bounded.
+// exact decision is skipped. Cutting by one plane is as quick as bounding the polygon.
 template <int kAxis>
 void VoxelCutter::cut_narrowed() {
   int first = first_[kAxis];

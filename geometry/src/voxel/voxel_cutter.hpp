@@ -13,25 +13,26 @@
 
 namespace graspfit::geometry::internal {
 
-/// What a face leaves in a voxel.
+/// The piece of a face in a voxel.
 struct CutPiece {
   Eigen::Vector3d centroid;
   Eigen::Vector3d normal;
   double area;
-  std::int32_t first_corner;  ///< Of `CutLayer::corners`; whole faces have none there.
+  std::int32_t first_corner;  ///< Index of the piece's first corner in `CutLayer::corners`, where
+                              ///< whole faces have no corners.
   float squared_radius;       ///< Of a ball about the centroid that holds it; rounded to a float.
   std::int32_t face;
 };
 
-/// A piece by its place in the lists of its layer.
+/// A piece by its voxel, its face and its index in `CutLayer::pieces`.
 struct CutPieceName {
   std::int32_t cell;  ///< Index of its voxel in the layer, x fastest.
   std::int32_t face;
   std::int32_t piece;
 };
 
-/// The pieces in one layer of voxels across z. Layers are filled from below and done with one after
-/// the other, so that what is worked on stays in the processor's caches, and memory is used again.
+/// The pieces in one layer of voxels across z. Layers are filled and finished one after the other,
+/// from below, so that the data in use stay in the processor's caches and memory is used again.
 struct CutLayer {
   std::vector<CutPiece> pieces;
   std::vector<Eigen::Vector3d> corners;
@@ -57,8 +58,8 @@ struct CutLayer {
   }
 };
 
-/// Cuts the faces of a mesh at the planes of a lattice, into layers along z, each of these along y,
-/// each of those along x.
+/// Cuts the faces of a mesh at the planes of a lattice, first into layers along z, each layer into
+/// rows along y, and each row into voxels along x.
 class VoxelCutter {
  public:
   /// Mesh and lattice outlive the cutter. @throws InvalidInput if the lattice has no voxels or too
@@ -71,8 +72,8 @@ class VoxelCutter {
 
  private:
   struct Level {
-    CutPolygon rest;   ///< Not yet cut along this axis.
-    CutPolygon piece;  ///< In one slab of this axis and the ones before.
+    CutPolygon rest;   ///< The polygon that is not yet cut along this axis.
+    CutPolygon piece;  ///< The polygon's piece in one slab of this axis and of the axes before.
     CutPolygon other;
   };
 
@@ -97,16 +98,17 @@ class VoxelCutter {
   const VoxelLattice& lattice_;
   std::vector<VertexCode> codes_;
   std::vector<CutLayer> layers_;
-  std::vector<CutLayer> spare_;  ///< Cleared ones, for their memory.
+  std::vector<CutLayer> spare_;  ///< Cleared layers, kept for their memory.
   TriangleCutter cutter_;
   std::array<Level, 3> levels_;
-  std::array<int, 3> first_;  ///< Cells of the face at hand,
+  std::array<int, 3> first_;  ///< First cell of the current face on each axis; `last_` is the last.
   std::array<int, 3> last_;
-  std::array<std::uint32_t, 3> first_line_;  ///< name of the plane above the first of them,
-  std::array<int, 3> cell_;                  ///< and of the piece at hand.
+  std::array<std::uint32_t, 3> first_line_;  ///< Name of the plane above the first cell on each
+                                             ///< axis.
+  std::array<int, 3> cell_;                  ///< Cell of the current piece.
   std::int32_t face_ = -1;
-  Eigen::Vector3d normal_;  ///< Of the face at hand, unit,
-  double area_ = 0.0;       ///< and its area: zero if and only if its corners are collinear.
+  Eigen::Vector3d normal_;  ///< Unit normal of the current face.
+  double area_ = 0.0;  ///< Area of the current face: zero if and only if its corners are collinear.
 };
 
 }  // namespace graspfit::geometry::internal

@@ -41,7 +41,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   const int ny = lattice.counts[1];
   const int nz = lattice.counts[2];
   std::vector<Run> runs;
-  std::vector<std::size_t> first_of_row;  // And the end of the last.
+  std::vector<std::size_t> first_of_row;  // First run of each row, and the end of the last.
   for (std::size_t row = 0; row < is_member.size(); row += static_cast<std::size_t>(nx)) {
     first_of_row.push_back(runs.size());
     const auto begin = is_member.begin() + static_cast<std::ptrdiff_t>(row);
@@ -113,7 +113,8 @@ SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxe
       }
     }
   }
-  // Every corner, edge and wall belongs to the cells that share it; counted by its highest cell.
+  // Every corner, edge and face is in the set if one of the cells that share it is; it is counted
+  // at the highest of these cells.
   std::int64_t euler = 0;
   const Vector3i last = size - Vector3i::Ones();
   for_each_in_block(Vector3i::Ones(), last, [&](const Vector3i& v) {
@@ -128,7 +129,7 @@ SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxe
     euler += (o || x) + (o || y) + (o || z);
     euler -= o;
   });
-  // Pieces touch by corners; what is between them is connected by walls only.
+  // Cells of the set are connected even by corners, cells outside of it by faces only.
   const auto count_sets = [&](char value, bool by_corners) {
     std::vector<char> seen(cells.size(), 0);
     std::vector<Vector3i> stack;

@@ -12,7 +12,8 @@ namespace graspfit::geometry::internal {
 
 using Index = std::int64_t;  ///< Of a voxel in its lattice.
 
-/// Calls visit(neighbor) for the voxels of the 3 × 3 × 3 block around `voxel` that exist.
+/// Calls visit(neighbor) for the other voxels of the 3 × 3 × 3 block around a voxel, as far as the
+/// lattice has them.
 template <typename Visit>
 void for_each_neighbor(const VoxelLattice& lattice, Index index, const Visit& visit) {
   const Eigen::Vector3i voxel = lattice.voxel(index);
@@ -59,12 +60,13 @@ struct SetTopology {
   int num_rings = 0;  ///< Independent loops: 1 for a ring, 0 for a disk.
 };
 
-/// Of the voxels, each grown by `growth` voxels to all sides, which closes narrower gaps and holes.
-/// Numbers of cubes, walls, edges and corners decide: pieces − rings + cavities = χ (Euler).
+/// Topology of a set of voxels, each grown by `growth` voxels to all sides, which closes narrower
+/// gaps and holes. It follows from the numbers of cubes, faces, edges and corners by Euler's
+/// formula: pieces − rings + cavities = χ.
 SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxels, int growth);
 
-/// Longest way [voxels] from the body to any voxel of a set, inside the set. `ahead[v]` is how far
-/// voxel v is from the body, for those next to it.
+/// Distance [voxels] from the body to the farthest voxel of a set, along shortest paths inside the
+/// set. `starts` are the voxels next to the body with their distances from it.
 class LongestWay {
  public:
   LongestWay(const VoxelLattice& lattice, const std::vector<std::int32_t>& label)
@@ -74,7 +76,7 @@ class LongestWay {
 
   double operator()(std::int32_t name, const std::vector<std::pair<float, Index>>& starts);
 
-  /// Way [voxels] from the body to a voxel of a set that has been asked for.
+  /// Distance [voxels] from the body to a voxel of a set for which operator() has been called.
   float length_at(Index voxel) const { return length_[voxel]; }
 
  private:

@@ -28,15 +28,15 @@ struct ClippedPiece {
   std::int32_t face = -1;                ///< Index of the triangle in its mesh.
 };
 
-/// The part of triangle (a, b, c) inside `volume`; no piece if it has no area (touching at a point
-/// or along an edge is empty).
+/// The part of `triangle` inside `volume`; empty if that part has no area, as where the triangle
+/// touches the volume only at a point or along an edge.
 ///
-/// Rounded: which planes cut which edges, and what is empty, are the decisions of real arithmetic
-/// on the given doubles. A corner is within 2^-42 of the triangle's longest edge, plus two ulps of
-/// its largest coordinate, of its exact place. The area is within 1e-12 of the triangle's area. The
-/// centroid is within as much of its own place as a corner, plus 4e-12 of the longest edge times
-/// the triangle's area over the piece's. A triangle that lies *in* a bounding plane counts as
-/// inside (half-spaces are closed).
+/// Which planes cut which edges, and which pieces are empty, is decided exactly, as by real
+/// arithmetic on the given doubles; the coordinates are rounded. A corner is off its exact position
+/// by at most 2^-42 of the triangle's longest edge, plus two ulps of the triangle's largest
+/// coordinate. The area is off by at most 1e-12 of the triangle's area. The centroid is off by as
+/// much as a corner, plus 4e-12 of the longest edge times the ratio of the triangle's area to the
+/// piece's. A triangle that lies *in* a bounding plane counts as inside (half-spaces are closed).
 /// @throws InvalidInput if a half-space is not finite.
 std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const ConvexVolume& volume);

@@ -11,48 +11,53 @@ namespace graspfit::geometry {
 
 /// How finely a solid is cut into convex pieces.
 struct ConvexDecompositionOptions {
-  double largest_deviation =
-      0.001;            ///< Wanted: no piece reaches farther out of the solid [m], > 0 and finite.
-  int max_pieces = 64;  ///< ≥ 1; where it does not suffice, the worst places come first.
-  int max_piece_vertices = 128;  ///< ≥ 32. Pieces of round solids lie inside them by as much as
-                                 ///< their corners are apart; counted in inward_deviation.
-  void validate() const;         ///< Throws InvalidInput naming the field and its value.
+  double largest_deviation = 0.001;  ///< Wanted bound of how far any piece reaches out of the solid
+                                     ///< [m], > 0 and finite.
+  int max_pieces = 64;  ///< Most pieces, ≥ 1. Parts whose hulls reach farthest out are cut first.
+  int max_piece_vertices = 128;  ///< Most vertices of a piece, ≥ 32. Faces of the pieces of a round
+                                 ///< solid lie the deeper inside it the farther apart the pieces'
+                                 ///< vertices are; inward_deviation includes this.
+  void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Convex pieces in place of a solid, for engines that know convex shapes only.
 struct ConvexDecomposition {
   std::vector<TriangleMesh> pieces;  ///< Closed, outward, convex, none thinner than 1e-5 of the
                                      ///< solid's longest extent; in the mesh's frame [m].
-  double outward_deviation = 0.0;    ///< No piece reaches farther out of the solid [m]: a bound
-                                     ///< proven up to rounding, above the truth by at most 5 % of
-                                     ///< it or of largest_deviation, but never below half of the
-                                     ///< latter, or 0 where the pieces together have the solid's
-                                     ///< volume.
-  double inward_deviation = 0.0;     ///< No point of the surface is farther from the nearest piece
-                                     ///< [m]: a bound, see below.
-  double volume_error = 0.0;  ///< (Volume of the union of pieces − the solid's) / the solid's, by
-                              ///< 128 × 128 parallel lines, exact along each: approximate.
-  bool is_within_deviation = false;  ///< outward_deviation ≤ the wanted one.
+  double outward_deviation = 0.0;    ///< Upper bound of how far any piece reaches out of the solid
+                                     ///< [m], proven up to rounding. It exceeds the true value by
+                                     ///< at most 5 % of that value or of largest_deviation, but is
+                                     ///< never below half of largest_deviation; it is 0 where the
+                                     ///< pieces together have the solid's volume.
+  double inward_deviation = 0.0;  ///< Upper bound of the distance of any point of the surface from
+                                  ///< the nearest piece [m]; see `convex_decomposition`.
+  double volume_error = 0.0;  ///< (Volume of the union of pieces − volume of the solid) / volume of
+                              ///< the solid. Approximate: integrated over 128 × 128 parallel lines,
+                              ///< exactly along each.
+  bool is_within_deviation = false;  ///< Whether outward_deviation ≤ largest_deviation.
   bool operator==(const ConvexDecomposition&) const = default;
 };
 
 /// Cuts the solid inside a closed mesh (see `MeshQuery::containment`) into convex pieces.
 ///
-/// The part of the solid in a convex cell is replaced by its convex hull. The deepest hull is cut
-/// by the plane that separates most of what makes it deep: segments between points of its surface
-/// and faces of the hull, weighted by the square of how far outside they pass; planes of about
-/// forty directions and those of the mesh's faces. Parts are cut at the true surface, so hulls
-/// cover the solid and never leave the hull of what they cover. Cutting goes on to three times
-/// as many parts as pieces are allowed; then those whose common hull is the least deep are united,
-/// as long as it is shallow enough or there are too many. Related: [Wei et al. 2022] (CoACD)
-/// measures and cuts so too, but searches planes along axes by trees.
+/// Space is cut into convex cells, and the part of the solid in each cell is replaced by its convex
+/// hull. The depth of a hull is how far it reaches out of the solid. The part with the deepest hull
+/// is cut by the plane that separates most of what makes its hull deep: segments between points of
+/// the part's surface, and faces of the hull, weighted by the square of how far outside the solid
+/// they pass. Candidates are planes of about forty directions and the planes of the mesh's faces.
+/// Parts are cut at the true surface, so that their hulls cover the solid and none leaves the
+/// convex hull of the part that it covers. Cutting ends when all hulls are shallow enough or there
+/// are three times as many parts as pieces are allowed. Then the parts whose common hull is the
+/// least deep are united, as long as that hull is shallow enough or there are too many parts.
+/// Related: [Wei et al. 2022] (CoACD) measures and cuts in the same way, but searches axis-aligned
+/// planes by tree search.
 ///
-/// The inward deviation is that of the hulls' corners left out: farther than 0.05
-/// largest_deviation only where max_piece_vertices is reached. What a part thinner than 1e-5 of the
-/// solid's longest extent covers is left out without being counted.
+/// The inward deviation is that of the vertices that the pieces leave out of the exact hulls of the
+/// parts; it exceeds 0.05 largest_deviation only where max_piece_vertices is reached. Parts thinner
+/// than 1e-5 of the solid's longest extent are left out, and no deviation counts what they cover.
 ///
-/// Deterministic. Cost: seconds for 64 pieces, more of them for 256; a bound of outward_deviation
-/// costs about a third of it. Keep the result (`cached_convex_decomposition`).
+/// The result is deterministic. It costs seconds for 64 pieces and more of them for 256, about a
+/// third of that for the bound of outward_deviation; `cached_convex_decomposition` keeps it.
 /// @throws InvalidInput for bad options; DegenerateGeometry for a mesh that bounds no solid: not
 /// closed, or without volume.
 ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,

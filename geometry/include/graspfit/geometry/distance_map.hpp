@@ -11,25 +11,28 @@ namespace graspfit::geometry {
 /// of the nearest partial voxel; positive in empty voxels, zero in partial, negative in full ones.
 struct SignedDistanceMap {
   VoxelLattice lattice;
-  std::vector<float> values;  ///< In voxels, one per voxel in index order. Nearest float to the
-                              ///< root of an exact integer.
+  std::vector<float> values;  ///< Signed distances [voxels], one per voxel in index order. Each
+                              ///< magnitude is the float nearest to the square root of an exact
+                              ///< integer.
   /// Lowest and highest partial voxel on each axis; the lattice's opposite ends if there is none.
   Eigen::Vector3i first_partial = Eigen::Vector3i::Zero();
   Eigen::Vector3i last_partial = Eigen::Vector3i::Zero();
 
   float at(const Eigen::Vector3i& voxel) const { return values[lattice.index(voxel)]; }
 
-  /// Value of the voxel that holds `point`, or that would, if the lattice went on beyond its sides.
+  /// Value of the voxel that holds `point`. Outside the lattice it is a value for the voxel that
+  /// would hold `point` if the lattice continued beyond its sides.
   ///
-  /// There it is a bound from below, never above what a larger lattice would hold, and like the
-  /// values inside it changes by at most a voxel per voxel: with c the nearest voxel of the
-  /// lattice, e the steps per axis to it, and g those from c to the box of all partial voxels,
-  /// any partial voxel is at least √(value(c)² + |e|² + 2 e·g) away. Equal to the true distance
-  /// where the partial voxel nearest to c lies at that box's side, as straight before a flat face.
-  /// Beyond a side at which the lattice holds a full voxel nothing is known: c's value.
+  /// Outside the lattice the value is a lower bound: it never exceeds what a larger lattice would
+  /// hold, and like the values inside it changes by at most one per voxel. Let c be the voxel of
+  /// the lattice nearest to that voxel, e the number of voxels per axis between the two, and g the
+  /// number of voxels per axis from c to the box of all partial voxels. Then any partial voxel is
+  /// at least √(value(c)² + |e|² + 2 e·g) away. The bound is the true distance where the partial
+  /// voxel nearest to c lies on the side of that box, as straight in front of a flat face. Where c
+  /// is a full voxel nothing is known, and the value is that of c.
   float at(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d place = (point - lattice.origin) / lattice.voxel_size;
-    // The fitting loop lives on this: inside, cutting off is rounding down.
+    // This is the hot path of the fitting loop. Inside the lattice truncation rounds down.
     const bool is_inside = place[0] >= 0.0 && place[0] < lattice.counts[0] && place[1] >= 0.0 &&
                            place[1] < lattice.counts[1] && place[2] >= 0.0 &&
                            place[2] < lattice.counts[2];
@@ -37,12 +40,13 @@ struct SignedDistanceMap {
   }
 
  private:
-  /// `place` is a point beyond the lattice, in voxels from its origin.
+  /// `at` for a point outside the lattice; `place` is its position in voxels from the lattice's
+  /// origin.
   float at_beyond(const Eigen::Vector3d& place) const;
 };
 
-/// Exact squared Euclidean transform in linear time [Felzenszwalb & Huttenlocher 2012].
-/// Without any partial voxel all values are +infinity.
+/// Computes the map in linear time, by the exact squared Euclidean distance transform [Felzenszwalb
+/// & Huttenlocher 2012]. Without any partial voxel all values are +infinity.
 SignedDistanceMap signed_distance_map(const VoxelGrid& grid);
 
 }  // namespace graspfit::geometry

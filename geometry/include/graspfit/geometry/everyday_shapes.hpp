@@ -11,7 +11,8 @@
 /// axis. Blended shapes (mug, bowling ball, octopus, wire cage) are the zero level of distance
 /// functions: vertices lie on it to 1e-12 of the longest extent, and faces have angles above 25
 /// degrees at the default dimensions. Where two solids meet, the edge is filled or rounded with
-/// about the stated radius; everything farther than that from one of them is exactly the other.
+/// about the stated radius; points of the surface farther than that radius from one solid lie
+/// exactly on the other.
 ///
 /// Bounding boxes are those of the exact shapes, to rounding, however few the segments. Surfaces
 /// and volumes converge with the square of the edge length. The same arguments give the same bytes.
@@ -24,17 +25,19 @@ namespace graspfit::geometry {
 /// A filled bottle (nothing inside), standing on z = 0, axis z. Default: a 0.75 l wine bottle.
 struct BottleDimensions {
   double height = 0.300;           ///< z of the mouth.
-  double body_diameter = 0.0745;   ///< Widest.
-  double neck_diameter = 0.0290;   ///< Of the straight neck, below the body's.
+  double body_diameter = 0.0745;   ///< Diameter of the body, the widest part.
+  double neck_diameter = 0.0290;   ///< Diameter of the straight neck, less than body_diameter.
   double shoulder_bottom = 0.185;  ///< z where the lines of body and shoulder meet.
   double shoulder_top = 0.220;     ///< z where the lines of shoulder and neck meet.
-  double shoulder_radius = 0.055;  ///< Of the arcs that round these two corners.
+  double shoulder_radius = 0.055;  ///< Radius of the arcs that round the corners at shoulder_bottom
+                                   ///< and shoulder_top.
   double base_radius = 0.005;      ///< Rounding of the bottom edge.
   double lip_radius = 0.003;       ///< Rounding of the edge of the mouth.
   void validate() const;           ///< Throws InvalidInput.
 };
 
-/// `segments` vertices around; arcs of the profile are cut as finely as the body is around.
+/// `segments` vertices around; edges along the profile's arcs are as short as those around the
+/// body.
 TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
 
 /// A ten-pin bowling pin standing on z = 0, axis z, with the diameters of the drawing in the
@@ -43,26 +46,27 @@ TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
 /// at 8.625, 1.965 at 9.375, 1.797 at 10 (the neck), 1.870 at 10.875, 2.094 at 11.75, 2.406 at
 /// 12.625, 2.547 at 13.5 (the head), with a top of radius 1.273 in and a bottom edge of radius
 /// 5/32 in. Published pages confirm height, base, belly, neck and head; the rest are the figures
-/// commonly quoted, not compared with the drawing itself. Cubic splines run in between, level at
-/// belly, neck and head. The cup in the base is left out, and the base's diameter is where the
-/// sides would meet the floor without the rounding.
+/// commonly quoted, not compared with the drawing itself. Cubic splines interpolate these
+/// diameters, with slope zero at belly, neck and head. The cup in the base is left out, and the
+/// base's diameter is where the sides would meet the floor without the rounding.
 struct BowlingPinDimensions {
   double height = 0.381;  ///< 15 in; all the rest scales with it.
   void validate() const;  ///< Throws InvalidInput.
 };
 
-/// `segments` vertices around; the profile is cut as finely as the belly is around.
+/// `segments` vertices around; edges along the profile are as short as those around the belly.
 TriangleMesh bowling_pin(const BowlingPinDimensions& dimensions = {}, int segments = 96);
 
 /// A hollow flower pot without a drain hole, standing on z = 0, axis z: a conical wall that is
 /// equally thick at every height and ends in a cylindrical collar.
 struct FlowerPotDimensions {
   double height = 0.130;
-  double top_diameter = 0.150;    ///< Of the collar, outside.
+  double top_diameter = 0.150;    ///< Outer diameter of the collar.
   double base_diameter = 0.100;   ///< Where wall and floor would meet outside without rounding.
-  double wall_thickness = 0.006;  ///< Horizontally; of the floor too.
-  double rim_height = 0.030;      ///< Of the collar.
-  double rim_thickness = 0.010;   ///< Of the collar at the top, more than the wall's.
+  double wall_thickness = 0.006;  ///< Thickness of the wall, measured horizontally, and of the
+                                  ///< floor.
+  double rim_height = 0.030;      ///< Height of the collar.
+  double rim_thickness = 0.010;   ///< Thickness of the collar at the top, more than wall_thickness.
   double edge_radius = 0.0018;    ///< Rounding of all edges.
   void validate() const;          ///< Throws InvalidInput.
 };
@@ -71,28 +75,29 @@ struct FlowerPotDimensions {
 TriangleMesh flower_pot(const FlowerPotDimensions& dimensions = {}, int segments = 120);
 
 /// A hollow mug standing on z = 0, axis z, with a handle towards +x. The wall is all that lies
-/// within half its thickness of a flat floor that turns up into a cylinder, so its rim is round;
-/// the handle a round bar along a rectangle with rounded corners, at half height. Genus 1.
+/// within half of wall_thickness of a sheet, a flat floor that turns up into a cylinder, so that
+/// its rim is round. The handle is a round bar along a rectangle with rounded corners, at half
+/// height. Genus 1.
 struct MugDimensions {
   double height = 0.095;
   double diameter = 0.082;          ///< Outside, without the handle.
-  double wall_thickness = 0.005;    ///< Of the floor too.
-  double base_radius = 0.010;       ///< Rounding of the bottom edge, outside; at least the wall's.
+  double wall_thickness = 0.005;    ///< Thickness of the wall and of the floor.
+  double base_radius = 0.010;       ///< Outer radius of the bottom edge, at least wall_thickness.
   double handle_height = 0.064;     ///< From the handle's lowest to its highest point.
-  double handle_clearance = 0.027;  ///< Between wall and handle: room for fingers.
-  double handle_thickness = 0.011;  ///< Diameter of its bar.
+  double handle_clearance = 0.027;  ///< Gap between wall and handle for the fingers.
+  double handle_thickness = 0.011;  ///< Diameter of the handle's bar.
   double handle_radius = 0.024;     ///< Of the corners of the bar's center line.
   double fillet = 0.004;            ///< Radius between wall and handle.
   void validate() const;            ///< Throws InvalidInput.
 };
 
-/// Edges of 1/`segments` of the outer circumference. Extents: x from −diameter/2 to diameter/2 +
-/// handle_clearance + handle_thickness.
+/// Edges are about 1/`segments` of the outer circumference long. The mug extends in x from
+/// −diameter/2 to diameter/2 + handle_clearance + handle_thickness.
 TriangleMesh mug(const MugDimensions& dimensions = {}, int segments = 150);
 
 /// A bowling ball centered at the origin with three blind holes with round ends around +z: a thumb
-/// hole at −x that points to the center, two finger holes at +x, parallel, halfway between them the
-/// center. Symmetric about y = 0. Default: 8.5 in [USBC Equipment Specifications].
+/// hole at −x that points to the center, two parallel finger holes at +x, with the center halfway
+/// between their axes. Symmetric about y = 0. Default: 8.5 in [USBC Equipment Specifications].
 struct BowlingBallDimensions {
   double diameter = 0.2159;
   double finger_diameter = 0.025;
@@ -100,24 +105,25 @@ struct BowlingBallDimensions {
   double finger_spacing = 0.034;  ///< Between the axes of the finger holes.
   double thumb_diameter = 0.028;
   double thumb_depth = 0.070;  ///< As finger_depth.
-  double span = 0.095;         ///< Chord of the ball between the thumb's axis and the point halfway
-                               ///< between the fingers'.
+  double span = 0.095;  ///< Chord of the ball between the axis of the thumb hole and the point
+                        ///< halfway between the axes of the finger holes.
   double edge_radius = 0.004;  ///< Rounding of the holes' edges.
   void validate() const;       ///< Throws InvalidInput.
 };
 
-/// Edges of 1/`segments` of the circumference.
+/// Edges are about 1/`segments` of the circumference long.
 TriangleMesh bowling_ball(const BowlingBallDimensions& dimensions = {}, int segments = 220);
 
 /// An octopus on z = 0: a capsule-shaped mantle around the z axis and eight arms in the directions
 /// k · 45° from +x. The center line of an arm is an arc of a circle in the plane through the z
-/// axis: it starts in the mantle, at a third of its radius, 55° downwards, and ends 35° upwards. At
-/// a point of that line the arm's radius falls linearly along the line from root to tip. Genus 0,
-/// symmetric in x, y and x = y.
+/// axis: it starts inside the mantle, at a third of the mantle's radius from the axis, heading 55°
+/// downward, and ends heading 35° upward. The arm's radius falls linearly along the center line
+/// from root to tip. Genus 0, symmetric in x, y and x = y.
 struct OctopusDimensions {
   double height = 0.160;  ///< z of the top of the mantle.
   double mantle_diameter = 0.090;
-  double mantle_height = 0.110;  ///< From its lowest to its highest point; more than its diameter.
+  double mantle_height = 0.110;  ///< From the mantle's lowest to its highest point; more than
+                                 ///< mantle_diameter.
   double arm_reach = 0.180;      ///< From the z axis to the end of an arm.
   double arm_root_diameter = 0.028;
   double arm_tip_diameter = 0.012;  ///< Less than at the root.
@@ -125,25 +131,25 @@ struct OctopusDimensions {
   void validate() const;            ///< Throws InvalidInput.
 };
 
-/// Edges of 1/`segments` of the mantle's circumference.
+/// Edges are about 1/`segments` of the mantle's circumference long.
 TriangleMesh octopus(const OctopusDimensions& dimensions = {}, int segments = 100);
 
 /// A cage of round bars on z = 0 around the z axis: a frame of two rectangles with rounded corners,
-/// below and above, thinner bars between them on all four sides, and as many across each frame,
-/// along y. Genus 6 bars_per_side + 1.
+/// one below and one above, with bars_per_side thinner bars between them on each of the four sides,
+/// and bars_per_side bars across each rectangle, along y. Genus 6 bars_per_side + 1.
 struct WireCageDimensions {
   double width = 0.160;   ///< Along x, outside.
   double depth = 0.120;   ///< Along y, outside.
   double height = 0.120;  ///< Along z, outside.
   double frame_diameter = 0.009;
-  double bar_diameter = 0.0055;  ///< By at least 2 fillet less than the frame's.
+  double bar_diameter = 0.0055;  ///< At least 2 fillet less than frame_diameter.
   double corner_radius = 0.020;  ///< Of the corners of the frame's center line.
   double fillet = 0.0015;        ///< Radius between bars and frame.
   int bars_per_side = 3;         ///< 1 to 50, at equal distances.
   void validate() const;         ///< Throws InvalidInput.
 };
 
-/// Edges of 1/`segments` of a bar's circumference.
+/// Edges are about 1/`segments` of a bar's circumference long.
 TriangleMesh wire_cage(const WireCageDimensions& dimensions = {}, int segments = 10);
 
 /// A table on z = 0 around the z axis: a box on four square legs, all edges sharp, 172 faces whose

@@ -8,8 +8,8 @@ namespace graspfit::geometry {
 
 /// How volume integrals were summed.
 enum class MassMethod {
-  SignedSum,     ///< Over the mesh as it is.
-  SolidBoundary  ///< Over `solid_boundary` of it: overlaps count once.
+  SignedSum,     ///< Summed over the mesh as it is.
+  SolidBoundary  ///< Summed over the mesh's `solid_boundary`, so that overlaps count once.
 };
 
 /// Volume integrals of the solid bounded by a closed mesh, at density 1 kg/m³.
@@ -20,18 +20,20 @@ struct MassProperties {
   MassMethod method = MassMethod::SignedSum;
 };
 
-/// Volume, center of mass and inertia of the solid that a closed mesh means (its winding number is
-/// not zero), by signed sums over tetrahedra from a vertex. Rounded; in real arithmetic exact.
+/// Volume, center of mass and inertia of the solid that a closed mesh means (the points around
+/// which its winding number is not zero), by signed sums over tetrahedra with their apex at a
+/// vertex. The sums are exact in real arithmetic and rounded here.
 ///
-/// Parts (faces that hang together by common vertices) whose boxes are apart, as of most meshes,
-/// are summed as they are. Where boxes of parts meet, the sum runs over the boundary of their
-/// union, so that what overlaps counts once; `method` says so. A single part that crosses itself,
-/// and a mesh that is not closed, is summed as it is: what it winds around twice counts twice
-/// (`solid_boundary` and then this function count it once).
+/// Parts (sets of faces connected by common vertices) whose boxes are disjoint, as in most meshes,
+/// are summed as they are. Where boxes of parts meet, the sum runs over the boundary of the parts'
+/// union, so that overlaps count once; `method` tells which of the two was done. A single part that
+/// crosses itself, and a mesh that is not closed, are summed as they are: a region around which the
+/// surface winds twice counts twice (it counts once if `solid_boundary` is applied first).
 /// @throws DegenerateGeometry if the volume is not positive (open, inside-out or flat mesh).
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-/// Sum of signed tetrahedra [m³]; the volume where the mesh is closed and outward.
+/// Sum of the signed volumes of the tetrahedra over all faces [m³]; this is the enclosed volume of
+/// a closed outward mesh.
 double signed_volume(const TriangleMesh& mesh);
 
 /// Largest distance of a vertex of the mesh from `point` [m].

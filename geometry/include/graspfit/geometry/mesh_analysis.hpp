@@ -24,7 +24,8 @@ struct MeshAnalysis {
                                      ///< no other part encloses.
   /// Pairs of faces that share a point other than their common corners and edges (exact; corners
   /// are common where their coordinates are; faces without area are left out). Touching counts, so
-  /// the neighbors across a collinear face count too. Empty if not asked for, as the two below.
+  /// the neighbors across a collinear face count too. Empty if not asked for; the same holds for
+  /// the next two counts.
   std::optional<std::size_t> num_self_intersections;
   std::optional<std::size_t> num_overlapping_part_pairs;  ///< Pairs of parts with such a pair of
                                                           ///< faces.
@@ -40,12 +41,13 @@ struct MeshAnalysis {
 /// What `analyze` looks at.
 struct MeshAnalysisOptions {
   bool count_self_intersections = false;  ///< Costs a few times the rest of the analysis.
-  bool count_part_overlaps = false;       ///< As much, where the boxes of parts overlap.
+  bool count_part_overlaps = false;  ///< Costs as much as count_self_intersections where the boxes
+                                     ///< of parts overlap.
 };
 
-/// Analyzes a mesh of any quality. Throws nothing on bad meshes: that is what it is for.
-/// Precondition, not checked: every index of a face is that of a vertex, and coordinates are finite
-/// (`read_mesh` sees to both).
+/// Analyzes a mesh of any quality. It does not throw on bad meshes, since examining them is its
+/// purpose. Precondition, not checked: every index of a face is that of a vertex, and coordinates
+/// are finite (`read_mesh` sees to both).
 MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& options = {});
 
 /// What to do with a mesh that is not a closed outward surface.
@@ -57,21 +59,25 @@ enum class RepairMode {
 
 /// What to do about faces that cross other faces of the mesh.
 enum class SelfIntersections {
-  Leave,    ///< Not looked for. Sound all the same: what crosses is united (see `containment`).
-  Report,   ///< Counted before and after, nothing changed; `Strict` refuses them.
-  Resolve,  ///< Faces are cut where they cross, and of the pieces those stay that bound the solid
-            ///< (see `containment`): the solid remains, what lies inside it goes. Not taken where
-            ///< rounding the cuts would open the surface; what is left is counted in `after`.
-            ///< `Strict` refuses crossings as with `Report`.
+  Leave,   ///< Crossings are not searched for. The solid is well defined all the same: what crosses
+           ///< is united (see `MeshQuery::containment`).
+  Report,  ///< Crossings are counted before and after the repair, but not changed; `Strict` refuses
+           ///< them.
+  Resolve,  ///< Faces are cut where they cross, and only the pieces that bound the solid stay (see
+            ///< `MeshQuery::containment`): the solid remains, faces inside it are removed. The
+            ///< result is not taken where rounding the cuts would open the surface; crossings that
+            ///< are left are counted in `after`. `Strict` refuses crossings as with `Report`.
 };
 
 /// A closed surface wrapped around whatever the mesh is [CGAL Alpha_wrap_3; Portaneri et al. 2022].
-/// It lies outside the mesh and shrinks into no gap narrower than `alpha`. It is made of the mesh
-/// as given, so it is then the only step of the repair. It is not made where CGAL's refinement
-/// would not come to an end (a needle 3e8 times as long as thick): the work is bounded.
+/// It lies outside the mesh and shrinks into no gap narrower than `alpha`. The wrap is computed
+/// from the mesh as given, so that wrapping is then the only step of the repair. No wrap is made
+/// where CGAL's refinement would not terminate (as for a needle 3e8 times as long as thick): the
+/// work is bounded.
 struct AlphaWrap {
-  double alpha_rel = 0.02;    ///< Narrowest gap that is entered, over the longest extent, in
-                              ///< [1e-3, 1]. Smaller follows the mesh better and costs more.
+  double alpha_rel = 0.02;  ///< Narrowest gap that the wrap enters, over the longest extent of the
+                            ///< mesh, in [1e-3, 1]. Smaller values follow the mesh better and cost
+                            ///< more.
   double offset_rel = 0.002;  ///< Distance of the wrap's vertices from the mesh, over the longest
                               ///< extent, in [1e-4, 1]. Across gaps that are not entered its faces
                               ///< are farther away.
@@ -80,34 +86,37 @@ struct AlphaWrap {
 /// Limits of `repair_mesh`.
 struct MeshRepairOptions {
   RepairMode mode = RepairMode::Repair;
-  double weld_distance_rel = 0.0;    ///< A vertex this close to an earlier one that stays becomes
-                                     ///< that one; over the longest extent of the mesh, in [0,
-                                     ///< 0.01]. Zero: equal coordinates only (−0 equals 0).
+  double weld_distance_rel = 0.0;    ///< Welding distance over the longest extent of the mesh, in
+                                     ///< [0, 0.01]: a vertex this close to an earlier one that is
+                                     ///< kept is merged into it. Zero welds equal coordinates only
+                                     ///< (−0 equals 0).
   double max_hole_extent_rel = 0.5;  ///< Largest hole that is filled: longest extent of its
                                      ///< boundary over that of the mesh, in [0, 1]. Half lets a
                                      ///< missing base plate be closed, not a missing half.
-  double max_misfilled_rel = 0.25;   ///< Most of its volume by which the solid may differ from what
-                                     ///< the surface means without its fillings, in [0, 1]. Six
-                                     ///< patches of a sphere, each closed along its own inside,
-                                     ///< leave a skin that lacks a third and more.
-  double max_removed_rel = 0.25;     ///< Most of the surface's area that may go for being without
-                                     ///< thickness (sheets, stray triangles; walls inside the
-                                     ///< solid do not count), in [0, 1].
+  double max_misfilled_rel = 0.25;  ///< Largest share of the volume by which the repaired solid may
+                                    ///< differ from the solid that the surface means without its
+                                    ///< fillings (see `repair_mesh`), in [0, 1]. Six patches of a
+                                    ///< sphere, each closed along its own inside, leave a skin that
+                                    ///< lacks a third and more.
+  double max_removed_rel = 0.25;    ///< Largest share of the surface's area that may be removed
+                                    ///< because it has no thickness (sheets, stray triangles; walls
+                                    ///< inside the solid do not count), in [0, 1].
   SelfIntersections self_intersections = SelfIntersections::Leave;
-  std::optional<AlphaWrap> wrap =
-      std::nullopt;       ///< The last resort, only where the mesh would be refused. Empty: refuse.
+  std::optional<AlphaWrap> wrap = std::nullopt;  ///< Last resort, taken only where the mesh would
+                                                 ///< be refused. If empty, the mesh is refused.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// One thing that a repair did.
 struct RepairStep {
-  std::string what;              ///< One of "welded vertices", "removed degenerate faces",
-                                 ///< "removed doubled faces", "removed unused vertices",
-                                 ///< "turned faces", "split non-manifold vertices", "filled holes",
-                                 ///< "turned parts", "resolved self-intersections", "wrapped".
-  std::size_t count = 0;         ///< How many of them, > 0. "welded vertices": those that became
-                                 ///< another; "resolved self-intersections": pairs of faces fewer;
-                                 ///< "wrapped": faces of the wrap.
+  std::string what;       ///< One of "welded vertices", "removed degenerate faces",
+                          ///< "removed doubled faces", "removed unused vertices",
+                          ///< "turned faces", "split non-manifold vertices", "filled holes",
+                          ///< "turned parts", "resolved self-intersections", "wrapped".
+  std::size_t count = 0;  ///< Number of elements concerned, > 0. For "welded vertices" these are
+                          ///< the vertices that were merged into another, for "resolved
+                          ///< self-intersections" the pairs of crossing faces that are gone, for
+                          ///< "wrapped" the faces of the wrap.
   double volume_change = 0.0;    ///< Change of the signed volume by this step [m³]; open surfaces
                                  ///< are measured with every hole closed by a cone to the middle
                                  ///< of its rim, so that a flat hole filled changes nothing.
@@ -126,26 +135,33 @@ struct RepairedMesh {
 
 /// Makes a closed, consistently outward mesh of `mesh`, or refuses.
 ///
-/// Order: vertices welded, faces with a repeated vertex, doubled faces (opposite ones cancel),
-/// unused vertices, orientation made consistent, non-manifold edges and vertices split (solids that
-/// touch along an edge come apart), holes filled up to the stated size, doubled faces and unused
-/// vertices once more (what fills a sheet without thickness is its mirror image), inside-out parts
-/// turned, self-intersections resolved if asked for. The result is judged by
-/// `max_misfilled_rel`, where what the surface means is where its generalized winding number
-/// without the fillings rounds to another number than zero (a flat hole makes no difference), and
-/// by `max_removed_rel`. Where holes meet at vertices and the result is open or no success, they
-/// are filled before the vertices are split: patches that hang together by single vertices, as
-/// where the border of one is subdivided and its neighbor's is not, would come apart otherwise, and
-/// a filling along the inside of each would leave a hollow skin. Beyond a limit the repair is no
-/// success: the mesh is wrapped if asked for, or refused. Collinear faces stay: they carry the
-/// connection between their neighbors. Parts that overlap or lie in each other are kept: their
-/// union is meant, and an inward part inside an outward one is a cavity. A mesh that is closed,
-/// outward and manifold and has no degenerate, doubled or unused parts comes back as it is, byte
-/// for byte, crossing or not, close vertices or not, unless self-intersections are to be resolved.
-/// @throws InvalidInput in one line if what remains is not closed (how many boundary edges, how
-/// large the largest hole is, which limit for holes would do, by its option of the program, and
-/// whether a wrap is to be had), if a limit above is not kept, if `Strict` meets any defect, or if
-/// the mesh has no faces.
+/// The steps are taken in this order: vertices are welded; faces with a repeated vertex, doubled
+/// faces (opposite ones cancel) and unused vertices are removed; orientation is made consistent;
+/// non-manifold edges and vertices are split (solids that touch along an edge come apart); holes up
+/// to the stated size are filled; doubled faces and unused vertices are removed once more (the
+/// filling of a sheet without thickness is its mirror image); inside-out parts are turned;
+/// self-intersections are resolved if asked for.
+///
+/// The result is judged by two limits. `max_misfilled_rel` limits the difference of the repaired
+/// solid from the solid that the surface means without the fillings: the points where the
+/// generalized winding number of that surface rounds to another number than zero (a flat hole makes
+/// no difference). `max_removed_rel` limits the area that is removed. Beyond a limit the repair has
+/// failed: the mesh is wrapped if asked for, or refused.
+///
+/// Where holes meet at vertices and the result is open or has failed, these holes are filled before
+/// the vertices are split. Otherwise patches that are connected by single vertices only, as where
+/// the border of one is subdivided and its neighbor's is not, would come apart, and a filling along
+/// the inside of each patch would leave a hollow skin.
+///
+/// Collinear faces stay, because they connect their neighbors. Parts that overlap or lie in each
+/// other are kept: the solid is their union, and an inward part inside an outward one is a cavity.
+/// A mesh that is closed, outward and manifold and has no degenerate faces, doubled faces or unused
+/// vertices is returned as it is, byte for byte, even if faces cross or vertices are close, unless
+/// self-intersections are to be resolved.
+/// @throws InvalidInput with a message of one line if the result is not closed, if a limit above is
+/// exceeded, if `Strict` meets any defect, or if the mesh has no faces. For an open result the
+/// message tells the number of boundary edges, the size of the largest hole, the program's option
+/// with the limit for holes that would suffice, and whether a wrap is possible.
 /// @throws DegenerateGeometry if the mesh has no volume.
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options = {});
 

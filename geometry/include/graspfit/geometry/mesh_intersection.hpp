@@ -26,7 +26,8 @@ struct Penetration {
 struct PenetrationOptions {
   double tolerance = 1e-5;  ///< Stop when depth_bound − depth is below this [m], > 0.
   double enough = std::numeric_limits<double>::infinity();  ///< Stop when depth is above this [m],
-                                                            ///< ≥ 0: how deep does not matter.
+                                                            ///< ≥ 0: larger depths need not be told
+                                                            ///< apart.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -34,10 +35,10 @@ struct PenetrationOptions {
 /// surface that lie inside A, and the same with A and B exchanged.
 ///
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
-/// does not depend on how finely either mesh is cut. Ends when the tolerance is met, `enough`
-/// exceeded or after 50 000 steps each way (wide overlaps of finely cut curved surfaces); the bound
-/// holds either way, up to the rounding of distances. Cost: that of `do_intersect` if the solids do
-/// not intersect.
+/// does not depend on how finely either mesh is tessellated. The search ends when the tolerance is
+/// met, when `enough` is exceeded, or after 50 000 steps in each of the two directions (as for wide
+/// overlaps of finely tessellated curved surfaces); `depth_bound` holds in all cases, up to the
+/// rounding of distances. Cost: that of `do_intersect` if the solids do not intersect.
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         const PenetrationOptions& options = {});
 
@@ -48,8 +49,8 @@ struct DepthBounds {
 };
 
 /// How deep two solids overlap, where depths up to `floor` [m] ≥ 0 need not be told apart:
-/// `at_most` is then the floor or little more. Ends as `penetration` does; much cheaper, since it
-/// looks only at what may be deeper than the floor.
+/// `at_most` is then the floor or little more. The search ends as that of `penetration`, and is
+/// much cheaper, since it visits only what may be deeper than the floor.
 DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         double floor, const PenetrationOptions& options = {});
 
@@ -60,8 +61,8 @@ struct MeshDistance {
   Eigen::Vector3d point_on_b_A;  ///< As `point_on_a_A`.
 };
 
-/// Whether the solids intersect is exact, as by `do_intersect`; otherwise distance and points are
-/// approximate, to rounding.
+/// Smallest distance between the surfaces of two solids. Whether the solids intersect is decided
+/// exactly, as by `do_intersect`; distance and points are approximate, to rounding.
 MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
 
 }  // namespace graspfit::geometry

@@ -33,8 +33,8 @@ struct RayHit {
   Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();  ///< Weights of the face's corners, ≥ 0,
                                                           ///< sum 1 up to rounding; exactly zero
                                                           ///< where the line meets an edge.
-  int crossing = 0;  ///< +1: leaves through the front of the face, −1: enters, 0: left to a
-                     ///< neighbor of the face (see `MeshQuery::all_hits`). Exact.
+  int crossing = 0;  ///< +1: the line leaves through the front of the face, −1: it enters, 0: the
+                     ///< line, moved as `MeshQuery::all_hits` explains, misses the face. Exact.
 };
 
 /// How far a line goes.
@@ -75,16 +75,17 @@ class MeshQuery {
 
   /// Every face whose closed triangle the line meets, by distance, then by face.
   ///
-  /// Which faces is exact, for the line through `origin` and a point far ahead of it that is
-  /// rounded once. A line through an edge meets the faces on both sides of it, one through a vertex
-  /// all around it, at equal distances up to rounding. A face in whose plane the line runs is no
-  /// hit (its neighbors are). A ray that starts on a face hits it at distance 0.
+  /// Which faces are hit is decided exactly, for the line through `origin` and a point far ahead of
+  /// `origin` that is rounded once. A line through an edge meets the faces on both sides of the
+  /// edge, a line through a vertex all faces around the vertex, at equal distances up to rounding.
+  /// A face in whose plane the line runs is no hit (its neighbors are). A ray that starts on a face
+  /// hits it at distance 0.
   ///
-  /// To count each passage of the surface once, add up `crossing`: the line is thought moved
-  /// sideways by an infinitely small step, so that it goes through the inside of faces only, and
-  /// hits of faces beside which it then passes have crossing 0. Over a whole line and a closed mesh
-  /// the sum is 0; over a ray it is the winding number at its origin, if that is not on the
-  /// surface.
+  /// To count each crossing of the surface once, add up `crossing`. It is found by symbolic
+  /// perturbation: the line counts as moved sideways by an infinitesimal step, so that it passes
+  /// through the interior of faces only; a hit of a face that the moved line misses has crossing 0.
+  /// Over a whole line and a closed mesh the sum is 0; over a ray it is the winding number at the
+  /// ray's origin, if the origin is not on the surface.
   ///
   /// @throws InvalidInput if the direction has no length or anything is not finite.
   std::vector<RayHit> all_hits(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

@@ -7,38 +7,43 @@
 
 namespace graspfit::geometry {
 
-/// The Minkowski sum of convex polytopes, each the hull of the columns of a matrix: all sums of one
-/// point of each. Built from one summand after the other, whose hulls' vertices are kept.
+/// The Minkowski sum of convex polytopes, each the hull of the columns of a matrix: the set of all
+/// sums of one point of each polytope. It is built by adding one summand after the other and
+/// keeping the vertices of the hull of each partial sum.
 ///
-/// Approximate: points are rounded to a grid of at least 2^-53 of the largest coordinate times the
-/// number of summands, on which sums are exact; the hull of the sums is exact. For few points: the
-/// sum of k summands of n vertices in d dimensions has up to the order of (k n)^(d−1) vertices, and
-/// is found from n times as many points. In 6-D two pyramids over octagons are a matter of
-/// milliseconds, three may be out of reach; `minkowski_sum_inradius` needs no such sum.
+/// The result is approximate: points are rounded to a grid of at least 2^-53 of the largest
+/// coordinate times the number of summands; sums on that grid are exact, and so is their hull. The
+/// function is meant for few points: the sum of k summands of n vertices in d dimensions has up to
+/// the order of (k n)^(d−1) vertices, and is found from n times as many points. In 6-D two pyramids
+/// over octagons are a matter of milliseconds, three may be out of reach; `minkowski_sum_inradius`
+/// needs no such sum.
 /// @throws InvalidInput without summands, and unless all have as many rows, 2 to 6, at least one
 /// column, and are finite.
 ConvexPolytope minkowski_sum(std::span<const Eigen::MatrixXd> summands);
 
 /// When `minkowski_sum_inradius` may stop.
 struct MinkowskiInradiusOptions {
-  double relative_gap = 1e-12;  ///< Between the bounds, over the upper one, ≥ 0.
-  int max_points = 1000;  ///< Points of the sum looked at, ≥ 1: a budget of work. In practice tens
-                          ///< to a few hundred are.
+  double relative_gap = 1e-12;  ///< The search stops at this ratio of the gap between the bounds to
+                                ///< the upper bound, ≥ 0.
+  int max_points = 1000;  ///< Most points of the sum that are examined, ≥ 1: a budget of work. In
+                          ///< practice tens to a few hundred suffice.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
 /// Bounds of the radius of the largest ball around the origin in a sum of polytopes.
 struct InradiusBounds {
   double lower = 0.0;
-  double upper = 0.0;         ///< Equal to `lower` up to `relative_gap`, or the budget was used.
-  Eigen::VectorXd direction;  ///< Unit: the sum reaches `upper` that way; empty where both are 0.
-  int num_points = 0;         ///< Of the sum that were looked at.
+  double upper = 0.0;  ///< Equal to `lower` up to `relative_gap`, unless `max_points` was reached.
+  Eigen::VectorXd direction;  ///< Unit direction in which the sum's support function is `upper`;
+                              ///< empty where both bounds are 0.
+  int num_points = 0;         ///< Number of points of the sum that were examined.
 };
 
-/// The largest ball around the origin in the Minkowski sum of summands that all hold the origin,
-/// without the sum's s^k points: the sum's support function is that of the summands, added up, and
-/// a polytope of some of its points grows where it is nearest to the origin, until it is as near
-/// there as the sum itself is [Zheng 2013].
+/// Bounds of the radius of the largest ball around the origin in the Minkowski sum of summands that
+/// all hold the origin, without forming the s^k points of the sum of k summands of s points: the
+/// support function of the sum is the sum of the summands' support functions, and a polytope of
+/// some points of the sum grows where its boundary is nearest to the origin, until the boundary of
+/// the sum itself is as near there [Zheng 2013].
 ///
 /// `lower` is the inradius of the hull of points of the sum, found exactly but for one rounding;
 /// `upper` the sum's support function in a direction. Rounding adds about 1e-15 to each. Both are 0

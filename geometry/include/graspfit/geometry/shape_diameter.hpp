@@ -30,11 +30,11 @@ struct ShapeDiameter {
 /// is the mean of those lengths that lie within `trim_deviations` standard deviations of their
 /// median.
 ///
-/// A ray counts only if the outward normal of the face that it meets makes more than 90° with that
-/// of its own (*antinormal* hits): others run along the inside of a bend. What the average means:
-/// with the default cone a wide slab of thickness t measures 1.29 t, a round bar of diameter d
-/// about d (its oblique rays are longer along the bar and shorter across it), a ball of diameter d
-/// 0.85 d.
+/// A ray counts only if the outward normal of the face that it meets makes more than 90° with the
+/// outward normal of the face where the ray starts (*antinormal* hits): other rays run along the
+/// inside of a bend. The average depends on the shape: with the default cone a wide slab of
+/// thickness t measures 1.29 t, a round bar of diameter d about d (its oblique rays are longer
+/// along the bar and shorter across it), a ball of diameter d 0.85 d.
 ///
 /// Approximate: rays and hits in plain doubles. A face without a normal (degenerate), and one from
 /// which no ray finds an opposite wall, have infinite thickness. Faces that two overlapping parts
@@ -42,7 +42,8 @@ struct ShapeDiameter {
 /// frame, so that there is nothing random. Cost: `num_rays` rays per face, about log n each.
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options = {});
 
-/// The same of some faces only, bit for bit: entry i is that of `faces[i]`.
+/// The shape diameter of some faces only, equal bit for bit to that of all: entry i belongs to
+/// `faces[i]`.
 /// @throws InvalidInput for a face that does not exist.
 ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t> faces,
                              const ShapeDiameterOptions& options = {});

@@ -35,9 +35,10 @@ struct SurfacePatch {
   /// Center of area, not projected [m].
   Eigen::Vector3d area_centroid = Eigen::Vector3d::Zero();
   /// Mean of the pieces' outward unit normals weighted by area: the patch's vector area divided by
-  /// its area. As long as the patch is flat: 1 in a plane, 0 where it is closed.
+  /// its area. Its length tells how flat the patch is: 1 for a patch in a plane, 0 for a closed
+  /// one.
   Eigen::Vector3d area_weighted_normal = Eigen::Vector3d::Zero();
-  /// Mean of the pieces' outward unit normals, all alike; not scaled either.
+  /// Mean of the pieces' outward unit normals with equal weights; not scaled to unit length either.
   Eigen::Vector3d plain_normal = Eigen::Vector3d::Zero();
 };
 
@@ -48,22 +49,23 @@ struct SurfacePatchOptions {
 
 /// All patches of a mesh, one per partial voxel, ascending by voxel index.
 ///
-/// Rounded: which triangle has area in which voxel is decided exactly; areas, centroids and normals
-/// are rounded (see `clip` for the pieces; sums add an ulp per piece). Degenerate faces have none.
+/// Which triangle has area in which voxel is decided exactly; areas, centroids and normals are
+/// rounded (see `clip` for the pieces; sums add an ulp per piece). Degenerate faces have no pieces.
 /// Cost: linear in the number of pieces.
 /// @throws InvalidInput if the mesh leaves the lattice.
 std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
                                           const SurfacePatchOptions& options = {});
 
-/// The clipped polygons themselves, with the voxel of each, ascending by (voxel, face).
+/// A clipped polygon with the voxel that holds it.
 struct VoxelPiece {
   std::int64_t voxel = -1;
   ClippedPiece piece;
 };
 
-/// The pieces that `surface_patches` averages: cut by the same code, with the bounds of `clip`, but
-/// that a corner in a voxel plane has that plane's coordinate exactly. By the tie rule the pieces
-/// of a triangle make it up without gap or overlap.
+/// The pieces that `surface_patches` averages, ascending by (voxel, face). They are cut by the same
+/// code, with the error bounds of `clip`, except that a corner in a voxel plane has that plane's
+/// coordinate exactly. By the tie rule of `SurfacePatch` the pieces of a triangle cover it without
+/// gap or overlap.
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice);
 
 }  // namespace graspfit::geometry

@@ -24,10 +24,10 @@ struct SurfaceSamplingOptions {
 };
 
 /// Independent points, uniform by area: each face gets points in proportion to its area, and within
-/// a face all places are equally likely. Faces without area get none.
+/// a face all points are equally likely. Faces without area get none.
 ///
-/// The k-th point depends on seed and k only: fewer points are the beginning of more.
-/// Cost: linear in faces, log n per point.
+/// The k-th point depends on seed and k only, so that a smaller `count` gives the first points of a
+/// larger one. Cost: linear in faces, log n per point.
 /// @throws DegenerateGeometry if the mesh has no area.
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh,
                                           const SurfaceSamplingOptions& options = {});

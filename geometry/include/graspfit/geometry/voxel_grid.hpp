@@ -32,8 +32,9 @@ struct VoxelLattice {
   Eigen::Vector3d center(const Eigen::Vector3i& voxel) const {
     return origin + voxel_size * (voxel.cast<double>().array() + 0.5).matrix();
   }
-  /// The voxel that holds `point`, perhaps outside the lattice. Approximate: floor of a rounded
-  /// quotient, for points within rounding of a plane either neighbor.
+  /// The voxel that holds `point`, perhaps outside the lattice. Approximate: the index is the floor
+  /// of a rounded quotient; for a point within rounding of a plane it may be that of either
+  /// neighbor.
   Eigen::Vector3i voxel_at(const Eigen::Vector3d& point) const {
     return ((point - origin) / voxel_size).array().floor().cast<int>();
   }
@@ -44,8 +45,8 @@ struct VoxelLattice {
 struct LatticeOptions {
   int resolution =
       30;  ///< Voxels along the longest extent of the box, in [4, 512]. The paper's 30.
-  double margin =
-      0.0;  ///< Room added on every side [m], ≥ 0, rounded up to whole voxels (at least 1).
+  double margin = 0.0;    ///< Margin added on every side [m], ≥ 0, rounded up to whole voxels (at
+                          ///< least 1).
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
