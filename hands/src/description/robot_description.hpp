@@ -76,8 +76,8 @@ struct DescribedJoint {
   std::string parent;
   std::string child;
   geometry::RigidTransform X_PJ = geometry::RigidTransform::Identity();
-  Eigen::Vector3d axis =
-      Eigen::Vector3d::UnitX();  ///< Unit vector; the format's default where none is given.
+  /// Unit vector; the format's default where none is given.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
   double lower = 0.0;
   double upper = 0.0;
   std::optional<DescribedCoupling> coupling;

@@ -43,8 +43,8 @@ struct VoxelLattice {
 
 /// Where the lattice's resolution and extent come from.
 struct LatticeOptions {
-  int resolution =
-      30;  ///< Voxels along the longest extent of the box, in [4, 512]. The paper's 30.
+  /// Voxels along the longest extent of the box, in [4, 512]. The paper's 30.
+  int resolution = 30;
   double margin = 0.0;    ///< Margin added on every side [m], ≥ 0, rounded up to whole voxels (at
                           ///< least 1).
   void validate() const;  ///< Throws InvalidInput naming the field and its value.

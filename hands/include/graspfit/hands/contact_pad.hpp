@@ -25,8 +25,8 @@ struct ContactPad {
   int link = -1;
   std::optional<int> finger;  ///< Index of its finger; empty: the palm's pad.
   RigidTransform X_LC = RigidTransform::Identity();  ///< Pad frame in the link's frame.
-  std::vector<Eigen::Vector2d>
-      outline;  ///< Convex polygon in C's x-y plane, counter-clockwise [m].
+  /// Convex polygon in C's x-y plane, counter-clockwise [m].
+  std::vector<Eigen::Vector2d> outline;
   /// Corners of a bulging surface over the outline, in C [m]: every one at z ≥ 0 inside the outline
   /// seen along z, and in convex position together with the outline's corners at z = 0. The pad is
   /// the upper side of the hull of both. Empty: the pad is flat.

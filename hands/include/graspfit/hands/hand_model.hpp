@@ -57,9 +57,9 @@ struct Link {
   std::optional<int> parent_link;   ///< Empty for the root.
   std::optional<int> parent_joint;  ///< Movable joint to the parent; empty for the root or a fixed
                                     ///< connection.
-  RigidTransform X_PL_fixed =
-      RigidTransform::Identity();  ///< Pose in the parent link when fixed to it.
-  TriangleMesh mesh_L;             ///< Closed surface in the link's frame [m]; may have no faces.
+  /// Pose in the parent link when fixed to it.
+  RigidTransform X_PL_fixed = RigidTransform::Identity();
+  TriangleMesh mesh_L;  ///< Closed surface in the link's frame [m]; may have no faces.
   std::optional<LinkInertia> inertia;  ///< Empty where the description gives none.
   /// The mesh files that mesh_L came from, in the order of the description and relative to the
   /// folder of the description itself (symbolic links resolved); none for primitives.
@@ -70,8 +70,8 @@ struct Link {
 struct Finger {
   std::string name;
   std::vector<int> links;  ///< Proximal to distal.
-  std::vector<int>
-      joints;  ///< Movable joints of the chain, proximal to distal, coupled ones included.
+  /// Movable joints of the chain, proximal to distal, coupled ones included.
+  std::vector<int> joints;
   std::optional<int> tip_pad;  ///< The pad that precision grasps use; empty: no pad.
   bool is_thumb = false;
   std::optional<int> swing_joint;  ///< Turns the finger around the palm (spread, abduction).
@@ -81,9 +81,9 @@ struct Finger {
 struct Palm {
   int link = -1;                                       ///< The root link; its frame is H.
   Eigen::Vector3d center_H = Eigen::Vector3d::Zero();  ///< Palm center [m].
-  Eigen::Vector3d direction_H =
-      Eigen::Vector3d::UnitZ();  ///< Unit n_palm: leaves the palm toward the object.
-  std::optional<int> pad;        ///< Its contact pad; empty: none.
+  /// Unit n_palm: leaves the palm toward the object.
+  Eigen::Vector3d direction_H = Eigen::Vector3d::UnitZ();
+  std::optional<int> pad;  ///< Its contact pad; empty: none.
 };
 
 /// Two links whose collision does not count (neighbors, or always overlapping).

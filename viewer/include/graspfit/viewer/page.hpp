@@ -24,8 +24,8 @@ struct PageInput {
   std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
   /// Voxels, patches and scores; without it the page has no voxel and score map layers.
   const grasp::ObjectModel* model = nullptr;
-  double clip_thickness =
-      0.0;  ///< Of clip volumes whose pad states none [m]; 0: those are not drawn.
+  /// Of clip volumes whose pad states none [m]; 0: those are not drawn.
+  double clip_thickness = 0.0;
   /// Table and obstacles, drawn where there are any; null: none.
   const grasp::Surroundings* surroundings = nullptr;
   /// Center of mass to draw; empty: the model's, or none without a model.
