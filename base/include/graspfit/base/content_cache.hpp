@@ -22,8 +22,8 @@ struct ContentCache {
                                                      ///< (`$XDG_CACHE_HOME` or `~/.cache`). Of
                                                      ///< these only absolute paths count.
 
-  /// The file of an entry, `<folder>/<kind>/<key>.txt`; empty if the cache is off or there is no
-  /// folder for it.
+  /// The file of an entry, `<folder>/<kind>/<key>.txt`; empty if the cache is off or no folder is
+  /// known for it (see `folder`).
   /// @throws InvalidInput unless the kind is of a-z, 0-9 and _, and the key of 64 lower-case
   /// hexadecimal digits, as `sha256_hex` and `ContentKey` give them.
   std::optional<std::filesystem::path> file_of(std::string_view kind, std::string_view key) const;

@@ -14,8 +14,8 @@
 namespace graspfit::base {
 
 /// A JSON value together with its location, which begins every error message about it:
-/// "grasps.json: /results/grasps/0/quality/m: is missing". Faults that its members find are thrown
-/// by the document's `Fault`.
+/// "grasps.json: /results/grasps/0/quality/m: is missing". Faults that its member functions find
+/// are thrown by the document's `Fault`.
 class JsonValue {
  public:
   using Json = nlohmann::ordered_json;

@@ -14,9 +14,10 @@ namespace graspfit::base {
 ///
 /// The distance is the least number of letters inserted, left out, replaced, or swapped with their
 /// neighbor, no letter touched twice (optimal string alignment); case does not count. A name is
-/// near if the distance is at most a third of the number of the unknown name's letters, or one. If
-/// none is that near, the result is the first known name that begins with the unknown name, if this
-/// has at least three letters. Of equally near names it is the first.
+/// near if the distance is at most a third of the number of the unknown name's letters, or one, and
+/// less than that number. If none is that near, the result is the first known name that begins with
+/// the unknown name, if the unknown name has at least three letters. Of equally near names it is
+/// the first.
 std::optional<std::string> nearest_name(std::string_view name,
                                         const std::vector<std::string>& known);
 

@@ -13,7 +13,9 @@ namespace graspfit::geometry {
 struct ConvexDecompositionOptions {
   double largest_deviation = 0.001;  ///< Wanted bound of how far any piece reaches out of the solid
                                      ///< [m], > 0 and finite.
-  int max_pieces = 64;  ///< Most pieces, ≥ 1. Parts whose hulls reach farthest out are cut first.
+  int max_pieces = 64;  ///< Most pieces, ≥ 1; more only if the boxes of all pieces left are farther
+                        ///< than largest_deviation apart, as those of separate parts may be. Parts
+                        ///< whose hulls reach farthest out are cut first.
   int max_piece_vertices = 128;  ///< Most vertices of a piece, ≥ 32. Faces of the pieces of a round
                                  ///< solid lie the deeper inside it the farther apart the pieces'
                                  ///< vertices are; inward_deviation includes this.
@@ -46,11 +48,11 @@ struct ConvexDecomposition {
 /// the part's surface, and faces of the hull, weighted by the square of how far outside the solid
 /// they pass. Candidates are planes of about forty directions and the planes of the mesh's faces.
 /// Parts are cut at the true surface, so that their hulls cover the solid and none leaves the
-/// convex hull of the part that it covers. Cutting ends when all hulls are shallow enough or there
-/// are three times as many parts as pieces are allowed. Then the parts whose common hull is the
-/// least deep are united, as long as that hull is shallow enough or there are too many parts.
-/// Related: [Wei et al. 2022] (CoACD) measures and cuts in the same way, but searches axis-aligned
-/// planes by tree search.
+/// convex hull of the part that it covers. Cutting ends when no part that a cut still improves has
+/// too deep a hull, or when there are three times as many parts as pieces are allowed. Then the
+/// parts whose common hull is the least deep are united, as long as that hull is shallow enough or
+/// there are too many parts. Related: [Wei et al. 2022] (CoACD) measures and cuts in the same way,
+/// but searches axis-aligned planes by tree search.
 ///
 /// The inward deviation is that of the vertices that the pieces leave out of the exact hulls of the
 /// parts; it exceeds 0.05 largest_deviation only where max_piece_vertices is reached. Parts thinner

@@ -25,11 +25,12 @@ struct SignedDistanceMap {
   ///
   /// Outside the lattice the value is a lower bound: it never exceeds what a larger lattice would
   /// hold, and like the values inside it changes by at most one per voxel. Let c be the voxel of
-  /// the lattice nearest to that voxel, e the number of voxels per axis between the two, and g the
-  /// number of voxels per axis from c to the box of all partial voxels. Then any partial voxel is
-  /// at least √(value(c)² + |e|² + 2 e·g) away. The bound is the true distance where the partial
-  /// voxel nearest to c lies on the side of that box, as straight in front of a flat face. Where c
-  /// is a full voxel nothing is known, and the value is that of c.
+  /// the lattice nearest to that voxel, e the steps per axis from c to that voxel (1 to a
+  /// neighbor), and g the steps per axis from c to the box of all partial voxels (0 inside it). The
+  /// value is √(value(c)² + |e|² + 2 e·g): any partial voxel is at least that far away. It is the
+  /// true distance where the partial voxel nearest to c lies on the side of the box toward the
+  /// point, as straight in front of a flat face. Where c is a full voxel nothing is known, and the
+  /// value is that of c.
   float at(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d place = (point - lattice.origin) / lattice.voxel_size;
     // This is the hot path of the fitting loop. Inside the lattice truncation rounds down.

@@ -36,8 +36,8 @@ struct BottleDimensions {
   void validate() const;           ///< Throws InvalidInput.
 };
 
-/// `segments` vertices around; edges along the profile's arcs are as short as those around the
-/// body.
+/// `segments` vertices around; edges along the profile are at most about as long as those around
+/// the body.
 TriangleMesh bottle(const BottleDimensions& dimensions = {}, int segments = 96);
 
 /// A ten-pin bowling pin standing on z = 0, axis z, with the diameters of the drawing in the
@@ -54,7 +54,8 @@ struct BowlingPinDimensions {
   void validate() const;  ///< Throws InvalidInput.
 };
 
-/// `segments` vertices around; edges along the profile are as short as those around the belly.
+/// `segments` vertices around; edges along the profile are at most about as long as those around
+/// the belly.
 TriangleMesh bowling_pin(const BowlingPinDimensions& dimensions = {}, int segments = 96);
 
 /// A hollow flower pot without a drain hole, standing on z = 0, axis z: a conical wall that is

@@ -23,8 +23,8 @@ struct MedialBall {
 struct MedialBallOptions {
   double min_object_angle_deg = 120.0;  ///< Balls with smaller object angles are dropped, as they
                                         ///< come from bumps and noise; in [0, 180].
-  double min_radius_rel = 0.0;  ///< Least radius over the largest radius that passed the angle
-                                ///< test; in [0, 1]. It removes surface detail.
+  double min_radius_rel = 0.0;  ///< Least radius over the largest radius of the balls that pass
+                                ///< the other tests; in [0, 1]. It removes surface detail.
   double emptiness_tolerance = 0.05;  ///< A ball counts as empty if no point of the surface is
                                       ///< deeper in it than this share of the radius to which that
                                       ///< point would shrink the ball; in [1e-12, 0.1]. See
@@ -38,10 +38,9 @@ struct MedialBallOptions {
 /// the box's diagonal as its first radius, shrinks until no surface is inside it.
 ///
 /// Object angle and filters are those of the grid of medial spheres [Przybylski, Asfour & Dillmann
-/// 2011]: a ball is kept if its angle is above min_object_angle_deg and its radius above
-/// min_radius_rel times the largest radius of the balls that passed the angle test. Balls whose
-/// center is not inside the solid (by exact containment) are dropped, and so are balls that still
-/// shrink after 100 steps.
+/// 2011]. Balls that still shrink after 100 steps are dropped, and so are balls whose angle is not
+/// above min_object_angle_deg or whose center is not inside the solid (by exact containment). Of
+/// the others those are kept whose radius is above min_radius_rel times the largest radius.
 ///
 /// Without a tolerance, a ball tangent to a facet of a round body anywhere but in the facet's
 /// middle would be stopped by neighboring facets before it reaches the other side of the body, and

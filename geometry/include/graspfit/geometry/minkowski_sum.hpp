@@ -25,8 +25,9 @@ ConvexPolytope minkowski_sum(std::span<const Eigen::MatrixXd> summands);
 struct MinkowskiInradiusOptions {
   double relative_gap = 1e-12;  ///< The search stops at this ratio of the gap between the bounds to
                                 ///< the upper bound, ≥ 0.
-  int max_points = 1000;  ///< Most points of the sum that are examined, ≥ 1: a budget of work. In
-                          ///< practice tens to a few hundred suffice.
+  int max_points = 1000;  ///< The search stops after the round in which it has examined so many
+                          ///< points of the sum, ≥ 1: a budget of work. In practice tens to a few
+                          ///< hundred suffice.
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 

@@ -18,7 +18,7 @@ namespace graspfit::geometry {
 /// `repair_mesh` splits and reports.
 ///
 /// Cost: that of counting self-intersections, and about a fifth of a millisecond for each pair of
-/// faces that cross. A mesh without faces is returned as it is.
+/// faces that cross. A mesh without faces gives one without faces.
 /// @throws InvalidInput if the mesh is not closed in the sense above.
 TriangleMesh solid_boundary(const TriangleMesh& mesh);
 

@@ -18,7 +18,8 @@ struct SurfaceProximity {
 };
 
 /// A pair of faces expected to be near each other, such as those of the last call: the search then
-/// starts with a good bound. Except for ties a seed changes the time only.
+/// starts with a good bound. A seed changes the time only, except for ties, and except where
+/// `near_enough` above 0 or a `share` below 1 lets the search end early.
 struct ProximitySeed {
   std::int32_t face_a = -1;  ///< −1: none.
   std::int32_t face_b = -1;

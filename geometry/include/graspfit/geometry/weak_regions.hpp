@@ -34,7 +34,7 @@ enum class WeakVerdict : std::uint8_t {
   Short,          ///< On a single neck, but shorter than min_length_ratio times its thickness.
   SeveralNecks,   ///< Held at more than one place, as a handle is.
   HeldAllAround,  ///< Its neck closes to a ring, as that of a wall or a floor does.
-  NoNeck,         ///< It is a separate part, of which the opening leaves nothing.
+  NoNeck,         ///< It is a separate part, which does not touch the body.
 };
 
 /// A connected piece of what remains of the object without its body, or a branch of such a piece.
@@ -45,7 +45,7 @@ struct WeakRegion {
   std::vector<std::int32_t> faces;  ///< All its faces, ascending, thin or not.
   double thickness = 0.0;           ///< Median by area of the local thickness of its faces [m].
   double length = 0.0;  ///< Distance of the region's farthest point from the body, along shortest
-                        ///< paths inside the piece [m].
+                        ///< paths inside the piece [m]; 0 without a neck.
   int num_necks = 0;    ///< Number of necks, the separate places at which the region is attached to
                         ///< the body.
   WeakVerdict verdict = WeakVerdict::Weak;

@@ -71,8 +71,8 @@ Eigen::Vector3d pad_contact_point_C(const ContactPad& pad);
 geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness);
 
 /// The clip volume as a closed mesh with outward normals in frame C, for display. Its vertices are
-/// the corners of the pad, then the same corners moved by `thickness` along z. @throws as
-/// `clip_volume_C`.
+/// the corners of the pad, then the same corners moved by `thickness` along z, without those that
+/// are no corners of the volume. @throws as `clip_volume_C`.
 TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness);
 
 /// A convex volume given in the pad's frame C, expressed in a frame A in which C has pose `X_AC`.

@@ -41,9 +41,9 @@ struct HandCheck {
 ///   - The last joint of a finger has less than half the range of the joint before it, which has a
 ///     parallel axis: this is typical of a geared distal joint (Barrett: 48 of 144 degrees).
 ///     Independently driven neighbors have similar ranges.
-///   - Two joints on the palm swing two fingers that are mirror images by a right angle or more,
-///     and do not flex them: one drive regroups such fingers (Barrett's spread). Abduction has a
-///     far smaller range.
+///   - Two joints on the palm do not flex but swing two fingers, which are mirror images of each
+///     other, by equal ranges of a right angle or more: one drive regroups such fingers (Barrett's
+///     spread). Abduction has a far smaller range.
 ///   - Two prismatic joints on the palm are parallel, have equal strokes and carry no further
 ///     joints: they are the jaws of a parallel gripper.
 ///   - More than 20 joints and no coupling: no built hand drives more of them one by one (the

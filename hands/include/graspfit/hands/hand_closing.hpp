@@ -15,10 +15,10 @@ namespace graspfit::hands {
 /// the order in which the model lists them. A finger stops for good before the step that would make
 /// links touch that are apart while the hand is open; pairs that the model excludes from collision
 /// do not count. Joints that move links of several fingers belong to the first of them; joints of
-/// no finger stop on their own. The result therefore overlaps itself no more than the open hand
-/// does. This is exact on the true meshes, as in `HandCollision`, at the steps; between them
-/// nothing is tested. The same model gives the same result. Cost: up to 64 self-collision tests per
-/// finger.
+/// no finger stop on their own. In the result therefore only links touch that also touch in the
+/// open hand, or that the model excludes; how deep these overlap is not tested. This is exact on
+/// the true meshes, as in `HandCollision`, at the steps; between them nothing is tested. The same
+/// model gives the same result. Cost: up to 64 self-collision tests per finger.
 /// @throws InvalidInput unless 0 ≤ share ≤ 1.
 HandConfiguration closed_without_overlap(const HandModel& model, double share);
 

@@ -38,11 +38,11 @@ struct HandWorkspace {
   /// fingers whose pads never face the thumb's; `any_graspable_diameter` is the range over all
   /// fingers. No `error` is known (infinite).
   ///
-  /// Pads face each other at distance D if both normals are within `facing_angle` of the line
-  /// between the contact points, so that forces inside both friction cones hold a ball of diameter
-  /// D, or a wall D thick, between them. No two links overlap deeper than 0.1 mm in these
-  /// configurations (pads that close on each other just touch), and the other fingers are open. A
-  /// range does not show gaps between its ends.
+  /// Pads face each other at distance D if each pad's normal is within `facing_angle` of the
+  /// direction to the other pad's contact point, so that forces inside both friction cones hold a
+  /// ball of diameter D, or a wall D thick, between them. No two links overlap deeper than 0.1 mm
+  /// in these configurations (pads that close on each other just touch), and the other fingers are
+  /// open. A range does not show gaps between its ends.
   std::vector<DistanceRange> graspable_diameter;
   DistanceRange any_graspable_diameter;
   bool operator==(const HandWorkspace&) const = default;

@@ -20,8 +20,8 @@ struct MotionInput {
   motion::TableScene scene;     ///< Hand and objects that `file` names.
   motion::MotionFile file;      ///< With at least one move.
   double frame_step = 0.01;     ///< No point moves farther between two frames [m], > 0.
-  double largest_speed = 0.25;  ///< Speed at which the fastest point is shown [m/s], > 0: motions
-                                ///< have no times of their own.
+  double largest_speed = 0.25;  ///< Largest speed of any point at the page's normal pace [m/s],
+                                ///< > 0: motions have no times of their own.
   MotionCheck check = MotionCheck::NotChecked;  ///< The page shows it.
 };
 

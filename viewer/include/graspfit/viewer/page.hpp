@@ -20,7 +20,7 @@ struct PageInput {
   std::string note;                 ///< A line below the heading, plain text; empty: none.
   geometry::TriangleMesh object_O;  ///< With at least one face.
   hands::HandModel hand;  ///< Link meshes are stored once; poses are stored per grasp, also for its
-                          ///< pre-grasp and squeeze.
+                          ///< pre-grasp and squeeze where it has them.
   std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
   /// Voxels, patches and scores; without it the page has no voxel and score map layers.
   const grasp::ObjectModel* model = nullptr;
