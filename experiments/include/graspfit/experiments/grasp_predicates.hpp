@@ -46,7 +46,7 @@ bool no_contact_in_region(std::span<const contact::Contact> contacts, const Pred
                           std::span<const RelativeBox> region);
 
 /// Says whether at least `least` and at most `most` contacts have a gap of at most `largest_gap`
-/// [m]. If this is infinite, all surface in the clip volumes counts, as in the paper's N'.
+/// [m]. If this is infinite, every contact of the clip volumes counts, as in the paper's N'.
 bool num_contacts(std::span<const contact::Contact> contacts, int least, std::optional<int> most,
                   double largest_gap);
 

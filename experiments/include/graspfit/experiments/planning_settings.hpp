@@ -72,12 +72,13 @@ void require_compatible(const grasp::PlannerOptions& options);
 PlanningSettings planning_settings(const sweep::Cell& cell,
                                    const std::vector<sweep::Column>& others = {});
 
-/// Reads planning settings from any JSON object, for settings nested in others.
+/// As above, from any JSON object (as text) and a seed, for settings nested in others.
 PlanningSettings planning_settings(const std::string& settings, std::uint64_t seed,
                                    const std::vector<sweep::Column>& others = {});
 
-/// Loads the object of a cell, scaled and repaired. The last few objects are kept, for cells that
-/// share one. @throws MissingData if its file is not there; as `grasp::read_object_file`.
+/// Loads the object of a cell, scaled, repaired and turned. The last few objects are kept, for
+/// cells that share one. @throws MissingData if its file is not there; as
+/// `grasp::read_object_file`.
 std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings);
 
 /// The hand of a cell. @throws MissingData if its file is not there; as `hands::read_hand_model`.

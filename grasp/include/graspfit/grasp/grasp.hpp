@@ -51,8 +51,8 @@ struct Grasp {
   /// ε of the contacts that touch; 0 without any.
   double epsilon() const { return wrench ? wrench->epsilon : 0.0; }
   bool is_force_closure() const { return wrench && wrench->is_force_closure; }
-  /// Force closure with an ε above the rounding of wrenches (about 1e-16), which alone decides
-  /// about `is_force_closure` where contacts face each other exactly.
+  /// Force closure with an ε above 1e-9, far above the rounding of wrenches (about 1e-16), which
+  /// alone decides about `is_force_closure` where contacts face each other exactly.
   bool is_closed() const { return is_force_closure() && wrench->epsilon > 1e-9; }
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
@@ -60,8 +60,8 @@ struct Grasp {
   bool is_valid() const { return is_usable() && !penetration.is_any() && has_all_contacts; }
 };
 
-/// Distance of every target from the nearest contact of the part that the target is for [m], in the
-/// order of the targets; infinite where the part has no contact.
+/// Distance of every target from the nearest contact on the requested pad of the part that the
+/// target is for [m], in the order of the targets; infinite where that pad has no contact.
 std::vector<double> target_distances(const Grasp& grasp);
 
 }  // namespace graspfit::grasp

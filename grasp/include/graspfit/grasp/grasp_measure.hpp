@@ -27,7 +27,8 @@ struct MeasuringScene {
   contact::QualityContext quality_context = {};
   contact::QualityOptions quality_options = {};
   contact::ContactEstimationOptions contact_options = {};
-  /// A requested contact with a larger gap does not count as contact [m].
+  /// A requested part whose contacts all have a larger gap counts as without contact in
+  /// `Grasp::has_all_contacts`, not in M [m]; empty: any gap will do.
   std::optional<double> largest_gap = std::nullopt;
   /// Contacts with a larger gap bear no force: not in ε [m].
   std::optional<double> bearing_gap = std::nullopt;

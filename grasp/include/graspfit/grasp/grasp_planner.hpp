@@ -17,8 +17,8 @@ namespace graspfit::grasp {
 /// Called after each attempt with (attempts done, grasps found); may be empty.
 using PlannerProgress = std::function<void(std::int64_t, std::int64_t)>;
 
-/// How a run is carried out. Except for a requested stop and the wall-clock limit of the options,
-/// no result depends on it.
+/// How a run is carried out. Except for a requested stop, other `methods` and the wall-clock limit
+/// of the options, no result depends on it.
 struct PlanningRun {
   int num_threads = 0;            ///< Attempts at once; 0: as many as the machine has.
   PlannerProgress progress = {};  ///< Called by one thread at a time.
@@ -28,10 +28,10 @@ struct PlanningRun {
   const PlanningMethods& methods = planning_methods();
 };
 
-/// Why `hand` could not hold the object in any pose: the object is smaller than a fingertip, or
-/// thicker in every direction than the requested parts of the hand can open. The text states the
-/// object's extents along the axes of the mesh's own frame, and what to do. Empty: the object may
-/// be held.
+/// Why `hand` could not hold the object in any pose: along every axis of the mesh's own frame the
+/// object is smaller than the widest requested fingertip pad, or thicker than the requested parts
+/// of the hand can open. The text states the object's extents along these axes, and what to do.
+/// Empty: the object may be held. @throws InvalidInput for options that the hand cannot meet.
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const PlannerOptions& options);
@@ -48,11 +48,11 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
                            const PlannerOptions& options, ObjectModelTimings* timings = nullptr,
                            const base::ContentCache& cache = {.is_on = false});
 
-/// Makes attempts by the method `options.planner` until `count` grasps are accepted or the budget
-/// is used. An attempt of hand-object geometric fitting (paper section 11) selects target contacts,
-/// fits the hand, estimates contacts and measures the grasp. The object's size is not checked here
-/// (`prepare_object` and `size_refusal` do so): with an object that the hand cannot hold no attempt
-/// succeeds.
+/// Makes attempts by the method `options.planner` until `count` grasps are accepted
+/// (`SearchRule::First`) or the budget is used. An attempt of hand-object geometric fitting (paper
+/// section 11) selects target contacts, fits the hand, estimates contacts and measures the grasp.
+/// The object's size is not checked here (`prepare_object` and `size_refusal` do so): with an
+/// object that the hand cannot hold no attempt succeeds.
 ///
 /// @throws InvalidInput for options that the hand cannot meet (unknown finger, more contacts than
 /// it allows).

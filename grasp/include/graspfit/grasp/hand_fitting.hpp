@@ -35,16 +35,17 @@ enum class ContactState {
   Closed,
   /// When the pad's clip volume first holds a sliver of the object's surface: the pad is then up to
   /// a clip thickness before the surface, and the contact has a few hundredths of the pad's area.
-  /// This state is for comparison and is no reading of the paper [R].
+  /// No reading of the paper [R]: it is for comparison, and the planner sets it where refinement
+  /// follows.
   FirstGraze,
 };
 
 /// What the palm does once a finger touches.
 enum class PalmAfterContact {
   Frozen,  ///< The palm stays where it is: a shift would drag the finger.
-  /// Once the fingers have closed, the palm moves on in small steps that bring the mean of the
-  /// contacts toward the mean of their targets. Fingers open where a step needs it and close again,
-  /// as long as contacts come nearer to targets.
+  /// Once the fingers have closed, the palm moves on, as long as contacts come nearer to targets,
+  /// in small steps that bring the mean of the contacts toward the mean of their targets. Fingers
+  /// open where a step needs it and close again.
   Recentred,
 };
 
@@ -104,17 +105,19 @@ struct FittingResult {
 ///
 /// Readings [R]. The paper's five steps come to rest in the posture in which the fingertips are
 /// over their targets. That posture is found first, without the object, and steps 2 to 5 move the
-/// hand toward it: the palm moves along n_palm until the fingertips' centroid will be over the
-/// targets' centroid; then each finger closes by all its joints together, then on by its proximal
-/// joints and, where a link behind the tip is stopped, by its distal ones. In power grasps the palm
-/// moves first, until its clip volume holds surface or the guard stops it; then every finger, with
-/// a target or without, closes by its proximal joint until that is stopped, then by the next. An
-/// attempt ends early when a part has stopped farther than `give_up_distance` from the object.
+/// hand toward it: the palm moves along n_palm to where the closed fingertips' centroid will be
+/// over the targets' centroid; then each finger closes by all its joints together, then on by its
+/// proximal joints and, where a link behind the tip is stopped, by its distal ones. In power grasps
+/// the palm moves first, until its clip volume holds surface or the guard stops it; then every
+/// finger, with a target or without, closes by its proximal joint until that is stopped, then by
+/// the next. An attempt ends early when a part has stopped farther than `give_up_distance` from the
+/// object.
 ///
 /// Guarantee: no sampled point of a link lies in a full voxel at the end (d_min ≥ 0), and, with the
 /// guard on meshes, no link intersects the object. With the guard on voxels the true meshes may
 /// intersect. No configuration on the path touches the surroundings. Links of the hand may
-/// intersect each other in either case.
+/// intersect each other in either case, unless `guard_self` keeps them apart. The guarantee does
+/// not hold if the result is `InitialCollision`.
 /// @throws InvalidInput for options out of range, fewer than two targets or unassigned ones.
 ///
 /// @param goal the posture at the targets toward which the loop moves the hand, if it is known

@@ -32,8 +32,8 @@ template <class Enum>
 NamedValue(Enum, const char*) -> NamedValue<Enum>;
 
 /// All values of an enumeration with their names, in the order of declaration. The specializations
-/// below are for the enumerations of the planner and of wrench conventions; use with any other
-/// enumeration does not compile.
+/// below are for the enumerations of the planner, of its measures, of wrench conventions and of
+/// mesh repair; use with any other enumeration does not compile.
 template <class Enum>
 inline constexpr auto kNames = nullptr;
 template <>

@@ -70,11 +70,11 @@ enum class KeptCandidate {
   First,     ///< The first whose grasp is accepted.
   Balanced,  ///< The first whose grasp is accepted and whose squeeze balances; else the accepted
              ///< grasp of least residual.
-  /// All candidates are tried, and the strongest accepted grasp with a balanced squeeze is kept,
-  /// else the strongest accepted one. Strength is ε, signed, of the contacts that touch (with
-  /// refinement: within its largest gap), with friction cones of `squeeze_friction` and torques
-  /// over the object's largest radius. Candidates are the sides of all sets drawn, or of the next
-  /// set of a ranked search.
+  /// All candidates, up to `max_placements`, are tried, and the strongest accepted grasp with a
+  /// balanced squeeze is kept, else the strongest accepted one. Strength is ε, signed, of the
+  /// contacts that touch (with refinement: within its largest gap), with friction cones of
+  /// `squeeze_friction` and torques over the object's largest radius. Candidates are the sides of
+  /// all sets drawn, or of the next set of a ranked search.
   Strongest,
 };
 
@@ -86,7 +86,7 @@ struct PlannerOptions {
   GraspStyle style = GraspStyle::Precision;
   /// Names from the hand, thumb anywhere; empty: `num_contacts` of them.
   std::vector<std::string> fingers;
-  /// Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2.
+  /// Used where `fingers` is empty: the thumb and the fingers after it, ≥ 2, with the palm ≥ 1.
   int num_contacts = 3;
   /// Whether the palm must touch too, which adds one target; empty: in power grasps only [P: "if
   /// the palm may touch"].
@@ -129,9 +129,9 @@ struct PlannerOptions {
   int target_draws = 32;
   CandidateOrder candidate_order = CandidateOrder::Pads;
   KeptCandidate kept = KeptCandidate::First;
-  /// Sides from which an attempt fits the hand, ≥ 1: sides of one target set, those with the
-  /// flattest pads first [R] (three and more targets have two sides, two targets sixteen); with
-  /// `KeptCandidate::Strongest`, sides of all sets drawn.
+  /// Largest number of sides from which an attempt fits the hand, ≥ 1: sides of one target set,
+  /// those with the flattest pads first [R] (three and more targets have two sides, two targets
+  /// sixteen); with `KeptCandidate::Strongest`, sides of all sets drawn.
   int max_placements = 4;
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.

@@ -23,11 +23,11 @@ enum class PlannerStop {
 /// What became of the attempts: each ends in exactly one of these (names in `outcome_name`).
 enum class AttemptOutcome {
   Valid,
-  /// Usable, but penetrating, without a requested contact, without a collision-free path to the
-  /// grasp, with the palm direction outside the cone of approach, or with a contact where the score
-  /// is too low.
+  /// Usable, but penetrating, without a requested contact, with the palm direction outside the cone
+  /// of approach, or with a contact where the score is too low.
   UsableOnly,
-  NoTargets,  ///< The method had no start; with fitting: no seed, no pair or no further contact.
+  NoTargets,  ///< The method had no start; with fitting: no seed, no pair, no further contact or no
+              ///< target of the palm.
   InitialCollision,
   BlockedFinger,
   MissedContact,

@@ -30,7 +30,8 @@ struct PreGraspOptions {
 struct PreGrasp {
   hands::HandConfiguration configuration;
   double clearance = 0.0;  ///< Distance of the nearest link [m], ≥ the wanted clearance.
-  /// Share of the motion from the grasp's joint positions to the open ones, in (0, 1].
+  /// Share of the motion from the grasp's joint positions to the open ones, in (0, 1]; 0 where an
+  /// imported pre-grasp opens no joint.
   double opening = 0.0;
   double retreat = 0.0;  ///< Of the palm, against its direction [m].
 };

@@ -33,9 +33,9 @@ enum class TargetSearch {
 /// Which of the earlier targets a finger's new target must form a stable pair with.
 enum class PairRule {
   Seed,      ///< With the seed (the thumb's target) [R].
-  AllPairs,  ///< With every earlier target (the literal reading). With cones below 45° no five
-             ///< contacts of any object are pairwise stable: their normals would be pairwise more
-             ///< than 90° apart.
+  AllPairs,  ///< With every earlier target (the literal reading). With cones of at most 45° no
+             ///< five contacts of any object are pairwise stable: their normals would be pairwise
+             ///< more than 90° apart.
 };
 
 /// Most parts that can be asked for.
@@ -55,9 +55,9 @@ struct TargetOptions {
   double edge_tolerance_rel = 0.25;     ///< Largest | |V3Vk| − |V1V2| | / |V1V2|, ≥ 0 [R].
   double centroid_limit_rel = 0.6;  ///< Largest distance of the centroid of the fingers' targets
                                     ///< from the center of mass over the normalizing radius [R].
-  /// Weight, in the rank, of the angles between the lines that connect stable pairs and the contact
-  /// normals, as a share of theta_max, ≥ 0. With 0 angles do not count [R]; with 1 they count as
-  /// much as edges and centroid.
+  /// Weight, in the rank, of the angles between the contact normals and the lines that connect
+  /// stable pairs, as shares of theta_max, ≥ 0. With 0 angles do not count [R]; with 1 they count
+  /// as much as edges and centroid.
   double angle_weight = 0.0;
   double pool_fraction = 0.2;  ///< Share of the ranked candidates drawn from, in (0, 1] [R].
   int pool_minimum = 5;        ///< Least number of candidates drawn from, if there are so many [R].
@@ -154,7 +154,7 @@ struct PartDistances {
   std::optional<PalmReach> palm = {};                  ///< Empty for a hand without a palm pad.
 };
 PartDistances part_distances(const hands::HandModel& hand);
-/// The same for `parts` only: without distances and reach of the palm where it is not requested.
+/// As above, but without distances and reach of the palm where `parts` do not request it.
 PartDistances part_distances(const hands::HandModel& hand, const RequestedParts& parts);
 
 /// Contacts at the points of the targets, each of the finger that its target is assigned to.

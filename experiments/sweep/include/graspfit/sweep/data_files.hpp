@@ -39,7 +39,8 @@ std::filesystem::path packaged_mesh(const std::string& name);
 /// Returns the name of an input in manifests. It is relative to the data folder or to the
 /// repository where the file lies in one of them, and "packaged/..." for a packaged mesh. A file of
 /// the repository is "sources/..." where the data folder has a file of the same name. The root of a
-/// file system does not count as one of these folders.
+/// file system does not count as one of these folders. Any other file is named by its absolute
+/// path.
 std::string name_of_input(const std::filesystem::path& file);
 
 }  // namespace graspfit::sweep

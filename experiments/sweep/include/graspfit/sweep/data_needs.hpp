@@ -22,7 +22,8 @@ struct DataNeed {
 };
 
 /// Returns all data that settings (a JSON object as text) name by `file`, `packaged`, `shape` and,
-/// unless it is a shipped one, `hand`, also in nested settings, in their order.
+/// unless it is a shipped one, `hand`, also in nested settings, in the order of keys (by name) and
+/// array items.
 std::vector<DataNeed> data_needs(const std::string& settings);
 
 /// Says whether all data that settings name are there.

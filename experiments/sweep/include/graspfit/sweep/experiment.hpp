@@ -62,7 +62,7 @@ struct Experiment {
   std::string slug;                   ///< Letters, digits and _; the same in every file name.
   std::vector<Column> columns;        ///< Results: the same bytes for every run.
   std::vector<Column> timings = {};   ///< What may differ from run to run.
-  std::vector<Column> settings = {};  ///< Settings that only this experiment has.
+  std::vector<Column> settings = {};  ///< Settings beside the shared ones.
   std::vector<Column> shared_settings = {};  ///< Settings that it shares with other experiments.
   std::vector<Column> details = {};  ///< Columns of the rows that a cell's row sums up, any number
                                      ///< per cell (one per grasp); if empty, there is no such
@@ -73,8 +73,8 @@ struct Experiment {
 
   /// Does a cell's work, on one thread; several may run at once. It may write files beside its row
   /// into `folder`, which exists only from its first file on (`cell_folder`).
-  /// @throws MissingData, which skips the cell, or anything else, which fails it with that reason
-  /// in its row.
+  /// @throws MissingData, which skips the cell, or anything else, which fails it; the reason is in
+  /// its row in either case.
   std::function<CellResult(const Cell&, const std::filesystem::path& folder)> run;
 
   std::vector<SummaryTable> summaries = {};  ///< Tables over all cells, made of their details.

@@ -45,8 +45,8 @@ struct ExperimentConfig {
   std::string cell;      ///< What one cell computes, for people.
   ParameterSweep sweep;
   bool is_quick = false;
-  bool is_modified = false;  ///< Whether the command line or missing data changed the
-                             ///< configuration.
+  bool is_modified = false;  ///< Whether the command line (besides `is_quick`) or missing data
+                             ///< changed the configuration.
   /// Which axes lack values for want of data and what they are now, for people; empty: none.
   std::string left_out = "";
 

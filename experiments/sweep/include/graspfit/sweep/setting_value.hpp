@@ -20,7 +20,8 @@ base::JsonValue setting_value(std::string key, const nlohmann::json& json);
 
 /// A setting of a cell; none if the cell does not have it.
 std::optional<base::JsonValue> find_setting(const Cell& cell, const std::string& key);
-/// Returns a setting of a cell. @throws SettingError without a name if the cell does not have it.
+/// Returns a setting of a cell. @throws SettingError with an empty key if the cell does not have
+/// it.
 base::JsonValue setting(const Cell& cell, const std::string& key);
 
 Eigen::Vector3d vector_of(const base::JsonValue& value);          ///< [x, y, z].

@@ -28,8 +28,8 @@ struct SweepStatus {
   std::size_t num_cells = 0;
   std::size_t num_done = 0;         ///< Finished for good.
   std::size_t num_failed = 0;       ///< Of the finished cells, those that failed.
-  std::size_t num_tried_again = 0;  ///< Cells tried in vain (no data), which the next run tries
-                                    ///< again.
+  std::size_t num_tried_again = 0;  ///< Cells tried in vain (no data, files or memory), which are
+                                    ///< not done: the next run tries them again.
   bool is_running = false;
   std::optional<double> cells_per_s;  ///< Rate of the last run; none before its first cell.
 
@@ -37,8 +37,8 @@ struct SweepStatus {
 };
 
 /// Returns the status of the whole sweep first ("all": a cell is done if any run has finished it;
-/// the rate is the sum over the runs in progress), then of the folder's own run and of its shards
-/// by name. Runs are not disturbed.
+/// the rate is the sum over the runs in progress), then of the folder's own run and of its shards,
+/// ordered by their count and index. Runs are not disturbed.
 /// @throws InvalidInput if there are no results of that experiment, or of different configurations.
 std::vector<SweepStatus> sweep_status(const std::string& slug, const std::filesystem::path& folder);
 

@@ -37,7 +37,8 @@ struct FieldDifference {
 struct TableComparison {
   std::size_t num_rows = 0;       ///< Number of rows compared.
   std::size_t num_not_ours = 0;   ///< Rows of theirs that we do not have.
-  bool are_same_bytes = true;     ///< Whether all compared fields are the same texts.
+  bool are_same_bytes = true;     ///< Whether all compared fields are the same texts and no
+                                  ///< row is missing.
   double largest_relative = 0.0;  ///< Largest relative difference of numbers that are near enough.
   std::vector<FieldDifference> differences;  ///< In the order of our rows.
   /// Names of rows of theirs that we should have, found by `compare_with_published`.
@@ -63,8 +64,8 @@ struct PublishedComparison {
 
 /// Compares the results of a finished run with published ones, perhaps of another machine: rows of
 /// cells, details, and, if the run is of the whole sweep, its summary. Timings are not compared.
-/// The run may lack published cells. It must not lack a row of the details of its own cells nor, if
-/// it has all cells, a row of the summary.
+/// The run may lack published cells. Rows of the details of its own cells that it lacks and, if it
+/// has all cells, rows of the summary are reported as `missing_rows`.
 /// @throws IoError if a file is missing; InvalidInput as `compare_tables`, if the run's table has
 /// not a row for each of its cells, and as `require_tables_of_manifest` for both folders.
 std::vector<PublishedComparison> compare_with_published(const Experiment& experiment,

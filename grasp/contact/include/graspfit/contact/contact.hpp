@@ -9,7 +9,7 @@ namespace graspfit::contact {
 struct Contact {
   Eigen::Vector3d point_O = Eigen::Vector3d::Zero();  ///< Point on the object's surface [m].
   Eigen::Vector3d inward_normal_O = Eigen::Vector3d::Zero();  ///< Unit normal, into the object.
-  double area = 0.0;  ///< Area of the object in the pad's clip volume [m²] (paper: A).
+  double area = 0.0;  ///< Area of the object's surface in the pad's clip volume [m²] (paper: A).
   double pad_boundary_distance = 0.0;  ///< Distance of the point from the pad's outline, in the
                                        ///< pad's plane [m] (paper: d).
   double gap = 0.0;  ///< Distance between the pad's surface on its link's mesh and the object [m],

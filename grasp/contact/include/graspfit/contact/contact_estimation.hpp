@@ -69,8 +69,9 @@ std::optional<double> pad_gap(const geometry::MeshQuery& pad_surface_L,
                               const geometry::MeshQuery& object, double enough);
 
 /// Estimates the contacts of all pads that count (`is_counted`), in pad order. Several contacts of
-/// one pad come in the order of their first faces, and the gap of each is that between the pad and
-/// the contact's own faces. Contacts of pads without a target are included.
+/// one pad come in the order of their first faces, where faces that lie in the clip volume as a
+/// whole precede those that it cuts; the gap of each is that between the pad and the contact's own
+/// faces. Contacts of pads without a target are included.
 std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
                                        const std::vector<geometry::RigidTransform>& X_OL,
                                        const geometry::MeshQuery& object,

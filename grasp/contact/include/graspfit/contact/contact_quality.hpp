@@ -103,8 +103,8 @@ ContactQuality contact_quality(std::span<const Contact> contacts, const QualityC
 /// M of a target set.
 ///
 /// In normalized units the hand may be null; in centimeters the shares refer to the contact's pad
-/// or, if it has none, to the tip pad of its finger. @throws InvalidInput as `contact_quality`, and
-/// if two contacts have the same finger.
+/// or, if it has none, to the tip pad of its finger, without a finger to the palm's pad.
+/// @throws InvalidInput as `contact_quality`, and if two contacts have the same finger.
 ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityContext& context,
                              double boundary_distance_rel, double area_rel,
                              const QualityOptions& options = {});

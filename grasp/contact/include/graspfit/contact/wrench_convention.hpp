@@ -59,8 +59,8 @@ enum class WrenchTool {
 /// Everything that ε and the volume depend on besides the contacts. It accompanies these numbers:
 /// two values are comparable only if their conventions agree.
 ///
-/// The cone edges cannot be selected: they are those of `cone_edges`, an inscribed pyramid from
-/// normal × e_x on.
+/// Of the cone edges only the number can be selected: they are those of `cone_edges`, an inscribed
+/// pyramid from normal × e_x on.
 struct WrenchConvention {
   Eigen::Vector3d reference_point_O = Eigen::Vector3d::Zero();  ///< Origin of torques [m].
   WrenchSpaceOptions options;

@@ -8,7 +8,7 @@
 /// Arrays under the names that DexGraspBench reads [Mingrui-Yu/DexGraspBench, README and
 /// src/task/eval_func/base.py], in a NumPy NPZ file. DexGraspBench itself loads one pickled
 /// dictionary per grasp; plain arrays need no pickle, and README.md shows the two lines that turn
-/// one into the other.
+/// the arrays into such dictionaries.
 
 namespace graspfit::exchange {
 

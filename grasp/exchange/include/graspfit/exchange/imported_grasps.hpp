@@ -25,7 +25,8 @@ struct ImportedGrasp {
 struct ImportResult {
   grasp::GraspFile file;             ///< Grasp file, best M first, ties in the order given.
   std::vector<std::size_t> sources;  ///< For each grasp of `file`, its index among those given.
-  std::vector<std::string> notes;    ///< Notes for people: pre-grasps that could not be kept.
+  std::vector<std::string> notes;    ///< Notes for people: pre-grasps that are missing or
+                                     ///< could not be kept.
 };
 
 /// Makes a grasp file from grasps that come from elsewhere.

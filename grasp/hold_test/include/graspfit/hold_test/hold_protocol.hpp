@@ -69,7 +69,7 @@ struct HoldProtocol {
   double gravity = 9.81;  ///< Gravity of HoldLoad::Lift, on the object alone, along −z of O [m/s²].
   double lift_height = 0.1;     ///< Height by which HoldLoad::Lift lifts [m].
   double lift_time = 0.4;       ///< Duration of the lift [s].
-  double hold_time = 2.0;       ///< Duration of the load, lifting included [s].
+  double hold_time = 2.0;       ///< Duration of the phase under load, lifting included [s].
   double check_interval = 0.2;  ///< Time between checks of the object's pose [s].
   double largest_shift = 0.05;  ///< Displacement of the center of mass from the squeezed pose, in
                                 ///< the palm's frame [m], from which on the grasp fails; it also

@@ -43,7 +43,8 @@ HoldHand prepare_hold_hand(const hands::HandModel& hand,
 enum class HoldStage {
   Rejected,  ///< Not simulated: deeper penetration than allowed at the pre-grasp, or no pre-grasp
              ///< or squeeze.
-  Approach,  ///< The object was lost between pre-grasp and squeeze, before any load.
+  Approach,  ///< The object was lost between pre-grasp and squeeze, before the six forces or the
+             ///< lift.
   Load,      ///< The object was lost under load.
   Held,      ///< The object was not lost.
 };
@@ -54,7 +55,7 @@ struct DirectionVerdict {
   HoldStage stage = HoldStage::Held;
   std::optional<double> failed_at;  ///< Time of the first failing check, since the load began [s].
   double largest_shift = 0.0;  ///< Largest displacement from the squeezed pose at any check up to
-                               ///< that one [m].
+                               ///< the failing one [m].
   double largest_turn = 0.0;   ///< Largest rotation from the squeezed pose [rad].
 };
 

@@ -60,7 +60,7 @@ struct MoveAttempt {
   int grasps_tried = 0;
   int segments_tried = 0;
   /// Reasons for which grasps and paths were refused, with how often: "lift: bunny and mug", "no
-  /// grasp: …".
+  /// valid grasp with room at start and goal in …".
   std::map<std::string, int> failures;
   /// The most frequent reasons in a line; of equally frequent ones the first by name.
   std::string reason() const;
@@ -72,11 +72,12 @@ struct MoveAttempt {
 ///
 /// Grasps are planned in W on the object as it stands. They avoid the table and the convex hulls of
 /// the other objects, both where these are now and where they are relative to the object at its
-/// goal, so that the hand has clearance at both ends. The motion is then proven on the true meshes,
-/// and the best grasp that can be carried along a tried path is taken. On these paths the object
-/// goes straight up by one of `lifts`, then straight to above its goal (turning on the way, or
-/// before, or after it), then straight down; the free hand comes and goes through points behind the
-/// pre-grasp (`withdrawals`) and above those. The result is deterministic in the input.
+/// goal, so that the hand has clearance at both ends. The motion is then proven on the true meshes.
+/// Taken is the best grasp that can be carried along a tried path, for the first approach direction
+/// with such a grasp. On these paths the object goes straight up by one of `lifts`, then straight
+/// to above its goal (turning on the way, or before, or after it), then straight down; the free
+/// hand comes and goes through points behind the pre-grasp (`withdrawals`) and above those. The
+/// result is deterministic in the input.
 ///
 /// If the object is too large or too small for the hand, by its bounding box in its own frame
 /// however it stands, this is the attempt's reason. @throws InvalidInput for bad options and an

@@ -119,14 +119,15 @@ inline constexpr double kTouchTolerance = 1e-5;
 /// at one share of the segment, and whose points move by at most v per unit of share, keep their
 /// clearance c for (d − c) / v of the share before and after it; the segment is free when such
 /// intervals cover it. The bodies are all links and the carried object. Each is tested against the
-/// table and the standing objects, links also against each other where joints move. Whether a body
-/// is inside an object is decided exactly at both ends. The phases imply these exceptions:
+/// table and the standing objects; links are also tested against each other where joints move, with
+/// a clearance of zero. Whether a body shares a point with an object is decided exactly at both
+/// ends. The phases imply these exceptions:
 ///
 /// - Lift, Place: the carried object may rest on the table at the end of the segment that is on it,
 ///   1e-9 m deep at most (rounding of its pose). A body that does not turn is lowest at one of the
 ///   ends, exactly.
 /// - Approach, Release: hand and object may come arbitrarily near to each other over the last
-///   (first) `kTouchTolerance`, where they touch.
+///   (first) `kTouchTolerance`, but must share no point in the grasp itself.
 /// - Carrying: hand and object do not move relative to each other, so that they are not tested.
 ///
 /// Like `find_pre_grasp` it never reports a segment free wrongly, up to the rounding of distances.

@@ -32,7 +32,8 @@ struct TidyingResult {
   std::vector<geometry::RigidTransform> X_WO_end;  ///< Final poses; of objects that reached their
                                                    ///< goals these, bit for bit.
   std::vector<PlannedMove> moves;                  ///< In the order in which they are made.
-  std::vector<UnmovedObject> unmoved;              ///< Objects that stay short of their goals.
+  std::vector<UnmovedObject> unmoved;              ///< Objects that stay short of their goals;
+                                                   ///< empty: the table is tidy.
   int moves_tried = 0;
   int segments_tried = 0;
   std::int64_t planner_attempts = 0;
@@ -50,8 +51,8 @@ struct TidyingResult {
 /// stays. So an empty `unmoved` is a proof that the goals can be reached, while objects in it prove
 /// nothing. A move that was refused before in the same arrangement is not planned again, but counts
 /// as if it were.
-/// @throws InvalidInput for bad options, different numbers of poses, and objects that start inside
-/// each other or the table.
+/// @throws InvalidInput for bad options, different numbers of poses, objects that start inside each
+/// other, and a start or goal inside the table (deeper than 1e-9 m).
 TidyingResult tidy_table(const TableScene& scene,
                          const std::vector<geometry::RigidTransform>& X_WO_start,
                          const std::vector<geometry::RigidTransform>& X_WO_goal,
