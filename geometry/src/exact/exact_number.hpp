@@ -1,12 +1,60 @@
 #pragma once
 
 #include <CGAL/Gmpq.h>
+#include <CGAL/Interval_nt.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+/// \file
+/// Signs of expressions for which CGAL's kernels have no predicate, as CGAL decides its own: by
+/// interval arithmetic, and in rationals where intervals do not tell.
 
 namespace graspfit::geometry::internal {
 
-/// The exact kernel's number: any double converts to it without loss. Used where a filter fails.
+/// CGAL's number that any double converts to without loss.
 using Rational = CGAL::Gmpq;
 
-inline int sign_of(const Rational& value) { return static_cast<int>(CGAL::sign(value)); }
+/// CGAL's interval of doubles, for use while `CGAL::Protect_FPU_rounding` is in force.
+using Interval = CGAL::Interval_nt_advanced;
+
+template <typename Number>
+int sign_of(const Number& value) {
+  return static_cast<int>(CGAL::sign(value));
+}
+
+/// Sign of `evaluate(Interval())`, or nothing if the interval holds zero and other numbers.
+/// `evaluate` maps a number of any type, whose value is not used, to the expression's value
+/// computed in that type. Certain also where numbers overflow and underflow.
+template <typename Expression>
+std::optional<int> sign_by_intervals(const Expression& evaluate) {
+  const CGAL::Protect_FPU_rounding<true> upward;
+  const CGAL::Uncertain<CGAL::Sign> sign = CGAL::sign(evaluate(Interval()));
+  if (!CGAL::is_certain(sign)) return std::nullopt;
+  return static_cast<int>(CGAL::get_certain(sign));
+}
+
+/// Sign of an expression as `sign_by_intervals` takes it, in `Exact` where intervals do not tell.
+template <typename Exact, typename Expression>
+int sign_of_expression(const Expression& evaluate) {
+  const std::optional<int> sign = sign_by_intervals(evaluate);
+  return sign ? *sign : sign_of(evaluate(Exact()));
+}
+
+/// The double nearest to an exact number; of two equally near ones the even one, as IEEE 754
+/// rounds.
+/// (`CGAL::to_double` of a Gmpq cuts digits off.)
+template <typename Exact>
+double nearest_double(const Exact& value) {
+  const auto [low, high] = CGAL::to_interval(value);  // Neighbors, or the number itself.
+  if (low == high || !std::isfinite(low) || !std::isfinite(high)) {
+    return std::isfinite(low) ? low : high;
+  }
+  const int side = sign_of(Exact(value + value - Exact(low) - Exact(high)));
+  if (side != 0) return side > 0 ? high : low;
+  return (std::bit_cast<std::uint64_t>(low) & 1) == 0 ? low : high;
+}
 
 }  // namespace graspfit::geometry::internal

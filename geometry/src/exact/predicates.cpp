@@ -1,5 +1,7 @@
 #include "exact/predicates.hpp"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -10,122 +12,77 @@
 namespace graspfit::geometry::internal {
 namespace {
 
-// Half an ulp of 1; the bounds are ccwerrboundA and o3derrboundA of [Shewchuk 1997].
-constexpr double kEps = 0x1p-53;
-constexpr double kBound2 = (3.0 + 16.0 * kEps) * kEps;
-constexpr double kBound3 = (7.0 + 56.0 * kEps) * kEps;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Eigen::Vector3d;
 
-// Below this the products may have lost bits to underflow, which the bounds do not cover.
-constexpr double kLeastPermanent = 0x1p-900;
+Kernel::Point_3 point_3(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
-int sign(double value) { return (value > 0.0) - (value < 0.0); }
+Kernel::Point_2 point_2(const Vector3d& p, int u, int v) { return {p[u], p[v]}; }
 
-bool is_certain(double value, double bound, double permanent) {
-  return std::abs(value) > bound * permanent && permanent > kLeastPermanent && permanent < 0x1p1000;
-}
-
-[[gnu::cold, gnu::noinline]] int exact_orientation(const Eigen::Vector3d& a,
-                                                   const Eigen::Vector3d& b,
-                                                   const Eigen::Vector3d& c,
-                                                   const Eigen::Vector3d& d) {
-  Rational m[3][3];
-  for (int i = 0; i < 3; ++i) {
-    m[0][i] = Rational(b[i]) - Rational(a[i]);
-    m[1][i] = Rational(c[i]) - Rational(a[i]);
-    m[2][i] = Rational(d[i]) - Rational(a[i]);
-  }
-  return sign_of(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                 m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                 m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
-}
-
-[[gnu::cold, gnu::noinline]] int exact_orientation_2d(const Eigen::Vector3d& a,
-                                                      const Eigen::Vector3d& b,
-                                                      const Eigen::Vector3d& c, int u, int v) {
-  const Rational left = (Rational(a[u]) - Rational(c[u])) * (Rational(b[v]) - Rational(c[v]));
-  const Rational right = (Rational(a[v]) - Rational(c[v])) * (Rational(b[u]) - Rational(c[u]));
-  return sign_of(left - right);
-}
-
-[[gnu::cold, gnu::noinline]] Eigen::Vector3d exact_vector_area(const Eigen::Vector3d& a,
-                                                               const Eigen::Vector3d& b,
-                                                               const Eigen::Vector3d& c) {
+[[gnu::cold, gnu::noinline]] Vector3d exact_vector_area(const Vector3d& a, const Vector3d& b,
+                                                        const Vector3d& c) {
   Rational ab[3];
   Rational ac[3];
   for (int i = 0; i < 3; ++i) {
     ab[i] = Rational(b[i]) - Rational(a[i]);
     ac[i] = Rational(c[i]) - Rational(a[i]);
   }
-  Eigen::Vector3d area;
+  Vector3d area;
   for (int i = 0; i < 3; ++i) {
     const int u = (i + 1) % 3;
     const int v = (i + 2) % 3;
     const Rational doubled = ab[u] * ac[v] - ab[v] * ac[u];
-    area[i] = 0.5 * CGAL::to_double(doubled);
+    area[i] = 0.5 * nearest_double(doubled);
     // Too small for a double is not nothing.
     if (area[i] == 0.0) area[i] = sign_of(doubled) * std::numeric_limits<double>::min();
   }
   return area;
 }
 
-bool is_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
-                   const Eigen::Vector3d& b) {
+bool is_on_segment(const Vector3d& point, const Vector3d& a, const Vector3d& b) {
   return (point.array() >= a.cwiseMin(b).array()).all() &&
          (point.array() <= a.cwiseMax(b).array()).all() && are_collinear(point, a, b);
 }
 
 }  // namespace
 
-int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                const Eigen::Vector3d& d) {
-  const double adx = b[0] - a[0], ady = b[1] - a[1], adz = b[2] - a[2];
-  const double bdx = c[0] - a[0], bdy = c[1] - a[1], bdz = c[2] - a[2];
-  const double cdx = d[0] - a[0], cdy = d[1] - a[1], cdz = d[2] - a[2];
-  const double bc = bdx * cdy, cb = cdx * bdy;
-  const double ca = cdx * ady, ac = adx * cdy;
-  const double ab = adx * bdy, ba = bdx * ady;
-  const double det = adz * (bc - cb) + bdz * (ca - ac) + cdz * (ab - ba);
-  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(adz) +
-                           (std::abs(ca) + std::abs(ac)) * std::abs(bdz) +
-                           (std::abs(ab) + std::abs(ba)) * std::abs(cdz);
-  if (is_certain(det, kBound3, permanent)) return sign(det);
-  return exact_orientation(a, b, c, d);
+int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  return static_cast<int>(CGAL::orientation(point_3(a), point_3(b), point_3(c), point_3(d)));
 }
 
-int orientation_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                   int u, int v) {
-  const double left = (a[u] - c[u]) * (b[v] - c[v]);
-  const double right = (a[v] - c[v]) * (b[u] - c[u]);
-  const double det = left - right;
-  if (is_certain(det, kBound2, std::abs(left) + std::abs(right))) return sign(det);
-  return exact_orientation_2d(a, b, c, u, v);
+int orientation_2d(const Vector3d& a, const Vector3d& b, const Vector3d& c, int u, int v) {
+  return static_cast<int>(CGAL::orientation(point_2(a, u, v), point_2(b, u, v), point_2(c, u, v)));
 }
 
-int cross_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-             const Eigen::Vector3d& d, int u, int v) {
-  const double left = (b[u] - a[u]) * (d[v] - c[v]);
-  const double right = (b[v] - a[v]) * (d[u] - c[u]);
-  const double value = left - right;
-  // Two rounded differences, a product and the last difference, as in the orientation of points.
-  if (is_certain(value, kBound2, std::abs(left) + std::abs(right))) return sign(value);
-  return sign_of((Rational(b[u]) - Rational(a[u])) * (Rational(d[v]) - Rational(c[v])) -
-                 (Rational(b[v]) - Rational(a[v])) * (Rational(d[u]) - Rational(c[u])));
+int cross_2d(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d, int u,
+             int v) {
+  // A cross product is the scalar product with the second vector turned by a right angle, of whose
+  // sign CGAL's predicate makes an angle.
+  const Kernel::Point_2 turned_c(c[v], -c[u]);
+  const Kernel::Point_2 turned_d(d[v], -d[u]);
+  return static_cast<int>(CGAL::angle(point_2(a, u, v), point_2(b, u, v), turned_c, turned_d));
 }
 
-bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  return orientation_2d(a, b, c, 0, 1) == 0 && orientation_2d(a, b, c, 1, 2) == 0 &&
-         orientation_2d(a, b, c, 2, 0) == 0;
+bool are_collinear(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return CGAL::collinear(point_3(a), point_3(b), point_3(c));
 }
 
-Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                     const Eigen::Vector3d& c) {
-  const Eigen::Vector3d ab = b - a;
-  const Eigen::Vector3d ac = c - a;
-  const Eigen::Vector3d doubled = ab.cross(ac);
+bool is_beside(const std::array<Vector3d, 3>& plane, const std::array<Vector3d, 3>& other) {
+  const auto& [a, b, c] = plane;
+  const int side = orientation(a, b, c, other[0]);
+  return side != 0 && orientation(a, b, c, other[1]) == side &&
+         orientation(a, b, c, other[2]) == side;
+}
+
+Vector3d accurate_vector_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const Vector3d ab = b - a;
+  const Vector3d ac = c - a;
+  const Vector3d doubled = ab.cross(ac);
   // Each component is off by at most 8 kEps |ab| |ac|, the vector by twice that; compared in
   // squares, all in a range where neither they nor the products above lose bits to underflow.
   constexpr double kLeast = 0x1p-450;
   constexpr double kGreatest = 0x1p450;
+  constexpr double kEps = 0x1p-53;  // Half an ulp of 1.
   constexpr double kSquaredRatio = (0x1p42 * 16.0 * kEps) * (0x1p42 * 16.0 * kEps);
   const double ab_squared = ab.squaredNorm();
   const double ac_squared = ac.squaredNorm();
@@ -137,8 +94,8 @@ Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vect
   return exact_vector_area(a, b, c);
 }
 
-bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
-                    const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+bool is_on_triangle(const Vector3d& point, const Vector3d& a, const Vector3d& b,
+                    const Vector3d& c) {
   // In a coordinate plane where the projection of the triangle has area, three signs tell whether
   // the projection of the point is inside; a fourth sign tells whether the point is in the
   // triangle's plane.

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 /// \file
-/// Exact signs of expressions in doubles, by a floating-point filter with a proven error bound
-/// [Shewchuk 1997] and by rationals where the filter fails. The signs are right for all finite
-/// input whose exact value a rational can hold.
+/// Signs of CGAL's kernel of exact predicates (`Exact_predicates_inexact_constructions_kernel`) for
+/// points of Eigen. They are right for all finite input.
 
 namespace graspfit::geometry::internal {
 
@@ -26,6 +26,11 @@ int cross_2d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Ve
 
 /// Whether the three points lie on one line.
 bool are_collinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
+
+/// Whether all corners of the triangle `other` are on one side of the plane of the triangle
+/// `plane`, off it; never so of a degenerate `plane`.
+bool is_beside(const std::array<Eigen::Vector3d, 3>& plane,
+               const std::array<Eigen::Vector3d, 3>& other);
 
 /// Whether `point` lies in the closed triangle (a, b, c), which may be degenerate.
 bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,

@@ -10,6 +10,7 @@
 #include <limits>
 #include <queue>
 
+#include "exact/predicates.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "query/box_tree.hpp"
@@ -54,31 +55,11 @@ Kernel::Triangle_3 to_cgal(const Corners& c) {
   return {point(c[0]), point(c[1]), point(c[2])};
 }
 
-/// Whether all corners of `b` are strictly on one side of the plane of `a`, certain in doubles:
-/// this quickly rules out most pairs near a contact. The bound covers the rounding of every
-/// difference and product below.
-bool is_clearly_beside(const Corners& a, const Corners& b) {
-  const Vector3d ab = a[1] - a[0];
-  const Vector3d ac = a[2] - a[0];
-  const Vector3d normal = ab.cross(ac);
-  const double lengths = ab.cwiseAbs().sum() * ac.cwiseAbs().sum();
-  int above = 0;
-  int below = 0;
-  for (const Vector3d& corner : b) {
-    const Vector3d offset = corner - a[0];
-    const double side = normal.dot(offset);
-    const double error = 1e-14 * lengths * offset.cwiseAbs().sum();
-    above += side > error ? 1 : 0;
-    below += side < -error ? 1 : 0;
-  }
-  return above == 3 || below == 3;
-}
-
 /// Whether two faces intersect. Exact. Degenerate faces bound nothing that their neighbors do not,
 /// and CGAL's test needs proper triangles, so that they are left out.
 bool triangles_intersect(const Corners& a, const Corners& b) {
   if (!internal::box_of(a).intersects(internal::box_of(b))) return false;
-  if (is_clearly_beside(a, b) || is_clearly_beside(b, a)) return false;
+  if (internal::is_beside(a, b) || internal::is_beside(b, a)) return false;
   const Kernel::Triangle_3 first = to_cgal(a);
   const Kernel::Triangle_3 second = to_cgal(b);
   return !first.is_degenerate() && !second.is_degenerate() && CGAL::do_intersect(first, second);

@@ -24,13 +24,6 @@ Kernel::Triangle_3 to_cgal(const Corners& c) {
   return {to_cgal(c[0]), to_cgal(c[1]), to_cgal(c[2])};
 }
 
-/// Whether the corners of `b` are all on one side of the plane of `a`, off it.
-bool is_beside(const Corners& a, const Corners& b) {
-  const int side = orientation(a[0], a[1], a[2], b[0]);
-  return side != 0 && orientation(a[0], a[1], a[2], b[1]) == side &&
-         orientation(a[0], a[1], a[2], b[2]) == side;
-}
-
 /// Whether two triangles that share their corner 0 and no other have another common point p: the
 /// ray from that corner through p then leaves one triangle through the opposite side while it is
 /// still in the other.

@@ -8,13 +8,13 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
@@ -29,6 +29,7 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::BoxTree;
+using internal::Interval;
 using Corners = std::array<Vector3d, 3>;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using Rational = std::decay_t<decltype(CGAL::exact(Exact::FT()))>;
@@ -39,68 +40,53 @@ using Common = decltype(CGAL::intersection(Exact::Triangle_3(), Exact::Triangle_
 
 Exact::Point_3 to_exact(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
-int sign_of(const Rational& value) { return static_cast<int>(CGAL::sign(value)); }
-
-/// A point with exact coordinates, which are computed when a sign is in doubt, and with doubles
-/// that are within `error` of them.
+/// A point with exact coordinates, which are computed only where intervals leave a sign in doubt.
 struct ExactPoint {
   std::array<Exact::FT, 3> exact;
-  Vector3d near;
-  double error = 0.0;
+  std::array<std::pair<double, double>, 3> between;  ///< Bounds of the coordinates.
 
   explicit ExactPoint(std::array<Exact::FT, 3> coordinates) : exact(std::move(coordinates)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = CGAL::to_interval(exact[axis]);
-      near[axis] = 0.5 * (low + high);
-      error = std::max(error, high - low);
-    }
-    error += 0x1p-51 * near.cwiseAbs().maxCoeff() + 0x1p-1000;
+    for (int axis = 0; axis < 3; ++axis) between[axis] = CGAL::to_interval(exact[axis]);
   }
 
-  Rational operator[](int axis) const { return CGAL::exact(exact[axis]); }
+  Interval coordinate(int axis, Interval) const { return between[axis]; }
+  Rational coordinate(int axis, const Rational&) const { return CGAL::exact(exact[axis]); }
 
   /// Rounded from the exact coordinates, so that equal points of different faces stay equal.
   Vector3d rounded() const {
-    return {CGAL::to_double((*this)[0]), CGAL::to_double((*this)[1]), CGAL::to_double((*this)[2])};
+    const auto nearest = [&](int axis) {
+      return internal::nearest_double(CGAL::exact(exact[axis]));
+    };
+    return {nearest(0), nearest(1), nearest(2)};
   }
 };
 
 /// Sign of the area of (u, v, point) in the plane of coordinates a and b. Exact.
 int turn_about(const Vector3d& u, const Vector3d& v, const ExactPoint& point, int a, int b) {
-  const double ua = u[a] - point.near[a], ub = u[b] - point.near[b];
-  const double va = v[a] - point.near[a], vb = v[b] - point.near[b];
-  const double value = ua * vb - ub * va;
-  const double size = std::abs(ua) + std::abs(ub) + std::abs(va) + std::abs(vb);
-  // Each product is off by the error of the point times `size`, and by three roundings.
-  if (std::abs(value) > 4.0 * point.error * (size + point.error) + 0x1p-50 * size * size) {
-    return value > 0.0 ? 1 : -1;
-  }
-  const Rational pa = point[a];
-  const Rational pb = point[b];
-  return sign_of((Rational(u[a]) - pa) * (Rational(v[b]) - pb) -
-                 (Rational(u[b]) - pb) * (Rational(v[a]) - pa));
+  return internal::sign_of_expression<Rational>([&](const auto& number) {
+    using Number = std::decay_t<decltype(number)>;
+    const Number pa = point.coordinate(a, number);
+    const Number pb = point.coordinate(b, number);
+    return Number((Number(u[a]) - pa) * (Number(v[b]) - pb) -
+                  (Number(u[b]) - pb) * (Number(v[a]) - pa));
+  });
 }
 
 /// On which side of the plane of the triangle the point is, as `internal::orientation`. Exact.
 int side_of_plane(const Corners& corners, const ExactPoint& point) {
-  const Vector3d ab = corners[1] - corners[0];
-  const Vector3d ac = corners[2] - corners[0];
-  const Vector3d ap = point.near - corners[0];
-  const double value = ab.cross(ac).dot(ap);
-  const double product = ab.cwiseAbs().sum() * ac.cwiseAbs().sum();
-  if (std::abs(value) >
-      4.0 * product * point.error + 0x1p-49 * product * ap.cwiseAbs().sum() + 0x1p-1000) {
-    return value > 0.0 ? 1 : -1;
-  }
-  std::array<std::array<Rational, 3>, 3> m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m[0][axis] = Rational(corners[1][axis]) - Rational(corners[0][axis]);
-    m[1][axis] = Rational(corners[2][axis]) - Rational(corners[0][axis]);
-    m[2][axis] = point[axis] - Rational(corners[0][axis]);
-  }
-  return sign_of(m[2][0] * (m[0][1] * m[1][2] - m[0][2] * m[1][1]) +
-                 m[2][1] * (m[0][2] * m[1][0] - m[0][0] * m[1][2]) +
-                 m[2][2] * (m[0][0] * m[1][1] - m[0][1] * m[1][0]));
+  return internal::sign_of_expression<Rational>([&](const auto& number) {
+    using Number = std::decay_t<decltype(number)>;
+    std::array<Number, 3> ab;
+    std::array<Number, 3> ac;
+    std::array<Number, 3> ap;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Number origin(corners[0][axis]);
+      ab[axis] = Number(corners[1][axis]) - origin;
+      ac[axis] = Number(corners[2][axis]) - origin;
+      ap[axis] = point.coordinate(axis, number) - origin;
+    }
+    return Number(CGAL::determinant(ab[0], ab[1], ab[2], ac[0], ac[1], ac[2], ap[0], ap[1], ap[2]));
+  });
 }
 
 /// What lies on the two sides of a piece of surface, seen along a coordinate axis.
@@ -126,14 +112,15 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
   int above = 0;
   int at = 0;
   Sides sides;
+  const auto is_beyond = [&](const BoxTree::Node& node, int along) {
+    return node.upper[along] < point.between[along].first;
+  };
+  const auto is_before = [&](const BoxTree::Node& node, int along) {
+    return node.lower[along] > point.between[along].second;
+  };
   const auto enter = [&](const BoxTree::Node& node) {
-    const Vector3d low = node.lower.array() - point.error;
-    const Vector3d high = node.upper.array() + point.error;
-    const Vector3d& p = point.near;
-    // The comparisons are not inverted: for a sliver the error may be infinite and the coordinates
-    // NaN, and such a point has to be searched for everywhere.
-    return !(high[axis] < p[axis] || low[a] > p[a] || high[a] < p[a] || low[b] > p[b] ||
-             high[b] < p[b]);
+    return !(is_beyond(node, axis) || is_beyond(node, a) || is_before(node, a) ||
+             is_beyond(node, b) || is_before(node, b));
   };
   internal::traverse(tree, enter, [&](const BoxTree::Triangle& triangle) {
     const auto& [corners, face] = triangle;

@@ -13,11 +13,8 @@ namespace {
 constexpr double kEps = 0x1p-53;  // Half an ulp of 1.
 
 // A line's values carry at most 5 kEps of its sizes (three products, three additions; one
-// subtraction for axis-aligned planes), two factors and their difference 12 kEps of h_size, a third
-// factor and the sum 20 kEps of the product; the sizes themselves are rounded. The bounds below
-// cover this with a margin.
+// subtraction for axis-aligned planes); the sizes themselves are rounded.
 constexpr double kValueBound = 8.0 * kEps;
-constexpr double kSignBound = 32.0 * kEps;
 
 // h / (h0 + h1 + h2) is off by at most this times sum(h_size) / (h0 + h1 + h2).
 constexpr double kLambdaBound = 32.0 * kEps;
@@ -121,7 +118,7 @@ std::uint32_t TriangleCutter::add_axis_plane(int axis, double coordinate) {
 }
 
 template <typename Number>
-std::array<Number, 3> TriangleCutter::exact_line(std::uint32_t name) const {
+std::array<Number, 3> TriangleCutter::values_of(std::uint32_t name) const {
   const Line& line = lines_[name];
   std::array<Number, 3> result;
   for (int i = 0; i < 3; ++i) {
@@ -139,15 +136,8 @@ std::array<Number, 3> TriangleCutter::exact_line(std::uint32_t name) const {
 }
 
 template <typename Number>
-std::array<Number, 3> TriangleCutter::exact_corner(std::uint32_t a, std::uint32_t b) const {
-  return cross(exact_line<Number>(a), exact_line<Number>(b));
-}
-
-[[gnu::cold, gnu::noinline]] int TriangleCutter::exact_sign(const CutCorner& corner,
-                                                            std::uint32_t name) const {
-  const auto h = exact_corner<Rational>(corner.line_a, corner.line_b);
-  const auto line = exact_line<Rational>(name);
-  return sign_of(h[0] * line[0] + h[1] * line[1] + h[2] * line[2]);
+std::array<Number, 3> TriangleCutter::corner_of(std::uint32_t a, std::uint32_t b) const {
+  return cross(values_of<Number>(a), values_of<Number>(b));
 }
 
 [[gnu::noinline]] int TriangleCutter::determinant_sign(const CutCorner& corner,
@@ -155,18 +145,15 @@ std::array<Number, 3> TriangleCutter::exact_corner(std::uint32_t a, std::uint32_
   // The line's own corners are on it: duplicated planes would otherwise ask for an exact zero.
   if (corner.line_a == name || corner.line_b == name) return 0;
   ++statistics_.signs_by_determinant;
-  const Line& line = lines_[name];
-  const auto h = cross(lines_[corner.line_a].value, lines_[corner.line_b].value);
-  const auto h_size = cross_size(lines_[corner.line_a].size, lines_[corner.line_b].size);
-  double value = 0.0;
-  double size = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    value += h[i] * line.value[i];
-    size += h_size[i] * line.size[i];
-  }
-  if (std::abs(value) > kSignBound * size && is_in_range(size)) return sign(value);
+  const auto determinant = [&](auto number) {
+    using Number = decltype(number);
+    const auto h = corner_of<Number>(corner.line_a, corner.line_b);
+    const auto line = values_of<Number>(name);
+    return Number(h[0] * line[0] + h[1] * line[1] + h[2] * line[2]);
+  };
+  if (const std::optional<int> sign = sign_by_intervals(determinant)) return *sign;
   ++statistics_.signs_in_rationals;
-  return exact_sign(corner, name);
+  return sign_of(determinant(Rational()));
 }
 
 [[gnu::always_inline]] inline int TriangleCutter::sign_at(std::uint32_t name_of_corner,
@@ -228,7 +215,7 @@ void TriangleCutter::place(CutCorner& corner, const Line& p, const Line& q) {
     corner.lambda_1 = h[1] / sum;
     corner.lambda_2 = h[2] / sum;
   } else if (kLongLambdaBound * size <= kLambdaTolerance * sum && is_in_range(size)) {
-    const auto long_h = exact_corner<long double>(corner.line_a, corner.line_b);
+    const auto long_h = corner_of<long double>(corner.line_a, corner.line_b);
     const long double long_sum = long_h[0] + long_h[1] + long_h[2];
     corner.lambda_1 = static_cast<double>(long_h[1] / long_sum);
     corner.lambda_2 = static_cast<double>(long_h[2] / long_sum);
@@ -245,11 +232,11 @@ void TriangleCutter::place(CutCorner& corner, const Line& p, const Line& q) {
 }
 
 [[gnu::cold, gnu::noinline]] void TriangleCutter::place_exactly(CutCorner& corner) const {
-  const auto h = exact_corner<Rational>(corner.line_a, corner.line_b);
+  const auto h = corner_of<Rational>(corner.line_a, corner.line_b);
   const Rational sum = h[0] + h[1] + h[2];
   assert(sign_of(sum) > 0);
-  corner.lambda_1 = CGAL::to_double(h[1] / sum);
-  corner.lambda_2 = CGAL::to_double(h[2] / sum);
+  corner.lambda_1 = nearest_double(h[1] / sum);
+  corner.lambda_2 = nearest_double(h[2] / sum);
 }
 
 void TriangleCutter::split(const CutPolygon& polygon, std::uint32_t line, InPlane in_plane,
@@ -348,7 +335,7 @@ CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {
   std::vector<std::array<Rational, 2>> places;
   for (const CutEdge& of : polygon) {
     const CutCorner& corner = corners_[of.corner];
-    const auto h = exact_corner<Rational>(corner.line_a, corner.line_b);
+    const auto h = corner_of<Rational>(corner.line_a, corner.line_b);
     const Rational sum = h[0] + h[1] + h[2];
     places.push_back({h[1] / sum, h[2] / sum});
   }
@@ -359,7 +346,7 @@ CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {
     fraction += p[0] * q[1] - p[1] * q[0];
   }
   assert(sign_of(fraction) > 0);
-  return std::max(CGAL::to_double(fraction), std::numeric_limits<double>::min());
+  return std::max(nearest_double(fraction), std::numeric_limits<double>::min());
 }
 
 }  // namespace graspfit::geometry::internal

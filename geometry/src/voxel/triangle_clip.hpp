@@ -21,7 +21,7 @@
 ///
 /// Three stages decide that sign, each where the one before cannot: the distance of the corner's
 /// rounded position from the plane, if it exceeds the error bound of the position; the determinant
-/// in doubles with its error bound; the determinant in rationals.
+/// in CGAL's intervals; the determinant in rationals.
 
 namespace graspfit::geometry::internal {
 
@@ -56,8 +56,7 @@ struct CutMeasure {
 struct ClipStatistics {
   std::int64_t signs_by_determinant = 0;  ///< Signs at corners too near the plane to decide by the
                                           ///< rounded corner.
-  std::int64_t signs_in_rationals = 0;    ///< Signs of these whose determinant in doubles was not
-                                          ///< certain.
+  std::int64_t signs_in_rationals = 0;    ///< Signs of these that intervals do not tell.
   std::int64_t corners_in_rationals = 0;  ///< Corners of cuts too flat for doubles and for long
                                           ///< doubles.
   std::int64_t areas_in_rationals = 0;    ///< Pieces too small for their rounded corners.
@@ -115,15 +114,14 @@ class TriangleCutter {
 
   int sign_at(std::uint32_t corner, std::uint32_t line);
   int determinant_sign(const CutCorner& corner, std::uint32_t line);
-  int exact_sign(const CutCorner& corner, std::uint32_t line) const;
   std::uint32_t meet(std::uint32_t a, std::uint32_t b);
   void place_on_edge(CutCorner& corner, int vertex, const Line& plane) const;
   void place(CutCorner& corner, const Line& p, const Line& q);
   void place_exactly(CutCorner& corner) const;
   template <typename Number>
-  std::array<Number, 3> exact_line(std::uint32_t line) const;
+  std::array<Number, 3> values_of(std::uint32_t line) const;
   template <typename Number>
-  std::array<Number, 3> exact_corner(std::uint32_t a, std::uint32_t b) const;
+  std::array<Number, 3> corner_of(std::uint32_t a, std::uint32_t b) const;
   double exact_fraction(const CutPolygon& polygon) const;
 
   std::array<Eigen::Vector3d, 3> vertices_;

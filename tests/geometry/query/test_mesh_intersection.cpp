@@ -153,6 +153,36 @@ TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh
   CHECK(touches >= 60);  // all balls and boxes
 }
 
+TEST_CASE("Whether triangles intersect does not depend on their scale, down to 1e-108 m",
+          "[geometry][mesh_intersection]") {
+  // Vertices on a lattice, where every third pair touches or crosses. Powers of two change no bit
+  // of a coordinate, but products of three coordinates at 2^-358 are subnormal.
+  Random random(358);
+  int num_met = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::array<TriangleMesh, 2> pair;
+    for (TriangleMesh& mesh : pair) {
+      for (int i = 0; i < 3; ++i) {
+        Eigen::Vector3d& vertex = mesh.vertices.emplace_back();
+        for (double& x : vertex) x = static_cast<double>(random.index(17)) / 8.0 - 1.0;
+      }
+      mesh.faces = {{0, 1, 2}};
+    }
+    std::array<TriangleMesh, 2> tiny = pair;
+    for (TriangleMesh& mesh : tiny) {
+      for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= 0x1p-358;
+    }
+    const auto meet = [](const std::array<TriangleMesh, 2>& of) {
+      return do_intersect(MeshQuery(of[0]), MeshQuery(of[1]), RigidTransform::Identity());
+    };
+    const bool do_meet = meet(pair);
+    num_met += do_meet ? 1 : 0;
+    INFO("round " << round);
+    REQUIRE(meet(tiny) == do_meet);
+  }
+  CHECK(num_met > 300);
+}
+
 TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
           "[geometry][mesh_intersection]") {
   const double flatness = 0.0013;  // Middles of the faces of ball(·, 4) lie 0.13 % inside.
