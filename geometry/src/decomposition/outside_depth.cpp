@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/box_tree.hpp"
+#include "query/indexed_triangle.hpp"
 #include "solid/mesh_edges.hpp"
 
 namespace graspfit::geometry::internal {

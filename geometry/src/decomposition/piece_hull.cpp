@@ -6,8 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "graspfit/geometry/convex_polytope.hpp"
+#include "exact/predicates.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
+#include "hull/exact_hull.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -34,25 +35,20 @@ void make_distinct(std::vector<std::size_t>& indices) {
   indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
-ConvexPolytope polytope_of(const std::vector<Vector3d>& points,
-                           const std::vector<std::size_t>& chosen) {
-  Eigen::Matrix3Xd columns(3, chosen.size());
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    columns.col(static_cast<Eigen::Index>(k)) = points[chosen[k]];
-  }
-  return ConvexPolytope(columns);
+std::vector<Vector3d> selected(const std::vector<Vector3d>& points,
+                               const std::vector<std::size_t>& chosen) {
+  std::vector<Vector3d> result;
+  for (const std::size_t i : chosen) result.push_back(points[i]);
+  return result;
 }
 
-/// Adds the points farthest off the plane of a flat hull.
-void add_off_plane(const std::vector<Vector3d>& points, const ConvexPolytope& flat,
+/// Adds the points farthest off the plane of `corners`.
+void add_off_plane(const std::vector<Vector3d>& points, const std::vector<Vector3d>& corners,
                    std::vector<std::size_t>& chosen) {
-  const std::vector<int>& v = flat.vertices();
-  const Vector3d origin = flat.points().col(v[0]);
   Vector3d normal = Vector3d::Zero();
-  for (std::size_t i = 1; i < v.size(); ++i) {
-    for (std::size_t j = i + 1; j < v.size(); ++j) {
-      const Vector3d cross = (Vector3d(flat.points().col(v[i])) - origin)
-                                 .cross(Vector3d(flat.points().col(v[j])) - origin);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    for (std::size_t j = i + 1; j < corners.size(); ++j) {
+      const Vector3d cross = (corners[i] - corners[0]).cross(corners[j] - corners[0]);
       if (cross.squaredNorm() > normal.squaredNorm()) normal = cross;
     }
   }
@@ -65,19 +61,23 @@ void add_off_plane(const std::vector<Vector3d>& points, const ConvexPolytope& fl
   make_distinct(chosen);
 }
 
-PieceHull hull_of(const ConvexPolytope& polytope) {
+/// The hull of points that span space.
+PieceHull hull_of(const std::vector<Vector3d>& points, const ExactHull& exact) {
   PieceHull hull;
-  std::vector<std::int32_t> index(static_cast<std::size_t>(polytope.points().cols()), -1);
-  for (const int v : polytope.vertices()) {
-    index[v] = static_cast<std::int32_t>(hull.mesh.vertices.size());
-    hull.mesh.vertices.emplace_back(polytope.points().col(v));
+  std::vector<std::int32_t> index(points.size(), -1);
+  for (const std::size_t corner : exact.corners) {
+    index[corner] = static_cast<std::int32_t>(hull.mesh.vertices.size());
+    hull.mesh.vertices.push_back(points[corner]);
   }
-  for (Eigen::Index f = 0; f < polytope.num_facets(); ++f) {
-    const Eigen::Vector3i corners = polytope.facets().col(f);
-    hull.mesh.faces.push_back({index[corners[0]], index[corners[1]], index[corners[2]]});
+  const auto num_faces = static_cast<Eigen::Index>(exact.triangles.size());
+  hull.normals.resize(3, num_faces);
+  hull.offsets.resize(num_faces);
+  for (Eigen::Index f = 0; f < num_faces; ++f) {
+    const auto& [a, b, c] = exact.triangles[static_cast<std::size_t>(f)];
+    hull.mesh.faces.push_back({index[a], index[b], index[c]});
+    hull.normals.col(f) = accurate_vector_area(points[a], points[b], points[c]).stableNormalized();
+    hull.offsets[f] = hull.normals.col(f).dot(points[a]);
   }
-  hull.normals = polytope.normals();
-  hull.offsets = polytope.offsets();
   return hull;
 }
 
@@ -135,15 +135,18 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
   if (points.size() < 4) return std::nullopt;
   std::vector<std::size_t> chosen = first_corners(points);
   make_distinct(chosen);
-  ConvexPolytope polytope = polytope_of(points, chosen);
-  if (polytope.rank() == 2) {
-    add_off_plane(points, polytope, chosen);
-    polytope = polytope_of(points, chosen);
+  std::vector<Vector3d> kept = selected(points, chosen);
+  ExactHull exact = exact_hull(kept);
+  if (exact.rank == 2) {
+    std::sort(exact.corners.begin(), exact.corners.end());
+    add_off_plane(points, selected(kept, exact.corners), chosen);
+    kept = selected(points, chosen);
+    exact = exact_hull(kept);
   }
-  if (polytope.rank() < 3) return std::nullopt;
+  if (exact.rank < 3) return std::nullopt;
   std::vector<std::size_t> outside(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) outside[i] = i;
-  PieceHull hull = hull_of(polytope);
+  PieceHull hull = hull_of(kept, exact);
   while (true) {
     // The plane of a face of a nearly flat hull is only known to some ulps.
     const double tolerance =
@@ -153,17 +156,14 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
         static_cast<std::size_t>(options.max_vertices) -
         std::min(static_cast<std::size_t>(options.max_vertices), hull.mesh.vertices.size());
     if (farthest.empty() || room == 0) break;
-    chosen.clear();
-    std::vector<Vector3d> kept = hull.mesh.vertices;
+    kept = hull.mesh.vertices;
     for (std::size_t k = 0; k < std::min(room, farthest.size()); ++k) {
       kept.push_back(points[farthest[k].second]);
       // A point is added once: the hull then holds it, even if the rounded plane of a face of a
       // sharp needle says otherwise.
       std::erase(outside, farthest[k].second);
     }
-    chosen.resize(kept.size());
-    for (std::size_t k = 0; k < kept.size(); ++k) chosen[k] = k;
-    hull = hull_of(polytope_of(kept, chosen));
+    hull = hull_of(kept, exact_hull(kept));
   }
   if (width_of(hull) < options.least_width) return std::nullopt;
   hull.left_out = farthest_from(hull, points);

@@ -43,6 +43,22 @@ int sign_of_expression(const Expression& evaluate) {
   return sign ? *sign : sign_of(evaluate(Exact()));
 }
 
+/// Value of an expression as `sign_by_intervals` takes it, or nothing if intervals leave it open by
+/// more than `share` of it.
+template <typename Expression>
+std::optional<double> value_by_intervals(const Expression& evaluate, double share) {
+  Interval value;
+  {
+    const CGAL::Protect_FPU_rounding<true> upward;
+    value = evaluate(Interval());
+  }
+  const double middle = 0.5 * (value.inf() + value.sup());
+  if (value.inf() != value.sup() && !(value.sup() - value.inf() <= share * std::abs(middle))) {
+    return std::nullopt;
+  }
+  return middle;
+}
+
 /// The double nearest to an exact number; of two equally near ones the even one, as IEEE 754
 /// rounds.
 /// (`CGAL::to_double` of a Gmpq cuts digits off.)

@@ -10,7 +10,6 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/parallel_for.hpp"
-#include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
 
 namespace graspfit::geometry {
@@ -65,6 +64,66 @@ double trimmed_mean(std::vector<double>& lengths, double deviations) {
   return count > 0 ? sum / count : median;
 }
 
+/// First face that a ray meets, and the ray parameter t there, in units of the direction.
+struct QuickHit {
+  std::int32_t face = -1;  ///< −1: none.
+  double t = std::numeric_limits<double>::infinity();
+};
+
+/// First hit of the ray from `origin` along `direction` on any face but `skipped_face`, in plain
+/// doubles: for statistics over many rays, not for decisions.
+///
+/// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
+/// of them; a triangle seen edge-on is missed, but not its neighbors. Of equal hits the one with
+/// the lowest face is returned.
+QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
+                         const Vector3d& direction, std::int32_t skipped_face) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kMargin = 1e-9;  // Of a triangle's barycentric coordinates.
+  const Eigen::Array3d inverse = direction.array().inverse();
+  QuickHit best;
+  // Where the ray enters a box; infinity if it misses it. A zero direction gives infinite bounds,
+  // or NaN in a plane of the box, which the ray then does not leave: no bound.
+  const auto entry = [&](const Eigen::AlignedBox3d& box) {
+    double t_in = 0.0;
+    double t_out = best.t;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double t0 = (box.min()[axis] - origin[axis]) * inverse[axis];
+      const double t1 = (box.max()[axis] - origin[axis]) * inverse[axis];
+      if (std::isnan(t0) || std::isnan(t1)) continue;
+      const double t_near = t0 < t1 ? t0 : t1;
+      const double t_far = t0 < t1 ? t1 : t0;
+      t_in = t_near > t_in ? t_near : t_in;
+      t_out = t_far < t_out ? t_far : t_out;
+    }
+    return t_in <= t_out * (1.0 + 1e-12) ? t_in : kInfinity;
+  };
+  // A box that is missed is not entered, even where nothing is hit yet.
+  const auto farthest = [&] { return std::min(best.t, std::numeric_limits<double>::max()); };
+  tree.traverse_by_bound(entry, farthest, [&](const internal::IndexedTriangle& triangle) {
+    const auto& [corners, face] = triangle;
+    if (face == skipped_face) return;
+    // [Möller & Trumbore 1997].
+    const Vector3d ab = corners[1] - corners[0];
+    const Vector3d ac = corners[2] - corners[0];
+    const Vector3d h = direction.cross(ac);
+    const double signed_det = ab.dot(h);
+    if (signed_det == 0.0) return;
+    const double sign = signed_det < 0.0 ? -1.0 : 1.0;
+    const double det = sign * signed_det;
+    const Vector3d s = sign * (origin - corners[0]);
+    const double u = s.dot(h);
+    if (!(u >= -kMargin * det && u <= (1.0 + kMargin) * det)) return;
+    const Vector3d q = s.cross(ab);
+    const double v = direction.dot(q);
+    if (!(v >= -kMargin * det && u + v <= (1.0 + kMargin) * det)) return;
+    const double t = ac.dot(q) / det;
+    if (!(t >= 0.0)) return;
+    if (t < best.t || (t == best.t && face < best.face)) best = {face, t};
+  });
+  return best;
+}
+
 }  // namespace
 
 void ShapeDiameterOptions::validate() const {
@@ -79,7 +138,9 @@ void ShapeDiameterOptions::validate() const {
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options) {
   // In the order of the tree's leaves: rays of neighbors run through the same memory.
   std::vector<std::int32_t> faces;
-  for (const auto& triangle : mesh.indexed().tree.triangles) faces.push_back(triangle.face);
+  mesh.indexed().tree.traverse(
+      [](const Eigen::AlignedBox3d&) { return true; },
+      [&](const internal::IndexedTriangle& triangle) { faces.push_back(triangle.face); });
   const ShapeDiameter in_order = shape_diameter(mesh, faces, options);
   ShapeDiameter result{std::vector<double>(faces.size()), std::vector<std::int32_t>(faces.size())};
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -99,7 +160,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
                                std::to_string(num_faces));
     }
   }
-  const internal::BoxTree& tree = mesh.indexed().tree;
+  const internal::FaceTree& tree = mesh.indexed().tree;
   const std::vector<Vector3d> rays = cone_of_rays(options);
   std::vector<Vector3d> normals(num_faces);
   for (std::size_t face = 0; face < num_faces; ++face) {
@@ -117,9 +178,9 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
     std::vector<double> lengths;
     lengths.reserve(rays.size());
     for (const Vector3d& ray : rays) {
-      const internal::QuickHit hit = internal::quick_first_hit(tree, centroid, frame * ray, face);
-      if (hit.triangle < 0) continue;
-      if (normals[tree.triangles[hit.triangle].face].dot(normal) >= 0.0) continue;
+      const QuickHit hit = quick_first_hit(tree, centroid, frame * ray, face);
+      if (hit.face < 0) continue;
+      if (normals[hit.face].dot(normal) >= 0.0) continue;
       lengths.push_back(hit.t);
     }
     if (lengths.empty()) return;

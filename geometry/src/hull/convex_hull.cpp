@@ -1,47 +1,26 @@
 #include "graspfit/geometry/convex_hull.hpp"
 
+#include <CGAL/determinant.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
-#include <map>
+#include <array>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
-#include "graspfit/geometry/convex_polytope.hpp"
+#include "hull/exact_hull.hpp"
 
 namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Extreme points in counter-clockwise order of points seen in their first two coordinates
-/// (Andrew's monotone chain on exact orientation signs); points on edges are dropped.
-std::vector<std::size_t> polygon_around(const std::vector<Vector3d>& points,
-                                        std::vector<std::size_t> order) {
-  const auto less = [&](std::size_t a, std::size_t b) {
-    return std::tie(points[a].x(), points[a].y(), a) < std::tie(points[b].x(), points[b].y(), b);
-  };
-  std::sort(order.begin(), order.end(), less);
-  std::vector<std::size_t> polygon;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t base = polygon.size();
-    for (const std::size_t i : order) {
-      while (polygon.size() >= base + 2 &&
-             internal::orientation_2d(points[polygon[polygon.size() - 2]], points[polygon.back()],
-                                      points[i], 0, 1) <= 0) {
-        polygon.pop_back();
-      }
-      polygon.push_back(i);
-    }
-    polygon.pop_back();  // the last point of one chain starts the other
-    std::reverse(order.begin(), order.end());
-  }
-  return polygon;
-}
 
 /// Indices of distinct points, ascending; of equal ones the first.
 std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
@@ -89,22 +68,39 @@ void measure_polygon(std::span<const Vector3d> points, ConvexHull3& hull) {
   hull.centroid += apex;
 }
 
-/// Volume and centroid from tetrahedra with one hull vertex as apex.
-void measure_solid(std::span<const Vector3d> points, double volume, ConvexHull3& hull) {
-  hull.measure = volume;
+/// Volume and centroid from tetrahedra with one hull vertex as apex. The volume of a hull so flat
+/// that doubles leave less than 36 bits of it is computed in rationals.
+void measure_solid(std::span<const Vector3d> points, ConvexHull3& hull) {
   const Vector3d& apex = points[hull.vertices.front()];
-  double six_volumes = 0.0;
+  const auto six_volumes = [&](auto number) {
+    using Number = decltype(number);
+    Number sum(0);
+    for (const HullFacet& facet : hull.facets) {
+      std::array<std::array<Number, 3>, 3> m;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+          m[corner][axis] = Number(points[facet[corner]][axis]) - Number(apex[axis]);
+        }
+      }
+      sum += CGAL::determinant(m[0][0], m[0][1], m[0][2], m[1][0], m[1][1], m[1][2], m[2][0],
+                               m[2][1], m[2][2]);
+    }
+    return sum;
+  };
+  const std::optional<double> near = internal::value_by_intervals(six_volumes, 0x1p-36);
+  hull.measure = (near ? *near : internal::nearest_double(six_volumes(internal::Rational()))) / 6.0;
+  double six_sum = 0.0;
   Vector3d moment = Vector3d::Zero();
   for (const HullFacet& facet : hull.facets) {
     const Vector3d a = points[facet[0]] - apex;
     const Vector3d b = points[facet[1]] - apex;
     const Vector3d c = points[facet[2]] - apex;
     const double six_volume = std::max(0.0, a.dot(b.cross(c)));
-    six_volumes += six_volume;
+    six_sum += six_volume;
     moment += six_volume * (a + b + c) / 4.0;
   }
   hull.centroid =
-      six_volumes > 0.0 ? Vector3d(apex + moment / six_volumes) : mean_of(points, hull.vertices);
+      six_sum > 0.0 ? Vector3d(apex + moment / six_sum) : mean_of(points, hull.vertices);
 }
 
 void make_segment(std::span<const Vector3d> points, const std::vector<std::size_t>& distinct,
@@ -127,21 +123,6 @@ void make_polygon(std::span<const Vector3d> points, std::vector<std::size_t> aro
   measure_polygon(points, hull);
 }
 
-/// Corners of an exactly planar hull, from the lowest index on.
-std::vector<std::size_t> corners_around(const ConvexPolytope& polygon) {
-  std::map<int, int> next;
-  for (Eigen::Index f = 0; f < polygon.num_facets(); ++f) {
-    next[polygon.facets()(0, f)] = polygon.facets()(1, f);
-  }
-  std::vector<std::size_t> around;
-  int corner = next.begin()->first;
-  do {
-    around.push_back(static_cast<std::size_t>(corner));
-    corner = next.at(corner);
-  } while (corner != next.begin()->first);
-  return around;
-}
-
 }  // namespace
 
 ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& options) {
@@ -151,19 +132,17 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
                                std::to_string(value));
     }
   }
-  Eigen::Matrix3Xd columns(3, points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) {
       throw base::InvalidInput("convex_hull: point " + std::to_string(i) + " is not finite");
     }
-    columns.col(static_cast<Eigen::Index>(i)) = points[i];
   }
-  const ConvexPolytope exact(columns);
+  const internal::ExactHull exact = internal::exact_hull(points);
   ConvexHull3 hull;
-  hull.rank = exact.rank();
+  hull.rank = exact.rank;
   if (hull.rank < 0) return hull;
   if (hull.rank == 0) {
-    hull.vertices.assign(exact.vertices().begin(), exact.vertices().end());
+    hull.vertices = exact.corners;
     hull.centroid = points[hull.vertices.front()];
     return hull;
   }
@@ -194,21 +173,20 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
       flat[i] = {points[i].dot(axes.col(0)), points[i].dot(axes.col(1)), 0.0};
       projected[i] -= axes.col(2).dot(points[i] - mean) * axes.col(2);
     }
-    std::vector<std::size_t> around = polygon_around(flat, distinct);
+    std::vector<std::size_t> around = internal::hull_in_plane(flat, distinct, 0, 1);
     if (around.size() < 3) {  // a needle, once it is projected and rounded
       make_segment(points, distinct, axes.col(0), hull);
     } else {
       make_polygon(projected, std::move(around), hull);
     }
   } else if (hull.rank == 2) {
-    make_polygon(points, corners_around(exact), hull);
+    make_polygon(points, exact.corners, hull);
   } else {
-    hull.vertices.assign(exact.vertices().begin(), exact.vertices().end());
-    for (Eigen::Index f = 0; f < exact.num_facets(); ++f) {
-      const Eigen::Vector3i corners = exact.facets().col(f);
+    hull.vertices = exact.corners;
+    for (const auto& corners : exact.triangles) {
       hull.facets.emplace_back(corners.begin(), corners.end());
     }
-    measure_solid(points, exact.volume(), hull);
+    measure_solid(points, hull);
   }
   return hull;
 }

@@ -2,23 +2,37 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "graspfit/geometry/triangle_mesh.hpp"
 #include "query/box_tree.hpp"
+#include "query/face_tree.hpp"
 
 namespace graspfit::geometry::internal {
 
 /// What a `MeshQuery` holds, which its copies share.
-struct IndexedMesh {
+class IndexedMesh {
+ public:
   /// @throws InvalidInput if the mesh has no faces.
   explicit IndexedMesh(TriangleMesh the_mesh);
 
-  TriangleMesh mesh;
-  BoxTree tree;
-  Eigen::AlignedBox3d box;                  ///< Of the faces; unused vertices do not count.
-  std::vector<std::int32_t> part_vertices;  ///< One vertex of each set of faces that are connected
-                                            ///< by common vertices, ascending.
+  const TriangleMesh mesh;
+  const FaceTree tree;
+  const Eigen::AlignedBox3d box;                  ///< Of the faces; unused vertices do not count.
+  const std::vector<std::int32_t> part_vertices;  ///< One vertex of each set of faces that are
+                                                  ///< connected by common vertices, ascending.
+
+  /// The tree for searches in two meshes at once, built at the first call.
+  const BoxTree& pair_tree() const {
+    std::call_once(pair_tree_once_, [this] { pair_tree_.emplace(mesh); });
+    return *pair_tree_;
+  }
+
+ private:
+  mutable std::once_flag pair_tree_once_;
+  mutable std::optional<BoxTree> pair_tree_;
 };
 
 }  // namespace graspfit::geometry::internal

@@ -22,6 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::BoxTree;
+using internal::IndexedTriangle;
 using Corners = std::array<Vector3d, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
@@ -31,15 +32,19 @@ struct SeenBox {
   Vector3d upper;
 };
 
-SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
-  const Vector3d center = X_AB * Vector3d(0.5 * (node.lower + node.upper));
-  const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (node.upper - node.lower));
+SeenBox seen_from(const Eigen::AlignedBox3d& box, const RigidTransform& X_AB) {
+  const Vector3d center = X_AB * Vector3d(0.5 * (box.min() + box.max()));
+  const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (box.max() - box.min()));
   // The slack is far above the few ulps by which the two products and the mapped vertices are off.
   const double slack =
       1e-14 * (center.cwiseAbs().sum() + half.sum() + X_AB.translation().cwiseAbs().sum() +
-               node.lower.cwiseAbs().sum() + node.upper.cwiseAbs().sum());
+               box.min().cwiseAbs().sum() + box.max().cwiseAbs().sum());
   const Vector3d reach = half.array() + slack;
   return {center - reach, center + reach};
+}
+
+SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
+  return seen_from(Eigen::AlignedBox3d(node.lower, node.upper), X_AB);
 }
 
 bool overlap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
@@ -119,13 +124,12 @@ bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform
 Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
                                const Vector3d& point_A) {
   internal::Winding winding(point_A);
-  const auto enter = [&](const BoxTree::Node& node) {
-    const SeenBox box = seen_from(node, X_AB);
-    return winding.may_meet(box.lower, box.upper);
-  };
-  internal::traverse(b.indexed().tree, enter, [&](const BoxTree::Triangle& triangle) {
-    winding.add(mapped(triangle.corners, X_AB));
-  });
+  b.indexed().tree.traverse(
+      [&](const Eigen::AlignedBox3d& of_faces) {
+        const SeenBox box = seen_from(of_faces, X_AB);
+        return winding.may_meet(box.lower, box.upper);
+      },
+      [&](const IndexedTriangle& triangle) { winding.add(mapped(triangle.corners, X_AB)); });
   return winding.result();
 }
 
@@ -254,10 +258,10 @@ class DeepestPoint {
     box.min().array() -= slack;
     box.max().array() += slack;
     bool stays = true;
-    const auto enter = [&](const BoxTree::Node& node) {
-      return stays && overlap(node.lower, node.upper, {box.min(), box.max()});
+    const auto enter = [&](const Eigen::AlignedBox3d& of_faces) {
+      return stays && box.intersects(of_faces);
     };
-    internal::traverse(solid_.indexed().tree, enter, [&](const BoxTree::Triangle& triangle) {
+    solid_.indexed().tree.traverse(enter, [&](const IndexedTriangle& triangle) {
       const Corners& face = triangle.corners;
       const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
       bool is_above = false;
@@ -329,8 +333,8 @@ void PenetrationOptions::validate() const {
 }
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
-  if (surfaces_intersect(a.indexed().tree, b.indexed().tree, X_AB)) return true;
-  const SeenBox box_b = seen_from(b.indexed().tree.nodes.front(), X_AB);
+  if (surfaces_intersect(a.indexed().pair_tree(), b.indexed().pair_tree(), X_AB)) return true;
+  const SeenBox box_b = seen_from(b.indexed().pair_tree().nodes.front(), X_AB);
   const Eigen::AlignedBox3d& box_a = a.indexed().box;
   if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
   if (holds_a_part(a, part_points(b, X_AB))) return true;
@@ -348,9 +352,9 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   result.intersects = do_intersect(a, b, X_AB);
   if (!result.intersects) return result;
   DeepestPoint in_a(a, X_AB, options);
-  in_a.search(b.indexed().tree);
+  in_a.search(b.indexed().pair_tree());
   DeepestPoint in_b(b, X_AB.inverse(), options);
-  in_b.search(a.indexed().tree);
+  in_b.search(a.indexed().pair_tree());
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);
   result.depth_bound = std::max(in_a.bound, in_b.bound);
@@ -364,9 +368,9 @@ DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   base::require(floor >= 0.0 && std::isfinite(floor), "depth_above", "floor", floor,
                 "finite and >= 0 m");
   DeepestPoint in_a(a, X_AB, options, floor);
-  in_a.search(b.indexed().tree);
+  in_a.search(b.indexed().pair_tree());
   DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);
-  in_b.search(a.indexed().tree);
+  in_b.search(a.indexed().pair_tree());
   return {in_b.depth > floor ? in_b.depth : 0.0, std::max(in_a.bound, in_b.bound)};
 }
 

@@ -16,7 +16,7 @@
 namespace graspfit::geometry {
 namespace {
 
-using internal::BoxTree;
+using internal::IndexedTriangle;
 
 std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
   internal::DisjointSets sets(mesh.vertices.size());
@@ -60,17 +60,17 @@ class Line {
   }
 
   // Whether the part from..to of the line may meet the box; the answer "no" is certain.
-  bool may_meet(const BoxTree::Node& node, double from, double to) const {
+  bool may_meet(const Eigen::AlignedBox3d& box, double from, double to) const {
     constexpr double kSlack = 1e-12;  // Of the line's length; boxes only have to be too large.
     double t_in = from;
     double t_out = to;
     for (int axis = 0; axis < 3; ++axis) {
       if (ahead_[axis] == origin_[axis]) {
-        if (origin_[axis] < node.lower[axis] || origin_[axis] > node.upper[axis]) return false;
+        if (origin_[axis] < box.min()[axis] || origin_[axis] > box.max()[axis]) return false;
         continue;
       }
-      double t0 = (node.lower[axis] - origin_[axis]) * inverse_[axis];
-      double t1 = (node.upper[axis] - origin_[axis]) * inverse_[axis];
+      double t0 = (box.min()[axis] - origin_[axis]) * inverse_[axis];
+      double t1 = (box.max()[axis] - origin_[axis]) * inverse_[axis];
       if (t0 > t1) std::swap(t0, t1);
       t_in = std::max(t_in, t0 - kSlack);
       t_out = std::min(t_out, t1 + kSlack);
@@ -109,7 +109,7 @@ class Line {
 
   double distance(const Meeting& meeting) const { return length_ * meeting.t; }
 
-  RayHit hit(const Meeting& meeting, const BoxTree::Triangle& triangle) const {
+  RayHit hit(const Meeting& meeting, const IndexedTriangle& triangle) const {
     RayHit hit;
     hit.point = origin_ + meeting.t * (ahead_ - origin_);
     hit.distance = distance(meeting);
@@ -149,6 +149,14 @@ class Line {
   double length_ = 0.0;
 };
 
+Eigen::AlignedBox3d box_of_faces(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Face& f : mesh.faces) {
+    for (const std::int32_t vertex : f) box.extend(mesh.vertices[vertex]);
+  }
+  return box;
+}
+
 const TriangleMesh& checked(const TriangleMesh& mesh) {
   if (mesh.faces.empty()) throw base::InvalidInput("MeshQuery: the mesh has no faces");
   return mesh;
@@ -159,7 +167,7 @@ const TriangleMesh& checked(const TriangleMesh& mesh) {
 internal::IndexedMesh::IndexedMesh(TriangleMesh the_mesh)
     : mesh(std::move(the_mesh)),
       tree(checked(mesh)),
-      box(tree.nodes[0].lower, tree.nodes[0].upper),
+      box(box_of_faces(mesh)),
       part_vertices(one_vertex_per_part(mesh)) {}
 
 MeshQuery::MeshQuery(TriangleMesh mesh)
@@ -170,23 +178,12 @@ const TriangleMesh& MeshQuery::mesh() const { return indexed_->mesh; }
 const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }
 
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
-  struct Entry {
-    std::int32_t node;
-    double squared_distance;
-  };
-  const BoxTree& tree = indexed_->tree;
   ClosestPoint best;
   best.squared_distance = std::numeric_limits<double>::infinity();
-  std::array<Entry, internal::kMostTreeDepth> stack;
-  int size = 0;
-  stack[size++] = {0, 0.0};
-  while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.squared_distance > best.squared_distance) continue;
-    const BoxTree::Node& node = tree.nodes[entry.node];
-    if (node.count > 0) {
-      for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-        const BoxTree::Triangle& triangle = tree.triangles[i];
+  indexed_->tree.traverse_by_bound(
+      [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
+      [&] { return best.squared_distance; },
+      [&](const IndexedTriangle& triangle) {
         const internal::TrianglePoint candidate =
             internal::nearest_on_triangle(point, triangle.corners);
         const double squared = (candidate.point - point).squaredNorm();
@@ -195,24 +192,15 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
             (squared == best.squared_distance && triangle.face < best.face)) {
           best = {candidate.point, squared, triangle.face, candidate.barycentric};
         }
-      }
-      continue;
-    }
-    Entry near{entry.node + 1, internal::squared_distance(point, tree.nodes[entry.node + 1])};
-    Entry far{node.first, internal::squared_distance(point, tree.nodes[node.first])};
-    if (far.squared_distance < near.squared_distance) std::swap(near, far);
-    if (far.squared_distance <= best.squared_distance) stack[size++] = far;
-    if (near.squared_distance <= best.squared_distance) stack[size++] = near;
-  }
+      });
   return best;
 }
 
 internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
   Winding winding(point);
-  traverse(
-      query.indexed().tree,
-      [&](const BoxTree::Node& node) { return winding.may_meet(node.lower, node.upper); },
-      [&](const BoxTree::Triangle& triangle) { winding.add(triangle.corners); });
+  query.indexed().tree.traverse(
+      [&](const Eigen::AlignedBox3d& box) { return winding.may_meet(box.min(), box.max()); },
+      [&](const IndexedTriangle& triangle) { winding.add(triangle.corners); });
   return winding;
 }
 
@@ -232,9 +220,9 @@ std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::first_hit", indexed_->box, origin, direction);
   std::optional<RayHit> best;
   double best_t = 1.0;
-  internal::traverse(
-      indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, 0.0, best_t); },
-      [&](const BoxTree::Triangle& triangle) {
+  indexed_->tree.traverse(
+      [&](const Eigen::AlignedBox3d& box) { return line.may_meet(box, 0.0, best_t); },
+      [&](const IndexedTriangle& triangle) {
         const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
         if (!meeting) return;
         // As `all_hits` orders them: by the rounded distance, then by face.
@@ -253,9 +241,9 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::all_hits", indexed_->box, origin, direction);
   const double from = kind == LineKind::Ray ? 0.0 : -1.0;
   std::vector<RayHit> hits;
-  internal::traverse(
-      indexed_->tree, [&](const BoxTree::Node& node) { return line.may_meet(node, from, 1.0); },
-      [&](const BoxTree::Triangle& triangle) {
+  indexed_->tree.traverse(
+      [&](const Eigen::AlignedBox3d& box) { return line.may_meet(box, from, 1.0); },
+      [&](const IndexedTriangle& triangle) {
         if (const auto meeting = line.meet(triangle.corners, from)) {
           hits.push_back(line.hit(*meeting, triangle));
         }
@@ -268,9 +256,8 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
 
 std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) const {
   std::vector<std::int32_t> faces;
-  internal::traverse_near(indexed_->tree, box, [&](const BoxTree::Triangle& triangle) {
-    faces.push_back(triangle.face);
-  });
+  indexed_->tree.traverse_near(
+      box, [&](const IndexedTriangle& triangle) { faces.push_back(triangle.face); });
   std::sort(faces.begin(), faces.end());
   return faces;
 }

@@ -5,7 +5,7 @@
 #include <queue>
 
 #include "graspfit/base/option_check.hpp"
-#include "query/box_tree.hpp"
+#include "query/indexed_triangle.hpp"
 #include "query/one_sided_distance.hpp"
 
 namespace graspfit::geometry {

@@ -99,6 +99,8 @@ class Search {
          double share, double near_enough)
       : a_(a.indexed()),
         b_(b.indexed()),
+        tree_a_(a_.pair_tree()),
+        tree_b_(b_.pair_tree()),
         X_AB_(X_AB),
         turn_(X_AB.linear().cwiseAbs()),
         squared_enough_(enough * enough),
@@ -149,8 +151,8 @@ class Search {
   /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B:
   /// seen from one frame alone turned boxes grow, and with them the number of pairs looked at.
   double squared_gap(std::int32_t i, std::int32_t j) const {
-    const BoxTree::Node& node_a = a_.tree.nodes[i];
-    const BoxTree::Node& node_b = b_.tree.nodes[j];
+    const BoxTree::Node& node_a = tree_a_.nodes[i];
+    const BoxTree::Node& node_b = tree_b_.nodes[j];
     const Vector3d center_b = 0.5 * (node_b.lower + node_b.upper);
     const Vector3d half_b = 0.5 * (node_b.upper - node_b.lower);
     const Vector3d center_a = 0.5 * (node_a.lower + node_a.upper);
@@ -175,8 +177,8 @@ class Search {
   }
 
   void visit(const Pair& pair, std::vector<Pair>& open) {
-    const BoxTree::Node& node_a = a_.tree.nodes[pair.node_a];
-    const BoxTree::Node& node_b = b_.tree.nodes[pair.node_b];
+    const BoxTree::Node& node_a = tree_a_.nodes[pair.node_a];
+    const BoxTree::Node& node_b = tree_b_.nodes[pair.node_b];
     if (node_a.count > 0 && node_b.count > 0) {
       compare(node_a, node_b);
       return;
@@ -204,12 +206,12 @@ class Search {
       return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).squaredNorm();
     };
     for (std::int32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
-      const BoxTree::Triangle& of_b = b_.tree.triangles[t];
+      const internal::IndexedTriangle& of_b = tree_b_.triangles[t];
       const Corners corners_b = mapped(of_b.corners);
       const Box box_b = internal::box_of(corners_b);
       if (squared_apart(Box(node_a.lower, node_a.upper), box_b) >= squared_best_) continue;
       for (std::int32_t s = node_a.first; s < node_a.first + node_a.count; ++s) {
-        const BoxTree::Triangle& of_a = a_.tree.triangles[s];
+        const internal::IndexedTriangle& of_a = tree_a_.triangles[s];
         if (squared_apart(internal::box_of(of_a.corners), box_b) < squared_best_) {
           improve(of_a.corners, of_a.face, corners_b, of_b.face);
         }
@@ -261,6 +263,8 @@ class Search {
 
   const internal::IndexedMesh& a_;
   const internal::IndexedMesh& b_;
+  const BoxTree& tree_a_;
+  const BoxTree& tree_b_;
   const RigidTransform& X_AB_;
   const Eigen::Matrix3d turn_;
   const double squared_enough_;

@@ -5,7 +5,7 @@
 
 #include "graspfit/geometry/used_vertices.hpp"
 #include "mesh/disjoint_sets.hpp"
-#include "query/box_tree.hpp"
+#include "query/face_tree.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "solid/crossing_faces.hpp"
 #include "solid/mesh_edges.hpp"
@@ -85,7 +85,7 @@ void count_part_overlaps(const TriangleMesh& mesh, const std::vector<std::int32_
     crossing.insert(std::minmax(parts[first], parts[second]));
   }
   analysis.num_overlapping_part_pairs = crossing.size();
-  const internal::BoxTree tree(mesh);
+  const internal::FaceTree tree(mesh);
   std::vector<bool> is_seen(is_part_closed.size(), false);
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     const std::int32_t part = parts[face];

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "mesh/disjoint_sets.hpp"
-#include "query/box_tree.hpp"
+#include "query/face_tree.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "query/winding.hpp"
 
@@ -28,11 +28,11 @@ void sort_bucket(std::vector<FaceSide>::iterator first, std::vector<FaceSide>::i
 }
 
 /// Parts with a face whose box meets `box`, ascending.
-std::vector<std::int32_t> parts_near(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+std::vector<std::int32_t> parts_near(const FaceTree& tree, const std::vector<std::int32_t>& parts,
                                      const Eigen::AlignedBox3d& box) {
   std::vector<std::int32_t> near;
-  traverse_near(tree, box,
-                [&](const BoxTree::Triangle& triangle) { near.push_back(parts[triangle.face]); });
+  tree.traverse_near(
+      box, [&](const IndexedTriangle& triangle) { near.push_back(parts[triangle.face]); });
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
@@ -125,7 +125,7 @@ std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
   }
   if (result.empty() || is_part_closed.size() == 1) return result;
 
-  const BoxTree tree(mesh);
+  const FaceTree tree(mesh);
   const std::vector<Eigen::AlignedBox3d> boxes = boxes_of_parts(mesh, parts, is_part_closed.size());
   std::map<std::int32_t, std::vector<std::int32_t>> vertices;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -169,16 +169,15 @@ std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
   return result;
 }
 
-std::vector<std::int32_t> parts_around(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+std::vector<std::int32_t> parts_around(const FaceTree& tree, const std::vector<std::int32_t>& parts,
                                        const Eigen::Vector3d& point) {
   const Winding none(point);
   std::map<std::int32_t, Winding> winding_of_part;
-  traverse(
-      tree, [&](const BoxTree::Node& node) { return none.may_meet(node.lower, node.upper); },
-      [&](const BoxTree::Triangle& triangle) {
-        winding_of_part.try_emplace(parts[triangle.face], point)
-            .first->second.add(triangle.corners);
-      });
+  tree.traverse([&](const Eigen::AlignedBox3d& box) { return none.may_meet(box.min(), box.max()); },
+                [&](const IndexedTriangle& triangle) {
+                  winding_of_part.try_emplace(parts[triangle.face], point)
+                      .first->second.add(triangle.corners);
+                });
   std::vector<std::int32_t> inside;
   for (const auto& [part, winding] : winding_of_part) {
     if (winding.result() == Containment::Inside) inside.push_back(part);

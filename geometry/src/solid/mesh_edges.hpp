@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "graspfit/geometry/triangle_mesh.hpp"
-#include "query/box_tree.hpp"
+#include "query/face_tree.hpp"
 
 /// \file
 /// Edges of a mesh with their faces, and the parts of a mesh, as analysis and repair both use them.
@@ -62,7 +62,7 @@ bool is_degenerate(const TriangleMesh& mesh, std::size_t face);
 
 /// Parts whose own surface winds around `point`, ascending; parts on whose surface `point` lies are
 /// left out. Exact. `tree` is that of the mesh whose faces `parts` numbers.
-std::vector<std::int32_t> parts_around(const BoxTree& tree, const std::vector<std::int32_t>& parts,
+std::vector<std::int32_t> parts_around(const FaceTree& tree, const std::vector<std::int32_t>& parts,
                                        const Eigen::Vector3d& point);
 
 /// Closed parts that are inside-out, ascending: negative signed volume and no other closed part

@@ -4,6 +4,7 @@
 #define CGAL_NO_CDT_2_WARNING
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/determinant.h>
 #include <CGAL/intersections.h>
 
 #include <Eigen/Geometry>
@@ -18,7 +19,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
-#include "query/box_tree.hpp"
+#include "query/face_tree.hpp"
 #include "solid/crossing_faces.hpp"
 #include "solid/intersection_part.hpp"
 #include "solid/mesh_edges.hpp"
@@ -28,7 +29,8 @@ namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector3d;
-using internal::BoxTree;
+using internal::FaceTree;
+using internal::IndexedTriangle;
 using internal::Interval;
 using Corners = std::array<Vector3d, 3>;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
@@ -100,7 +102,7 @@ struct Sides {
 /// along `axis`. As in `internal::Winding` the ray counts as moved by (ε, ε²), so that it meets the
 /// interior of triangles only. Faces that hold the point lie in the piece's plane, or they would
 /// have cut it there.
-Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, int axis) {
+Sides sides_at(const FaceTree& tree, const ExactPoint& point, std::int32_t own, int axis) {
   const int a = (axis + 1) % 3;
   const int b = (axis + 2) % 3;
   const auto turn = [&](const Vector3d& u, const Vector3d& v) {
@@ -112,17 +114,17 @@ Sides sides_at(const BoxTree& tree, const ExactPoint& point, std::int32_t own, i
   int above = 0;
   int at = 0;
   Sides sides;
-  const auto is_beyond = [&](const BoxTree::Node& node, int along) {
-    return node.upper[along] < point.between[along].first;
+  const auto is_beyond = [&](const Eigen::AlignedBox3d& box, int along) {
+    return box.max()[along] < point.between[along].first;
   };
-  const auto is_before = [&](const BoxTree::Node& node, int along) {
-    return node.lower[along] > point.between[along].second;
+  const auto is_before = [&](const Eigen::AlignedBox3d& box, int along) {
+    return box.min()[along] > point.between[along].second;
   };
-  const auto enter = [&](const BoxTree::Node& node) {
-    return !(is_beyond(node, axis) || is_beyond(node, a) || is_before(node, a) ||
-             is_beyond(node, b) || is_before(node, b));
+  const auto enter = [&](const Eigen::AlignedBox3d& box) {
+    return !(is_beyond(box, axis) || is_beyond(box, a) || is_before(box, a) || is_beyond(box, b) ||
+             is_before(box, b));
   };
-  internal::traverse(tree, enter, [&](const BoxTree::Triangle& triangle) {
+  tree.traverse(enter, [&](const IndexedTriangle& triangle) {
     const auto& [corners, face] = triangle;
     const int around = turn(corners[0], corners[1]);
     if (around == 0 || turn(corners[1], corners[2]) != around ||
@@ -334,7 +336,7 @@ class Builder {
 
   const TriangleMesh mesh_;
   TriangleMesh result_;
-  std::optional<BoxTree> tree_;
+  std::optional<FaceTree> tree_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
-#include "query/box_tree.hpp"
+#include "query/indexed_triangle.hpp"
 #include "voxel/triangle_clip.hpp"
 
 namespace graspfit::geometry {

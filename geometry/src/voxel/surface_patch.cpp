@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "query/box_tree.hpp"
+#include "query/indexed_triangle.hpp"
 #include "voxel/voxel_cutter.hpp"
 
 namespace graspfit::geometry {
