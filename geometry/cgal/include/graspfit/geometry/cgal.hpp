@@ -14,6 +14,7 @@
 #include <CGAL/Named_function_parameters.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/Euler_operations.h>
+#include <CGAL/boost/graph/iterator.h>
 #include <CGAL/boost/graph/named_params_helper.h>
 #include <CGAL/number_utils.h>
 
@@ -21,10 +22,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
@@ -34,7 +35,8 @@
 /// \file
 /// Meshes, points, volumes and trees of CGAL as those of graspfit and back, for programs that have
 /// both. A component of its own, `graspfit::geometry_cgal`: no other header of graspfit includes
-/// CGAL.
+/// CGAL. Coordinates are neither scaled nor moved: a TriangleMesh is in meters, in the frame in
+/// which its points are given.
 
 namespace graspfit::geometry::cgal {
 
@@ -44,14 +46,19 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 /// The same coordinates, nothing rounded.
 inline Kernel::Point_3 point(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
-/// The coordinates of a point or vector of any kernel. Nothing is rounded where these are doubles
-/// (`Simple_cartesian<double>`, Epick); coordinates of Epeck are rounded, by CGAL::to_double.
-template <class PointOrVector>
-Eigen::Vector3d vector(const PointOrVector& p) {
-  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
-}
-
 namespace internal {
+
+// CGAL::to_double of a number of Epeck that was not computed exactly before may be off by 1e-5 of
+// the number: it takes the middle of an interval that is not wider than that.
+template <class Number>
+double rounded(const Number& number) {
+  if constexpr (requires { number.exact(); }) {
+    const auto [low, high] = CGAL::to_interval(number);
+    return low == high ? low : CGAL::to_double(number.exact());
+  } else {
+    return CGAL::to_double(number);
+  }
+}
 
 inline Eigen::Vector3d finite_vertex(const Eigen::Vector3d& vertex, std::size_t number) {
   if (vertex.allFinite()) return vertex;
@@ -63,17 +70,39 @@ inline Eigen::Vector3d finite_vertex(const Eigen::Vector3d& vertex, std::size_t 
                            " corners, must have 3: triangulate the mesh first");
 }
 
+[[noreturn]] inline void refuse_index(std::size_t face, std::int64_t index,
+                                      std::size_t num_vertices) {
+  throw base::InvalidInput("face " + std::to_string(face) + " has vertex " + std::to_string(index) +
+                           " of " + std::to_string(num_vertices));
+}
+
+[[noreturn]] inline void refuse_face(std::size_t number, const Face& face, const char* why) {
+  throw base::InvalidInput("face " + std::to_string(number) + " (" + std::to_string(face[0]) +
+                           ", " + std::to_string(face[1]) + ", " + std::to_string(face[2]) + ") " +
+                           why);
+}
+
 }  // namespace internal
 
+/// The coordinates of a point or vector of any kernel. Nothing is rounded where these are doubles
+/// (`Simple_cartesian<double>`, Epick). Coordinates of Epeck are computed exactly, then rounded,
+/// each by less than one unit in its last place; those of other kernels by CGAL::to_double.
+template <class PointOrVector>
+Eigen::Vector3d vector(const PointOrVector& p) {
+  return {internal::rounded(p.x()), internal::rounded(p.y()), internal::rounded(p.z())};
+}
+
 /// The vertices and faces of a FaceGraph (Surface_mesh, Polyhedron_3, ...) in its order, numbered
-/// from 0 without gaps. `np` may name a `vertex_point_map`; its points may be of any kernel.
-/// @throws InvalidInput for the first face that is no triangle or vertex that is not finite.
+/// from 0 without gaps: vertices that no face uses stay, removed ones of a Surface_mesh are left
+/// out. `np` may name a `vertex_point_map`; its points may be of any kernel, see `vector`.
+/// @throws InvalidInput for the first vertex that is not finite, else the first face that is no
+/// triangle.
 template <class FaceGraph, class NamedParameters = CGAL::parameters::Default_named_parameters>
 TriangleMesh triangle_mesh(const FaceGraph& graph,
                            const NamedParameters& np = CGAL::parameters::default_values()) {
   const auto points = CGAL::parameters::choose_parameter(
       CGAL::parameters::get_parameter(np, CGAL::internal_np::vertex_point),
-      get_const_property_map(CGAL::vertex_point, graph));
+      CGAL::get_const_property_map(CGAL::vertex_point, graph));
   using Vertex = typename boost::graph_traits<FaceGraph>::vertex_descriptor;
   TriangleMesh mesh;
   std::unordered_map<Vertex, std::int32_t> number_of;
@@ -94,9 +123,10 @@ TriangleMesh triangle_mesh(const FaceGraph& graph,
   return mesh;
 }
 
-/// A soup: `points` of any kernel, `polygons` of three indices each.
-/// @throws InvalidInput for the first polygon that is no triangle, index that is no point's, or
-/// point that is not finite.
+/// A soup: `points` of any kernel (see `vector`), `polygons` of three indices each. Nothing is
+/// merged, oriented or left out.
+/// @throws InvalidInput for the first point that is not finite, else the first polygon that is no
+/// triangle or has an index that is no point's.
 template <class Points, class Polygons>
 TriangleMesh triangle_mesh_of_soup(const Points& points, const Polygons& polygons) {
   TriangleMesh mesh;
@@ -111,9 +141,8 @@ TriangleMesh triangle_mesh_of_soup(const Points& points, const Polygons& polygon
     for (const auto& index : polygon) {
       const auto number = static_cast<std::size_t>(index);
       if (number >= mesh.vertices.size()) {
-        throw base::InvalidInput("face " + std::to_string(mesh.faces.size()) + " has vertex " +
-                                 std::to_string(number) + " of " +
-                                 std::to_string(mesh.vertices.size()));
+        internal::refuse_index(mesh.faces.size(), static_cast<std::int64_t>(number),
+                               mesh.vertices.size());
       }
       face[k++] = static_cast<std::int32_t>(number);
     }
@@ -123,41 +152,50 @@ TriangleMesh triangle_mesh_of_soup(const Points& points, const Polygons& polygon
 }
 
 /// The mesh as a FaceGraph whose points are made of three doubles: vertices and faces in their
-/// order. Vertices that no face uses stay.
-/// @throws InvalidInput for the first face that would make an edge or a vertex non-manifold, with
-/// the faces before it.
+/// order. Vertices that no face uses stay, and faces may have no area. Sheets may meet at a single
+/// vertex if each has a border there, as CGAL allows.
+/// @throws InvalidInput for the first vertex that is not finite, else the first face that has an
+/// index that is no vertex's, or a vertex twice, or that cannot be joined to the faces before it:
+/// it would make an edge or a vertex non-manifold, or runs through an edge in the direction of its
+/// neighbor.
 template <class FaceGraph = CGAL::Surface_mesh<Kernel::Point_3>>
 FaceGraph face_graph(const TriangleMesh& mesh) {
   FaceGraph graph;
-  const auto points = get_property_map(CGAL::vertex_point, graph);
+  const auto points = CGAL::get_property_map(CGAL::vertex_point, graph);
   using Points = typename boost::property_map<FaceGraph, CGAL::vertex_point_t>::type;
   using Point = typename boost::property_traits<Points>::value_type;
   using Vertex = typename boost::graph_traits<FaceGraph>::vertex_descriptor;
   std::vector<Vertex> vertices;
   vertices.reserve(mesh.vertices.size());
-  for (const Eigen::Vector3d& p : mesh.vertices) {
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    const Eigen::Vector3d p = internal::finite_vertex(vertex, vertices.size());
     vertices.push_back(add_vertex(graph));
     put(points, vertices.back(), Point(p.x(), p.y(), p.z()));
   }
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const Face& face = mesh.faces[f];
-    const std::array<Vertex, 3> corners = {vertices.at(face[0]), vertices.at(face[1]),
-                                           vertices.at(face[2])};
+    for (const std::int32_t index : face) {
+      if (index < 0 || static_cast<std::size_t>(index) >= vertices.size()) {
+        internal::refuse_index(f, index, vertices.size());
+      }
+    }
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
+      internal::refuse_face(f, face, "has a vertex twice");
+    }
+    const std::array<Vertex, 3> corners = {vertices[face[0]], vertices[face[1]], vertices[face[2]]};
     const bool can_add =
-        face[0] != face[1] && face[1] != face[2] && face[2] != face[0] &&
         CGAL::Euler::can_add_face(corners, graph) &&
         CGAL::Euler::add_face(corners, graph) != boost::graph_traits<FaceGraph>::null_face();
     if (!can_add) {
-      throw base::InvalidInput(
-          "face " + std::to_string(f) + " (" + std::to_string(face[0]) + ", " +
-          std::to_string(face[1]) + ", " + std::to_string(face[2]) +
-          ") makes an edge or a vertex non-manifold; repair_mesh splits such meshes");
+      internal::refuse_face(f, face,
+                            "makes an edge or a vertex non-manifold, or is turned against a "
+                            "neighbor; repair_mesh splits and turns such faces");
     }
   }
   return graph;
 }
 
-/// An axis-aligned box as a volume to clip by: closed. Coordinates of Epeck are rounded.
+/// An axis-aligned box as a volume to clip by: closed. Coordinates are rounded as by `vector`.
 template <class K>
 ConvexVolume volume(const CGAL::Iso_cuboid_3<K>& box) {
   const Eigen::Vector3d lower = vector((box.min)());
@@ -171,20 +209,27 @@ ConvexVolume volume(const CGAL::Iso_cuboid_3<K>& box) {
 }
 
 /// The intersection of the closed negative sides a x + b y + c z + d ≤ 0 of a range of Plane_3, as
-/// CGAL's halfspace_intersection_3 has them. Coefficients of Epeck are rounded.
+/// CGAL's halfspace_intersection_3 has them. Coefficients are not normalized; they are rounded one
+/// by one as coordinates are by `vector`, so only planes of Epeck move. A plane that is not finite
+/// is refused by `clip`, not here.
 template <class Planes>
 ConvexVolume volume_of_planes(const Planes& planes) {
   ConvexVolume half_spaces;
   for (const auto& plane : planes) {
     half_spaces.push_back(
-        {{CGAL::to_double(plane.a()), CGAL::to_double(plane.b()), CGAL::to_double(plane.c())},
-         -CGAL::to_double(plane.d())});
+        {{internal::rounded(plane.a()), internal::rounded(plane.b()), internal::rounded(plane.c())},
+         -internal::rounded(plane.d())});
   }
   return half_spaces;
 }
 
 /// CGAL's tree of a mesh's faces: `FaceTree(mesh).tree().closest_point(p)`. It holds copies of the
-/// triangles, so that the mesh need not stay.
+/// triangles, so that the mesh need not stay. Nearest points and intersections are constructed in
+/// doubles, which means approximately; `MeshQuery` decides containment and ray hits exactly.
+///
+/// The tree of a mesh without faces is empty (`tree().empty()`), and an empty tree must not be
+/// asked for a nearest point. Precondition, not checked: every index of a face is that of a vertex,
+/// and coordinates are finite.
 class FaceTree {
  public:
   using Triangles = std::vector<Kernel::Triangle_3>;
@@ -204,15 +249,16 @@ class FaceTree {
       const auto [a, b, c] = corners(mesh, f);
       triangles_.emplace_back(point(a), point(b), point(c));
     }
-    tree_.insert(triangles_.cbegin(), triangles_.cend());
-    tree_.build();
+    tree_->insert(triangles_.cbegin(), triangles_.cend());
+    tree_->build();
   }
   FaceTree(const FaceTree&) = delete;
   FaceTree& operator=(const FaceTree&) = delete;
   FaceTree(FaceTree&&) = default;  // the triangles stay where they are in memory
   FaceTree& operator=(FaceTree&&) = default;
 
-  const Tree& tree() const { return tree_; }
+  /// The tree, for all of CGAL's queries. It stays where it is when this object is moved.
+  const Tree& tree() const { return *tree_; }
 
   /// The index of a face in the mesh, from the id of a primitive of the tree.
   std::size_t face(Tree::Primitive_id id) const {
@@ -221,7 +267,9 @@ class FaceTree {
 
  private:
   Triangles triangles_;
-  Tree tree_;
+  // Not moved itself: what a tree of CGAL's that was asked for a nearest point leaves behind fails
+  // an assertion in its destructor.
+  std::unique_ptr<Tree> tree_ = std::make_unique<Tree>();
 };
 
 }  // namespace graspfit::geometry::cgal
