@@ -1,7 +1,7 @@
 # Functions that every module's CMakeLists.txt uses:
 #
 #   graspfit_add_module(name HEADERS ... FOLDERS ... SOURCES ... PUBLIC ... PRIVATE ...)
-#   graspfit_target_defaults(target)      warnings, for programs and tests
+#   graspfit_target_defaults(target)      warnings and rounding, for programs and tests
 #   graspfit_install_package()            once, at the end of the root CMakeLists.txt
 
 include(CMakePackageConfigHelpers)
