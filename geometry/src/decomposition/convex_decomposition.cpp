@@ -18,6 +18,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
+#include "mesh/input_check.hpp"
 #include "solid/mesh_edges.hpp"
 
 namespace graspfit::geometry {
@@ -334,6 +335,7 @@ void ConvexDecompositionOptions::validate() const {
 ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,
                                          const ConvexDecompositionOptions& options) {
   options.validate();
+  internal::require_usable(mesh, "convex_decomposition");
   if (mesh.faces.empty() || !internal::bounds_solid(mesh)) {
     throw base::DegenerateGeometry(
         "convex_decomposition: the mesh is not closed and bounds no solid; repair it first");

@@ -138,7 +138,7 @@ void ShapeDiameterOptions::validate() const {
 ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& options) {
   // In the order of the tree's leaves: rays of neighbors run through the same memory.
   std::vector<std::int32_t> faces;
-  mesh.indexed().tree.traverse(
+  mesh.indexed().tree().traverse(
       [](const Eigen::AlignedBox3d&) { return true; },
       [&](const internal::IndexedTriangle& triangle) { faces.push_back(triangle.face); });
   const ShapeDiameter in_order = shape_diameter(mesh, faces, options);
@@ -160,7 +160,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
                                std::to_string(num_faces));
     }
   }
-  const internal::FaceTree& tree = mesh.indexed().tree;
+  const internal::FaceTree& tree = mesh.indexed().tree();
   const std::vector<Vector3d> rays = cone_of_rays(options);
   std::vector<Vector3d> normals(num_faces);
   for (std::size_t face = 0; face < num_faces; ++face) {

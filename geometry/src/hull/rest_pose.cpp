@@ -11,6 +11,7 @@
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/used_vertices.hpp"
+#include "mesh/input_check.hpp"
 
 namespace graspfit::geometry {
 
@@ -90,6 +91,7 @@ std::vector<RestPose> rest_poses(const TriangleMesh& mesh, const Vector3d& cente
                                  const RestPoseOptions& options) {
   options.validate();
   if (mesh.faces.empty()) throw base::InvalidInput("rest_poses: the mesh has no faces");
+  internal::require_usable(mesh, "rest_poses");
   require_finite("rest_poses: center_of_mass", center_of_mass);
   const std::vector<Vector3d> surface = used_vertices(mesh);
   const ConvexHull3 hull = convex_hull(surface);
@@ -139,6 +141,7 @@ const RestPose& nearest_rest_pose(const std::vector<RestPose>& poses, const Vect
 RigidTransform standing_pose(const TriangleMesh& mesh, const Vector3d& up_O, double turn,
                              const Vector3d& center_O, const Vector2d& place_W) {
   if (mesh.faces.empty()) throw base::InvalidInput("standing_pose: the mesh has no faces");
+  internal::require_usable(mesh, "standing_pose");
   require_finite("standing_pose: up_O", up_O);
   if (!(up_O.norm() > 0.0)) throw base::InvalidInput("standing_pose: up_O has no length");
   require_finite("standing_pose: turn", Eigen::Matrix<double, 1, 1>(turn));

@@ -13,6 +13,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
+#include "mesh/input_check.hpp"
 #include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
 #include "query/winding.hpp"
@@ -124,7 +125,7 @@ bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform
 Containment placed_containment(const MeshQuery& b, const RigidTransform& X_AB,
                                const Vector3d& point_A) {
   internal::Winding winding(point_A);
-  b.indexed().tree.traverse(
+  b.indexed().tree().traverse(
       [&](const Eigen::AlignedBox3d& of_faces) {
         const SeenBox box = seen_from(of_faces, X_AB);
         return winding.may_meet(box.lower, box.upper);
@@ -261,7 +262,7 @@ class DeepestPoint {
     const auto enter = [&](const Eigen::AlignedBox3d& of_faces) {
       return stays && box.intersects(of_faces);
     };
-    solid_.indexed().tree.traverse(enter, [&](const IndexedTriangle& triangle) {
+    solid_.indexed().tree().traverse(enter, [&](const IndexedTriangle& triangle) {
       const Corners& face = triangle.corners;
       const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
       bool is_above = false;
@@ -333,6 +334,7 @@ void PenetrationOptions::validate() const {
 }
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
+  internal::require_finite(X_AB, "do_intersect");
   if (surfaces_intersect(a.indexed().pair_tree(), b.indexed().pair_tree(), X_AB)) return true;
   const SeenBox box_b = seen_from(b.indexed().pair_tree().nodes.front(), X_AB);
   const Eigen::AlignedBox3d& box_a = a.indexed().box;
@@ -353,7 +355,7 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   if (!result.intersects) return result;
   DeepestPoint in_a(a, X_AB, options);
   in_a.search(b.indexed().pair_tree());
-  DeepestPoint in_b(b, X_AB.inverse(), options);
+  DeepestPoint in_b(b, inverse_of(X_AB), options);
   in_b.search(a.indexed().pair_tree());
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);
@@ -367,9 +369,10 @@ DepthBounds depth_above(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   options.validate();
   base::require(floor >= 0.0 && std::isfinite(floor), "depth_above", "floor", floor,
                 "finite and >= 0 m");
+  internal::require_finite(X_AB, "depth_above");
   DeepestPoint in_a(a, X_AB, options, floor);
   in_a.search(b.indexed().pair_tree());
-  DeepestPoint in_b(b, X_AB.inverse(), options, in_a.depth);
+  DeepestPoint in_b(b, inverse_of(X_AB), options, in_a.depth);
   in_b.search(a.indexed().pair_tree());
   return {in_b.depth > floor ? in_b.depth : 0.0, std::max(in_a.bound, in_b.bound)};
 }

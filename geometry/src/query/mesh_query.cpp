@@ -10,6 +10,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/input_check.hpp"
 #include "query/indexed_mesh.hpp"
 #include "query/winding.hpp"
 
@@ -157,16 +158,16 @@ Eigen::AlignedBox3d box_of_faces(const TriangleMesh& mesh) {
   return box;
 }
 
-const TriangleMesh& checked(const TriangleMesh& mesh) {
+TriangleMesh checked(TriangleMesh mesh) {
   if (mesh.faces.empty()) throw base::InvalidInput("MeshQuery: the mesh has no faces");
+  internal::require_usable(mesh, "MeshQuery");
   return mesh;
 }
 
 }  // namespace
 
 internal::IndexedMesh::IndexedMesh(TriangleMesh the_mesh)
-    : mesh(std::move(the_mesh)),
-      tree(checked(mesh)),
+    : mesh(checked(std::move(the_mesh))),
       box(box_of_faces(mesh)),
       part_vertices(one_vertex_per_part(mesh)) {}
 
@@ -180,9 +181,10 @@ const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   ClosestPoint best;
   best.squared_distance = std::numeric_limits<double>::infinity();
-  indexed_->tree.traverse_by_bound(
+  indexed_->tree().traverse_by_bound(
       [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
-      [&] { return best.squared_distance; },
+      // A rounded nearest point may lie an ulp outside its box.
+      [&] { return best.squared_distance * (1.0 + 0x1p-50); },
       [&](const IndexedTriangle& triangle) {
         const internal::TrianglePoint candidate =
             internal::nearest_on_triangle(point, triangle.corners);
@@ -193,18 +195,25 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
           best = {candidate.point, squared, triangle.face, candidate.barycentric};
         }
       });
+  if (best.face < 0) {
+    throw base::InvalidInput(
+        "MeshQuery::closest_point: the point is not finite, or too far for squared distances");
+  }
   return best;
 }
 
 internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
   Winding winding(point);
-  query.indexed().tree.traverse(
+  query.indexed().tree().traverse(
       [&](const Eigen::AlignedBox3d& box) { return winding.may_meet(box.min(), box.max()); },
       [&](const IndexedTriangle& triangle) { winding.add(triangle.corners); });
   return winding;
 }
 
 Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
+  if (!point.allFinite()) {
+    throw base::InvalidInput("MeshQuery::containment: the point is not finite");
+  }
   return internal::winding_around(*this, point).result();
 }
 
@@ -220,7 +229,7 @@ std::optional<RayHit> MeshQuery::first_hit(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::first_hit", indexed_->box, origin, direction);
   std::optional<RayHit> best;
   double best_t = 1.0;
-  indexed_->tree.traverse(
+  indexed_->tree().traverse(
       [&](const Eigen::AlignedBox3d& box) { return line.may_meet(box, 0.0, best_t); },
       [&](const IndexedTriangle& triangle) {
         const std::optional<Line::Meeting> meeting = line.meet(triangle.corners, 0.0);
@@ -241,7 +250,7 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
   const Line line("MeshQuery::all_hits", indexed_->box, origin, direction);
   const double from = kind == LineKind::Ray ? 0.0 : -1.0;
   std::vector<RayHit> hits;
-  indexed_->tree.traverse(
+  indexed_->tree().traverse(
       [&](const Eigen::AlignedBox3d& box) { return line.may_meet(box, from, 1.0); },
       [&](const IndexedTriangle& triangle) {
         if (const auto meeting = line.meet(triangle.corners, from)) {
@@ -255,8 +264,11 @@ std::vector<RayHit> MeshQuery::all_hits(const Eigen::Vector3d& origin,
 }
 
 std::vector<std::int32_t> MeshQuery::faces_near(const Eigen::AlignedBox3d& box) const {
+  if (box.min().hasNaN() || box.max().hasNaN()) {
+    throw base::InvalidInput("MeshQuery::faces_near: the box has a coordinate that is no number");
+  }
   std::vector<std::int32_t> faces;
-  indexed_->tree.traverse_near(
+  indexed_->tree().traverse_near(
       box, [&](const IndexedTriangle& triangle) { faces.push_back(triangle.face); });
   std::sort(faces.begin(), faces.end());
   return faces;

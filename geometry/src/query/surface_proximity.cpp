@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/option_check.hpp"
+#include "mesh/input_check.hpp"
 #include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
 
@@ -91,6 +93,10 @@ struct Heights {
                         ///< normal's length; 0 if the triangle crosses the plane.
 };
 
+// How far RᵀR of a rotation matrix R may be from the identity. Lengths that are measured along its
+// columns are off by no more than the bounds of this file.
+constexpr double kRotationError = 1e-12;
+
 /// One search for nearest points, depth first, the nearer children first. Pairs of nodes that are
 /// surely no nearer than `share` times the best distance are left out.
 class Search {
@@ -103,6 +109,7 @@ class Search {
         tree_b_(b_.pair_tree()),
         X_AB_(X_AB),
         turn_(X_AB.linear().cwiseAbs()),
+        is_rotation_((X_AB.linear().transpose() * X_AB.linear()).isIdentity(kRotationError)),
         squared_enough_(enough * enough),
         squared_share_(share * share),
         squared_near_enough_(near_enough < 0.0 ? -1.0 : near_enough * near_enough),
@@ -161,6 +168,7 @@ class Search {
     const double in_a =
         (between_A.cwiseAbs() - half_a - turn_ * half_b).cwiseMax(0.0).squaredNorm();
     if (in_a >= squared_limit_) return in_a;
+    if (!is_rotation_) return in_a;
     const Vector3d between_B = X_AB_.linear().transpose() * between_A;
     return std::max(
         in_a,
@@ -267,6 +275,7 @@ class Search {
   const BoxTree& tree_b_;
   const RigidTransform& X_AB_;
   const Eigen::Matrix3d turn_;
+  const bool is_rotation_;  ///< Up to rounding; not where a file gave a few digits of a matrix.
   const double squared_enough_;
   const double squared_share_;
   const double squared_near_enough_;
@@ -281,6 +290,8 @@ class Search {
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
                                                const RigidTransform& X_AB, double enough,
                                                const ProximitySeed& seed, double near_enough) {
+  internal::require_finite(X_AB, "nearest_points");
+  base::require(!std::isnan(enough), "nearest_points", "enough", enough, "a number");
   Search search(a, b, X_AB, enough, 1.0, near_enough);
   search.run(seed);
   return search.best();
@@ -289,6 +300,9 @@ std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQue
 SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,
                                    const ProximitySeed& seed) {
+  internal::require_finite(X_AB, "surface_clearance");
+  base::require(!std::isnan(enough), "surface_clearance", "enough", enough, "a number");
+  base::require(share > 0.0 && share <= 1.0, "surface_clearance", "share", share, "in (0, 1]");
   Search search(a, b, X_AB, enough, share, 0.0);
   search.run(seed);
   SurfaceClearance result{search.at_least(), seed};

@@ -7,6 +7,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/input_check.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "solid/mesh_edges.hpp"
 
@@ -80,6 +81,7 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 MassProperties mass_properties(const TriangleMesh& mesh) {
+  internal::require_usable(mesh, "mass_properties");
   const bool may_overlap = has_parts_that_may_overlap(mesh) && internal::bounds_solid(mesh);
   const Moments m = moments(may_overlap ? solid_boundary(mesh) : mesh);
   if (!(m.volume > 0.0)) {

@@ -5,6 +5,7 @@
 
 #include "graspfit/geometry/used_vertices.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/input_check.hpp"
 #include "query/face_tree.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "solid/crossing_faces.hpp"
@@ -103,6 +104,7 @@ void count_part_overlaps(const TriangleMesh& mesh, const std::vector<std::int32_
 }  // namespace
 
 MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& options) {
+  internal::require_usable(mesh, "analyze");
   MeshAnalysis analysis;
   analysis.num_vertices = mesh.vertices.size();
   analysis.num_faces = mesh.faces.size();

@@ -101,13 +101,6 @@ bool bounds_solid(const TriangleMesh& mesh) {
 
 bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
   const auto [a, b, c] = corners(mesh, face);
-  // A component of the cross product is off by at most 8 half ulps of the product of the longest
-  // coordinates. Below 1e-290 bits may have been lost to underflow.
-  const Eigen::Vector3d ab = b - a;
-  const Eigen::Vector3d ac = c - a;
-  const double product = ab.lpNorm<Eigen::Infinity>() * ac.lpNorm<Eigen::Infinity>();
-  const double largest = ab.cross(ac).lpNorm<Eigen::Infinity>();
-  if (largest > 0x1p-50 * product && product > 1e-290) return false;
   return are_collinear(a, b, c);
 }
 

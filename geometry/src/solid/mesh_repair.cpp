@@ -14,6 +14,7 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
+#include "mesh/input_check.hpp"
 #include "query/one_sided_distance.hpp"
 #include "solid/alpha_wrapping.hpp"
 #include "solid/mesh_edges.hpp"
@@ -481,6 +482,7 @@ void MeshRepairOptions::validate() const {
 RepairedMesh repair_mesh(const TriangleMesh& mesh, const MeshRepairOptions& options) {
   options.validate();
   if (mesh.faces.empty()) throw base::InvalidInput("the mesh has no faces");
+  internal::require_usable(mesh, "repair_mesh");
   return Repair(mesh, options, Repair::Advice::Tried).run();
 }
 

@@ -19,6 +19,7 @@
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/input_check.hpp"
 #include "query/face_tree.hpp"
 #include "solid/crossing_faces.hpp"
 #include "solid/intersection_part.hpp"
@@ -341,6 +342,9 @@ class Builder {
 
 }  // namespace
 
-TriangleMesh solid_boundary(const TriangleMesh& mesh) { return Builder(mesh).build(); }
+TriangleMesh solid_boundary(const TriangleMesh& mesh) {
+  internal::require_usable(mesh, "solid_boundary");
+  return Builder(mesh).build();
+}
 
 }  // namespace graspfit::geometry

@@ -24,6 +24,9 @@ class Clipper {
 
   std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle) {
     const auto& [a, b, c] = triangle;
+    if (!a.allFinite() || !b.allFinite() || !c.allFinite()) {
+      throw base::InvalidInput("clip: a corner of the triangle is not finite");
+    }
     polygon_.clear();
     const Eigen::Vector3d vector_area = internal::accurate_vector_area(a, b, c);
     if (vector_area.isZero(0.0)) return std::nullopt;  // The corners are collinear.

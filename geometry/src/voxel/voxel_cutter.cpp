@@ -9,6 +9,7 @@
 
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
+#include "mesh/input_check.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -72,6 +73,7 @@ VoxelCutter::VoxelCutter(const TriangleMesh& mesh, const VoxelLattice& lattice)
   if (lattice.counts.maxCoeff() > 1 << 29) {
     throw base::InvalidInput("the lattice has more than 2^29 voxels along an axis");
   }
+  require_usable(mesh, "voxels");
 }
 
 void VoxelCutter::run(const std::function<void(const CutLayer&, std::int64_t)>& take) {

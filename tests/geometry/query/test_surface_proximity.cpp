@@ -65,6 +65,33 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
   CHECK(num_crossing > 40);
 }
 
+TEST_CASE("A pose written with three digits gives the distance of the mesh moved by it",
+          "[geometry][surface_proximity]") {
+  // The inverse of such a matrix is not its transpose: boxes seen along its columns are off by a
+  // thousandth, more than the distances of many pairs of faces differ.
+  const MeshQuery a(ball(1.0, 3));
+  const TriangleMesh other = torus(1.0, 0.3, 48, 24);
+  const MeshQuery b(other);
+  Random random(12);
+  int num_apart = 0;
+  for (int i = 0; i < 200; ++i) {
+    RigidTransform X_AB = drawn_pose(random, 3.0);
+    X_AB.linear() = (X_AB.linear().array() * 1e3).round() / 1e3;
+    const MeshQuery moved(transformed(other, X_AB));
+    const RigidTransform at = RigidTransform::Identity();
+    const auto nearest = nearest_points(a, b, X_AB, kNoLimit);
+    const auto expected = nearest_points(a, moved, at, kNoLimit);
+    REQUIRE((nearest && expected));
+    num_apart += expected->distance > 0.0 ? 1 : 0;
+    INFO("pose " << i);
+    CHECK(nearest->distance == Approx(expected->distance).margin(1e-14));
+    const double clearance = surface_clearance(a, b, X_AB, kNoLimit, 1.0).at_least;
+    CHECK(clearance <= expected->distance + 1e-12);
+    CHECK(clearance >= expected->distance - 1e-12);
+  }
+  CHECK(num_apart > 100);
+}
+
 TEST_CASE("A surface inside another has a distance from it", "[geometry][surface_proximity]") {
   const MeshQuery outer(box({2, 2, 2}));
   const MeshQuery inner(box({1, 1, 1}));

@@ -37,7 +37,7 @@ struct ClippedPiece {
 /// coordinate. The area is off by at most 1e-12 of the triangle's area. The centroid is off by as
 /// much as a corner, plus 4e-12 of the longest edge times the ratio of the triangle's area to the
 /// piece's. A triangle that lies *in* a bounding plane counts as inside (half-spaces are closed).
-/// @throws InvalidInput if a half-space is not finite.
+/// @throws InvalidInput if a half-space or a corner is not finite.
 std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const ConvexVolume& volume);
 

@@ -45,9 +45,9 @@ struct MeshAnalysisOptions {
                                      ///< of parts overlap.
 };
 
-/// Analyzes a mesh of any quality. It does not throw on bad meshes, since examining them is its
-/// purpose. Precondition, not checked: every index of a face is that of a vertex, and coordinates
-/// are finite (`read_mesh` sees to both).
+/// Analyzes a mesh of any quality, which is not refused for its defects.
+/// @throws InvalidInput if an index of a face is not that of a vertex or a coordinate is not finite
+/// (`read_mesh` gives no such mesh).
 MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& options = {});
 
 /// What to do with a mesh that is not a closed outward surface.

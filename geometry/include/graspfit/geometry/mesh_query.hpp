@@ -43,12 +43,14 @@ enum class LineKind {
   Line,  ///< Both ways.
 };
 
-/// Spatial queries against one mesh; builds a box tree once and keeps a copy of the mesh.
+/// Spatial queries against one mesh, of which it keeps a copy. They walk a `CGAL::AABB_tree`, which
+/// the first of them builds; exact decisions are those of CGAL's kernel.
 ///
 /// Copies share the tree. All members are const and safe to call from several threads.
 class MeshQuery {
  public:
-  /// @throws InvalidInput if the mesh has no faces.
+  /// @throws InvalidInput if the mesh has no faces, a coordinate is not finite or a face has a
+  /// vertex that is none. The other members throw it for points and boxes that are not numbers.
   explicit MeshQuery(TriangleMesh mesh);
 
   const TriangleMesh& mesh() const;
@@ -56,7 +58,8 @@ class MeshQuery {
   /// Box of all faces. Exact.
   const Eigen::AlignedBox3d& box() const;
 
-  /// Nearest surface point. Approximate to rounding (double constructions).
+  /// Nearest surface point. Approximate to rounding (double constructions); of equally near faces
+  /// the one with the lowest index.
   ClosestPoint closest_point(const Eigen::Vector3d& point) const;
 
   /// Exact for closed meshes: inside is where the winding number of the surface is not zero,

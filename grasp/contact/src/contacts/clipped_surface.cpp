@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/errors.hpp"
+
 namespace graspfit::contact::internal {
 namespace {
 
@@ -86,6 +88,9 @@ std::optional<geometry::ConvexVolume> cutting_half_spaces(const std::array<Vecto
 
 FacesInVolume faces_in_clip_volume(const hands::ContactPad& pad, double thickness,
                                    const RigidTransform& X_OC, const geometry::MeshQuery& object) {
+  if (!X_OC.matrix().allFinite()) {
+    throw base::InvalidInput("estimate_contact: the pose of the pad is not finite");
+  }
   thickness = pad.clip_thickness.value_or(thickness);
   FacesInVolume result;
   const std::vector<std::int32_t> faces = faces_near_pad(pad, thickness, X_OC, object);

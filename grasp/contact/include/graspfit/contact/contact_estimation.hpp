@@ -52,8 +52,8 @@ struct ContactEstimationOptions {
 /// count with their area whichever way they face. The numbers are rounded, but which triangles are
 /// cut is decided exactly on the clip volume's half-spaces as rounded to frame O. The cost is a box
 /// query where nothing is near, and otherwise linear in the number of triangles near the pad.
-/// @throws InvalidInput for bad options, a pad that the hand does not have, or weak regions of
-/// another mesh (another number of faces).
+/// @throws InvalidInput for bad options, a pad that the hand does not have, a pose that is not
+/// finite, or weak regions of another mesh (another number of faces).
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
                                         const geometry::RigidTransform& X_OC,
                                         const geometry::MeshQuery& object,

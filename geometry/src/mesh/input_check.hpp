@@ -1,0 +1,19 @@
+#pragma once
+
+#include "graspfit/geometry/rigid_transform.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
+
+/// \file
+/// What every public function that takes meshes and poses refuses before it computes anything: CGAL
+/// and sorting by coordinates have no answer for numbers that are not finite.
+
+namespace graspfit::geometry::internal {
+
+/// @throws InvalidInput "<who>: vertex 7 is not finite" or "<who>: face 3 has vertex 9 of 8", for
+/// the first of either, unused vertices included.
+void require_usable(const TriangleMesh& mesh, const char* who);
+
+/// @throws InvalidInput "<who>: the pose is not finite".
+void require_finite(const RigidTransform& pose, const char* who);
+
+}  // namespace graspfit::geometry::internal
