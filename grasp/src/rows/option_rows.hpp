@@ -315,8 +315,9 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
   at(options.candidate_order,
      {"candidate_order", kAny, "candidate-order", "", kTargets,
       "which of an attempt's candidates (sides of target sets) go first: those on whose targets "
-      "the "
-      "fingertip pads would lie flattest; or those whose targets balance at squeeze-friction",
+      "the fingertip pads would lie flattest; or, of several sets drawn at random, those whose "
+      "targets balance at squeeze-friction; no difference with target-search ranked or "
+      "target-draws 1",
       "R"});
   at(options.kept, {"kept_candidate", kAny, "keep", "", kTargets,
                     "which of an attempt's candidates is kept: the first that is accepted; the "

@@ -55,12 +55,15 @@ enum class MissingContact {
 };
 
 /// Which of an attempt's candidates are tried first, and by that which of the target sets drawn is
-/// fitted [R]. A candidate is a target set and a side from which the hand is fitted to it.
+/// fitted [R]. A candidate is a target set and a side from which the hand is fitted to it. Where
+/// `target_draws` is 1, the random search has the order that is stated there, whichever is set.
 enum class CandidateOrder {
   Pads,  ///< Candidates on whose targets the fingertip pads would lie flattest.
   /// Candidates whose targets balance one another (within the squeeze's largest residual) at
   /// `squeeze_friction`, then those whose targets do so at `friction`; ties are ordered as by
-  /// `Pads`.
+  /// `Pads`. All sides of a set balance alike, so this has an effect only where the method
+  /// "fitting" draws several sets at random per attempt. With `TargetSearch::Ranked`, whose sets
+  /// are taken by their rank, and with all other methods it is the same as `Pads`.
   Balance,
 };
 
