@@ -62,7 +62,8 @@ Command hold_command() {
              "depend on it");
   add_object_flag(which);
   po::options_description shape = option_group("Convex pieces of object and links");
-  add_option(shape, "pieces", "INTEGER", std::to_string(pieces.max_pieces), "of each, at most");
+  add_option(shape, "pieces", "INTEGER", std::to_string(pieces.max_pieces),
+             "wanted limit for each; up to three times as many where a solid's parts lie apart");
   add_option(shape, "deviation", "METERS", shortest_decimal(pieces.largest_deviation),
              "how far pieces may reach out of the solid; where --pieces do not suffice, the worst "
              "places come first");

@@ -217,8 +217,8 @@ class Decomposer {
   std::vector<bool> can_split_;
 };
 
-/// Unites the two pieces whose common hull is the least deep, as long as it is shallow enough or
-/// there are too many pieces.
+/// Unites the two neighbors whose common hull is the least deep, as long as it is shallow enough or
+/// there are too many pieces. Where no pieces are neighbors any more, too many may be left.
 class Merger {
  public:
   Merger(const Decomposer& decomposer, std::vector<Piece> pieces)

@@ -13,9 +13,11 @@ namespace graspfit::geometry {
 struct ConvexDecompositionOptions {
   double largest_deviation = 0.001;  ///< Wanted bound of how far any piece reaches out of the solid
                                      ///< [m], > 0 and finite.
-  int max_pieces = 64;  ///< Most pieces, ≥ 1; more only if the boxes of all pieces left are farther
-                        ///< than largest_deviation apart, as those of separate parts may be. Parts
-                        ///< whose hulls reach farthest out are cut first.
+  /// Wanted limit of the number of pieces, ≥ 1. It is kept where pieces can be united, as those of
+  /// a connected solid. Pieces whose boxes are farther than largest_deviation apart are not
+  /// united: of a solid of separate parts more may be left, up to three times as many. Parts whose
+  /// hulls reach farthest out are cut first.
+  int max_pieces = 64;
   int max_piece_vertices = 128;  ///< Most vertices of a piece, ≥ 32. Faces of the pieces of a round
                                  ///< solid lie the deeper inside it the farther apart the pieces'
                                  ///< vertices are; inward_deviation includes this.
@@ -51,7 +53,8 @@ struct ConvexDecomposition {
 /// convex hull of the part that it covers. Cutting ends when no part that a cut still improves has
 /// too deep a hull, or when there are three times as many parts as pieces are allowed. Then the
 /// parts whose common hull is the least deep are united, as long as that hull is shallow enough or
-/// there are too many parts. Related: [Wei et al. 2022] (CoACD) measures and cuts in the same way,
+/// there are too many parts, but only where their boxes are no farther apart than
+/// largest_deviation. Related: [Wei et al. 2022] (CoACD) measures and cuts in the same way,
 /// but searches axis-aligned planes by tree search.
 ///
 /// The inward deviation is that of the vertices that the pieces leave out of the exact hulls of the
