@@ -132,8 +132,9 @@ constexpr auto fitting_rows = [](auto& at, auto& fitting) {
       "voxels: P; meshes: R"});
   at(fitting.contact_state,
      {"contact_state", kAny, "contact-state", "", kTargets,
-      "when a closing finger has touched: when its next motion would enter the object, or when its "
-      "clip volume holds a first sliver of surface, for comparison",
+      "without refinement: when a closing finger or palm has touched: when its next motion would "
+      "enter the object, or when its clip volume holds a first sliver of surface, for comparison; "
+      "with refinement always the latter, whatever is set",
       "closed: P; first-graze: R", "A32"});
   at(fitting.closing_tolerance, {"closing_tolerance_m", above(0)});
   at(fitting.palm_after_contact,

@@ -35,8 +35,9 @@ enum class ContactState {
   Closed,
   /// When the pad's clip volume first holds a sliver of the object's surface: the pad is then up to
   /// a clip thickness before the surface, and the contact has a few hundredths of the pad's area.
-  /// No reading of the paper [R]: it is for comparison, and the planner sets it where refinement
-  /// follows.
+  /// No reading of the paper [R]. Without refinement it is for comparison. With refinement
+  /// (`PlannerOptions::refine`) the planner closes all hands in this way, whatever its options say:
+  /// refinement makes the contacts real, and would undo any further closing.
   FirstGraze,
 };
 
@@ -61,7 +62,9 @@ struct FittingOptions {
   /// Of the points that stand for a link's occupied voxels [voxels], > 0.
   double sample_spacing = 0.5;
   PenetrationGuard guard = PenetrationGuard::Meshes;  ///< [R]; the paper's is Voxels.
-  ContactState contact_state = ContactState::Closed;  ///< [P]
+  /// The default is the paper's [P]. The planner heeds this field without refinement only; with
+  /// refinement all hands close to the first graze.
+  ContactState contact_state = ContactState::Closed;
   /// Closing onto the surface (`ContactState::Closed`) ends when its steps are shorter than this
   /// [m], > 0.
   double closing_tolerance = 1e-5;

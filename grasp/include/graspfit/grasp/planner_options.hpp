@@ -139,8 +139,9 @@ struct PlannerOptions {
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
   MedialSymmetryOptions medial_symmetry;  ///< Of the methods ma and ma-full-retreat.
-  /// Whether requested contacts are made real by exact queries after fitting [R]; without: the
-  /// paper's voxel-level grasp.
+  /// Whether requested contacts are made real by exact queries after fitting [R], for which hands
+  /// close to the first graze only, whatever `fitting.contact_state` is; without: the paper's
+  /// voxel-level grasp.
   bool refine = true;
   RefinementOptions refinement;
   /// Without refinement: overlap of links of different fingers that a formed grasp may have before
