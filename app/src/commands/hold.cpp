@@ -54,9 +54,11 @@ Command hold_command() {
       "fixed. Table and obstacles of the grasp\nfile are not simulated.\n"};
   po::options_description which = option_group("Grasps");
   add_option(which, "grasp", "N,...", std::nullopt, "test these only, by their ranks in the file");
-  add_switch(which, "margin",
-             "also the smallest load that fails, in newtons and newton meters; a score of tests "
-             "each; not for protocols that lift");
+  add_switch(
+      which, "margin",
+      "also the smallest force and the smallest torque that fail, in newtons and newton "
+      "meters; 10 to 60 more loads are simulated for each of the two; not for protocols that "
+      "lift");
   add_option(which, "jobs", "INTEGER", "0",
              "grasps side by side; 0: as many as the machine has processors; the verdicts do not "
              "depend on it");

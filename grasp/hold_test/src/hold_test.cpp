@@ -40,7 +40,8 @@ constexpr double kTorqueLever = 0.1;
 constexpr double kFirstLoad = 0.02;
 
 /// The smallest load in (0, `most`] at which `holds` is false, to `kLoadTolerance`: the returned
-/// one fails, unless it is `most`. Assumes that a grasp which holds a load holds smaller ones.
+/// one fails, unless it is `most`; 0 if a load of at most `least` fails. Assumes that a grasp which
+/// holds a load holds smaller ones.
 template <class Holds>
 double smallest_failing(double first, double most, double least, const Holds& holds) {
   double held = 0.0;
