@@ -13,16 +13,16 @@ def contact_sheet(pictures, path):
 
     column = (WIDTH - (COLUMNS + 1) * GAP) // COLUMNS
     font = ImageFont.truetype("DejaVuSans.ttf", 13)
-    places, heights = [], [GAP] * COLUMNS
+    placed, heights = [], [GAP] * COLUMNS
     for picture in pictures:
         image = Image.open(picture).convert("RGB")
         image = image.resize((column, max(1, round(image.height * column / image.width))), Image.LANCZOS)
         k = min(range(COLUMNS), key=lambda c: heights[c])
-        places.append((image, GAP + k * (column + GAP), heights[k], picture.stem))
+        placed.append((image, GAP + k * (column + GAP), heights[k], picture.stem))
         heights[k] += image.height + LABEL + GAP
     sheet = Image.new("RGB", (WIDTH, max(heights)), "white")
     draw = ImageDraw.Draw(sheet)
-    for image, x, y, name in places:
+    for image, x, y, name in placed:
         draw.text((x, y), name, fill="#14181c", font=font)
         sheet.paste(image, (x, y + LABEL))
     for colors in (256, 128, 64):  # a palette saves more than half, and small pictures do not show it

@@ -55,14 +55,14 @@ def page(title, width, height, note=None):
 def panels(title, rows, columns, width, height, note=None, **options):
     """A page with a grid of axes under the title: figure, axes [rows][columns]."""
     figure = page(title, width, height, note)
-    room = 0.12 + (0.13 * (note.count("\n") + 1) if note else 0.0)
+    margin = 0.12 + (0.13 * (note.count("\n") + 1) if note else 0.0)
     grid = figure.add_gridspec(
         rows,
         columns,
         left=options.pop("left", 0.01),
         right=options.pop("right", 0.99),
         top=1.0 - options.pop("head", 0.5) / height,
-        bottom=(room + options.pop("foot", 0.0)) / height,
+        bottom=(margin + options.pop("foot", 0.0)) / height,
         wspace=options.pop("wspace", 0.05),
         hspace=options.pop("hspace", 0.15),
         **options,
@@ -97,10 +97,10 @@ def show_picture(axes, picture, title=None, below=None, scale=True):
         axes.text(0.5 * (left + right), y - 0.012 * height, words, ha="center", va="bottom", fontsize=6, color=SOFT)
 
 
-def color_legend(figure, entries, **place):
+def color_legend(figure, entries, **placement):
     """Patches with words: [(color, words)]."""
     handles = [Patch(facecolor=color, edgecolor="none", label=words) for color, words in entries]
-    figure.legend(handles=handles, ncol=len(entries), handlelength=1.0, handleheight=1.0, **place)
+    figure.legend(handles=handles, ncol=len(entries), handlelength=1.0, handleheight=1.0, **placement)
 
 
 def file_bytes(figure, suffix):

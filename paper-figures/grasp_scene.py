@@ -76,13 +76,13 @@ class Stage(vtk_picture.Canvas):
         mapper.SetScalarVisibility(face_colors is not None)
         actor = vtk.vtkActor()
         actor.SetMapper(mapper)
-        look = actor.GetProperty()
-        look.SetColor(*to_rgb(color))
-        look.SetAmbient(0.15)
-        look.SetDiffuse(0.87)
-        look.SetSpecular(0.08)
-        look.SetSpecularPower(30.0)
-        look.SetOpacity(opacity)
+        properties = actor.GetProperty()
+        properties.SetColor(*to_rgb(color))
+        properties.SetAmbient(0.15)
+        properties.SetDiffuse(0.87)
+        properties.SetSpecular(0.08)
+        properties.SetSpecularPower(30.0)
+        properties.SetOpacity(opacity)
         return actor
 
     def colored_ball(self, center, radius, color):

@@ -51,8 +51,8 @@ def draw(source):
                 shift = width * (k - (len(METHODS) - 1) / 2)
                 of_method = rows[rows["planner"] == method].set_index("size").reindex(sizes)
                 if of_paper and method in OF_PAPER:
-                    place = 0.25 * (OF_PAPER.index(method) - 1)
-                    ax.bar(place, of_method[of_paper].iloc[0], width=0.22, color="white", edgecolor=color, hatch="//////")
+                    center = 0.25 * (OF_PAPER.index(method) - 1)
+                    ax.bar(center, of_method[of_paper].iloc[0], width=0.22, color="white", edgecolor=color, hatch="//////")
                 ax.bar(np.arange(len(sizes)) + 1.2 + shift, of_method[measure], width=0.9 * width, color=color, label=title,
                        yerr=of_method[error] if error else None, error_kw={"elinewidth": 0.7})  # fmt: skip
             ax.axvline(0.6, color="#c9cdd2", linewidth=0.8)

@@ -131,10 +131,10 @@ def pre_grasp_motions(item, entry, vector, where):
     if not pre_grasp:
         return None
 
-    def pose(owner, place, link):
+    def pose(owner, path, link):
         found = entry(owner, "X_OL", link)
         return entry(found, "rotation_wxyz"), vector(
-            entry(found, "translation_m"), f"{where}{place}/X_OL/{link}/translation_m"
+            entry(found, "translation_m"), f"{where}{path}/X_OL/{link}/translation_m"
         )
 
     motions = {}

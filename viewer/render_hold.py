@@ -201,17 +201,17 @@ class Painter(Canvas):
         end = load["times"][shown[-1]] or 1.0
         most = 1.4  # limits; more is cut off
 
-        def place(t, share):
+        def pixel(t, share):
             return left + (right - left) * t / end, bottom + (top - bottom) * min(share, most) / most
 
-        start = place(min(protocol["load_start"], end), 0.0)[0]
+        start = pixel(min(protocol["load_start"], end), 0.0)[0]
         shade = [(start, bottom), (right, bottom), (right, top), (start, top)]
         self.flat_shape(self.strip, shade, (0.95, 0.96, 0.97))
-        self.flat_shape(self.strip, [place(0.0, 0.0), place(end, 0.0)], COLORS["soft"], s)
-        self.flat_shape(self.strip, [place(0.0, 1.0), place(end, 1.0)], COLORS["contact"], s)
+        self.flat_shape(self.strip, [pixel(0.0, 0.0), pixel(end, 0.0)], COLORS["soft"], s)
+        self.flat_shape(self.strip, [pixel(0.0, 1.0), pixel(end, 1.0)], COLORS["contact"], s)
         for key, color in (("shift", "hand"), ("turn", "palm")):
             limit = protocol[f"largest_{key}"]
-            points = [place(load["times"][i], load[f"{key}s"][i] / limit) for i in shown if i <= frame]
+            points = [pixel(load["times"][i], load[f"{key}s"][i] / limit) for i in shown if i <= frame]
             if len(points) > 1:
                 self.flat_shape(self.strip, points, COLORS[color], 2.4 * s)
         x, y = left, 70 * s

@@ -151,11 +151,11 @@ class Canvas:
         normals.ConsistencyOff()
         normals.SplittingOn()
         actor = self.actor(normals, COLORS[color])
-        look = actor.GetProperty()
-        look.SetAmbient(0.12)
-        look.SetDiffuse(0.88)
-        look.SetSpecular(specular)
-        look.SetSpecularPower(30.0)
+        properties = actor.GetProperty()
+        properties.SetAmbient(0.12)
+        properties.SetDiffuse(0.88)
+        properties.SetSpecular(specular)
+        properties.SetSpecularPower(30.0)
         return actor
 
     def actor(self, source, color):
@@ -214,11 +214,11 @@ class Canvas:
 
     @staticmethod
     def flat(actor):
-        look = actor.GetProperty()
-        look.SetAmbient(0.35)
-        look.SetDiffuse(0.65)
-        look.SetSpecular(0.15)
-        look.SetSpecularPower(40.0)
+        properties = actor.GetProperty()
+        properties.SetAmbient(0.35)
+        properties.SetDiffuse(0.65)
+        properties.SetSpecular(0.15)
+        properties.SetSpecularPower(40.0)
         return actor
 
     def camera(self, back, up, points, aspect):
@@ -249,16 +249,16 @@ class Canvas:
         """Text at a pixel of the renderer; its width in pixels."""
         actor = self.vtk.vtkTextActor()
         actor.SetInput(words)
-        look = actor.GetTextProperty()
-        look.SetFontFamilyToArial()
-        look.SetFontSize(round(size * self.scale))
-        look.SetColor(*color)
-        look.SetBold(bold)
-        look.SetVerticalJustificationToBottom()
+        properties = actor.GetTextProperty()
+        properties.SetFontFamilyToArial()
+        properties.SetFontSize(round(size * self.scale))
+        properties.SetColor(*color)
+        properties.SetBold(bold)
+        properties.SetVerticalJustificationToBottom()
         {
-            "left": look.SetJustificationToLeft,
-            "center": look.SetJustificationToCentered,
-            "right": look.SetJustificationToRight,
+            "left": properties.SetJustificationToLeft,
+            "center": properties.SetJustificationToCentered,
+            "right": properties.SetJustificationToRight,
         }[align]()
         actor.SetPosition(x, y)
         renderer.AddActor2D(actor)
@@ -324,12 +324,12 @@ class Canvas:
             label = self.vtk.vtkBillboardTextActor3D()
             label.SetInput(name)
             label.SetPosition(*along([0.0, 0.0, 0.0], direction, 1.25))
-            look = label.GetTextProperty()
-            look.SetFontSize(round(14 * self.scale))
-            look.SetColor(*color)
-            look.SetBold(True)
-            look.SetJustificationToCentered()
-            look.SetVerticalJustificationToCentered()
+            properties = label.GetTextProperty()
+            properties.SetFontSize(round(14 * self.scale))
+            properties.SetColor(*color)
+            properties.SetBold(True)
+            properties.SetJustificationToCentered()
+            properties.SetVerticalJustificationToCentered()
             renderer.AddActor(label)
         small = self.vtk.vtkCamera()
         small.ParallelProjectionOn()

@@ -26,26 +26,26 @@ std::string escaped_for_html(std::string_view text) {
   return escaped;
 }
 
-using Places = std::initializer_list<std::pair<std::string_view, std::string_view>>;
+using Replacements = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 
 // Fills a template in one pass: texts that replace placeholders are never searched for
 // placeholders.
-std::string filled(std::string_view rest, const Places& places) {
+std::string filled(std::string_view rest, const Replacements& replacements) {
   std::string html;
   while (!rest.empty()) {
     const std::size_t brace = rest.find("{{");
     html += rest.substr(0, brace);
     if (brace == std::string_view::npos) break;
     rest.remove_prefix(brace);
-    bool is_place = false;
-    for (const auto& [place, text] : places) {
-      if (!rest.starts_with(place)) continue;
+    bool is_placeholder = false;
+    for (const auto& [placeholder, text] : replacements) {
+      if (!rest.starts_with(placeholder)) continue;
       html += text;
-      rest.remove_prefix(place.size());
-      is_place = true;
+      rest.remove_prefix(placeholder.size());
+      is_placeholder = true;
       break;
     }
-    if (!is_place) {
+    if (!is_placeholder) {
       html += "{{";
       rest.remove_prefix(2);
     }

@@ -132,10 +132,10 @@ std::vector<double> midranks(std::span<const double> values) {
 std::optional<double> quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nullopt;
   std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
   const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], place - static_cast<double>(below));
+  return std::lerp(values[below], values[above], position - static_cast<double>(below));
 }
 
 std::optional<double> auc(const ScoredOutcomes& sample) {

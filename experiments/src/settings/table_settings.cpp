@@ -104,8 +104,8 @@ TableSettings table_settings(const sweep::Cell& cell) {
     settings.home_turn = home.at("turn_deg").number() * base::kRadiansPerDegree;
   settings.frame_step = value("frame_step_mm").positive_number() * base::kMetersPerMillimeter;
   motion::TidyingOptions& tidying = settings.tidying;
-  for (const base::JsonValue& place : value("resting_places_m").some_items()) {
-    tidying.resting_places_W.push_back(place_of(place));
+  for (const base::JsonValue& resting_place : value("resting_places_m").some_items()) {
+    tidying.resting_places_W.push_back(place_of(resting_place));
   }
   tidying.move.clearance = value("travel_clearance_mm").number() * base::kMetersPerMillimeter;
   const double kept = tidying.move.planner.pre_grasp.clearance / base::kMetersPerMillimeter;

@@ -61,10 +61,11 @@ std::vector<Sample> samples_of(const SolidPart& part, base::Random& random) {
   std::vector<Sample> samples;
   if (!(total > 0.0)) return samples;
   for (std::size_t i = 0; i < kNumSamples; ++i) {
-    const double place =
+    const double area_drawn =
         (static_cast<double>(i) + random.uniform()) / static_cast<double>(kNumSamples) * total;
-    const auto at = std::min(std::upper_bound(areas.begin(), areas.end(), place) - areas.begin(),
-                             static_cast<std::ptrdiff_t>(areas.size()) - 1);
+    const auto at =
+        std::min(std::upper_bound(areas.begin(), areas.end(), area_drawn) - areas.begin(),
+                 static_cast<std::ptrdiff_t>(areas.size()) - 1);
     const auto& t = triangles[at];
     double u = random.uniform();
     double v = random.uniform();

@@ -152,12 +152,13 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
     const double tolerance =
         std::max(options.tolerance, 1e-15 * hull.offsets.cwiseAbs().maxCoeff());
     const auto farthest = farthest_outside(points, hull, tolerance, outside);
-    const std::size_t room =
+    const std::size_t num_allowed =
         static_cast<std::size_t>(options.max_vertices) -
         std::min(static_cast<std::size_t>(options.max_vertices), hull.mesh.vertices.size());
-    if (farthest.empty() || room == 0) break;
-    kept = hull.mesh.vertices;
-    for (std::size_t k = 0; k < std::min(room, farthest.size()); ++k) {
+    if (farthest.empty() || num_allowed == 0) break;
+    chosen.clear();
+    std::vector<Vector3d> kept = hull.mesh.vertices;
+    for (std::size_t k = 0; k < std::min(num_allowed, farthest.size()); ++k) {
       kept.push_back(points[farthest[k].second]);
       // A point is added once: the hull then holds it, even if the rounded plane of a face of a
       // sharp needle says otherwise.

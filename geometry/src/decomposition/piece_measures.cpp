@@ -107,14 +107,14 @@ using Interval = std::pair<double, double>;
 Interval interval_in(const PieceHull& hull, const Vector3d& origin) {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  const Eigen::VectorXd room = hull.offsets - hull.normals.transpose() * origin;
-  for (Eigen::Index f = 0; f < room.size(); ++f) {
+  const Eigen::VectorXd slack = hull.offsets - hull.normals.transpose() * origin;
+  for (Eigen::Index f = 0; f < slack.size(); ++f) {
     const double slope = hull.normals(0, f);
     if (slope > 0.0) {
-      high = std::min(high, room[f] / slope);
+      high = std::min(high, slack[f] / slope);
     } else if (slope < 0.0) {
-      low = std::max(low, room[f] / slope);
-    } else if (room[f] < 0.0) {
+      low = std::max(low, slack[f] / slope);
+    } else if (slack[f] < 0.0) {
       return {1.0, 0.0};
     }
   }

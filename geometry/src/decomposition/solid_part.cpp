@@ -122,7 +122,7 @@ std::vector<Vector3d> SolidPart::hull_points() const {
 }
 
 SolidPart whole_solid(const MeshQuery& solid) {
-  constexpr double kRoom = 0.01;  // of the box's diagonal, so that no corner is on the surface
+  constexpr double kMarginRel = 0.01;  // of the box's diagonal, so that no corner is on the surface
   const TriangleMesh& mesh = solid.mesh();
   SolidPart part;
   part.points = mesh.vertices;
@@ -133,8 +133,8 @@ SolidPart whole_solid(const MeshQuery& solid) {
     part.faces.push_back(static_cast<std::int32_t>(f));
   }
   Eigen::AlignedBox3d box = solid.box();
-  const Vector3d room = Vector3d::Constant(kRoom * box.diagonal().norm());
-  box = {box.min() - room, box.max() + room};
+  const Vector3d margin = Vector3d::Constant(kMarginRel * box.diagonal().norm());
+  box = {box.min() - margin, box.max() + margin};
   for (int axis = 0; axis < 3; ++axis) {
     for (const double end : {box.min()[axis], box.max()[axis]}) {
       std::vector<Vector3d> side;

@@ -52,7 +52,7 @@ class NearVoxels {
     const Vector3i block = voxel / edge_;
     const Vector3i low = (block.array() - 1).max(0);
     const Vector3i high = (block.array() + 1).min(counts_.array() - 1);
-    for_each_in_block(low, high, [&](const Vector3i& place) { is_near_[at(place)] = 1; });
+    for_each_in_block(low, high, [&](const Vector3i& other) { is_near_[at(other)] = 1; });
   }
   bool has(const Vector3i& voxel) const { return is_near_[at(voxel / edge_)] != 0; }
 
@@ -75,9 +75,9 @@ void take_nearer(const VoxelLattice& lattice, const std::vector<Index>& voxels,
     low = low.cwiseMin(lattice.voxel(index));
     high = high.cwiseMax(lattice.voxel(index));
   }
-  const int room = base::bounded_integer(std::ceil(reach), 0, lattice.counts.maxCoeff());
-  low = (low.array() - room).max(0);
-  high = (high.array() + room).min(lattice.counts.array() - 1);
+  const int margin = base::bounded_integer(std::ceil(reach), 0, lattice.counts.maxCoeff());
+  low = (low.array() - margin).max(0);
+  high = (high.array() + margin).min(lattice.counts.array() - 1);
   VoxelGrid part;
   part.lattice = {lattice.origin, lattice.voxel_size, high - low + Vector3i::Ones()};
   part.classes.assign(static_cast<std::size_t>(part.lattice.num_voxels()), VoxelClass::Empty);

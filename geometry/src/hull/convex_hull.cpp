@@ -24,16 +24,17 @@ using Eigen::Vector3d;
 
 /// Indices of distinct points, ascending; of equal ones the first.
 std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
-  const auto place = [&](std::size_t i) {
+  const auto coordinates = [&](std::size_t i) {
     return std::tie(points[i].x(), points[i].y(), points[i].z());
   };
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
-  order.erase(std::unique(order.begin(), order.end(),
-                          [&](std::size_t a, std::size_t b) { return place(a) == place(b); }),
-              order.end());
+                   [&](std::size_t a, std::size_t b) { return coordinates(a) < coordinates(b); });
+  order.erase(
+      std::unique(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return coordinates(a) == coordinates(b); }),
+      order.end());
   std::sort(order.begin(), order.end());
   return order;
 }

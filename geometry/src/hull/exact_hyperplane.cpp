@@ -36,14 +36,14 @@ constexpr auto kColumnSets = [] {
   std::array<ColumnSets, kMaxDimension + 1> all = {};
   for (int dimension = 1; dimension <= kMaxDimension; ++dimension) {
     auto& [sets, first] = all[dimension];
-    std::uint8_t place = 0;
+    std::uint8_t next = 0;
     for (int size = 0; size <= dimension; ++size) {
-      first[size] = place;
+      first[size] = next;
       for (unsigned set = 0; set < 1U << dimension; ++set) {
-        if (std::popcount(set) == size) sets[place++] = static_cast<std::uint8_t>(set);
+        if (std::popcount(set) == size) sets[next++] = static_cast<std::uint8_t>(set);
       }
     }
-    first[dimension + 1] = place;
+    first[dimension + 1] = next;
   }
   return all;
 }();

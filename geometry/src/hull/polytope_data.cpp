@@ -149,8 +149,8 @@ class SpanHull {
     }
     std::sort(sorted.begin(), sorted.end(),
               [](const Sorted& a, const Sorted& b) { return a.corners < b.corners; });
-    std::vector<int> place(static_cast<std::size_t>(builder_.num_created()), -1);
-    for (std::size_t i = 0; i < sorted.size(); ++i) place[sorted[i].facet] = static_cast<int>(i);
+    std::vector<int> index_of(static_cast<std::size_t>(builder_.num_created()), -1);
+    for (std::size_t i = 0; i < sorted.size(); ++i) index_of[sorted[i].facet] = static_cast<int>(i);
 
     const auto count = static_cast<Index>(sorted.size());
     data.facets.resize(D, count);
@@ -162,7 +162,7 @@ class SpanHull {
       const auto& plane = builder_.precise_plane(s.facet);
       for (int k = 0; k < D; ++k) {
         data.facets(k, i) = s.corners[k];
-        data.neighbors(k, i) = place[builder_.simplex(s.facet).neighbors[s.slots[k]]];
+        data.neighbors(k, i) = index_of[builder_.simplex(s.facet).neighbors[s.slots[k]]];
         data.gradients(k, i) = plane.normal[k];
       }
       data.unit_bounds[i] = builder_.unit_bound(s.facet);

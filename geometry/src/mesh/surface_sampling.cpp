@@ -36,10 +36,10 @@ class AreaSampler {
 
   SurfaceSample draw(std::uint64_t index) const {
     base::Random random = base::Random::stream(seed_, index);
-    // The first face for which the area up to and including it exceeds `place`: never a face
+    // The first face for which the area up to and including it exceeds `area_drawn`: never a face
     // without area.
-    const double place = random.uniform() * area();
-    const auto found = std::upper_bound(area_below_.begin(), area_below_.end(), place);
+    const double area_drawn = random.uniform() * area();
+    const auto found = std::upper_bound(area_below_.begin(), area_below_.end(), area_drawn);
     const auto face = std::min<std::ptrdiff_t>(found - area_below_.begin(), last_with_area());
     // The root turns a uniform number into one whose density grows with the width of the triangle
     // [Osada et al. 2002].

@@ -221,10 +221,10 @@ class Document {
   }
 
   /// Refuses `count` elements that do not lie within a view.
-  void check_elements(const Json& place, uint64_t count, uint64_t size, const std::string& where,
+  void check_elements(const Json& elements, uint64_t count, uint64_t size, const std::string& where,
                       bool uses_stride) const {
-    const uint64_t view = required_index(place, "bufferView", views_.size(), where);
-    const uint64_t offset = *whole_member(place, "byteOffset", where, 0);
+    const uint64_t view = required_index(elements, "bufferView", views_.size(), where);
+    const uint64_t offset = *whole_member(elements, "byteOffset", where, 0);
     const auto [length, stride] = views_[view];
     const uint64_t step = uses_stride && stride != 0 ? stride : size;
     if (step < size) {

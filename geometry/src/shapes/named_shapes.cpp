@@ -132,14 +132,14 @@ TriangleMesh named_shape(const std::string& name, const std::vector<ShapeDimensi
   for (const ShapeDimension& dimension : known) values.push_back(dimension.value);
   std::vector<char> is_given(known.size(), 0);
   for (const ShapeDimension& dimension : dimensions) {
-    const auto place = std::find_if(known.begin(), known.end(), [&](const ShapeDimension& other) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const ShapeDimension& other) {
       return other.name == dimension.name;
     });
-    if (place == known.end()) {
+    if (found == known.end()) {
       throw base::InvalidInput(name + ": has no dimension \"" + dimension.name + "\"; there are " +
                                listed(dimension.name, known));
     }
-    const std::size_t i = place - known.begin();
+    const std::size_t i = found - known.begin();
     if (is_given[i]) throw base::InvalidInput(name + ": " + dimension.name + " is given twice");
     constexpr double kMostCount = 1e9;  // fits an int
     if (i >= shape->num_lengths && !(std::abs(dimension.value) <= kMostCount &&

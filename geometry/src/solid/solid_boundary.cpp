@@ -255,14 +255,14 @@ class Builder {
     const Exact::Vector_3 normal =
         CGAL::cross_product(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     const auto lifted = [&](const Exact::Point_2& p) {
-      std::array<Exact::FT, 3> place;
+      std::array<Exact::FT, 3> coordinates;
       const Exact::FT height = triangle[0][axis] - (normal[a] * (p.x() - triangle[0][a]) +
                                                     normal[b] * (p.y() - triangle[0][b])) /
                                                        normal[axis];
-      place[a] = p.x();
-      place[b] = p.y();
-      place[axis] = height;
-      return ExactPoint(place);
+      coordinates[a] = p.x();
+      coordinates[b] = p.y();
+      coordinates[axis] = height;
+      return ExactPoint(coordinates);
     };
 
     std::map<Cut::Face_handle, bool> is_done;

@@ -56,12 +56,12 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
         const double new_value = best[static_cast<Index>(k)];
         if (new_value <= 0.0) share = std::min(share, old_value / (old_value - new_value));
       }
-      const auto place = std::lower_bound(passive.begin(), passive.end(), entering);
-      if (is_new && best[place - passive.begin()] <= 0.0) {
+      const auto position = std::lower_bound(passive.begin(), passive.end(), entering);
+      if (is_new && best[position - passive.begin()] <= 0.0) {
         // Only rounding made this column lower the residual: it is nearly in the span of the
         // others.
         is_refused[entering] = true;
-        passive.erase(place);
+        passive.erase(position);
         break;
       }
       is_new = false;

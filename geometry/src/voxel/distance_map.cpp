@@ -68,9 +68,9 @@ constexpr int kBlock = 16;
 
 }  // namespace
 
-float SignedDistanceMap::at_beyond(const Eigen::Vector3d& place) const {
+float SignedDistanceMap::at_beyond(const Eigen::Vector3d& position) const {
   using Eigen::Array3d;
-  const Array3d voxel = place.array().floor();
+  const Array3d voxel = position.array().floor();
   const Array3d inner = voxel.max(0.0).min(lattice.counts.cast<double>().array() - 1.0);
   const float value = at(Eigen::Vector3i(inner.cast<int>()));
   if (value < 0.0F || std::isinf(value)) return value;

@@ -18,7 +18,7 @@ using internal::VoxelCutter;
 
 // Factor on squared distances that covers the rounding of a piece's radius to a float and the
 // rounding of the distances.
-constexpr double kRadiusRoom = 1.0 + 1e-6;
+constexpr double kRoundingFactor = 1.0 + 1e-6;
 
 // The point of some pieces nearest to `point`; of equally near ones that of the first. A piece lies
 // in a ball about its centroid, so that most need not be looked at once a near one is known.
@@ -45,7 +45,8 @@ class PatchProjection {
       const CutPiece& piece = all_.pieces[name.piece];
       const double r_squared = piece.squared_radius;
       const double reach = r_squared + squared_ + 2.0 * std::sqrt(r_squared * squared_);
-      if (r_squared > kLeastRadius && (piece.centroid - point_).squaredNorm() > reach * kRadiusRoom)
+      if (r_squared > kLeastRadius &&
+          (piece.centroid - point_).squaredNorm() > reach * kRoundingFactor)
         continue;
       visit(name.piece);
     }

@@ -332,17 +332,17 @@ CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {
 
 [[gnu::cold, gnu::noinline]] double TriangleCutter::exact_fraction(
     const CutPolygon& polygon) const {
-  std::vector<std::array<Rational, 2>> places;
+  std::vector<std::array<Rational, 2>> coordinates;
   for (const CutEdge& of : polygon) {
     const CutCorner& corner = corners_[of.corner];
     const auto h = corner_of<Rational>(corner.line_a, corner.line_b);
     const Rational sum = h[0] + h[1] + h[2];
-    places.push_back({h[1] / sum, h[2] / sum});
+    coordinates.push_back({h[1] / sum, h[2] / sum});
   }
   Rational fraction(0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto& p = places[i];
-    const auto& q = places[(i + 1) % places.size()];
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto& p = coordinates[i];
+    const auto& q = coordinates[(i + 1) % coordinates.size()];
     fraction += p[0] * q[1] - p[1] * q[0];
   }
   assert(sign_of(fraction) > 0);

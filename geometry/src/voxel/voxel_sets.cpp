@@ -135,9 +135,9 @@ SetTopology topology(const VoxelLattice& lattice, const std::vector<Index>& voxe
     std::vector<Vector3i> stack;
     int sets = 0;
     const auto take = [&](const Vector3i& v) {
-      const auto place = at(v[0], v[1], v[2]);
-      if (cells[place] != value || seen[place]) return false;
-      seen[place] = 1;
+      const auto index = at(v[0], v[1], v[2]);
+      if (cells[index] != value || seen[index]) return false;
+      seen[index] = 1;
       stack.push_back(v);
       return true;
     };

@@ -19,8 +19,8 @@ void for_each_neighbor(const VoxelLattice& lattice, Index index, const Visit& vi
   const Eigen::Vector3i voxel = lattice.voxel(index);
   const Eigen::Vector3i low = (voxel.array() - 1).max(0);
   const Eigen::Vector3i high = (voxel.array() + 1).min(lattice.counts.array() - 1);
-  for_each_in_block(low, high, [&](const Eigen::Vector3i& place) {
-    const Index neighbor = lattice.index(place);
+  for_each_in_block(low, high, [&](const Eigen::Vector3i& other) {
+    const Index neighbor = lattice.index(other);
     if (neighbor != index) visit(neighbor);
   });
 }

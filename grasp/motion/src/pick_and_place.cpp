@@ -245,9 +245,9 @@ class MoveSearch {
   std::vector<std::vector<RigidTransform>> transports(const RigidTransform& up,
                                                       const RigidTransform& over) const {
     const Vector3d& center_O = scene_.object(object_).center_of_mass_O;
-    const auto turned = [&](const RigidTransform& place, const RigidTransform& orientation) {
+    const auto turned = [&](const RigidTransform& position, const RigidTransform& orientation) {
       RigidTransform X = orientation;
-      X.translation() = place * center_O - X.linear() * center_O;
+      X.translation() = position * center_O - X.linear() * center_O;
       return X;
     };
     return {{up, over}, {up, turned(up, over), over}, {up, turned(over, up), over}};

@@ -145,11 +145,11 @@ class TidyingSearch {
     }
     std::vector<RigidTransform> poses;
     for (const Eigen::Vector3d& up : distinct) {
-      for (const Eigen::Vector2d& place : options_.resting_places_W) {
+      for (const Eigen::Vector2d& resting_place : options_.resting_places_W) {
         for (int quarter = 0; quarter < 4; ++quarter) {
           poses.push_back(geometry::standing_pose(moved.surface_O.mesh(), up,
                                                   0.5 * std::numbers::pi * quarter,
-                                                  moved.center_of_mass_O, place));
+                                                  moved.center_of_mass_O, resting_place));
         }
       }
     }
@@ -179,9 +179,10 @@ class TidyingSearch {
 
 void TidyingOptions::validate() const {
   move.validate();
-  for (const Eigen::Vector2d& place : resting_places_W) {
-    base::require(place.allFinite(), "TidyingOptions", "resting_places_W",
-                  base::shortest_decimal(place.x()) + ", " + base::shortest_decimal(place.y()),
+  for (const Eigen::Vector2d& resting_place : resting_places_W) {
+    base::require(resting_place.allFinite(), "TidyingOptions", "resting_places_W",
+                  base::shortest_decimal(resting_place.x()) + ", " +
+                      base::shortest_decimal(resting_place.y()),
                   "finite");
   }
   base::require(max_rest_poses >= 1, "TidyingOptions", "max_rest_poses", max_rest_poses, ">= 1");

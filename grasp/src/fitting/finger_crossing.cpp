@@ -36,27 +36,27 @@ int num_meeting(const FittingHand& hand, const std::vector<int>& links,
 
 /// The position of the swing joint, of those tried, in which the fewest of the finger's links meet
 /// the others; of several such positions the one nearest to the current one.
-double place_apart(const FittingHand& hand, const hands::Finger& finger,
-                   const std::vector<int>& others, HandConfiguration goal) {
+double position_apart(const FittingHand& hand, const hands::Finger& finger,
+                      const std::vector<int>& others, HandConfiguration goal) {
   const int index = *finger.swing_joint;
   const hands::Joint& joint = hand.model().joints[index];
   const double now = goal.q[index];
-  std::vector<double> places = {now};
+  std::vector<double> positions = {now};
   for (int turn = 0; turn <= kJointTurns; ++turn) {
-    places.push_back(joint.lower + (joint.upper - joint.lower) * turn / kJointTurns);
+    positions.push_back(joint.lower + (joint.upper - joint.lower) * turn / kJointTurns);
   }
-  std::stable_sort(places.begin(), places.end(),
+  std::stable_sort(positions.begin(), positions.end(),
                    [&](double a, double b) { return std::abs(a - now) < std::abs(b - now); });
   double best = now;
   int fewest = std::numeric_limits<int>::max();
-  for (const double place : places) {
-    goal.q[index] = place;
+  for (const double position : positions) {
+    goal.q[index] = position;
     const HandConfiguration open = opened_from(hand.model(), goal);
     const int count =
         num_meeting(hand, finger.links, others, hands::forward_kinematics(hand.model(), open));
     if (count < fewest) {
       fewest = count;
-      best = place;
+      best = position;
     }
     if (count == 0) break;
   }
@@ -131,7 +131,7 @@ HandConfiguration with_fingers_apart(const FittingHand& hand, const TargetContac
     const auto next = std::min_element(free.begin(), free.end(),
                                        [&](int a, int b) { return distance(a) < distance(b); });
     const hands::Finger& finger = model.fingers[*next];
-    goal.q[*finger.swing_joint] = place_apart(hand, finger, others, goal);
+    goal.q[*finger.swing_joint] = position_apart(hand, finger, others, goal);
     hands::apply_couplings(model, goal.q);
     others.insert(others.end(), finger.links.begin(), finger.links.end());
     placed.push_back(*next);

@@ -48,7 +48,7 @@ GuardedHand::GuardedHand(const GraspScene& scene, const FittingOptions& options)
       guards_depth_(model_.links.size(), false),
       known_depths_(model_.links.size()),
       distance_(model_.links.size()),
-      room_(model_.links.size(), kInfinity) {
+      surroundings_distance_(model_.links.size(), kInfinity) {
   std::iota(all_links_.begin(), all_links_.end(), 0);
   if (!options.guard_self) return;
   const auto has_solid = [&](int link) { return hand_.collision().link_solid(link).has_value(); };
@@ -67,7 +67,7 @@ float GuardedHand::measured(int link, const RigidTransform& X_OL) {
                                   static_cast<float>(options_.large_step_limit + 1.0));
 }
 
-double GuardedHand::measured_room(int link, double enough) const {
+double GuardedHand::distance_to_surroundings(int link, double enough) const {
   return std::min(enough,
                   surroundings_.distance(hand_.collision(), link, X_OL_[link], enough).distance);
 }
@@ -82,13 +82,14 @@ void GuardedHand::measure_all() {
   const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
   for (const int link : all_links_) {
     distance_[link] = measured(link, X_OL_[link]);
-    if (!surroundings_.surroundings().is_empty()) room_[link] = measured_room(link, enough);
+    if (!surroundings_.surroundings().is_empty())
+      surroundings_distance_[link] = distance_to_surroundings(link, enough);
   }
 }
 
 bool GuardedHand::is_clear() {
   return std::all_of(all_links_.begin(), all_links_.end(), [&](int link) {
-    return distance_[link] > 0.0F && room_[link] > 0.0 &&
+    return distance_[link] > 0.0F && surroundings_distance_[link] > 0.0 &&
            !cuts_object(link, distance_[link], X_OL_[link]);
   });
 }
@@ -142,13 +143,13 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
   trial_ = candidate;
   trial_X_OL_ = X_OL_;
   trial_distance_ = distance_;
-  trial_room_ = room_;
+  trial_surroundings_distance_ = surroundings_distance_;
   // A value changes by no more than √2 per voxel between centers, and a point is within √3/2 of its
   // own center, before and after.
   const double change = std::numbers::sqrt2 * (length / voxel_size_ + std::numbers::sqrt3);
   for (const int link : moved) {
     trial_X_OL_[link] = hands::link_pose(model_, link, trial_X_OL_, trial_);
-    trial_room_[link] -= length;
+    trial_surroundings_distance_[link] -= length;
     const double bound = distance_[link] - change;
     if (bound > kFarEnough) {
       trial_distance_[link] = static_cast<float>(bound);
@@ -166,7 +167,7 @@ bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
 
 bool GuardedHand::passes_exact(const std::vector<int>& moved) {
   for (const int link : moved) {
-    if (trial_room_[link] <= 0.0 &&
+    if (trial_surroundings_distance_[link] <= 0.0 &&
         surroundings_.touches(hand_.collision(), link, trial_X_OL_[link])) {
       blocking_link_ = link;
       return false;
@@ -201,20 +202,21 @@ void GuardedHand::accept() {
   configuration_ = trial_;
   X_OL_.swap(trial_X_OL_);
   distance_.swap(trial_distance_);
-  room_.swap(trial_room_);
+  surroundings_distance_.swap(trial_surroundings_distance_);
   const double near = options_.large_step_at * voxel_size_;
   const double enough = (options_.large_step_limit + 1.0) * voxel_size_;
   for (const int link : all_links_) {
-    if (room_[link] <= near) room_[link] = measured_room(link, enough);
+    if (surroundings_distance_[link] <= near)
+      surroundings_distance_[link] = distance_to_surroundings(link, enough);
   }
 }
 
 double GuardedHand::allowed_motion(const std::vector<int>& links) const {
   float d_min = std::numeric_limits<float>::infinity();
-  double room = kInfinity;
+  double to_surroundings = kInfinity;
   for (const int link : links) {
     d_min = std::min(d_min, distance_[link]);
-    room = std::min(room, room_[link]);
+    to_surroundings = std::min(to_surroundings, surroundings_distance_[link]);
   }
   double voxels = options_.small_step;
   if (d_min >= options_.large_step_at) {
@@ -226,7 +228,8 @@ double GuardedHand::allowed_motion(const std::vector<int>& links) const {
   }
   // A motion shorter than the distance to the surroundings cannot meet them; close to them, small
   // steps are allowed and then tested.
-  return std::min(voxels * voxel_size_, std::max(room, options_.small_step * voxel_size_));
+  return std::min(voxels * voxel_size_,
+                  std::max(to_surroundings, options_.small_step * voxel_size_));
 }
 
 float GuardedHand::smallest_distance() const {

@@ -71,7 +71,7 @@ class GuardedHand {
   float measured(int link, const geometry::RigidTransform& X_OL);
   /// Distance of a link from the surroundings [m], at most `enough`: farther surroundings are
   /// measured again when motions have brought the link nearer.
-  double measured_room(int link, double enough) const;
+  double distance_to_surroundings(int link, double enough) const;
   /// Whether the true meshes overlap by more than the guard lets them.
   bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL);
   /// Whether a link may be in the object by more than a voxel's edge: false is certain, true is
@@ -98,7 +98,7 @@ class GuardedHand {
   std::vector<geometry::RigidTransform> X_OL_, trial_X_OL_;
   std::vector<float> distance_, trial_distance_;
   /// Per link: lower bound of its distance to the surroundings [m], updated by every motion.
-  std::vector<double> room_, trial_room_;
+  std::vector<double> surroundings_distance_, trial_surroundings_distance_;
   std::optional<int> blocking_link_;
 };
 

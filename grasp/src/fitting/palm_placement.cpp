@@ -82,7 +82,7 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
     const Extent extent = extent_against(object, center, direction);
     PalmPlacement placement;
     placement.direction_O = direction;
-    if (!has_palm) placement.palm_room = extent.before_palm;
+    if (!has_palm) placement.palm_distance = extent.before_palm;
     double key = extent.whole;
     if (approach_O) {
       key = std::atan2(direction.cross(*approach_O).norm(), direction.dot(*approach_O));

@@ -49,11 +49,11 @@ struct Tip {
 class Search {
  public:
   Search(const hands::HandModel& hand, const TargetContacts& targets,
-         const hands::HandConfiguration& start, const std::optional<double>& palm_room)
+         const hands::HandConfiguration& start, const std::optional<double>& palm_distance)
       : hand_(hand),
         direction_((start.X_OH.linear() * hand.palm.direction_H).normalized()),
         centroid_(targets.centroid()),
-        palm_room_(palm_room),
+        wanted_distance_(palm_distance),
         variable_of_(hand.joints.size()),
         start_(start) {
     for (const TargetContact& target : targets.contacts) {
@@ -162,9 +162,9 @@ class Search {
       if (jacobian) jacobian->block<3, 3>(row, 0).setIdentity();
     }
     row += 3;
-    const double room = (centroid_ - palm).dot(direction_);
-    if (palm_room_ && room < *palm_room_) {
-      residual[row] = (*palm_room_ - room) / kMissUnit;
+    const double distance = (centroid_ - palm).dot(direction_);
+    if (wanted_distance_ && distance < *wanted_distance_) {
+      residual[row] = (*wanted_distance_ - distance) / kMissUnit;
       if (jacobian) jacobian->block<1, 3>(row, 0) = direction_.transpose();
     }
     ++row;
@@ -218,7 +218,7 @@ class Search {
   const hands::HandModel& hand_;
   const Vector3d direction_;
   const Vector3d centroid_;
-  const std::optional<double> palm_room_;
+  const std::optional<double> wanted_distance_;
   std::vector<Tip> tips_;
   const TargetContact* palm_target_ = nullptr;
   std::vector<int> joints_;                      ///< Independent joints that move a tip.
@@ -256,7 +256,7 @@ TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& ta
     ++count;
   }
   start.X_OH.pretranslate(Vector3d(shift / count));
-  return Search(hand, targets, start, placement.palm_room).run();
+  return Search(hand, targets, start, placement.palm_distance).run();
 }
 
 namespace {

@@ -23,9 +23,10 @@ struct TargetPosture {
 /// across the placement's palm direction, its turn about that direction, and the joints of fingers
 /// with targets. Errors are the distance of each fingertip from its target and of its normal from
 /// the target's reversed normal, and the distance of the palm center from the palm's target. The
-/// palm direction is fixed [P]; that the palm center stays `palm_room` before the targets' centroid
-/// is a preference. The method is Levenberg-Marquardt with joint limits; the search is local and
-/// starts from the open hand aligned with the targets (section 7), its fingers half way closed.
+/// palm direction is fixed [P]; that the palm center stays `palm_distance` before the targets'
+/// centroid is a preference. The method is Levenberg-Marquardt with joint limits; the search is
+/// local and starts from the open hand aligned with the targets (section 7), its fingers half way
+/// closed.
 TargetPosture posture_for(const hands::HandModel& hand, const TargetContacts& targets,
                           const PalmPlacement& placement);
 

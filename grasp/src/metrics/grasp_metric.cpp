@@ -84,8 +84,8 @@ void GraspMetrics::add(GraspMetric metric) {
   const auto last_of_group =
       std::find_if(metrics_.rbegin(), metrics_.rend(),
                    [&](const GraspMetric& other) { return other.group == metric.group; });
-  const auto place = last_of_group == metrics_.rend() ? metrics_.end() : last_of_group.base();
-  metrics_.insert(place, std::move(metric));
+  const auto position = last_of_group == metrics_.rend() ? metrics_.end() : last_of_group.base();
+  metrics_.insert(position, std::move(metric));
 }
 
 bool GraspMetrics::contains(std::string_view name) const {

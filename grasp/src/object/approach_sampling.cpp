@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Places on an edge of length `length` at `spacing`, centered on it.
-std::vector<double> grid_places(double length, double spacing) {
+/// Coordinates of points at `spacing` on an edge of length `length`, symmetric about its middle.
+std::vector<double> grid_coordinates(double length, double spacing) {
   const auto steps = static_cast<int>(std::floor(length / (2.0 * spacing)));
-  std::vector<double> places;
-  for (int i = -steps; i <= steps; ++i) places.push_back(i * spacing);
-  return places;
+  std::vector<double> coordinates;
+  for (int i = -steps; i <= steps; ++i) coordinates.push_back(i * spacing);
+  return coordinates;
 }
 
 std::vector<geometry::SurfaceSample> box_ray_hits(const ObjectModel& object,
@@ -39,8 +39,8 @@ std::vector<geometry::SurfaceSample> box_ray_hits(const ObjectModel& object,
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
     for (const double side : {-1.0, 1.0}) {
-      for (const double at_u : grid_places(sizes[u], options.box_spacing)) {
-        for (const double at_v : grid_places(sizes[v], options.box_spacing)) {
+      for (const double at_u : grid_coordinates(sizes[u], options.box_spacing)) {
+        for (const double at_v : grid_coordinates(sizes[v], options.box_spacing)) {
           Vector3d origin = box.center();
           origin[axis] += side * 0.5 * sizes[axis];
           origin[u] += at_u;

@@ -20,7 +20,7 @@ using geometry::SurfacePatch;
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Patches by voxel: a dense array over the box of partial voxels, which is the object alone and
-/// not the room kept around it for the hand.
+/// not the margin kept around it for the hand.
 class PatchLookup {
  public:
   PatchLookup(const std::vector<SurfacePatch>& patches, const geometry::VoxelLattice& lattice) {

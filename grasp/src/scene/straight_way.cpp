@@ -12,7 +12,7 @@ using hands::RigidTransform;
 
 namespace {
 
-/// Room for the rounding of distances and bounds of a hand's size [m]; they are off by 1e-14.
+/// Allowance for the rounding of distances and bounds of a hand's size [m]; they are off by 1e-14.
 constexpr double kTouching = 1e-8;
 
 /// Largest distance of a link's frame from its parent's while its joint goes from `from` to `to`:

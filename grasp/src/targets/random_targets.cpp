@@ -48,7 +48,7 @@ class GreedySearch {
  private:
   struct Candidate {
     double rank;
-    std::int32_t place;
+    std::int32_t point;
   };
 
   /// Tries to complete a set from a random seed; returns the stage at which this failed.
@@ -70,25 +70,25 @@ class GreedySearch {
   /// Finds the points that form a stable pair with the seed, as every further target must.
   void find_partners() {
     partners_.clear();
-    for (std::int32_t place = 0; place < static_cast<std::int32_t>(rules_.pool().size()); ++place) {
-      if (place != chosen_[0] && rules_.is_stable_pair(chosen_[0], place)) {
-        partners_.push_back(place);
+    for (std::int32_t point = 0; point < static_cast<std::int32_t>(rules_.pool().size()); ++point) {
+      if (point != chosen_[0] && rules_.is_stable_pair(chosen_[0], point)) {
+        partners_.push_back(point);
       }
     }
   }
 
-  /// Distances from the targets chosen to `place`.
-  std::span<const double> distances_to(std::int32_t place) {
+  /// Distances from the targets chosen to `point`.
+  std::span<const double> distances_to(std::int32_t point) {
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
-      distances_[k] = rules_.distance(chosen_[k], place);
+      distances_[k] = rules_.distance(chosen_[k], point);
     }
     return {distances_.data(), chosen_.size()};
   }
 
-  /// Rank of `place` as the next finger's target, smaller is better; empty if it breaks a
+  /// Rank of `point` as the next finger's target, smaller is better; empty if it breaks a
   /// requirement.
-  std::optional<double> rank(std::int32_t place) {
-    const std::span<const double> distances = distances_to(place);
+  std::optional<double> rank(std::int32_t point) {
+    const std::span<const double> distances = distances_to(point);
     const double first_edge =
         chosen_.size() >= 2 ? rules_.distance(chosen_[0], chosen_[1]) : distances[0];
     double edge_error = 0.0;
@@ -103,7 +103,7 @@ class GreedySearch {
     }
     double centroid_error = 0.0;
     if (chosen_.size() + 1 == rules_.num_fingers()) {
-      chosen_.push_back(place);
+      chosen_.push_back(point);
       centroid_error = rules_.centroid_error(chosen_);
       chosen_.pop_back();
       if (centroid_error > options_.centroid_limit_rel * relaxation_) return std::nullopt;
@@ -112,8 +112,8 @@ class GreedySearch {
     double num_angles = 0.0;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
       if (k > 0 && options_.pair_rule == PairRule::Seed) break;
-      if (k > 0 && !rules_.is_stable_pair(chosen_[k], place)) return std::nullopt;
-      if (options_.angle_weight > 0.0) angle_sum += rules_.angle_share(chosen_[k], place);
+      if (k > 0 && !rules_.is_stable_pair(chosen_[k], point)) return std::nullopt;
+      if (options_.angle_weight > 0.0) angle_sum += rules_.angle_share(chosen_[k], point);
       num_angles += 1.0;
     }
     if (!rules_.is_extendable(orders_, distances)) return std::nullopt;
@@ -122,16 +122,16 @@ class GreedySearch {
 
   bool draw_finger() {
     candidates_.clear();
-    for (const std::int32_t place : partners_) {
-      if (const std::optional<double> value = rank(place)) candidates_.push_back({*value, place});
+    for (const std::int32_t point : partners_) {
+      if (const std::optional<double> value = rank(point)) candidates_.push_back({*value, point});
     }
     if (candidates_.empty()) return false;
     // The second of three or more has nothing but its angle to be ranked by.
     const bool is_ranked =
         chosen_.size() >= 2 || rules_.num_fingers() == 2 || options_.angle_weight > 0.0;
-    const std::int32_t place = candidates_[draw_candidate(is_ranked)].place;
-    orders_ = rules_.extended(orders_, distances_to(place));
-    chosen_.push_back(place);
+    const std::int32_t point = candidates_[draw_candidate(is_ranked)].point;
+    orders_ = rules_.extended(orders_, distances_to(point));
+    chosen_.push_back(point);
     return true;
   }
 
@@ -140,14 +140,14 @@ class GreedySearch {
     std::vector<double> misfits;
     std::vector<std::int32_t> with_palm = chosen_;
     with_palm.push_back(0);
-    for (std::int32_t place = 0; place < static_cast<std::int32_t>(rules_.pool().size()); ++place) {
-      const std::optional<double> misfit = rules_.palm_misfit(chosen_, orders_, place);
+    for (std::int32_t point = 0; point < static_cast<std::int32_t>(rules_.pool().size()); ++point) {
+      const std::optional<double> misfit = rules_.palm_misfit(chosen_, orders_, point);
       if (!misfit) continue;
-      with_palm.back() = place;
-      candidates_.push_back({rules_.centroid_error(with_palm) + *misfit, place});
+      with_palm.back() = point;
+      candidates_.push_back({rules_.centroid_error(with_palm) + *misfit, point});
     }
     if (candidates_.empty()) return false;
-    const std::int32_t palm = candidates_[draw_candidate(true)].place;
+    const std::int32_t palm = candidates_[draw_candidate(true)].point;
     palm_misfit_ = rules_.palm_misfit(chosen_, orders_, palm);
     chosen_.push_back(palm);
     return true;
@@ -163,7 +163,7 @@ class GreedySearch {
       std::partial_sort(candidates_.begin(),
                         candidates_.begin() + static_cast<std::ptrdiff_t>(size), candidates_.end(),
                         [](const Candidate& a, const Candidate& b) {
-                          return a.rank != b.rank ? a.rank < b.rank : a.place < b.place;
+                          return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
                         });
     }
     return random_.index(size);

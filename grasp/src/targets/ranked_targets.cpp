@@ -64,11 +64,11 @@ struct RankedTargets::Impl {
 
   /// Finds the stable pairs within reach: for each point its partners, by ascending distance.
   void find_partners() {
-    const auto num_places = static_cast<std::int32_t>(rules.pool().size());
-    if (num_places > 0) failure = TargetFailure::NoSecond;
-    partners.resize(static_cast<std::size_t>(num_places));
-    for (std::int32_t a = 0; a < num_places; ++a) {
-      for (std::int32_t b = a + 1; b < num_places; ++b) {
+    const auto num_points = static_cast<std::int32_t>(rules.pool().size());
+    if (num_points > 0) failure = TargetFailure::NoSecond;
+    partners.resize(static_cast<std::size_t>(num_points));
+    for (std::int32_t a = 0; a < num_points; ++a) {
+      for (std::int32_t b = a + 1; b < num_points; ++b) {
         if (!rules.is_stable_pair(a, b)) continue;
         const double distance = rules.distance(a, b);
         if (distance < rules.options().min_separation || !rules.is_in_seed_reach(distance))
@@ -78,7 +78,7 @@ struct RankedTargets::Impl {
         if (num_fingers > 2) failure = TargetFailure::NoFurther;
       }
     }
-    for (std::int32_t a = 0; a < num_places; ++a) {
+    for (std::int32_t a = 0; a < num_points; ++a) {
       std::sort(partners[a].begin(), partners[a].end(), [&](std::int32_t b, std::int32_t c) {
         const double to_b = rules.distance(a, b);
         const double to_c = rules.distance(a, c);
@@ -170,8 +170,8 @@ struct RankedTargets::Impl {
     const double slack = 1e-9 * (first_edge + rules.normalizing_radius());
     const std::vector<std::int32_t>& list = partners[chosen[0]];
     auto third = std::lower_bound(list.begin(), list.end(), from - slack,
-                                  [&](std::int32_t place, double distance) {
-                                    return rules.distance(chosen[0], place) < distance;
+                                  [&](std::int32_t partner, double distance) {
+                                    return rules.distance(chosen[0], partner) < distance;
                                   });
     for (; third != list.end(); ++third) {
       if (rules.distance(chosen[0], *third) > to + slack) break;
@@ -220,9 +220,10 @@ struct RankedTargets::Impl {
       return;
     }
     // Targets after the third are taken in ascending order, so that each set of them comes once.
-    for (const std::int32_t place : partners[chosen[0]]) {
-      if (place == chosen[1] || place == chosen[2] || (k >= 3 && place <= chosen[k])) continue;
-      chosen[k + 1] = place;
+    for (const std::int32_t partner : partners[chosen[0]]) {
+      if (partner == chosen[1] || partner == chosen[2] || (k >= 3 && partner <= chosen[k]))
+        continue;
+      chosen[k + 1] = partner;
       add(k + 1, more, least_rank);
     }
   }

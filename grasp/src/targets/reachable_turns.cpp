@@ -49,7 +49,7 @@ PointFromPalm PalmAxes::place(const Vector3d& from_center_H) const {
 }
 
 ReachableTurns::ReachableTurns(const PalmAxes& palm, const hands::TipReach& tip, double tolerance) {
-  // A place is up to half a diagonal from the center of the cell that holds it.
+  // A point is up to half a diagonal from the center of the cell that holds it.
   const double reach = tolerance + 0.5 * std::numbers::sqrt3 * tip.cell() + kRounding;
   double least = std::numeric_limits<double>::infinity();
   double largest = -least;
@@ -107,13 +107,13 @@ void ReachableTurns::add(double ahead, double aside, double azimuth, double reac
   }
 }
 
-Turns ReachableTurns::at(const PointFromPalm& place) const {
-  const double ahead = (place.ahead - first_ahead_) / kTableCell;
-  const double aside = place.aside / kTableCell;
+Turns ReachableTurns::at(const PointFromPalm& point) const {
+  const double ahead = (point.ahead - first_ahead_) / kTableCell;
+  const double aside = point.aside / kTableCell;
   if (ahead < 0.0 || ahead >= num_ahead_ || aside >= num_aside_) return {};
   const Turns& azimuths = azimuths_[static_cast<int>(ahead) * num_aside_ + static_cast<int>(aside)];
-  // Turned by k, the place is at azimuth + k.
-  const auto by = static_cast<std::size_t>(place.azimuth);
+  // Turned by k, the point is at azimuth + k.
+  const auto by = static_cast<std::size_t>(point.azimuth);
   return (azimuths >> by) | (azimuths << (kTurns - by));
 }
 

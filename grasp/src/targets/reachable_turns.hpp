@@ -47,7 +47,7 @@ class ReachableTurns {
 
   /// Every turn k at which `hands::TipReach` has a visited cell within the tolerance of the cell
   /// that holds the point turned by k · 2π/kTurns, and possibly further turns.
-  Turns at(const PointFromPalm& place) const;
+  Turns at(const PointFromPalm& point) const;
 
  private:
   /// Adds the azimuths near a visited cell to the table's cells near it.

@@ -75,14 +75,14 @@ void thin(std::vector<PoolPoint>& pool, const ObjectModel& object, double spacin
     pool[i].inward_normal_O.cwiseAbs().maxCoeff(&axis);
     const int side = 2 * static_cast<int>(axis) + (pool[i].inward_normal_O[axis] > 0.0 ? 1 : 0);
     const auto [entry, is_new] = best.try_emplace({cell[0], cell[1], cell[2], side}, i);
-    const auto score = [&](std::size_t place) { return object.scores.scores[*pool[place].patch]; };
+    const auto score = [&](std::size_t index) { return object.scores.scores[*pool[index].patch]; };
     if (!is_new && score(i) > score(entry->second)) entry->second = i;
   }
   std::vector<std::size_t> kept;
-  for (const auto& [cell, place] : best) kept.push_back(place);
+  for (const auto& [cell, index] : best) kept.push_back(index);
   std::sort(kept.begin(), kept.end());
   std::vector<PoolPoint> thinned;
-  for (const std::size_t place : kept) thinned.push_back(pool[place]);
+  for (const std::size_t index : kept) thinned.push_back(pool[index]);
   pool = std::move(thinned);
 }
 
@@ -253,15 +253,15 @@ double TargetRules::rank(PointIndices points, std::optional<double> palm_misfit)
   return rank;
 }
 
-bool TargetRules::has_room(std::int32_t palm) const {
+bool TargetRules::has_palm_space(std::int32_t palm) const {
   const PalmSpace known = palm_space_[palm].load(std::memory_order_relaxed);
   if (known != PalmSpace::Unknown) return known == PalmSpace::Free;
-  const PoolPoint& place = pool_[palm];
+  const PoolPoint& point = pool_[palm];
   const double squared_radius = distances_.palm->pad_radius * distances_.palm->pad_radius;
   const bool is_free = std::none_of(
       object_.patches.begin(), object_.patches.end(), [&](const geometry::SurfacePatch& patch) {
-        const Vector3d offset = patch.centroid - place.point_O;
-        const double height = -offset.dot(place.inward_normal_O);
+        const Vector3d offset = patch.centroid - point.point_O;
+        const double height = -offset.dot(point.inward_normal_O);
         return height > object_.grid.lattice.voxel_size &&
                offset.squaredNorm() - height * height < squared_radius;
       });
@@ -283,10 +283,10 @@ std::optional<double> TargetRules::tip_misfit(PointIndices fingers,
   for (std::size_t t = 0; t < fingers.size(); ++t) {
     pad_normal[t] = R_HO * pool_[fingers[t]].inward_normal_O;
     from_palm[t] = R_HO * (pool_[fingers[t]].point_O - palm.point_O);
-    const PointFromPalm place = palm_axes_->place(from_palm[t]);
+    const PointFromPalm point = palm_axes_->place(from_palm[t]);
     for (std::size_t f = 0; f < fingers.size(); ++f) {
       const auto& turns = reachable_turns_[parts_.fingers[f]];
-      if (turns) reachable[t][f] = turns->at(place);
+      if (turns) reachable[t][f] = turns->at(point);
     }
   }
   const Turns worth_trying = turns_of_any(orders, reachable, fingers.size());
@@ -328,11 +328,11 @@ std::optional<double> TargetRules::tip_misfit(PointIndices fingers,
 std::optional<double> TargetRules::palm_misfit(PointIndices fingers,
                                                const std::vector<FingerOrder>& orders,
                                                std::int32_t palm) const {
-  const PoolPoint& place = pool_[palm];
+  const PoolPoint& point = pool_[palm];
   std::array<double, kMostParts> distances{};
   for (std::size_t t = 0; t < fingers.size(); ++t) {
-    const Vector3d from_palm = pool_[fingers[t]].point_O - place.point_O;
-    if (!(from_palm.dot(place.inward_normal_O) > 0.0)) return std::nullopt;
+    const Vector3d from_palm = pool_[fingers[t]].point_O - point.point_O;
+    if (!(from_palm.dot(point.inward_normal_O) > 0.0)) return std::nullopt;
     distances[t] = from_palm.norm();
     if (distances[t] < options_.min_separation) return std::nullopt;
   }
@@ -346,8 +346,8 @@ std::optional<double> TargetRules::palm_misfit(PointIndices fingers,
     if (is_in_reach) in_reach.push_back(order);
   }
   if (in_reach.empty()) return std::nullopt;
-  const std::optional<double> misfit = tip_misfit(fingers, in_reach, place);
-  if (!misfit || !has_room(palm)) return std::nullopt;
+  const std::optional<double> misfit = tip_misfit(fingers, in_reach, point);
+  if (!misfit || !has_palm_space(palm)) return std::nullopt;
   return *misfit / normalizing_radius();
 }
 
@@ -357,10 +357,10 @@ TargetContacts TargetRules::as_targets(PointIndices points, std::optional<double
   targets.seeds_tried = seeds_tried;
   targets.rank = rank(points, palm_misfit);
   for (const std::int32_t index : points) {
-    const PoolPoint& place = pool_[index];
-    const double score = place.patch ? object_.scores.scores[*place.patch]
-                                     : contact_score_at(object_, place.point_O).value_or(0.0);
-    targets.contacts.push_back({place.point_O, -place.inward_normal_O, place.patch, score});
+    const PoolPoint& point = pool_[index];
+    const double score = point.patch ? object_.scores.scores[*point.patch]
+                                     : contact_score_at(object_, point.point_O).value_or(0.0);
+    targets.contacts.push_back({point.point_O, -point.inward_normal_O, point.patch, score});
   }
   if (has_palm()) targets.contacts.back().is_palm = true;
   return targets;

@@ -95,7 +95,7 @@ class TargetRules {
   bool reaches(int order_a, int order_b, double distance) const;
   bool can_take(const FingerOrder& order, std::size_t size, int finger,
                 std::span<const double> distances) const;
-  bool has_room(std::int32_t palm) const;
+  bool has_palm_space(std::int32_t palm) const;
   std::optional<double> tip_misfit(PointIndices fingers, const std::vector<FingerOrder>& orders,
                                    const PoolPoint& palm) const;
 

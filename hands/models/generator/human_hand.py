@@ -232,12 +232,12 @@ def dome(field, center, axes, half_length, half_width, sides, reach):
     x, y, z = (axes[:, k] for k in range(3))
     # Corners left and right of the axes, so that the outline is symmetric.
     angles = [2.0 * math.pi * (k + 0.5) / sides for k in range(sides)]
-    places = [(share * half_length * math.cos(a), share * half_width * math.sin(a))
+    points = [(share * half_length * math.cos(a), share * half_width * math.sin(a))
               for share in (1.0, 0.82, 0.52) for a in angles] + [(0.0, 0.0)]
-    heights = heights_along(field, [center + u * x + v * y for u, v in places], z, -reach, reach)
+    heights = heights_along(field, [center + u * x + v * y for u, v in points], z, -reach, reach)
     base = float(heights[:sides].min())
-    surface = [(u, v, float(h) - base) for (u, v), h in zip(places, heights)]
-    return center + base * z, places[:sides], [s for s in surface if s[2] > 1e-6]
+    surface = [(u, v, float(h) - base) for (u, v), h in zip(points, heights)]
+    return center + base * z, points[:sides], [s for s in surface if s[2] > 1e-6]
 
 
 def tilted(angle_deg):

@@ -304,11 +304,11 @@ std::vector<Vector3d> dome(const std::vector<Vector2d>& outline,
 std::optional<FittedPad> bulging_pad(const MeshQuery& link, const std::vector<MeshQuery>& others,
                                      const RayGrid& grid, const std::vector<bool>& part,
                                      const Eigen::Matrix3d& R_LS, const SearchBox& box) {
-  std::vector<Vector2d> places;
+  std::vector<Vector2d> hits_S;
   for (std::size_t i = 0; i < part.size(); ++i) {
-    if (part[i]) places.push_back(grid.samples[i].point.head<2>());
+    if (part[i]) hits_S.push_back(grid.samples[i].point.head<2>());
   }
-  std::vector<Vector2d> outline_S = hull_of(places);
+  std::vector<Vector2d> outline_S = hull_of(hits_S);
   if (outline_S.size() >= 3) simplify(outline_S, kMaxCorners);
   if (outline_S.size() < 3 || fill_share(grid, part, outline_S) < kFillShare) {
     outline_S = largest_rectangle(grid, part);

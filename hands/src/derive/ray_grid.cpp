@@ -22,8 +22,8 @@ constexpr double kMaxStep = 1.2;   // [rad]: a steeper step between neighbors se
 }  // namespace
 
 Sample probe(const MeshQuery& link, const std::vector<MeshQuery>& others,
-             const Eigen::Matrix3d& R_LS, const Vector2d& place, double top) {
-  const Vector3d origin_L = R_LS * Vector3d(place.x(), place.y(), top);
+             const Eigen::Matrix3d& R_LS, const Vector2d& position_S, double top) {
+  const Vector3d origin_L = R_LS * Vector3d(position_S.x(), position_S.y(), top);
   const Vector3d ray_L = -R_LS.col(2);
   Sample sample;
   const auto hit = link.first_hit(origin_L, ray_L);

@@ -49,10 +49,10 @@ SearchBox search_box(const geometry::MeshQuery& link,
                      const std::vector<geometry::MeshQuery>& others, const Eigen::Matrix3d& R_LS,
                      const PadSearch& search);
 
-/// Casts the ray against z at the position `place` of the search frame: returns its hit on the
+/// Casts the ray against z at the position `position_S` of the search frame: returns its hit on the
 /// link, unless the others hide it.
 Sample probe(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,
-             const Eigen::Matrix3d& R_LS, const Eigen::Vector2d& place, double top);
+             const Eigen::Matrix3d& R_LS, const Eigen::Vector2d& position_S, double top);
 
 /// Casts the rays over the box; the grid has no samples if the box has no area.
 RayGrid cast(const geometry::MeshQuery& link, const std::vector<geometry::MeshQuery>& others,

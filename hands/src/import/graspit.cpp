@@ -269,15 +269,15 @@ class Reader : private XmlSource {
 
   ChainJoint joint(const XMLElement& e, int chain, int index) {
     ChainJoint result;
-    const std::string place = "chain" + std::to_string(chain) + "_joint" + std::to_string(index);
-    const std::string type = text_of(e, "type", place);
+    const std::string where = "chain" + std::to_string(chain) + "_joint" + std::to_string(index);
+    const std::string type = text_of(e, "type", where);
     const bool is_revolute = type == "Revolute";
     if (!is_revolute && type != "Prismatic") {
-      fail(e, place + ": type " + type + " is neither Revolute nor Prismatic");
+      fail(e, where + ": type " + type + " is neither Revolute nor Prismatic");
     }
-    result.value = expression(child(e, is_revolute ? "theta" : "d", place), place);
+    result.value = expression(child(e, is_revolute ? "theta" : "d", where), where);
     DescribedJoint& described = result.described;
-    described.name = "d" + std::to_string(result.value.dof) + "_" + place;
+    described.name = "d" + std::to_string(result.value.dof) + "_" + where;
     const std::string item = "joint " + described.name;
     described.type = is_revolute ? DescribedJoint::Type::Revolute : DescribedJoint::Type::Prismatic;
     described.axis = Eigen::Vector3d::UnitZ();

@@ -130,15 +130,15 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
     const Eigen::Vector3d& q = mesh.vertices[b];
     return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
   };
-  std::map<std::int32_t, std::int32_t, decltype(less)> place_of(less);
-  std::vector<std::int32_t> place(mesh.vertices.size());
+  std::map<std::int32_t, std::int32_t, decltype(less)> first_of(less);
+  std::vector<std::int32_t> first_equal(mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto own = static_cast<std::int32_t>(v);
-    place[v] = place_of.emplace(own, own).first->second;
+    first_equal[v] = first_of.emplace(own, own).first->second;
   }
-  std::vector<std::int32_t> above(place);  // union-find over places
+  std::vector<std::int32_t> above(first_equal);  // union-find over distinct points
   const auto root = [&](std::int32_t v) {
-    v = place[v];
+    v = first_equal[v];
     while (above[v] != v) {
       v = above[v] = above[above[v]];
     }

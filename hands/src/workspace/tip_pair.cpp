@@ -178,9 +178,9 @@ class BestStarts {
     return starts_.size() < kStarts || value > starts_.back().value;
   }
   void add(double value, const VectorXd& q) {
-    const auto place = std::find_if(starts_.begin(), starts_.end(),
-                                    [&](const Start& start) { return value > start.value; });
-    starts_.insert(place, {value, q});
+    const auto position = std::find_if(starts_.begin(), starts_.end(),
+                                       [&](const Start& start) { return value > start.value; });
+    starts_.insert(position, {value, q});
     if (starts_.size() > kStarts) starts_.pop_back();
   }
   const std::vector<Start>& list() const { return starts_; }

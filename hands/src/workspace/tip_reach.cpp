@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kCell = 0.006;  // [m] less than the width of any fingertip
 // Width of the border around the visited cells [cells]: there, distances of points that a finger
 // nearly reaches are looked up, not bounded.
-constexpr int kRoom = 4;
+constexpr int kBorder = 4;
 constexpr double kMostCells = 0x1p26;  // 2.4 m cubed, in cells of 6 mm
 constexpr int kMostSamples = 1 << 14;
 constexpr int kMostPerJoint = 128;
@@ -92,9 +92,9 @@ TipReach::TipReach(const std::vector<TipPose>& poses, double cell) : cell_(cell)
   Eigen::AlignedBox3d box;
   for (const TipPose& pose : poses) box.extend(pose.point_H);
   geometry::VoxelGrid grid;
-  grid.lattice.origin = box.min() - Vector3d::Constant((kRoom + 0.5) * cell);
+  grid.lattice.origin = box.min() - Vector3d::Constant((kBorder + 0.5) * cell);
   grid.lattice.voxel_size = cell;
-  const Eigen::Array3d counts = (box.sizes() / cell).array().ceil() + 2 * kRoom + 2;
+  const Eigen::Array3d counts = (box.sizes() / cell).array().ceil() + 2 * kBorder + 2;
   // Written so that NaN fails.
   if (!(counts.prod() <= kMostCells)) {
     throw base::InvalidInput("TipReach: places " + base::shortest_decimal(box.sizes().maxCoeff()) +

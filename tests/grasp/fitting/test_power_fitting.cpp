@@ -77,7 +77,7 @@ TEST_CASE("A power grasp has the palm on the object, looking against its target'
     const auto placements = grasp::palm_placements(scene.object, open_targets, std::nullopt, pi);
     REQUIRE(placements.size() == 1);  // the seed is off the palm's axis
     CHECK(placements[0].direction_O == Vector3d(0, 0, -1));
-    CHECK_FALSE(placements[0].palm_room);
+    CHECK_FALSE(placements[0].palm_distance);
     const TargetContacts targets = scene.assigned(open_targets, placements[0]);
     const FittingResult result = scene.fit(targets, placements[0], paper_loop(), GraspStyle::Power);
     CHECK(result.smallest_distance == 0.0);

@@ -21,8 +21,9 @@ SortedJson read_manifest(const fs::path& file) {
 
 /// A member as an object; empty if there is none.
 SortedJson object_at(const SortedJson& json, const char* pointer) {
-  const SortedJson::json_pointer place(pointer);
-  return json.contains(place) && json.at(place).is_object() ? json.at(place) : SortedJson::object();
+  const SortedJson::json_pointer member(pointer);
+  return json.contains(member) && json.at(member).is_object() ? json.at(member)
+                                                              : SortedJson::object();
 }
 
 std::string text_of(const SortedJson& value) {

@@ -9,8 +9,8 @@ namespace graspfit::sweep {
 using base::JsonValue;
 
 JsonValue setting_value(std::string key, const nlohmann::json& json) {
-  const auto fault = [](const std::string& place, const std::string& what) {
-    throw SettingError(place, what);
+  const auto fault = [](const std::string& where, const std::string& what) {
+    throw SettingError(where, what);
   };
   return {JsonValue::Json(json), fault, std::move(key)};
 }

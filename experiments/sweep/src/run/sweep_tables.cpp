@@ -105,14 +105,14 @@ JournalIdentity journal_identity(const ExperimentConfig& config, const RunManife
 }
 
 void require_own_folder(const fs::path& folder, const std::string& slug) {
-  std::vector<fs::path> places = {folder};
+  std::vector<fs::path> searched = {folder};
   std::error_code error;
   for (const fs::directory_entry& shard : fs::directory_iterator(folder / "shards", error)) {
-    places.push_back(shard.path());
+    searched.push_back(shard.path());
   }
   std::set<std::string> others;  // sorted by name, as folders have no order
-  for (const fs::path& place : places) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(place, error)) {
+  for (const fs::path& directory : searched) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
       const std::string name = entry.path().filename().string();
       for (const std::string_view ending : {".cells", ".manifest.json"}) {
         if (!name.ends_with(ending)) continue;

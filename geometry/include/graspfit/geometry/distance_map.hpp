@@ -32,18 +32,18 @@ struct SignedDistanceMap {
   /// point, as straight in front of a flat face. Where c is a full voxel nothing is known, and the
   /// value is that of c.
   float at(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d place = (point - lattice.origin) / lattice.voxel_size;
+    const Eigen::Vector3d position = (point - lattice.origin) / lattice.voxel_size;
     // This is the hot path of the fitting loop. Inside the lattice truncation rounds down.
-    const bool is_inside = place[0] >= 0.0 && place[0] < lattice.counts[0] && place[1] >= 0.0 &&
-                           place[1] < lattice.counts[1] && place[2] >= 0.0 &&
-                           place[2] < lattice.counts[2];
-    return is_inside ? at(Eigen::Vector3i(place.cast<int>())) : at_beyond(place);
+    const bool is_inside = position[0] >= 0.0 && position[0] < lattice.counts[0] &&
+                           position[1] >= 0.0 && position[1] < lattice.counts[1] &&
+                           position[2] >= 0.0 && position[2] < lattice.counts[2];
+    return is_inside ? at(Eigen::Vector3i(position.cast<int>())) : at_beyond(position);
   }
 
  private:
-  /// `at` for a point outside the lattice; `place` is its position in voxels from the lattice's
+  /// `at` for a point outside the lattice; `position` is its position in voxels from the lattice's
   /// origin.
-  float at_beyond(const Eigen::Vector3d& place) const;
+  float at_beyond(const Eigen::Vector3d& position) const;
 };
 
 /// Computes the map in linear time, by the exact squared Euclidean distance transform [Felzenszwalb

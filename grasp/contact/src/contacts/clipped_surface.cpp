@@ -149,9 +149,9 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::Clip
   }
   const auto groups = [&] {
     std::vector<std::vector<std::size_t>> result;
-    std::map<std::size_t, std::size_t> place;
+    std::map<std::size_t, std::size_t> index_of;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const auto [found, is_new] = place.emplace(sets.find_set(i), result.size());
+      const auto [found, is_new] = index_of.emplace(sets.find_set(i), result.size());
       if (is_new) result.emplace_back();
       result[found->second].push_back(i);
     }

@@ -16,7 +16,7 @@ struct PalmPlacement {
   double turn = 0.0;
   /// Distance that the palm center should keep before the targets' centroid along n_palm, because
   /// the object extends that far [m]; empty where the palm has a target of its own.
-  std::optional<double> palm_room = {};
+  std::optional<double> palm_distance = {};
 };
 
 /// Candidate palm placements for a set of targets. For three targets the palm faces along ± the
