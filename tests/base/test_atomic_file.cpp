@@ -30,7 +30,7 @@ TEST_CASE("What is written is read back byte for byte", "[geometry][atomic_file]
     write_file_atomically(file, content);
     CHECK(read_file(file) == content);
   }
-  // Nothing but the file itself is there.
+  // The folder holds nothing but the file itself.
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
@@ -115,7 +115,7 @@ TEST_CASE("A device is written into, and what it says is reported", "[geometry][
   write_file_atomically(null, "x");
   CHECK(fs::is_character_file(null));
   const fs::path disk = folder.path() / "disk";
-  // No driver has this number: even a write that should not come would go nowhere.
+  // No driver has this number, so that even a write that should not come would go nowhere.
   if (::mknod(disk.c_str(), S_IFBLK | 0600, ::makedev(240, 99)) == 0) {
     CHECK_THROWS_WITH(write_file_atomically(disk, "x"),
                       "cannot write " + disk.string() + ": it is a block device");
@@ -148,7 +148,7 @@ TEST_CASE("Writers of one file do not meet, and what a killed one left is taken 
     first.commit();
     CHECK(read_file(file) == "first");
   }
-  // As after a kill: files that nobody has locked.
+  // These files are as after a kill: nobody has locked them.
   for (const char* name : {"table.part0", "table.part1"}) {
     std::ofstream(folder.path() / name) << "longer than what follows";
   }

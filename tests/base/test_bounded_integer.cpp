@@ -25,7 +25,7 @@ TEST_CASE("A double within the bounds loses its fraction, any other becomes a bo
 
 TEST_CASE("Bounds that no double holds are kept", "[geometry][bounded_integer]") {
   constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
-  constexpr auto kMost = std::numeric_limits<std::int64_t>::max();  // 2^63 as a double
+  constexpr auto kMost = std::numeric_limits<std::int64_t>::max();  // As a double this is 2^63.
   CHECK(bounded_integer(0x1p63, kLeast, kMost) == kMost);
   CHECK(bounded_integer(std::nextafter(0x1p63, 0.0), kLeast, kMost) == kMost - 1023);
   CHECK(bounded_integer(-0x1p63, kLeast, kMost) == kLeast);

@@ -38,7 +38,7 @@ TEST_CASE("What is kept is read back byte for byte, under its own kind and key o
   }
   CHECK_FALSE(cache.read("letters", kKey));
   CHECK_FALSE(cache.read("numbers", sha256_hex("other content")));
-  // A file of another kind or key, under this name, is none.
+  // A file of another kind or key under this name counts as no entry.
   cache.write("letters", kKey, "abc");
   fs::copy_file(*cache.file_of("letters", kKey), *cache.file_of("numbers", kKey),
                 fs::copy_options::overwrite_existing);
@@ -74,10 +74,11 @@ TEST_CASE("A damaged entry is as good as none, whichever byte it is, and is repl
         [](int number) { return std::to_string(number); });
   };
   CHECK(value() == 1);
-  CHECK(value() == 1);                // Read.
+  CHECK(value() == 1);                // This one is read.
   cache.write("numbers", kKey, "7");  // Another value shows that it is the entry that is read.
   CHECK(value() == 7);
-  cache.write("numbers", kKey, "seven");  // Sealed, but no such value: found again and replaced.
+  // The entry is sealed but holds no such value, so the value is found again and replaces it.
+  cache.write("numbers", kKey, "seven");
   CHECK(value() == 2);
   CHECK(cache.read("numbers", kKey) == "2");
 }
@@ -90,7 +91,7 @@ TEST_CASE("A cache that is off, or that cannot be written, keeps nothing and is 
   CHECK_FALSE(off.file_of("numbers", kKey));
   CHECK_FALSE(off.read("numbers", kKey));
   CHECK(fs::is_empty(folder.path()));
-  // A file where the folder should be, a folder where the file should be: nobody can write there.
+  // Nobody can write where a file is in the place of the folder, or a folder in that of the file.
   write_file_atomically(folder.path() / "file", "");
   for (const char* place : {"file", "file/below"}) {
     const ContentCache blocked{.folder = folder.path() / place};
@@ -101,7 +102,7 @@ TEST_CASE("A cache that is off, or that cannot be written, keeps nothing and is 
   fs::create_directories(*taken.file_of("numbers", kKey));
   taken.write("numbers", kKey, "1");
   CHECK_FALSE(taken.read("numbers", kKey));
-  // No temporary file stays.
+  // No temporary file stays behind.
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 2);
   CHECK(std::distance(fs::directory_iterator(folder.path() / "numbers"), {}) == 1);
 }
@@ -118,7 +119,7 @@ TEST_CASE("The cache is where the environment says, and nowhere without a home",
   }
   const ContentCache cache;
   CHECK_FALSE(cache.file_of("numbers", kKey));
-  cache.write("numbers", kKey, "1");  // Nowhere to write to.
+  cache.write("numbers", kKey, "1");  // There is no folder to write to.
   const std::vector<std::pair<const char*, const char*>> places = {
       {"HOME", "home/.cache/graspfit"},
       {"XDG_CACHE_HOME", "xdg/graspfit"},
@@ -128,12 +129,13 @@ TEST_CASE("The cache is where the environment says, and nowhere without a home",
   };
   for (const auto& [variable, place] : places) {
     const fs::path value = folder.path() / *fs::path(place).begin();
-    ::setenv(variable, value.c_str(), 1);  // Each goes before those set so far.
+    ::setenv(variable, value.c_str(), 1);  // Each variable takes precedence over those set so far.
     CHECK(cache.file_of("numbers", kKey) == file(place));
     cache.write("numbers", kKey, "1");
     CHECK(fs::is_regular_file(file(place)));
   }
-  ::setenv("GRASPFIT_CACHE", "relative/path", 1);  // Ignored: it would follow the working folder.
+  // A relative path is ignored, because it would follow the working folder.
+  ::setenv("GRASPFIT_CACHE", "relative/path", 1);
   CHECK(cache.file_of("numbers", kKey) == file(places[1].second));
   for (std::size_t i = 0; i < variables.size(); ++i) {
     ::unsetenv(variables[i]);
@@ -197,7 +199,7 @@ TEST_CASE("Numbers are read back to the bit, and nothing else is", "[geometry][c
   CHECK(in.indices(0).empty());
   CHECK(in.is_finished());
 
-  // What is missing, out of range or no number spoils the reader for good.
+  // The reader is bad for good once something is missing, out of range or no number.
   for (const char* text : {"", "x", "7", "-1", "nan", "2 5"}) {
     CAPTURE(text);
     NumberReader bad(text);

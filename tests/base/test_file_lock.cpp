@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is there, opened; closed at the end.
+/// Opens a file or folder that exists and closes it at the end.
 class Opened {
  public:
   explicit Opened(const fs::path& path)

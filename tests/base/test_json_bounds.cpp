@@ -14,7 +14,7 @@ namespace {
 using namespace graspfit::base;
 using graspfit::testing::TemporaryFolder;
 
-/// What a text is refused with; "accepted" if it is not.
+/// Returns the message with which a text is refused; "accepted" if it is not.
 std::string refusal(const std::string& text) {
   try {
     require_bounded_json(text, "a.json");
@@ -38,7 +38,7 @@ TEST_CASE("JSON may nest to the limit and not one level deeper", "[geometry][jso
         "a.json: line 2, column 70: nests deeper than 64 levels, which is as deep as JSON is read");
   CHECK(refusal(nested(kDeepestJson + 1)).starts_with("a.json: line 1, column 65: nests deeper"));
   CHECK(refusal(std::string(1000000, '[')).starts_with("a.json: line 1, column 65: nests deeper"));
-  // Beside one another is not inside one another.
+  // Members beside one another are not nested.
   std::string wide = "[[]";
   for (int i = 0; i < 1000; ++i) wide += ",{\"a\": [0]}";
   CHECK(refusal(wide + "]") == "accepted");
@@ -53,7 +53,7 @@ TEST_CASE("Brackets in JSON strings do not nest, and escaped quotes do not end a
   // A backslash that is escaped itself escapes nothing.
   CHECK(refusal(R"(["\\", )" + brackets).starts_with("a.json: line 1"));
   CHECK(refusal(R"(["\u005b"])") == "accepted");
-  // Texts that end inside of a string are for the parser to refuse.
+  // Texts that end inside a string are left for the parser to refuse.
   CHECK(refusal("[\"" + brackets) == "accepted");
   CHECK(refusal("[\"\\") == "accepted");
 }
@@ -72,7 +72,7 @@ TEST_CASE("An object may have so many members and not one more", "[base][json_bo
   CHECK(
       refusal_of("{\"a\": 1,\n \"b\": {}, \"c\": 3}") ==
       "a.json: line 2, column 14: an object has more than 2 members, which is as many as are read");
-  CHECK(refusal_of(":::") == "accepted");  // no object, and no JSON
+  CHECK(refusal_of(":::") == "accepted");  // This is no object, and no JSON.
 }
 
 TEST_CASE("A JSON file that is too large is refused before it is read", "[geometry][json_bounds]") {
@@ -80,7 +80,8 @@ TEST_CASE("A JSON file that is too large is refused before it is read", "[geomet
   const std::filesystem::path file = folder.path() / "large.json";
   std::ofstream(file) << "{}";
   CHECK(read_json_file(file) == "{}");
-  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);  // a hole: takes no room on the disk
+  // The file is one hole and uses no space on the disk.
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);
   try {
     read_json_file(file);
     FAIL("accepted");

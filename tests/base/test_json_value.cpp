@@ -15,7 +15,7 @@ JsonValue parsed(const std::string& text) {
   return JsonValue::parsed<InvalidInput>(text, "a.json");
 }
 
-/// What `use` of the text's root is refused with; "accepted" if it is not.
+/// Returns the message with which `use` of the text's root is refused; "accepted" if it is not.
 template <class Use>
 std::string refusal(const std::string& text, const Use& use) {
   try {
@@ -40,7 +40,7 @@ TEST_CASE("Values are what their text says", "[base][json_value]") {
   CHECK(root.at("list").numbers<2>() == std::array{1.0, 2.5});
   CHECK(root.at("a").at("b").texts() == std::vector<std::string>{"x", "y"});
   CHECK(root.at("a").at("b").items()[1].location() == "/a/b/1");
-  CHECK(root.members().front().first == "z");  // the order of the file
+  CHECK(root.members().front().first == "z");  // The order is that of the file.
   CHECK(root.has("none"));
   CHECK_FALSE(root.find("none"));
   CHECK_FALSE(root.find("missing"));
@@ -95,7 +95,7 @@ TEST_CASE("Messages stay one short line, whatever the file holds", "[base][json_
   CHECK(message.starts_with("a.json: /two lines: is \"xxxxx"));
   CHECK(message.ends_with("xxx..., must be a number"));
   CHECK(message.size() < 120);
-  // Not within a character: 59 bytes, then one of two.
+  // Texts are not cut within a character: here 59 bytes precede a character of two bytes.
   const std::string cut = refusal("\"" + std::string(58, 'x') + "\xc3\xa9\xc3\xa9\"",
                                   [](const JsonValue& v) { v.number(); });
   CHECK(cut == "a.json: /: is \"" + std::string(58, 'x') + "..., must be a number");

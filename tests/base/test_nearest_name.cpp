@@ -8,7 +8,8 @@ using graspfit::base::nearest_name;
 
 TEST_CASE("A mistyped name is told from its nearest known one", "[geometry][nearest_name]") {
   const std::vector<std::string> known = {"plan", "inspect", "evaluate", "hold", "hand", "shape"};
-  // One letter replaced, left out, inserted; two neighbors swapped; another case.
+  // In these one letter is replaced, left out or inserted, two neighbors are swapped, or the case
+  // is another.
   for (const char* name : {"plam", "pla", "plaan", "paln", "PLAN"}) {
     INFO(name);
     CHECK(nearest_name(name, known) == "plan");
@@ -20,10 +21,10 @@ TEST_CASE("A mistyped name is told from its nearest known one", "[geometry][near
 }
 
 TEST_CASE("A third of the letters is near, more is not", "[geometry][nearest_name]") {
-  CHECK(nearest_name("abcxyf", {"abcdef"}) == "abcdef");  // 2 of 6
-  CHECK_FALSE(nearest_name("abxyzf", {"abcdef"}));        // 3 of 6
-  CHECK(nearest_name("ab", {"ac"}) == "ac");              // at least one
-  CHECK_FALSE(nearest_name("a", {"b"}));                  // of which none would be left
+  CHECK(nearest_name("abcxyf", {"abcdef"}) == "abcdef");  // 2 of 6 letters differ.
+  CHECK_FALSE(nearest_name("abxyzf", {"abcdef"}));        // 3 of 6 letters differ.
+  CHECK(nearest_name("ab", {"ac"}) == "ac");              // One letter may always differ.
+  CHECK_FALSE(nearest_name("a", {"b"}));                  // Here that would leave none.
   CHECK_FALSE(nearest_name("", {"a"}));
   CHECK_FALSE(nearest_name("whatever", {}));
   CHECK(did_you_mean("whatever", {"plan"}).empty());

@@ -28,7 +28,7 @@ TEST_CASE("Paths in UTF-8 are their own texts, others have their bytes in digits
   CHECK(path_text("a/caf\xE9 1.off") == "file:a/caf%E9%201.off");
   CHECK(path_text("\xC3\xA9\xE9") == "file:%C3%A9%E9");
   CHECK(path_text("file:a") == "file:file%3Aa");
-  CHECK(path_of_text("a%E9.off") == "a%E9.off");  // no prefix: as it stands
+  CHECK(path_of_text("a%E9.off") == "a%E9.off");  // It has no prefix and stays as it is.
   CHECK(path_of_text("file:50%/%zz%4") == "50%/%zz%4");
   CHECK(path_of_text("file:%e9%41") ==
         "\xE9"

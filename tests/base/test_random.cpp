@@ -9,7 +9,8 @@ namespace test_random {
 using namespace graspfit::base;
 
 TEST_CASE("The generator is SplitMix64", "[geometry][random]") {
-  // First outputs for seed 1234567 of the public reference implementation by S. Vigna.
+  // These are the first outputs for seed 1234567 of the public reference implementation by S.
+  // Vigna.
   Random random(1234567);
   CHECK(random.next() == 6457827717110365317U);
   CHECK(random.next() == 3203168211198807973U);
@@ -27,7 +28,7 @@ TEST_CASE("Uniform numbers fill their interval evenly", "[geometry][random]") {
     REQUIRE(x < 1.0);
     ++bins[static_cast<std::size_t>(10 * x)];
   }
-  // 10000 each with a standard deviation of 95.
+  // Each bin is expected to hold 10000 with a standard deviation of 95.
   for (const int count : bins) CHECK(std::abs(count - 10000) < 500);
   for (int i = 0; i < 1000; ++i) {
     const double x = random.uniform(-2.0, 3.0);
@@ -44,7 +45,7 @@ TEST_CASE("Indices are below their count and all are drawn", "[geometry][random]
     CHECK(seen.size() == count);
     CHECK(*seen.rbegin() == count - 1);
   }
-  // The largest count that repeats about half of the draws.
+  // With the largest such count about half of the draws are repeated.
   for (int i = 0; i < 100; ++i) CHECK(random.index((1ULL << 63) + 1) <= (1ULL << 63));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The one place that names Catch2's headers, and what its versions 2 and 3 call differently.
-// Version 3 keeps its headers apart, and all of them together are slow to compile: here is what
+// Only this header includes those of Catch2 and knows what versions 2 and 3 call differently.
+// Version 3 has many headers, which are slow to compile all together: this one includes those that
 // tests use.
 
 #include <string>
@@ -20,7 +20,8 @@ using Catch::Approx;
 
 namespace graspfit::testing {
 
-/// Matches texts that hold `part`. It is a name of Catch2 2; in version 3 that is about ranges.
+/// Matches texts that hold `part`. Version 2 of Catch2 has it by this name; in version 3 this name
+/// is a matcher of ranges.
 inline auto Contains(const std::string& part) { return Catch::Matchers::ContainsSubstring(part); }
 
 }  // namespace graspfit::testing

@@ -7,7 +7,7 @@
 
 namespace graspfit::testing {
 
-/// A few bytes changed, cut out, doubled, or replaced by one of `words`.
+/// Returns the text with a few bytes changed, cut out, doubled, or replaced by one of `words`.
 inline std::string damaged(std::string text, const std::vector<std::string>& words,
                            base::Random& random) {
   for (std::uint64_t n = 1 + random.index(4); n > 0 && !text.empty(); --n) {
@@ -30,7 +30,7 @@ inline std::string damaged(std::string text, const std::vector<std::string>& wor
   return text;
 }
 
-/// What readers of URDF and JSON may stumble over.
+/// Words that readers of URDF and JSON may stumble over.
 inline const std::vector<std::string> kWordsForHands = {
     "0",    "-1",   "1e308", "-1e-320", "nan", "inf",   "\n",   "2147483648", "\"",  "<",
     "</a>", "null", "[]",    "{}",      ",",   "&#10;", "left", "base",       "tip", "&lt;",

@@ -6,12 +6,13 @@
 
 #include <vector>
 
-// The only source that includes OpenVDB's headers.
+// This is the only source that includes OpenVDB's headers.
 
 namespace graspfit::testing {
 namespace {
 
-const float kBand = static_cast<float>(openvdb::LEVEL_SET_HALF_WIDTH);  // OpenVDB's default.
+// This is OpenVDB's default.
+const float kBand = static_cast<float>(openvdb::LEVEL_SET_HALF_WIDTH);
 
 }  // namespace
 

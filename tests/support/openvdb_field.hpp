@@ -15,7 +15,7 @@ class OpenVdbField {
   struct Grid;
   explicit OpenVdbField(std::shared_ptr<const Grid> grid) : grid_(std::move(grid)) {}
 
-  /// Signed distance in voxels, negative inside; beyond the band of 3 voxels its sign times 3.
+  /// Signed distance in voxels, negative inside; beyond the band of 3 voxels it is ±3.
   double at(const Eigen::Vector3i& voxel) const;
 
   std::size_t num_bytes() const;
@@ -24,16 +24,17 @@ class OpenVdbField {
   std::shared_ptr<const Grid> grid_;
 };
 
-/// A mesh as OpenVDB takes it (single precision, copied once) with the lattice to sample it on.
+/// A mesh as OpenVDB takes it (in single precision, copied once) with the lattice on which it is
+/// sampled.
 class OpenVdbMesh {
  public:
   OpenVdbMesh(const geometry::TriangleMesh& mesh, const geometry::VoxelLattice& lattice);
 
-  /// `meshToSignedDistanceField` with its default band and all of its steps.
+  /// Calls `meshToSignedDistanceField` with its default band and all of its steps.
   OpenVdbField signed_distance_field() const;
 
-  /// The same without the steps that change computed distances (renormalization, removal of voxels
-  /// that self-intersections made, trimming): each value is the distance to some face.
+  /// Calls it without the steps that change computed distances (renormalization, removal of voxels
+  /// that self-intersections made, trimming), so that each value is the distance to some face.
   OpenVdbField unsmoothed_distance_field() const;
 
  private:
@@ -41,7 +42,7 @@ class OpenVdbMesh {
   std::shared_ptr<const Data> data_;
 };
 
-/// How many threads OpenVDB may use, while it lives.
+/// Limits the threads that OpenVDB may use while it lives.
 class OpenVdbThreads {
  public:
   explicit OpenVdbThreads(int count);

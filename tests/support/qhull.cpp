@@ -35,7 +35,8 @@ QhullResult qhull(const Eigen::MatrixXd& points, const char* options) {
       result.planes(points.rows(), column++) = facet->offset;
     }
   }
-  // The long blocks one by one, then all short ones at once: with qh_ALL the latter would stay.
+  // Qhull first frees the long blocks one by one, then all short ones at once. With qh_ALL the
+  // latter would stay.
   qh_freeqhull(qh, !qh_ALL);
   int num_long = 0, long_bytes = 0;
   qh_memfreeshort(qh, &num_long, &long_bytes);

@@ -5,7 +5,7 @@
 
 namespace graspfit::testing {
 
-/// What Qhull makes of points: the independent library that hulls are compared with.
+/// The hull that Qhull, an independent library, finds of some points.
 struct QhullResult {
   bool is_full = false;       ///< Whether it found a hull of full dimension.
   std::vector<int> vertices;  ///< Ascending.
@@ -13,8 +13,8 @@ struct QhullResult {
   double volume = 0.0;
 };
 
-/// Hull of the columns of `points`. With `options` empty Qhull merges facets that its arithmetic
-/// cannot tell apart; "Qt" triangulates them, "QJ" moves the points instead.
+/// Returns the hull of the columns of `points`. With `options` empty Qhull merges facets that its
+/// arithmetic cannot tell apart; "Qt" triangulates them, "QJ" moves the points instead.
 QhullResult qhull(const Eigen::MatrixXd& points, const char* options = "");
 
 }  // namespace graspfit::testing

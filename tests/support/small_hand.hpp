@@ -4,8 +4,8 @@
 
 namespace graspfit::testing {
 
-/// A gripper that uses most of what a description can say, and its sidecar:
-/// what tests break in one place at a time. The mesh is `meshes/bar.obj`.
+/// A gripper that uses most of what a description and its sidecar can say; tests break one part of
+/// it at a time. Its mesh is `meshes/bar.obj`.
 inline const std::string kSmallHandUrdf = R"(<?xml version="1.0"?>
 <robot name="pincer">
   <link name="base">

@@ -11,7 +11,7 @@
 
 namespace graspfit::testing {
 
-/// A new folder, removed at the end.
+/// Makes a new folder and removes it at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -29,7 +29,7 @@ class TemporaryFolder {
   }
   const std::filesystem::path& path() const { return path_; }
 
-  /// Writes a file, with the folders before it. Returns its path.
+  /// Writes a file and the folders that lead to it. Returns its path.
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());
@@ -37,7 +37,7 @@ class TemporaryFolder {
     return file;
   }
 
-  /// Copies a whole folder's content into this one.
+  /// Copies the content of a whole folder into this one.
   void copy(const std::filesystem::path& folder) const {
     std::filesystem::copy(folder, path_, std::filesystem::copy_options::recursive);
   }
