@@ -6,13 +6,13 @@
 #include <vector>
 
 /// \file
-/// Points on the unit sphere that tests of the measure know closed forms for.
+/// Points on the unit sphere at which the measure has known closed forms.
 
 namespace graspfit::testing {
 
 inline double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-/// Three points on the equator, `first` and `second` degrees of arc apart.
+/// Returns three points on the equator, `first` and `second` degrees of arc apart.
 inline std::vector<Eigen::Vector3d> equator(double first, double second) {
   std::vector<Eigen::Vector3d> directions;
   for (const double angle : {0.0, first, first + second}) {

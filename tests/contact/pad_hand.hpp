@@ -5,7 +5,7 @@
 
 namespace graspfit::testing {
 
-/// A rectangular pad in the x-y plane of its link, facing z [m].
+/// Returns a rectangular pad in the x-y plane of its link that faces z [m].
 inline hands::ContactPad rectangular_pad(double width, double length, int link,
                                          std::optional<int> finger) {
   hands::ContactPad pad;
@@ -18,8 +18,8 @@ inline hands::ContactPad rectangular_pad(double width, double length, int link,
   return pad;
 }
 
-/// A hand without joints: a palm (link 0, pad 0) and fingers of one link each, finger f with link
-/// and pad f + 1. All pads are alike. Enough for everything that looks at pads only.
+/// Returns a hand without joints: a palm (link 0, pad 0) and fingers of one link each, finger f
+/// with link and pad f + 1. All pads are alike. It has all that functions of pads alone need.
 inline hands::HandModel pad_hand(int num_fingers, double width = 0.02, double length = 0.04) {
   hands::HandModel hand;
   hand.name = "pads";
@@ -43,8 +43,8 @@ inline hands::HandModel pad_hand(int num_fingers, double width = 0.02, double le
   return hand;
 }
 
-/// Contact of a finger of `pad_hand` (−1: its palm) at `direction` (unit) on a ball around the
-/// origin, in the middle of its pad and over 30 % of its area.
+/// Returns a contact of a finger of `pad_hand` (−1: its palm) at `direction` (unit) on a ball
+/// around the origin, in the middle of its pad and over 30 % of its area.
 inline contact::Contact ball_contact(const hands::HandModel& hand, int finger,
                                      const Eigen::Vector3d& direction, double radius = 0.05) {
   contact::Contact contact;

@@ -8,7 +8,7 @@
 
 namespace graspfit::testing {
 
-/// Uniform on the unit sphere, by rejection from the cube.
+/// Draws a direction uniformly from the unit sphere, by rejection from the cube.
 inline Eigen::Vector3d random_direction(base::Random& random) {
   for (;;) {
     Eigen::Vector3d v;
@@ -24,7 +24,7 @@ inline contact::Contact contact_at(const Eigen::Vector3d& point, const Eigen::Ve
   return contact;
 }
 
-/// Contacts around the unit sphere, off it and off its normals.
+/// Draws contacts near the unit sphere, off it and off its normals.
 inline std::vector<contact::Contact> random_contacts(base::Random& random, int count) {
   std::vector<contact::Contact> contacts;
   for (int i = 0; i < count; ++i) {

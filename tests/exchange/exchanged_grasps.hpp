@@ -11,8 +11,8 @@
 
 namespace graspfit::testing {
 
-/// A grasp file of `count` random configurations, couplings kept, of a hand around a box; nothing
-/// of it is measured. The joints of a clutch have gone on closing in every second one.
+/// Returns a grasp file of `count` random configurations of a hand around a box, couplings kept;
+/// nothing is measured. In every second one the joints of a clutch have gone on closing.
 inline grasp::GraspFile random_grasps(const hands::HandModel& hand, const TemporaryFolder& folder,
                                       int count) {
   const std::filesystem::path object = folder.path() / "a box.off";

@@ -66,7 +66,7 @@ TEST_CASE("A world holds the palm's pose in millimeters, the object at the origi
     CHECK(pose[static_cast<std::size_t>(4 + axis)] ==
           Approx(1000.0 * configuration.X_OH.translation()[axis]).epsilon(1e-15));
   }
-  // Four independent joints: the spread and three fingers.
+  // The independent joints are the spread and three fingers.
   CHECK(numbers_in(text_at(world, {"robot", "dofValues"})).size() == 4);
 
   const std::string named = exchange::graspit_world_xml(
@@ -94,10 +94,10 @@ TEST_CASE(
   const auto set = [&](const std::string& joint, double value) {
     q[hand.joint_index(joint)] = value;
   };
-  // A third of 0.9 rad, by the ratio that the file writes with nine digits.
+  // The follower is at a third of 0.9 rad, by the ratio that the file writes with nine digits.
   set("d1_chain0_joint1", 0.9);
   set("d1_chain0_joint2", 0.333333333 * 0.9);
-  // The proximal joint stopped at 0.6 rad, the distal one went on as far as 1.2 rad take it.
+  // The proximal joint stopped at 0.6 rad; the distal one went on as far as 1.2 rad take it.
   set("d2_chain1_joint1", 0.6);
   set("d2_chain1_joint2", 0.333333333 * 1.2);
   set("d0_chain0_joint0", 0.25);
@@ -106,8 +106,8 @@ TEST_CASE(
   REQUIRE(document.Parse(exchange::graspit_world_xml(file, 0).c_str()) == tinyxml2::XML_SUCCESS);
   const std::vector<double> values =
       numbers_in(text_at(document.RootElement(), {"robot", "dofValues"}));
-  // One number for the rigid spread, then for each clutch its value and a flag per joint, followed
-  // by where the joint stopped if it did: as in GraspIt!'s own world barrettGlassDyn.xml.
+  // There is one number for the rigid spread, then for each clutch its value and a flag per joint,
+  // followed by where the joint stopped if it did, as in GraspIt!'s own world barrettGlassDyn.xml.
   const std::vector<double> expected = {0.25, 0.9, 0, 0, 1.2, 1, 0.6, 0, 0, 0, 0};
   REQUIRE(values.size() == expected.size());
   for (std::size_t i = 0; i < values.size(); ++i) {

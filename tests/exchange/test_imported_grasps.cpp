@@ -20,13 +20,14 @@ using testing::TemporaryFolder;
 
 const grasp::ImportRecord kSource = {"isaac_grasp 1.0", "elsewhere.yaml", std::string(64, 'a')};
 
-/// The parallel gripper around a box 40 mm wide, its pads `gap` beside it.
+/// Returns a grasp of the parallel gripper around a box 40 mm wide, its pads `gap` beside it.
 ImportedGrasp pinch(const hands::HandModel& hand, const std::string& name, double gap) {
   ImportedGrasp grasp;
   grasp.name = name;
   grasp.configuration = hands::open_configuration(hand);
   grasp.configuration.q.setConstant(0.02 + gap);
-  grasp.configuration.X_OH.translation().z() = -0.062;  // the pads' middle at the origin
+  // The middle between the pads is at the origin.
+  grasp.configuration.X_OH.translation().z() = -0.062;
   return grasp;
 }
 
@@ -86,10 +87,11 @@ TEST_CASE("A pre-grasp of the file is kept where it is clear and its way free, e
           "[exchange][imported_grasps]") {
   const Scene scene;
   ImportedGrasp clear = pinch(scene.hand, "clear", 5e-5);
-  clear.pre_grasp_q = Eigen::VectorXd::Constant(2, 0.028);  // 8 mm beside the box
+  clear.pre_grasp_q = Eigen::VectorXd::Constant(2, 0.028);  // This is 8 mm beside the box.
   ImportedGrasp near = clear;
   near.name = "near";
-  near.pre_grasp_q = Eigen::VectorXd::Constant(2, 0.021);  // less than the 5 mm wanted
+  // This is less than the 5 mm that are wanted.
+  near.pre_grasp_q = Eigen::VectorXd::Constant(2, 0.021);
   ImportedGrasp none = pinch(scene.hand, "none", 5e-5);
   const exchange::ImportResult result =
       import_grasps(scene.object, scene.hand, std::vector<ImportedGrasp>{clear, near, none},

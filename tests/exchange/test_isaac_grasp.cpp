@@ -22,8 +22,8 @@ using testing::Contains;
 using testing::random_grasps;
 using testing::TemporaryFolder;
 
-/// The format's own example [NVIDIA Isaac ROS documentation, "Isaac Grasp File"], for the joints of
-/// the shipped parallel gripper, of which only the driven one is stated.
+/// The example of the format's documentation [NVIDIA Isaac ROS documentation, "Isaac Grasp File"]
+/// for the joints of the shipped parallel gripper, of which only the driven one is stated.
 const std::string kExample = R"(format: isaac_grasp
 format_version: 1.0
 
@@ -48,7 +48,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-/// The message with which a text is refused.
+/// Returns the message with which a text is refused.
 std::string refusal(const TemporaryFolder& folder, const hands::HandModel& hand,
                     const std::string& text) {
   try {
@@ -97,7 +97,7 @@ TEST_CASE("The format's own example is read, followers going with their leader",
   REQUIRE(read.size() == 1);
   const hands::HandConfiguration& configuration = read[0].configuration;
   CHECK(configuration.X_OH.translation() == Eigen::Vector3d(-0.04346, 0.06759, 0.19895));
-  // w = cos(angle/2), xyz = sin(angle/2) axis, normalized.
+  // The quaternion is w = cos(angle/2), xyz = sin(angle/2) axis, normalized.
   const Eigen::Vector4d wxyz = Eigen::Vector4d(0.00332, 0.98453, 0.16837, 0.04837).normalized();
   CHECK(configuration.X_OH.linear()(0, 0) ==
         Approx(wxyz[0] * wxyz[0] + wxyz[1] * wxyz[1] - wxyz[2] * wxyz[2] - wxyz[3] * wxyz[3])
@@ -127,7 +127,8 @@ TEST_CASE(
            {"object_frame:", "created_with: graspgenx\nobject_scale: 1.0\nobject_frame:"},
            {"    pregrasp_cspace_position:\n      right_slide: 0.04\n", ""},
            {"w: 0.00332", "w: +3.32e-3"},
-           {"right_slide: 0.04", "right_slide: 0.0400000009"}}) {  // a limit in single precision
+           // It is a limit in single precision.
+           {"right_slide: 0.04", "right_slide: 0.0400000009"}}) {
     CHECK(refusal(folder, hand, replaced(kExample, from, to)) == "accepted");
   }
 }
@@ -225,7 +226,7 @@ TEST_CASE("isaac_grasp is written and read alike in a locale with decimal commas
   const auto path = folder.write("grasps.yaml", text);
   const std::locale old = std::locale::global(std::locale(std::locale(), new CommaDecimals));
   const std::string old_c = std::setlocale(LC_ALL, nullptr);
-  std::setlocale(LC_ALL, "de_DE.UTF-8");  // without effect where it is not installed
+  std::setlocale(LC_ALL, "de_DE.UTF-8");  // This has no effect where the locale is not installed.
   const std::string german = isaac_grasp_yaml(file);
   const auto read = read_isaac_grasps(path, file.hand);
   std::setlocale(LC_ALL, old_c.c_str());

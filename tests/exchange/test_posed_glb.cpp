@@ -19,8 +19,8 @@ TEST_CASE("A posed scene as GLB is, read by assimp, the posed scene to single pr
   const geometry::TriangleMesh read = geometry::read_mesh(folder.write("scene.glb", bytes)).mesh;
   const geometry::TriangleMesh expected = grasp::posed_scene(object, file.hand, configuration);
   REQUIRE(read.faces.size() == expected.faces.size());
-  // Single precision: half of 2^-23 of the largest coordinate in a link's frame (0.2 m) and of
-  // the pose, a few roundings.
+  // Single precision is off by half of 2^-23 of the largest coordinate in a link's frame (0.2 m)
+  // and of the pose, with a few roundings.
   constexpr double kSinglePrecision = 1e-7;
   double largest = 0.0;
   for (std::size_t i = 0; i < read.faces.size(); ++i) {

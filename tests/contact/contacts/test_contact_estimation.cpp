@@ -24,13 +24,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Lengths near 0.1 m, a few roundings each.
+// Lengths near 0.1 m are off by a few roundings.
 constexpr double kRounding = 1e-12;
 
 constexpr double kThickness = 0.002;
 const ContactEstimationOptions kOptions{.clip_thickness = kThickness};
 
-/// Pad frame with its origin at `origin` that looks along `direction`; its x axis is `x_axis`.
+/// Returns a pad frame with its origin at `origin` that looks along `direction`; its x axis is
+/// `x_axis`.
 RigidTransform facing(const Vector3d& origin, const Vector3d& direction,
                       const Vector3d& x_axis = Vector3d::UnitX()) {
   RigidTransform X_OC = RigidTransform::Identity();
@@ -41,7 +42,7 @@ RigidTransform facing(const Vector3d& origin, const Vector3d& direction,
   return X_OC;
 }
 
-/// Pad looking down at a top face at height `top` from `gap` above it.
+/// Returns the frame of a pad that looks down at a top face at height `top` from `gap` above it.
 RigidTransform above(double x, double y, double top, double gap) {
   return facing({x, y, top + gap}, -Vector3d::UnitZ());
 }
@@ -49,14 +50,15 @@ RigidTransform above(double x, double y, double top, double gap) {
 }  // namespace
 
 TEST_CASE("On a flat face the contact is the pad's own rectangle", "[grasp][contact_estimation]") {
-  // A 2 x 4 cm pad half a millimeter above the middle of a 20 cm box's top, volume 2 mm thick.
+  // A pad of 2 x 4 cm is half a millimeter above the middle of the top of a box of 20 cm; its clip
+  // volume is 2 mm thick.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const double gap = 0.0005;
   const auto contact = estimate_contact(hand, 1, above(0.03, -0.01, 0.1, gap), box, kOptions);
   REQUIRE(contact);
   CHECK(contact->area == Approx(0.02 * 0.04).epsilon(kRounding));
-  CHECK(contact->gap == Approx(gap).epsilon(1e-10));  // a difference of lengths near 0.1
+  CHECK(contact->gap == Approx(gap).epsilon(1e-10));  // It is a difference of lengths near 0.1.
   CHECK((contact->point_O - Vector3d(0.03, -0.01, 0.1)).norm() < kRounding);
   CHECK((contact->inward_normal_O + Vector3d::UnitZ()).norm() < kRounding);
   CHECK(contact->pad_boundary_distance == Approx(0.01).epsilon(1e-10));
@@ -69,8 +71,9 @@ TEST_CASE("On a flat face the contact is the pad's own rectangle", "[grasp][cont
 
 TEST_CASE("A curved pad touches where its offset surface reaches, and its gap is that of its top",
           "[grasp][contact_estimation]") {
-  // A roof over the 2 x 4 cm outline, ridge of height 5 mm along x: half a millimeter above a flat
-  // face the volume, 2 mm over the roof, covers |y| <= 20 mm (2 - 0.5) / 5.
+  // The pad is a roof over an outline of 2 x 4 cm with a ridge of height 5 mm along x. It is half a
+  // millimeter above a flat face, so that the clip volume, 2 mm over the roof, covers |y| <= 20 mm
+  // (2 - 0.5) / 5.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   hands::ContactPad& roof = hand.pads[1];
@@ -84,7 +87,8 @@ TEST_CASE("A curved pad touches where its offset surface reaches, and its gap is
   CHECK(contact->gap == Approx(gap).margin(2e-12));
   CHECK((contact->inward_normal_O + Vector3d::UnitZ()).norm() < kRounding);
   CHECK((contact->point_O - Vector3d(0, 0, 0.1)).norm() < kRounding);
-  CHECK(contact->pad_boundary_distance == Approx(0.01).epsilon(1e-9));  // in the plane, as if flat
+  // It is measured in the plane, as if flat.
+  CHECK(contact->pad_boundary_distance == Approx(0.01).epsilon(1e-9));
   CHECK_FALSE(
       estimate_contact(hand, 1, above(0, 0, 0.1, height + 1.01 * kThickness), box, kOptions));
 }
@@ -101,22 +105,22 @@ TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estima
   const double wall = (kThickness - gap) * 0.04;
   CHECK(contact->area == Approx(top + wall).epsilon(1e-10));
   CHECK(contact->gap == Approx(gap).epsilon(1e-10));
-  // Normal: area-weighted mean of +z and +x, inward.
+  // The normal is the area-weighted mean of +z and +x, turned inward.
   const Vector3d inward = -Vector3d(wall, 0, top).normalized();
   CHECK((contact->inward_normal_O - inward).norm() < 1e-10);
-  // Mean of the centroids (0.095, 0, 0.1) and (0.1, 0, 0.1 - 0.75 mm), dropped to the nearer face:
-  // the top, 0.1 mm above, where the wall is more than 4 mm away.
+  // The point is the mean of the centroids (0.095, 0, 0.1) and (0.1, 0, 0.1 - 0.75 mm), projected
+  // to the nearer face. That is the top, 0.1 mm above, while the wall is more than 4 mm away.
   const double x = (top * 0.095 + wall * 0.1) / (top + wall);
   CHECK((contact->point_O - Vector3d(x, 0, 0.1)).norm() < 1e-10);
-  // In the pad's plane that is x - 0.1 off the middle, 1 cm - |x - 0.1| from the outline.
+  // In the pad's plane the point is x - 0.1 off the middle, 1 cm - |x - 0.1| from the outline.
   CHECK(contact->pad_boundary_distance == Approx(0.01 - (0.1 - x)).epsilon(1e-9));
 }
 
 TEST_CASE("Plain averaging counts pieces, whatever their size", "[grasp][contact_estimation]") {
-  // The same edge with a pad 1 cm long at y = 0.06. The two triangles of a face meet along a
-  // diagonal, which is within 1 cm of the edge only near its ends, y = ±0.1: the pad sees one piece
-  // of the top and one of the wall, and the normal is the bisector of +z and +x although the top is
-  // larger.
+  // The pad, 1 cm long, is over the same edge at y = 0.06. The two triangles of a face meet along a
+  // diagonal, which is within 1 cm of the edge only near its ends, y = ±0.1. So the pad sees one
+  // piece of the top and one of the wall, and the normal is the bisector of +z and +x although the
+  // top is larger.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.01);
   ContactEstimationOptions plain = kOptions;
@@ -130,11 +134,12 @@ TEST_CASE("On a ball the contact is the cap that the clip volume cuts off",
           "[grasp][contact_estimation]") {
   // A slab of depth t - gap below the pole has the lateral area 2 pi R (t - gap) [Archimedes], as
   // long as the pad covers the cap. The mesh is inscribed: its edges sag by s = e²/(8 R) with edges
-  // e of about 1.1 R / 2^6, which is 0.0019 mm here, and depth 2 mm, so area agrees to about 2 s /
-  // t = 0.2 %.
+  // e of about 1.1 R / 2^6, which is 0.0019 mm here. The depth is 2 mm, so that the areas agree to
+  // about 2 s / t = 0.2 %.
   const double radius = 0.05;
   const MeshQuery ball(geometry::ball(radius, 6));
-  const hands::HandModel hand = pad_hand(1, 0.04, 0.04);  // cap radius sqrt(2 R t) = 14 mm < 20 mm
+  // The cap's radius, sqrt(2 R t) = 14 mm, is below 20 mm.
+  const hands::HandModel hand = pad_hand(1, 0.04, 0.04);
   const double gap = GENERATE(0.0, 0.0005, 0.0015);
   CAPTURE(gap);
   const Vector3d direction = Vector3d(0.3, -0.5, 0.8).normalized();
@@ -145,7 +150,7 @@ TEST_CASE("On a ball the contact is the cap that the clip volume cuts off",
   CHECK(contact->area ==
         Approx(2 * kPi * radius * (kThickness - gap)).epsilon(gap > 0.001 ? 0.01 : 0.004));
   CHECK(contact->gap == Approx(gap).margin(2e-6));
-  // Symmetric about the pole up to the mesh: centroid and normal are the pole's.
+  // All is symmetric about the pole up to the mesh, so that centroid and normal are the pole's.
   CHECK((contact->point_O - radius * direction).norm() < 5e-5);
   CHECK((contact->inward_normal_O + direction).norm() < 2e-3);
   CHECK(contact->pad_boundary_distance == Approx(0.02).margin(5e-5));
@@ -153,8 +158,8 @@ TEST_CASE("On a ball the contact is the cap that the clip volume cuts off",
 
 namespace {
 
-/// Two bars along y, 5 mm wide under the pad's halves, tops at 0.1 and `second_top`, and below the
-/// slit between them a third one whose top is at `middle_top`.
+/// Returns two bars along y, 5 mm wide under the pad's halves, with tops at 0.1 and `second_top`,
+/// and below the slit between them a third one whose top is at `middle_top`.
 geometry::TriangleMesh bars(double second_top, double middle_top) {
   const auto bar = [](double x, double width, double top) {
     geometry::TriangleMesh mesh = geometry::box({width, 0.2, 0.05});
@@ -169,8 +174,8 @@ geometry::TriangleMesh bars(double second_top, double middle_top) {
 
 TEST_CASE("The point of a contact lies on its pieces, not on whatever is near their mean",
           "[grasp][contact_estimation]") {
-  // Bars from 5 to 15 mm on either side, seen by a pad that reaches 10 mm far; their mean is over
-  // the slit, 1 mm from the middle bar, which ends just below the clip volume.
+  // A pad that reaches 10 mm far sees bars from 5 to 15 mm on either side. Their mean is over the
+  // slit, 1 mm from the middle bar, which ends just below the clip volume.
   const double gap = 0.0005;
   const MeshQuery object(bars(0.1, 0.1 - (kThickness - gap) - 1e-4));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
@@ -182,7 +187,7 @@ TEST_CASE("The point of a contact lies on its pieces, not on whatever is near th
   const double top = 0.005 * 0.04;
   const double wall = (kThickness - gap) * 0.04;
   CHECK(contact->area == Approx(2 * (top + wall)).epsilon(1e-9));
-  CHECK(std::abs(contact->inward_normal_O.x()) < 1e-9);  // the walls of the slit cancel
+  CHECK(std::abs(contact->inward_normal_O.x()) < 1e-9);  // The walls of the slit cancel.
 }
 
 TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
@@ -211,13 +216,14 @@ TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
     CHECK(contact.point_O.x() * side > 0.005 - kRounding);
   }
   CHECK(estimate_contacts(hand, X_OL, object, kOptions).size() == 1);
-  // Nearer to each other than half the pad's width they are one: bars 2 cm apart, a pad 6 cm wide.
+  // Pieces nearer to each other than half the pad's width are one: the bars are 2 cm apart, the pad
+  // is 6 cm wide.
   const hands::HandModel wide = pad_hand(1, 0.06, 0.08);
   CHECK(estimate_contacts(wide, X_OL, object, separate).size() == 1);
 }
 
 TEST_CASE("Contacts of fingertips and palm alone", "[grasp][contact_estimation]") {
-  // Two pads on one finger, the first of which is no fingertip's.
+  // One finger has two pads, the first of which is no fingertip's.
   hands::HandModel hand = pad_hand(2);
   hand.pads[1].finger = 1;
   hand.fingers[1].links = {1, 2};
@@ -245,8 +251,8 @@ TEST_CASE("Contacts that touch are those within the gap", "[grasp][contact_estim
 }
 
 TEST_CASE("A pad off the middle knows how far its outline is", "[grasp][contact_estimation]") {
-  // The ball's pole is 6 mm from the pad's middle along x: 20 - 6 mm from the outline. The cap is
-  // cut by the outline only beyond 14 mm, so it is whole.
+  // The ball's pole is 6 mm from the pad's middle along x, so 20 - 6 mm from the outline. The
+  // outline would cut the cap only beyond 14 mm, so that the cap is whole.
   const double radius = 0.05;
   const MeshQuery ball(geometry::ball(radius, 6));
   const hands::HandModel hand = pad_hand(1, 0.04, 0.04);
@@ -321,12 +327,13 @@ TEST_CASE("Contacts move with hand and object together", "[grasp][contact_estima
 }
 
 TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]") {
-  // Against the clip of every triangle of the mesh, at random poses of a long pad that touch.
+  // The reference is the clip of every triangle of the mesh, at random poses of a long pad that
+  // touch.
   const MeshQuery torus(geometry::torus(0.05, 0.02));
   hands::HandModel hand = pad_hand(1, 0.01, 0.06);
   const bool is_curved = GENERATE(false, true);
   CAPTURE(is_curved);
-  if (is_curved) {  // a roof with its ridge along y, both ends sloping
+  if (is_curved) {  // This is a roof with its ridge along y and both ends sloping.
     hand.pads[1].surface = {{0, 0.02, 0.003}, {0, -0.02, 0.003}};
     hand.pads[1].planes = hands::surface_planes(hand.pads[1]);
   }
@@ -350,7 +357,7 @@ TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]")
       area += piece.area;
     }
     const auto contact = estimate_contact(hand, 1, X_OC, torus, kOptions);
-    // The sums run in another order.
+    // The sums run in another order, so that they differ by roundings.
     CHECK((contact ? contact->area : 0.0) == Approx(area).epsilon(kRounding));
     CHECK(has_contact(hand, 1, X_OC, torus, kOptions) == contact.has_value());
     if (contact) ++num_contacts;
@@ -360,8 +367,8 @@ TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]")
 
 TEST_CASE("All pads of a hand report in pad order, the palm's without a finger",
           "[grasp][contact_estimation]") {
-  // Two fingers and a palm around a box of 10 cm: finger 0 on +x, finger 1 clear of it, the palm on
-  // top.
+  // Two fingers and a palm are around a box of 10 cm: finger 0 is on +x, finger 1 is clear of the
+  // box, the palm is on top.
   const MeshQuery box(geometry::box({0.1, 0.1, 0.1}));
   const hands::HandModel hand = pad_hand(2, 0.02, 0.04);
   const std::vector<RigidTransform> X_OL = {
@@ -376,7 +383,7 @@ TEST_CASE("All pads of a hand report in pad order, the palm's without a finger",
   CHECK((contacts[1].inward_normal_O + Vector3d::UnitX()).norm() < kRounding);
   // The pad's pose in its link counts.
   hands::HandModel shifted = hand;
-  shifted.pads[2].X_LC.translation().z() = 0.009;  // 1 mm from the box now
+  shifted.pads[2].X_LC.translation().z() = 0.009;  // It is 1 mm from the box with this.
   CHECK(estimate_contacts(shifted, X_OL, box, kOptions).size() == 3);
 }
 
@@ -398,7 +405,7 @@ TEST_CASE("Contact estimation refuses what makes no sense", "[grasp][contact_est
 TEST_CASE(
     "A contact is weak if at least half of its surface is, and unknown where nothing is known",
     "[grasp][contact_estimation]") {
-  // The two triangles of the top meet along x = y; that with y < x is weak.
+  // The two triangles of the top meet along x = y; the one with y < x is weak.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.02);
   geometry::WeakRegions regions;
@@ -419,7 +426,8 @@ TEST_CASE(
     CHECK(same->area == contact->area);
     CHECK_FALSE(estimate_contact(hand, 1, X_OC, box, kOptions, &coarse)->weak.has_value());
   }
-  // Also of all pads at once: here the palm, which lies over the other triangle, and a finger.
+  // The same holds for all pads at once, here the palm, which lies over the other triangle, and a
+  // finger.
   const auto all = estimate_contacts(hand, {above(-0.03, 0.03, 0.1, 0), above(0.03, -0.03, 0.1, 0)},
                                      box, kOptions, &regions);
   REQUIRE(all.size() == 2);

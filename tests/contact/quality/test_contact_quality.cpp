@@ -30,10 +30,10 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius = 0.05;
 
-// Sums of a few products of numbers near one: a hundred roundings.
+// Sums of a few products of numbers near one are off by at most a hundred roundings.
 constexpr double kRounding = 1e-13;
 
-/// Contacts of fingers 0, 1, … on a ball around the origin.
+/// Returns contacts of fingers 0, 1, … on a ball around the origin.
 std::vector<Contact> ball_contacts(const hands::HandModel& hand,
                                    const std::vector<Vector3d>& directions) {
   std::vector<Contact> contacts;
@@ -43,7 +43,7 @@ std::vector<Contact> ball_contacts(const hands::HandModel& hand,
   return contacts;
 }
 
-/// The measure around the center of the hull, so that D = 0.
+/// Returns the measure around the center of the hull, so that D = 0.
 ContactQuality centered_quality(const hands::HandModel& hand, const std::vector<Contact>& contacts,
                                 QualityOptions options = {}) {
   QualityContext context{
@@ -52,7 +52,8 @@ ContactQuality centered_quality(const hands::HandModel& hand, const std::vector<
   return contact_quality(contacts, context, options);
 }
 
-/// Five contacts without any symmetry, three of them in stable pairs, on a hand of five fingers.
+/// Returns five contacts without any symmetry, three of them in stable pairs, on a hand of five
+/// fingers.
 std::vector<Contact> irregular_contacts(const hands::HandModel& hand) {
   std::vector<Contact> contacts = ball_contacts(
       hand, {Vector3d(1, 0.1, 0.2).normalized(), Vector3d(-0.9, 0.4, 0.1).normalized(),
@@ -70,9 +71,9 @@ std::vector<Contact> irregular_contacts(const hands::HandModel& hand) {
 TEST_CASE("Three contacts on a ball have the measure of the angles between them",
           "[grasp][contact_quality]") {
   // Contacts s degrees apart see each other at theta = 90 - s/2, so the pair counts 1 - theta/45 if
-  // s > 90. The triangle's angles are half the arcs opposite, its edges 2 sin(s/2). Rows: arcs; M2,
-  // R, M/M1 with R of angles alone and with both, as an independent program tabulated them (two
-  // decimals).
+  // s > 90. The triangle's angles are half the arcs opposite, its edges 2 sin(s/2). A row holds the
+  // arcs, M2, R, and M/M1 with R of angles alone and with both. An independent program computed the
+  // values to two decimals.
   struct Row {
     double first, second, m2, r, ratio_angles, ratio;
   };
@@ -92,7 +93,7 @@ TEST_CASE("Three contacts on a ball have the measure of the angles between them"
 }
 
 TEST_CASE("Antipodal contacts reach M = M1", "[grasp][contact_quality]") {
-  // theta = 0, R = 1 for two contacts: M2 = M3 = 1.
+  // Two contacts have theta = 0 and R = 1, so that M2 = M3 = 1.
   const hands::HandModel hand = pad_hand(2);
   const ContactQuality quality =
       centered_quality(hand, ball_contacts(hand, {Vector3d::UnitX(), -Vector3d::UnitX()}));
@@ -101,14 +102,15 @@ TEST_CASE("Antipodal contacts reach M = M1", "[grasp][contact_quality]") {
   CHECK(quality.m2 == 1.0);
   CHECK(quality.regularity == 1.0);
   CHECK(quality.m == Approx(quality.m1).epsilon(kRounding));
-  // In the middle of the pad and over 30 % of it: 1 + 2 * 0.3.
+  // They are in the middle of the pad and over 30 % of it: 1 + 2 * 0.3.
   CHECK(quality.m1 == Approx(1.6).epsilon(kRounding));
 }
 
 TEST_CASE("Contacts at the corners of regular solids have the pairs of the solid",
           "[grasp][contact_quality]") {
   SECTION("tetrahedron: all six pairs, 109.47 degrees apart") {
-    // cos s = -1/3, theta = 90 - s/2 = 35.264 degrees, M2 = 6 (1 - theta/45) = 1.298.
+    // Here cos s = -1/3 and theta = 90 - s/2 = 35.264 degrees, so that M2 = 6 (1 - theta/45) =
+    // 1.298.
     const hands::HandModel hand = pad_hand(4);
     const ContactQuality quality = centered_quality(hand, ball_contacts(hand, tetrahedron()));
     CHECK(quality.stable_pairs.size() == 6);
@@ -127,8 +129,8 @@ TEST_CASE("Contacts at the corners of regular solids have the pairs of the solid
     const hands::HandModel hand = pad_hand(5);
     const ContactQuality quality = centered_quality(hand, ball_contacts(hand, bipyramid()));
     CHECK(quality.m2 == Approx(2.0).epsilon(kRounding));
-    // Pole and equator are at 45 degrees up to the rounding of sines, so only what counts is
-    // counted.
+    // Pole and equator are at 45 degrees up to the rounding of sines, so the check counts only
+    // pairs that add something.
     CHECK(std::count_if(quality.stable_pairs.begin(), quality.stable_pairs.end(),
                         [](const StablePair& pair) { return pair.angle < kPi / 4 - 1e-9; }) == 4);
   }
@@ -174,7 +176,7 @@ TEST_CASE("A pair counts only strictly inside both cones", "[grasp][contact_qual
 
 TEST_CASE("M1 weighs boundary distance, area and strength in the units chosen",
           "[grasp][contact_quality]") {
-  // Pad 2 x 4 cm: area 8 cm², largest d 1 cm.
+  // The pad is 2 x 4 cm: its area is 8 cm², its largest d 1 cm.
   const hands::HandModel hand = pad_hand(2, 0.02, 0.04);
   std::vector<Contact> contacts = ball_contacts(hand, {Vector3d::UnitX(), -Vector3d::UnitX()});
   contacts[0].pad_boundary_distance = 0.005;
@@ -232,8 +234,9 @@ TEST_CASE("M3 subtracts the distance of the hull's centroid from the center of m
     CHECK(in_cm.m3 == Approx(1 - 0.3 * 3).epsilon(kRounding));
   }
   SECTION("the area centroid and the mean of corners differ for a trapezoid") {
-    // Corners (-2,0), (2,0), (1,1), (-1,1) cm: the area centroid is at height (b + 2a)/(3(a + b))
-    // with parallel sides b = 4 below and a = 2 above, 4/9 cm; the corners' mean is at 1/2 cm.
+    // The corners are (-2,0), (2,0), (1,1), (-1,1) cm. The area centroid is at height (b + 2a)/(3(a
+    // + b)) with parallel sides b = 4 below and a = 2 above, 4/9 cm; the corners' mean is at 1/2
+    // cm.
     std::vector<Contact> contacts = ball_contacts(hand, equator(90, 90));
     contacts.push_back(ball_contact(hand, 3, Vector3d::UnitZ()));
     contacts[0].point_O = {-0.02, 0, 0};
@@ -314,7 +317,8 @@ TEST_CASE("M does not change under rigid motion, order, or the scale of hand and
       .center_of_mass_O = {0.003, -0.002, 0.004}, .normalizing_radius = 0.08, .hand = &hand};
   const ContactQuality quality = contact_quality(contacts, context);
   REQUIRE(quality.is_usable());
-  // Angles and hull ratios of points turned by rounded matrices: some hundred roundings.
+  // Angles and hull ratios are of points turned by rounded matrices, and off by some hundred
+  // roundings.
   constexpr double kMotionRounding = 1e-11;
 
   SECTION("rigid motion") {
@@ -435,7 +439,8 @@ TEST_CASE("Quality options out of range are refused by field and value",
       {"w3", "nan", [nan](QualityOptions& o) { o.w3 = nan; }},
       {"theta_max", "0", [](QualityOptions& o) { o.theta_max = 0; }},
       {"theta_max", "1.6", [](QualityOptions& o) { o.theta_max = 1.6; }},
-      {"theta_max", "45", [](QualityOptions& o) { o.theta_max = 45; }},  // degrees by mistake
+      // These are degrees by mistake.
+      {"theta_max", "45", [](QualityOptions& o) { o.theta_max = 45; }},
       {"merge_distance", "-0.25", [](QualityOptions& o) { o.merge_distance = -0.25; }},
   };
   const hands::HandModel hand = pad_hand(2);

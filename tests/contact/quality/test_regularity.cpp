@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Sums of a few products of numbers near one: a hundred roundings.
+// Sums of a few products of numbers near one are off by at most a hundred roundings.
 constexpr double kRounding = 1e-13;
 
 }  // namespace
@@ -54,7 +54,7 @@ TEST_CASE("Regular polygons and polyhedra have regularity 1", "[grasp][regularit
   for (const Regularity definition :
        {Regularity::Combined, Regularity::AngleOnly, Regularity::EdgeOnly}) {
     CHECK(regularity(points, definition) == Approx(1.0).epsilon(kRounding));
-    // Turned, the coplanar triangles are so only up to rounding.
+    // After a turn the triangles are coplanar only up to rounding.
     std::vector<Vector3d> turned;
     const Eigen::AngleAxisd rotation(0.7, Vector3d(0.3, -1, 0.4).normalized());
     for (const Vector3d& point : points) turned.push_back(rotation * point);
@@ -64,7 +64,8 @@ TEST_CASE("Regular polygons and polyhedra have regularity 1", "[grasp][regularit
 
 TEST_CASE("Irregular hulls have the regularity of their angles and edges", "[grasp][regularity]") {
   SECTION("isosceles triangle with an apex of 20 degrees") {
-    // Angles 20, 80, 80: Q = (40 + 20 + 20)/240 = 1/3. Edges: base/leg = 2 sin 10 = 0.3473.
+    // The angles are 20, 80, 80, so that Q = (40 + 20 + 20)/240 = 1/3. The edges have base/leg = 2
+    // sin 10 = 0.3473.
     const std::vector<Vector3d> points = {
         {0, 0, 0}, {1, 0, 0}, {std::cos(radians(20)), std::sin(radians(20)), 0}};
     CHECK(regularity(points, Regularity::AngleOnly) == Approx(2.0 / 3.0).epsilon(kRounding));
@@ -75,8 +76,8 @@ TEST_CASE("Irregular hulls have the regularity of their angles and edges", "[gra
     CHECK(regularity(points, Regularity::Combined) == Approx(0.48).margin(0.005));
   }
   SECTION("triangular bipyramid on a sphere") {
-    // Faces with sides sqrt 2, sqrt 2, sqrt 3: the apex angle has cosine (2 + 2 - 3)/4 = 1/4. Q =
-    // twice its excess over 60 degrees (once itself, once the two others together) / 240.
+    // The faces have sides sqrt 2, sqrt 2, sqrt 3: the cosine of the apex angle is (2 + 2 - 3)/4 =
+    // 1/4. Q is twice its excess over 60 degrees (once itself, once the two others together) / 240.
     const double apex = std::acos(0.25) * 180 / kPi;
     CHECK(regularity(bipyramid(), Regularity::AngleOnly) ==
           Approx(1 - 2 * (apex - 60) / 240).epsilon(1e-12));
@@ -120,25 +121,25 @@ TEST_CASE("Close contacts are one point of the hull, in whatever order they come
   std::vector<Vector3d> points = equator(120, 120);
   points.push_back(points[0] + Vector3d(0, 0.008, 0));
   points.push_back(points[0] -
-                   Vector3d(0, 0.008, 0));  // 0.016 from the last: linked through the first
-  // Apart they are a thin pentagon; merged they are the triangle again, by the mean.
+                   Vector3d(0, 0.008, 0));  // It is 0.016 from the last, linked through the first.
+  // Apart they are a thin pentagon; merged by their mean they are the triangle again.
   CHECK(regularity(points, Regularity::Combined) < 0.2);
   std::sort(points.begin(), points.end(),
             [](const Vector3d& a, const Vector3d& b) { return a.y() < b.y(); });
   CHECK(regularity(points, Regularity::Combined, 0.01) == Approx(1.0).epsilon(kRounding));
   std::reverse(points.begin(), points.end());
   CHECK(regularity(points, Regularity::Combined, 0.01) == Approx(1.0).epsilon(kRounding));
-  // Three contacts of which two merge are collinear, not a pair.
+  // Three contacts of which two merge are collinear and not a pair.
   CHECK(regularity(std::vector<Vector3d>{{0, 0, 0}, {1, 0, 0}, {1, 0.001, 0}}, Regularity::Combined,
                    0.01) == 1e-3);
 }
 
 TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a solid above",
           "[grasp][regularity]") {
-  // Corners (±1, ±1/2) at heights ±t/2, the sign that of x y: the principal axes are x, y, z, the
-  // extent 2 and the thickness t, so the branch is at t = 0.2. Planar: the rectangle, R = sqrt(1 *
-  // 1/2). Solid: four equal faces with sides sqrt 5 (between corners of one height), sqrt(4 + t²),
-  // sqrt(1 + t²).
+  // The corners are (±1, ±1/2) at heights ±t/2, with the sign of x y. The principal axes are x, y,
+  // z, the extent is 2 and the thickness t, so the branch is at t = 0.2. The planar hull is the
+  // rectangle, with R = sqrt(1 * 1/2). The solid one has four equal faces with sides sqrt 5
+  // (between corners of one height), sqrt(4 + t²), sqrt(1 + t²).
   const auto points = [](double t) {
     return std::vector<Vector3d>{
         {1, 0.5, t / 2}, {-1, 0.5, -t / 2}, {-1, -0.5, t / 2}, {1, -0.5, -t / 2}};
@@ -156,29 +157,31 @@ TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a s
   const double planar = std::sqrt(0.5);
   CHECK(regularity(points(0.0), Regularity::Combined) == Approx(planar).epsilon(1e-12));
   CHECK(regularity(points(0.1), Regularity::Combined) == Approx(planar).epsilon(1e-12));
-  // Principal axes come from an eigenvalue problem: 1e-12 is some thousand roundings.
+  // Principal axes come from an eigenvalue problem, for which 1e-12 is some thousand roundings.
   CHECK(regularity(points(0.2 * (1 - 1e-12)), Regularity::Combined) ==
         Approx(planar).epsilon(1e-9));
   CHECK(regularity(points(0.2 * (1 + 1e-12)), Regularity::Combined) ==
         Approx(solid(0.2)).epsilon(1e-9));
   CHECK(regularity(points(0.5), Regularity::Combined) == Approx(solid(0.5)).epsilon(1e-12));
-  CHECK(std::abs(solid(0.2) - planar) > 0.1);  // a jump, as the two hulls differ
+  CHECK(std::abs(solid(0.2) - planar) > 0.1);  // This is a jump, as the two hulls differ.
 }
 
 TEST_CASE("A fifth contact raised over four is no corner below thickness 0.1, and an apex above",
           "[grasp][regularity]") {
-  // A rhombus with diagonals 2 and 1.8 and a point over its center: the extent is 2, the thickness
-  // its height. Planar: the rhombus, the point being within, whatever the height.
+  // The points are a rhombus with diagonals 2 and 1.8 and a point over its center: the extent is 2,
+  // and the thickness is the point's height. The planar hull is the rhombus, whatever the height,
+  // as the point is within it.
   const auto points = [](double height) {
     return std::vector<Vector3d>{{1, 0, 0}, {0, 0.9, 0}, {-1, 0, 0}, {0, -0.9, 0}, {0, 0, height}};
   };
-  // Angles 2 atan(0.9) and π − that; all edges are equal.
+  // The angles are 2 atan(0.9) and π minus that; all edges are equal.
   const double planar =
       std::sqrt(1.0 - 4.0 * std::abs(2.0 * std::atan(0.9) - kPi / 2) / (2.0 * kPi));
   for (const double height : {0.0, 0.1, 0.2 * (1 - 1e-12)}) {
     CHECK(regularity(points(height), Regularity::Combined) == Approx(planar).epsilon(1e-9));
   }
-  // Solid: the apex is nearer to (0, ±0.9, 0), at √(0.81 + h²), than those are to (±1, 0, 0).
+  // In the solid hull the apex is nearer to (0, ±0.9, 0), at √(0.81 + h²), than those are to (±1,
+  // 0, 0).
   const double h = 0.2 * (1 + 1e-12);
   CHECK(regularity(points(h), Regularity::EdgeOnly) ==
         Approx(std::sqrt((0.81 + h * h) / 1.81)).epsilon(1e-9));
@@ -193,7 +196,7 @@ TEST_CASE("Regularity is continuous away from the documented branches", "[grasp]
          {Vector3d(1e-6, 0, 0), Vector3d(0, 1e-6, 0), Vector3d(0, 0, 1e-6)}) {
       std::vector<Vector3d> near = points;
       near[moved] += step;
-      // R's slope is below 3 per edge length here.
+      // The slope of R is below 3 per edge length here.
       CHECK(std::abs(regularity(near, Regularity::Combined) -
                      regularity(points, Regularity::Combined)) < 3e-6);
     }

@@ -25,7 +25,8 @@ WrenchConvention convention_of(double friction, int num_edges = 8) {
   return {.options = {.num_cone_edges = num_edges, .friction = friction, .torque_scale = 1.0}};
 }
 
-/// The largest force sum along an axis bounds ε: each of the contacts presses with at most one.
+/// Returns the largest wrench along an axis, which bounds ε: each of the contacts presses with at
+/// most one.
 double reach_along(const Contacts& contacts, const WrenchConvention& convention,
                    const Wrench& direction) {
   double sum = 0.0;
@@ -61,17 +62,18 @@ TEST_CASE("Epsilon, L-infinity, lies between epsilon and as many times that as c
 }
 
 TEST_CASE("Without friction, contacts around an axis push with one each", "[grasp][epsilon_linf]") {
-  // Each of the six contacts of the cube alone pushes its own way; about no axis is there a torque.
+  // Each of the six contacts of the cube pushes its own way alone, and about no axis is there a
+  // torque.
   const LInfinityEpsilon none = epsilon_linf(on_cube(), convention_of(0.0));
   CHECK(none.upper == 0.0);
-  // With friction on the cube the ball touches where torques run out: along an axis four contacts
-  // turn with 4 mu at most.
+  // With friction the ball in the wrench space of the cube touches where torques run out: about an
+  // axis four contacts turn with 4 mu at most.
   const double mu = 0.2;
   const LInfinityEpsilon cube = epsilon_linf(on_cube(), convention_of(mu));
   CHECK(cube.lower <= 4.0 * mu * (1.0 + 1e-12));
   CHECK(cube.lower >= mu * std::sqrt(2.0 / 3.0));
   CHECK(cube.num_points > 12);
-  // So regular that a thousand points may not close the bounds, yet not far from it.
+  // The space is so regular that a thousand points may not close the bounds, but they come near.
   CHECK(cube.upper - cube.lower < 5e-3 * cube.upper);
 }
 
@@ -86,7 +88,8 @@ TEST_CASE("Epsilon, L-infinity, does not change with the frame, nor with size at
   const WrenchConvention convention = convention_of(0.7);
   const double epsilon = epsilon_linf(contacts, convention).lower;
   CHECK(epsilon > 0.0);
-  const Eigen::AngleAxisd about_x(0.83, Vector3d::UnitX());  // about e_x edges turn with the object
+  // About e_x the edges of the friction cones turn with the object.
+  const Eigen::AngleAxisd about_x(0.83, Vector3d::UnitX());
   const Vector3d shift(0.3, -0.1, 0.2);
   Contacts moved = contacts;
   for (Contact& contact : moved) {

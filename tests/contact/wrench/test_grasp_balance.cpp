@@ -26,9 +26,9 @@ Wrench load_of(const Vector3d& force) {
   return load;
 }
 
-/// Karush–Kuhn–Tucker: the problem is convex, so these conditions make an optimum. With r the
-/// residual and the multiplier λ ≥ 0 of the bound, every edge has w · r ≥ λ, those with force
-/// equality, and λ = 0 unless the bound is met with equality.
+/// Checks the conditions of Karush, Kuhn and Tucker. The problem is convex, so that they make an
+/// optimum. With r the residual and the multiplier λ ≥ 0 of the bound, every edge has w · r ≥ λ,
+/// those with force equality, and λ = 0 unless the bound is met with equality.
 void check_optimal(const Contacts& contacts, const Vector3d& reference, const Wrench& load,
                    const BalanceOptions& options, const BalanceForces& found) {
   Wrench total = Wrench::Zero();
@@ -75,10 +75,10 @@ TEST_CASE("A single contact can push but not pull", "[grasp][grasp_balance]") {
   CHECK((balance(4.0).forces_O.col(0) - Vector3d(0, 0, 4)).norm() < 1e-14);
   CHECK(balance(-5.0).residual_norm == Approx(5.0));
   CHECK(balance(-5.0).normal_sum == 0.0);
-  options.least_normal_sum = 3.0;  // has to push 3 N, against the load
+  options.least_normal_sum = 3.0;  // It has to push 3 N, against the load.
   CHECK(balance(-5.0).residual_norm == Approx(8.0));
   CHECK(balance(-5.0).normal_sum == Approx(3.0));
-  CHECK(balance(4.0).residual_norm < 1e-14);  // pushes enough by itself
+  CHECK(balance(4.0).residual_norm < 1e-14);  // It pushes enough by itself.
 }
 
 TEST_CASE("Two fingers hold a weight by friction if they squeeze enough",
@@ -91,10 +91,10 @@ TEST_CASE("Two fingers hold a weight by friction if they squeeze enough",
   const BalanceForces holding =
       balance_forces(contacts, Vector3d::Zero(), load_of({0, 0, weight}), options);
   CHECK(holding.residual_norm < 1e-13);
-  CHECK(holding.normal_sum >= weight / mu - 1e-12);  // each takes half of it, at μ N
+  CHECK(holding.normal_sum >= weight / mu - 1e-12);  // Each takes half of it, at μ N.
   CHECK(holding.forces_O(2, 0) == Approx(3.0));
   CHECK(holding.forces_O(2, 1) == Approx(3.0));
-  // More squeeze than that is no loss; a torque about their line cannot be held at all.
+  // More squeeze than that does no harm, and a torque about their line cannot be held at all.
   options.least_normal_sum = 40.0;
   CHECK(balance_forces(contacts, Vector3d::Zero(), load_of({0, 0, weight}), options).residual_norm <
         1e-12);
@@ -143,7 +143,8 @@ TEST_CASE("Even forces are those of no other balance by much, and alike where co
     CHECK(even.edge_forces.norm() <= least.edge_forces.norm() * (1.0 + 1e-9));
     CHECK(even.normal_sum >= 6.0 * (1.0 - 1e-12));
   }
-  // Six sides of a cube: a sixth of the force each, straight in, though two would do.
+  // On the six sides of a cube each contact takes a sixth of the force, straight in, though two
+  // would do.
   Contacts cube;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {

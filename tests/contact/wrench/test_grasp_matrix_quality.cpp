@@ -30,7 +30,7 @@ TEST_CASE("Singular values of contacts on a ball are the known ones",
           "[grasp][grasp_matrix_quality]") {
   for (const double scale : {1.0, 0.5, 4.0}) {
     CAPTURE(scale);
-    // Six contacts: 6 I and (6 − 2) I / λ².
+    // Six contacts have 6 I and (6 − 2) I / λ².
     const GraspMatrixQuality cube = of(testing::on_cube(), scale);
     const double force = std::sqrt(6.0);
     const double torque = 2.0 / scale;
@@ -39,11 +39,11 @@ TEST_CASE("Singular values of contacts on a ball are the known ones",
     CHECK(cube.ratio() ==
           Approx(std::min(force, torque) / std::max(force, torque)).epsilon(kRounding));
   }
-  // Four: 4 I and (4 − 4/3) I.
+  // Four contacts have 4 I and (4 − 4/3) I.
   const GraspMatrixQuality tetrahedron = of(testing::on_tetrahedron());
   CHECK(tetrahedron.smallest() == Approx(std::sqrt(8.0 / 3.0)).epsilon(kRounding));
   CHECK(tetrahedron.ratio() == Approx(std::sqrt(2.0 / 3.0)).epsilon(kRounding));
-  // Two: no torque about their line.
+  // Two contacts have no torque about their line.
   const GraspMatrixQuality two = of(testing::antipodal());
   for (int i = 0; i < 5; ++i) {
     CHECK(two.singular_values[i] == Approx(std::sqrt(2.0)).epsilon(kRounding));

@@ -41,7 +41,8 @@ constexpr double kRounding = 1e-12;
 
 }  // namespace
 
-// The cases are named as in the project's table of known values.
+// Test cases that are named by one letter, A to G, share their wrenches with those of the same
+// letter in test_min_weight.cpp.
 
 TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
           "[grasp][grasp_wrench_space]") {
@@ -52,8 +53,8 @@ TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
   CHECK(a.volume() == Approx(64.0 / 720.0).epsilon(kRounding));
   CHECK(is_force_closure(cross));
 
-  // Unit vertices with products −1/6: columns of a factor of that Gram matrix. Six of them and the
-  // negative of their sum.
+  // The vertices are unit vectors with products −1/6: six are columns of a factor of that Gram
+  // matrix, the seventh is the negative of their sum.
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Constant(-1.0 / 6.0);
   gram.diagonal().setOnes();
   Wrenches simplex(6, 7);
@@ -61,7 +62,7 @@ TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
   simplex.col(6) = -simplex.leftCols(6).rowwise().sum();
   const ConvexPolytope b(simplex);
   CHECK(b.inradius(Wrench::Zero()) == Approx(1.0 / 6.0).epsilon(kRounding));
-  // √(n + 1) / n! · √((1 + 1/n)^n) for n = 6
+  // The volume is √(n + 1) / n! · √((1 + 1/n)^n) for n = 6.
   CHECK(b.volume() == Approx(std::sqrt(7.0) / 720.0 * std::pow(7.0 / 6.0, 3.0)).epsilon(kRounding));
   CHECK(b.volume() == Approx(0.0058352154).epsilon(1e-7));
   CHECK(is_force_closure(simplex));
@@ -69,7 +70,7 @@ TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
 
 TEST_CASE("Case C: two contacts of a planar disk", "[grasp][grasp_wrench_space]") {
   const double mu = GENERATE(0.2, 0.5, 1.0);
-  MatrixXd wrenches(3, 4);   // force x, force y, torque / R
+  MatrixXd wrenches(3, 4);   // The rows are force x, force y and torque / R.
   wrenches << -1, -1, 1, 1,  //
       mu, -mu, mu, -mu,      //
       mu, -mu, -mu, mu;
@@ -116,7 +117,7 @@ TEST_CASE("Cases F and G: cube and sphere have the known epsilon and volume",
     CAPTURE(row.contacts.size(), row.num_edges, row.friction);
     const WrenchQuality quality =
         wrench_quality(space_of(row.contacts, row.friction, row.num_edges));
-    // Closed forms of the cube; the table gives nine digits of the others.
+    // The cube has closed forms; the values of the others are known to nine digits.
     CHECK(quality.epsilon ==
           Approx(row.epsilon).epsilon(row.contacts.size() == 6 ? kRounding : 3e-9));
     CHECK(quality.volume == Approx(row.volume).epsilon(3e-9));
@@ -161,7 +162,8 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
     const GraspWrenchSpace space = grasp_wrench_space(contacts, com, options);
     const WrenchQuality quality = wrench_quality(space);
 
-    // About e_x edges turn with the object, so that the hull is the same, turned.
+    // About e_x the edges of the friction cones turn with the object, so that the hull is the same,
+    // turned.
     const Eigen::AngleAxisd about_x(random.uniform(0.0, 6.0), Vector3d::UnitX());
     const Vector3d shift = random_direction(random);
     Contacts moved = contacts;
@@ -177,7 +179,7 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
     CHECK(again.volume == Approx(quality.volume).epsilon(1e-9));
     CHECK(again.is_force_closure == quality.is_force_closure);
 
-    // In general the same wrenches, turned.
+    // About any other axis the wrenches themselves are turned.
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(random.uniform(0.0, 6.0), random_direction(random)).matrix();
     Wrenches turned = space.wrenches;
@@ -192,7 +194,7 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
 
 TEST_CASE("Closure is exact where epsilon is 1e-18, zero and below",
           "[grasp][grasp_wrench_space]") {
-  // Half a cross-polytope with its base at `gap`.
+  // This is half a cross-polytope with its base at `gap`.
   for (const double gap : {0x1p-60, 0.0, -0x1p-60}) {
     Wrenches wrenches(6, 11);
     wrenches.col(0) = -Wrench::Unit(0);

@@ -32,8 +32,8 @@ Wrenches wrenches_of(const Contacts& contacts, double friction, int num_edges = 
       {.options = {.num_cone_edges = num_edges, .friction = friction, .torque_scale = 1.0}});
 }
 
-/// Seven unit vectors in 6-D with equal angles between all: the coordinate axes in 7-D, seen along
-/// their sum.
+/// Returns seven unit vectors in 6-D with equal angles between all: the coordinate axes in 7-D,
+/// seen along their sum.
 Wrenches simplex() {
   const MatrixXd centered = MatrixXd::Identity(7, 7).array() - 1.0 / 7.0;
   const MatrixXd basis =
@@ -45,7 +45,8 @@ Wrenches simplex() {
 
 }  // namespace
 
-// The cases are named as in the project's table of known values.
+// Test cases that are named by one letter, A to G, share their wrenches with those of the same
+// letter in test_grasp_wrench_space.cpp.
 
 TEST_CASE("Cases A to G have the known min-weight", "[grasp][min_weight]") {
   Wrenches cross(6, 12);
@@ -62,7 +63,7 @@ TEST_CASE("Cases A to G have the known min-weight", "[grasp][min_weight]") {
 
   for (const double mu : {0.2, 0.5, 1.0}) {
     CAPTURE(mu);
-    // C: a disk in the plane; its wrenches span three dimensions of the six.
+    // Case C is a disk in the plane, whose wrenches span three dimensions of the six.
     Wrenches disk = Wrenches::Zero(6, 4);
     disk.topRows(3) << 1, 1, -1, -1, mu, -mu, mu, -mu, -mu, mu, mu, -mu;
     const MinWeight c = min_weight(disk);
@@ -113,7 +114,7 @@ TEST_CASE(
     const MinWeight found = min_weight(space.wrenches);
     REQUIRE(found.rank == 6);
     REQUIRE(found.weight.has_value());
-    // Three contacts may miss closure by rounding alone, and the two round differently.
+    // Three contacts may miss closure by rounding alone, and the two functions round differently.
     if (std::abs(*found.weight) < 1e-12) {
       CHECK(epsilon_quality(space) < 1e-12);
       continue;
@@ -147,7 +148,7 @@ TEST_CASE("Wrenches that cancel by no weights have no min-weight", "[grasp][min_
   const MinWeight none = min_weight(Wrenches(6, 0));
   CHECK_FALSE(none.weight.has_value());
   CHECK(none.rank == 0);
-  // Only pulling cancels here: 2 w and w, weights −1 and 2.
+  // These cancel only by pulling: 2 w and w with the weights −1 and 2.
   Wrenches both(6, 2);
   both << 2.0 * Wrench::Unit(0), Wrench::Unit(0);
   CHECK(*min_weight(both).weight == Approx(-1.0).epsilon(kClosedForm));

@@ -38,7 +38,7 @@ Contact finger_contact(const HandModel& hand, const char* link, const Vector3d& 
   return link_contact(hand.link_index(link), point_O, inward_normal_O);
 }
 
-/// Coupled joints where their leaders put them, none broken away.
+/// Puts coupled joints where their leaders put them, so that none has broken away.
 void follow_leaders(const HandModel& hand, VectorXd& q) {
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const auto& coupling = hand.joints[j].coupling;
@@ -47,8 +47,8 @@ void follow_leaders(const HandModel& hand, VectorXd& q) {
   }
 }
 
-/// Σ f · δp of the contacts, as points of their links, when one independent joint moves by ±step
-/// and the others follow: from forward kinematics alone.
+/// Returns Σ f · δp of the contacts, as points of their links, when one independent joint moves by
+/// ±step and the others follow. It comes from forward kinematics alone.
 double virtual_work(const HandModel& hand, const HandConfiguration& grasp, const Contacts& contacts,
                     const Eigen::Matrix3Xd& forces, int joint) {
   constexpr double kStep = 1e-6;
@@ -68,8 +68,8 @@ double virtual_work(const HandModel& hand, const HandConfiguration& grasp, const
   return work / (2.0 * kStep);
 }
 
-/// A hand of `count` fingers around z at equal angles, each one link that turns about the tangent
-/// through its foot at (radius, 0) and reaches up to z = lever.
+/// Returns a hand of `count` fingers around z at equal angles. Each is one link that turns about
+/// the tangent through its foot at (radius, 0) and reaches up to z = lever.
 HandModel ring_hand(int count, double radius) {
   HandModel hand;
   hand.name = "ring";
@@ -83,7 +83,7 @@ HandModel ring_hand(int count, double radius) {
     joint.X_PJ.linear() =
         Eigen::AngleAxisd(2.0 * std::numbers::pi * i / count, Vector3d::UnitZ()).toRotationMatrix();
     joint.X_PJ.translation() = joint.X_PJ.linear() * Vector3d(radius, 0.0, 0.0);
-    joint.axis_J = -Vector3d::UnitY();  // growing q leans the finger inward
+    joint.axis_J = -Vector3d::UnitY();  // As q grows, the finger leans inward.
     joint.lower = -1.0;
     joint.upper = 1.0;
     joint.closing_sign = 1;
@@ -185,7 +185,7 @@ TEST_CASE("Fingers around a ball press alike, with a third of the force times le
         squeeze_configuration(hand, grasp, contacts, lever * Vector3d::UnitZ(), radius, 0.6,
                               {.normal_sum = 9.0, .stiffness = 4.0});
     for (const double q : squeeze.configuration.q) {
-      CHECK(q == Approx(9.0 / count * lever / 4.0).epsilon(1e-6));  // evenness leaves that much
+      CHECK(q == Approx(9.0 / count * lever / 4.0).epsilon(1e-6));  // Evenness leaves that much.
     }
     CHECK(squeeze.residual < 1e-6);
     CHECK(squeeze.is_balanced);
@@ -198,7 +198,7 @@ TEST_CASE("Mirrored fingers of the Barrett hand get equal torques", "[grasp][squ
   const Vector3d center(0.0, 0.0, 0.1);
   const double radius = 0.05;
   const double s = std::sqrt(0.75);
-  // A ball over the palm; fingers 1 and 2 mirror each other in x, the thumb presses along y.
+  // A ball is over the palm; fingers 1 and 2 mirror each other in x, the thumb presses along y.
   Contacts contacts;
   const std::vector<std::pair<const char*, Vector3d>> touches = {
       {"finger_1_distal_link", {s, 0.5, 0.0}},
@@ -238,7 +238,7 @@ TEST_CASE("Stiffness times displacement is the contact forces' virtual work on e
         contacts.push_back(link_contact(static_cast<int>(random.index(hand.links.size())),
                                         0.05 * outward, -outward));
       }
-      // Stiff, so that no command reaches a limit.
+      // The joints are so stiff that no command reaches a limit.
       const SqueezeOptions options{.normal_sum = 5.0, .stiffness = 100.0};
       const Squeeze squeeze =
           squeeze_configuration(hand, grasp, contacts, Vector3d::Zero(), 0.05, 0.4, options);
@@ -248,11 +248,11 @@ TEST_CASE("Stiffness times displacement is the contact forces' virtual work on e
       for (const int joint : hands::independent_joints(hand)) {
         const double change = squeeze.configuration.q[joint] - grasp.q[joint];
         const double work = virtual_work(hand, grasp, contacts, squeeze.forces_O, joint);
-        // Differences of 1e-6 rad are off by 1e-10 of the forces, about 1e-9 N m.
+        // Differences of 1e-6 rad are off by 1e-10 of the forces, which is about 1e-9 N m.
         CHECK(100.0 * change == Approx(work).margin(1e-7));
         pressing += change * work;
       }
-      CHECK(pressing >= 0.0);  // the commanded motion presses along the forces, never against
+      CHECK(pressing >= 0.0);  // The commanded motion presses along the forces, never against them.
     }
   }
   CHECK(num_unbalanced > 0);
@@ -262,7 +262,7 @@ TEST_CASE("Contacts that cannot balance are said to leave their force over", "[g
   const HandModel hand = ring_hand(3, 0.04);
   const HandConfiguration grasp{Eigen::Isometry3d::Identity(), VectorXd::Zero(3)};
   const Contacts one = {link_contact(1, {0.04, 0.0, 0.07}, {-1.0, 0.0, 0.0})};
-  // Alone it pushes with the whole force, through the center of mass.
+  // Alone the contact pushes with the whole force, through the center of mass.
   const Squeeze squeeze =
       squeeze_configuration(hand, grasp, one, {0.0, 0.0, 0.07}, 0.04, 0.0, {.normal_sum = 2.0});
   CHECK(squeeze.residual == Approx(1.0));
@@ -284,7 +284,7 @@ TEST_CASE("A follower that has broken away neither counts nor moves by itself",
   const int proximal = hand.joint_index("thumb_proximal");
   const int distal = hand.joint_index("thumb_distal");
   grasp.q[proximal] = 0.3;
-  grasp.q[distal] = 0.5;  // 0.1 by its coupling
+  grasp.q[distal] = 0.5;  // By its coupling it would be 0.1.
   const auto X = hands::forward_kinematics(hand, grasp);
   const int link = hand.link_index("thumb_distal_link");
   const Vector3d point = X[static_cast<std::size_t>(link)] * Vector3d(0.03, 0.0, 0.0);

@@ -81,7 +81,7 @@ TEST_CASE("Each tool's convention has its scale, origin and forces", "[grasp][wr
   std::vector<Contact> contacts(3);
   for (int i = 0; i < 3; ++i) contacts[i].point_O[i] = 0.03;
   const Vector3d centroid = Vector3d::Constant(0.01);
-  const double mean_distance = 0.01 * std::sqrt(6.0);  // of (2, −1, −1) cm
+  const double mean_distance = 0.01 * std::sqrt(6.0);  // It is that of (2, −1, −1) cm.
   using enum WrenchTool;
   struct Row {
     WrenchTool tool;
