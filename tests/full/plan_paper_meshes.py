@@ -30,7 +30,7 @@ def data_folder():
 
 
 def run(program, mesh, arguments, folder):
-    """One row, and the seconds it took."""
+    """Returns one row, and the seconds it took."""
     out = folder / mesh.stem
     start = time.monotonic()
     done = subprocess.run(

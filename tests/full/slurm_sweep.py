@@ -24,8 +24,8 @@ SOURCE_DIR = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "snakemake")
 SLUG = "parameter_sweeps"
 SHARDS = 3
-# 12 cells of a second or more each, so that there is a middle to be killed in; of a shape, which
-# needs no data.
+# The sweep has 12 cells of a second or more each, so that there is a middle in which to kill it.
+# They are of a shape, which needs no data.
 CHANGES = ["--quick", "--set", "seed=1,2,3,4,5,6", "--set", "max-attempts=20"]
 START = time.monotonic()
 
@@ -87,7 +87,8 @@ def free_port():
 
 @contextlib.contextmanager
 def daemon(name, folder, *command):
-    """A daemon in the foreground, ended with the test; its log is shown if it ends earlier."""
+    """Runs a daemon in the foreground and ends it with the test; shows its log if it ends
+    earlier."""
     with open(folder / f"{name}.log", "wb") as log:
         process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
     try:
@@ -107,7 +108,7 @@ def daemon(name, folder, *command):
 
 @contextlib.contextmanager
 def slurm(folder):
-    """A Slurm with this machine as its only node; SLURM_CONF names it."""
+    """Runs a Slurm with this machine as its only node; SLURM_CONF names it."""
     for name in ("state", "spool"):
         (folder / name).mkdir()
     key = folder / "munge.key"
@@ -133,7 +134,7 @@ def slurm(folder):
 
 
 def num_finished(journal):
-    """Finished cells in a journal: whole lines of cells."""
+    """Returns the number of finished cells in a journal: its whole lines of cells."""
     if not journal.is_file():
         return 0
     return sum(line.endswith(b"\n") and b'"cell":' in line
@@ -141,7 +142,7 @@ def num_finished(journal):
 
 
 def kill_a_shard(out, snakemake):
-    """Kills the first shard that has a cell, as soon as it has; its journal and its job."""
+    """Kills the first shard that has a cell, as soon as it has. Returns its journal and its job."""
     def shard_with_a_cell():
         if snakemake.poll() is not None:
             raise RuntimeError("snakemake has ended too early")
@@ -161,7 +162,8 @@ def kill_a_shard(out, snakemake):
 
 
 def states_of(journal, first_job):
-    """The states that Slurm remembers of the shard's jobs, once there is another than the first."""
+    """Returns the states that Slurm remembers of the shard's jobs, once there is another than
+    the first."""
     index = journal.parent.name.split("-")[0]
     lines = output_of("scontrol", "--oneliner", "show", "job").splitlines()
     fields = [dict(part.split("=", 1) for part in line.split() if "=" in part) for line in lines]
@@ -171,7 +173,7 @@ def states_of(journal, first_job):
 
 
 def run_on_slurm(program, folder):
-    """The sweep by Snakemake with a kill on the way; the folder of its results."""
+    """Runs the sweep by Snakemake with a kill on the way. Returns the folder of its results."""
     out = folder / "slurm"
     command = ["snakemake", "-s", SOURCE_DIR / "experiments/Snakefile",
                "--profile", SOURCE_DIR / "experiments/profiles/slurm", "--directory", folder,

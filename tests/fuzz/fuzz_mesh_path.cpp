@@ -1,4 +1,4 @@
-// The libFuzzer target: tests/fuzz/run.
+// This is the target of libFuzzer, which tests/fuzz/run builds.
 #include <cstddef>
 #include <cstdint>
 

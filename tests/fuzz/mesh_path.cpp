@@ -17,11 +17,11 @@ namespace {
 
 using namespace geometry;
 
-// So that an input takes thousandths of a second; more of the same finds nothing new.
+// With these limits an input takes thousandths of a second; more of the same finds nothing new.
 constexpr std::size_t kMostFacesQueried = 300;
 constexpr std::size_t kMostFacesResolved = 60;
 
-// Coordinates whose products of three stay within the range of double (the module's limits).
+// The limit keeps products of three coordinates within the range of double, as the module does.
 constexpr double kLargestCoordinate = 1e90;
 
 bool is_of_usual_size(const TriangleMesh& mesh) {
@@ -29,7 +29,7 @@ bool is_of_usual_size(const TriangleMesh& mesh) {
          bounding_box(mesh).max().cwiseAbs().maxCoeff() < kLargestCoordinate;
 }
 
-// The number of bytes chooses: mostly the default, and each option in one case of eight.
+// Chooses by the number of bytes: mostly the default, and each option in one case of eight.
 MeshRepairOptions repair_options(std::string_view input) {
   MeshRepairOptions options;
   switch (input.size() % 8) {

@@ -83,7 +83,7 @@ std::vector<Seed> seeds() {
     result.push_back({name + "_stl", "s" + internal::format_stl(mesh)});
     result.push_back({name + "_text_stl", "s" + text_stl(mesh)});
   }
-  // What writers of ours never write.
+  // These are what our own writers never write.
   result.push_back({"polygon_off",
                     "oCOFF 6 2 0\n0 0 0 1 1 1\n2 0 0 .5 0 0\n2 2 0\n1 1 0 # dent\n0 2 0\n1 1 1\n"
                     "5 0 1 2 3 4\n3 0 1 5 255 0 0\n"});

@@ -5,13 +5,13 @@
 
 namespace graspfit::testing {
 
-/// An input of `take_mesh_path` to start from.
+/// An input of `take_mesh_path` from which fuzzing starts.
 struct Seed {
   std::string name;
   std::string input;
 };
 
-/// Small solids, and small broken meshes, in every format that is read.
+/// Returns small solids, and small broken meshes, in every format that is read.
 std::vector<Seed> seeds();
 
 }  // namespace graspfit::testing

@@ -16,7 +16,8 @@ using graspfit::testing::take_mesh_path;
 
 namespace {
 
-// A few bytes changed, cut out, doubled, or replaced by a number that readers may stumble over.
+// Returns the input with a few bytes changed, cut out, doubled, or replaced by a number that
+// readers may stumble over.
 std::string damaged(std::string input, Random& random) {
   const std::vector<std::string> words = {
       "0",   "-1",  "1e308", "-1e-320",    "nan",

@@ -1,4 +1,4 @@
-// write_seeds FOLDER: the inputs from which fuzzing starts.
+// The program writes the inputs from which fuzzing starts: write_seeds FOLDER.
 #include <cstdio>
 #include <filesystem>
 

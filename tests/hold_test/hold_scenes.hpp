@@ -9,8 +9,8 @@
 
 namespace graspfit::testing {
 
-/// A hand of a palm and two jaws, boxes of 20 mm that slide along x towards each other: at q the
-/// inner faces are at x = ∓(0.06 − q). Palm 0.5 m above.
+/// Returns a hand of a palm and two jaws, which are boxes of 20 mm that slide along x towards each
+/// other: at q the inner faces are at x = ∓(0.06 − q). The palm is 0.5 m above.
 inline hands::HandModel two_jaws() {
   hands::HandModel hand;
   hand.name = "two jaws";
@@ -49,8 +49,8 @@ inline hands::HandConfiguration jaws_at(double left, double right) {
   return configuration;
 }
 
-/// A pinch of a cube of 40 mm around the origin, pressed with `force` [N] by either jaw; slides of
-/// `slide_stiffness` [N/m].
+/// Returns a pinch of a cube of 40 mm around the origin, pressed with `force` [N] by either jaw;
+/// the slides have `slide_stiffness` [N/m].
 inline grasp::Grasp pinch(double force, double slide_stiffness = 2000.0) {
   const double touching = 0.04;
   const double pressing = touching + force / slide_stiffness;
@@ -63,7 +63,7 @@ inline grasp::Grasp pinch(double force, double slide_stiffness = 2000.0) {
   return result;
 }
 
-/// A convex solid as its own only piece.
+/// Returns a convex solid as its own only piece.
 inline geometry::ConvexDecomposition one_piece(const geometry::TriangleMesh& convex) {
   geometry::ConvexDecomposition shape;
   shape.pieces = {convex};
@@ -75,7 +75,7 @@ inline hold_test::HoldObject convex_object(const geometry::TriangleMesh& mesh) {
   return {one_piece(mesh), mass.center_of_mass, mass.inertia / mass.volume};
 }
 
-/// A hand whose links are convex.
+/// Returns a hand whose links are convex.
 inline hold_test::HoldHand convex_hand(const hands::HandModel& model) {
   hold_test::HoldHand hand{model, {}};
   for (const hands::Link& link : model.links) hand.links.push_back(one_piece(link.mesh_L));
@@ -86,7 +86,8 @@ inline hold_test::HoldTest jaws_on_cube(const hold_test::HoldProtocol& protocol)
   return {convex_hand(two_jaws()), convex_object(geometry::box({0.04, 0.04, 0.04})), protocol};
 }
 
-/// A hand of six plates around a room from −`half_width` to `half_width`, that cannot move.
+/// Returns a hand of six plates around a closed space from −`half_width` to `half_width`, which
+/// cannot move.
 inline hands::HandModel closed_room(double half_width) {
   hands::HandModel hand;
   hand.name = "room";

@@ -20,7 +20,7 @@ using hold_test::ParameterValue;
 using hold_test::set_parameter;
 using testing::Contains;
 
-// As a command line has it; `change` makes another value of it.
+// Returns the text that a command line has; `change` makes another value of it.
 std::string text_of(const ParameterValue& value, bool change) {
   const double by = change ? 1.5 : 0.0;
   if (const auto* number = std::get_if<double>(&value)) return shortest_decimal(*number + by);

@@ -29,19 +29,21 @@ TEST_CASE("A protocol that there is not is refused with the names there are", "[
 }
 
 TEST_CASE("Published numbers stand in the protocols", "[hold_test]") {
-  // DexGraspBench: 100 g, 10 N/kg, 4 ms, friction 0.6 and 0.02; Dexonomy: 5 cm, 15 degrees.
+  // DexGraspBench has 100 g, 10 N/kg, 4 ms, friction 0.6 and 0.02; Dexonomy has 5 cm and 15
+  // degrees.
   const HoldProtocol bench = hold_protocol("dexgraspbench-100g");
   CHECK(bench.force == Approx(10.0 * bench.object_mass));
   CHECK(bench.step == 0.004);
   CHECK(bench.largest_turn == Approx(15.0 * 3.14159265358979 / 180.0));
-  // Dexonomy, hard: half the friction, a tenth of the torsional, noslip 0, impratio 1, 9.8 N/kg.
+  // The hard mode of Dexonomy has half the friction, a tenth of the torsional one, noslip 0,
+  // impratio 1 and 9.8 N/kg.
   const HoldProtocol hard = hold_protocol("dexonomy-hard");
   CHECK(hard.sliding_friction == Approx(bench.sliding_friction / 2));
   CHECK(hard.torsional_friction == Approx(bench.torsional_friction / 10));
   CHECK(hard.noslip_iterations == 0);
   CHECK(hard.impratio == 1.0);
   CHECK(hard.force == Approx(9.8 * hard.object_mass));
-  // MultiDex: 0.5 m/s2, 2 cm.
+  // MultiDex has 0.5 m/s2 and 2 cm.
   const HoldProtocol weak = hold_protocol("multidex-0.05g");
   CHECK(weak.force == Approx(0.5 * weak.object_mass));
   CHECK(weak.largest_shift == 0.02);

@@ -61,7 +61,7 @@ TEST_CASE("A report has a row of the same width for every grasp, whatever stage 
     return std::count(line.begin(), line.end(), ',');
   };
   CHECK(commas(lines[2]) == commas(lines[0]));
-  CHECK(commas(lines[1]) == commas(lines[0]) + 1);  // the one inside quotes
+  CHECK(commas(lines[1]) == commas(lines[0]) + 1);  // The one more is inside quotes.
   CHECK_THAT(lines[1],
              testing::StartsWith("1,false,rejected,\"links a, \"\"b\"\" overlap\",0,0,0,"));
 

@@ -19,8 +19,8 @@ using testing::pinch;
 HoldProtocol bench() { return hold_protocol("dexgraspbench-100g"); }
 
 TEST_CASE("Two jaws hold 1 N along their faces from about N = F / 2 mu on", "[hold_test]") {
-  // Theory: 2 mu N = 1 N from N = 0.833 N on. The engine's friction creeps below that, so that some
-  // less may stay within 5 cm for the 2 s of the test.
+  // By theory it holds where 2 mu N = 1 N, from N = 0.833 N on. The engine's friction creeps below
+  // that, so that some less may stay within 5 cm for the 2 s of the test.
   HoldTest test = jaws_on_cube(bench());
   double falls = 0.5;
   double holds = 1.5;
@@ -69,7 +69,8 @@ TEST_CASE("A ball in a closed room is held without friction", "[hold_test]") {
   protocol.sliding_friction = 0.0;
   protocol.torsional_friction = 0.0;
   protocol.squeeze = SqueezeRule::None;
-  protocol.largest_turn = 7.0;  // Any: normals of a faceted ball do not all pass its center.
+  // Any turn will do, as normals of a faceted ball do not all pass its center.
+  protocol.largest_turn = 7.0;
   const HoldHand room = testing::convex_hand(testing::closed_room(0.03));
   const HoldObject ball = testing::convex_object(geometry::ball(0.025, 3));
   grasp::Grasp inside;
@@ -79,7 +80,8 @@ TEST_CASE("A ball in a closed room is held without friction", "[hold_test]") {
   const HoldVerdict verdict = HoldTest(room, ball, protocol).test(inside);
   CHECK(verdict.held());
   for (const DirectionVerdict& direction : verdict.directions) {
-    CHECK(direction.largest_shift < 0.008);  // 5 mm of room, and a bounce's depth.
+    // The ball has 5 mm to each wall, and a bounce goes deeper.
+    CHECK(direction.largest_shift < 0.008);
     CHECK(direction.largest_shift > 0.003);
   }
 }
@@ -100,12 +102,13 @@ TEST_CASE("A cube rests on the table, and is lifted by jaws that press hard enou
     CHECK(frames.back().X_OB.translation().norm() < 5e-4);
     CHECK(frames.back().hand.X_OH.translation().z() > 0.05);
   }
-  SECTION("held, it goes up with the hand") {  // 2 mu N = 6 N against a weight of 1 N
+  // Friction carries 2 mu N = 6 N against a weight of 1 N.
+  SECTION("held, it goes up with the hand") {
     CHECK(test.test(pinch(5.0)).held());
     const HoldFrame end = test.replay(pinch(5.0), 0).back();
     CHECK(end.X_OB.translation().z() == Approx(protocol.lift_height).epsilon(0.02));
   }
-  SECTION("held too lightly, it stays behind") {  // 0.6 N
+  SECTION("held too lightly, it stays behind") {  // Friction carries 0.6 N.
     CHECK(test.test(pinch(0.5)).stage == HoldStage::Load);
   }
 }
@@ -114,7 +117,7 @@ TEST_CASE("A pre-grasp deep in the object is rejected, one that is shallow or mi
           "[hold_test]") {
   HoldTest test = jaws_on_cube(bench());
   grasp::Grasp deep = pinch(5.0);
-  deep.pre_grasp->configuration = jaws_at(0.052, 0.03);  // 12 mm
+  deep.pre_grasp->configuration = jaws_at(0.052, 0.03);  // The jaw is 12 mm deep.
   const HoldVerdict verdict = test.test(deep);
   CHECK(verdict.stage == HoldStage::Rejected);
   CHECK_THAT(verdict.reason, testing::Contains("left") && testing::Contains("12."));
@@ -199,7 +202,8 @@ TEST_CASE("A simulation that diverges is a grasp that fails, and says so", "[hol
 
 TEST_CASE("Links that are said to have mass and no inertia are as inert as their solid",
           "[hold_test]") {
-  // As the fingertips of the Shadow hand's description, which the engine alone would refuse.
+  // These inertias are like those of the fingertips in the Shadow hand's description, which the
+  // engine alone would refuse.
   const HoldObject cube = testing::convex_object(geometry::box({0.04, 0.04, 0.04}));
   const auto jaws = [](double mass, const Eigen::Matrix3d& inertia) {
     hands::HandModel hand = testing::two_jaws();
@@ -211,7 +215,8 @@ TEST_CASE("Links that are said to have mass and no inertia are as inert as their
   const auto verdict_of = [&](const hands::HandModel& hand, const HoldProtocol& protocol) {
     return HoldTest(testing::convex_hand(hand), cube, protocol).test(pinch(5.0));
   };
-  // Twice what the boxes have by the protocol's density, so that the mass described is seen.
+  // The mass is twice what the boxes have by the protocol's density, so that the test sees whether
+  // the described mass counts.
   HoldProtocol twice_as_dense = bench();
   twice_as_dense.link_density *= 2.0;
   const double volume = geometry::mass_properties(testing::two_jaws().links[1].mesh_L).volume;

@@ -32,7 +32,8 @@ inline RigidTransform at(const Eigen::Vector3d& place, double turn_about_z = 0.0
   return X;
 }
 
-/// Whether `samples` + 1 places of a segment, evenly spaced, are without overlap; exact tests only.
+/// Returns an overlap at one of `samples` + 1 evenly spaced points of a segment, if there is one;
+/// exact tests decide.
 inline std::optional<Collision> sampled_overlap(const TableScene& scene,
                                                 const std::vector<RigidTransform>& X_WO,
                                                 const MotionSegment& segment, int samples) {

@@ -36,8 +36,8 @@ struct HeldBlock {
                testing::scene_object("wall", geometry::box(wall_size))}) {
     hold = hands::open_configuration(scene.hand());
     hold.q.setConstant(0.02 + gap);
-    // Palm direction down; the pads' middle, 62 mm from the palm frame, 12 mm over the block's
-    // center, so that the jaws end above its lower face.
+    // The palm direction is down. The middle between the pads, 62 mm from the palm frame, is 12 mm
+    // over the block's center, so that the jaws end above its lower face.
     hold.X_OH.linear() = Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
     hold.X_OH.translation().z() = 0.074;
   }
@@ -58,7 +58,7 @@ struct HeldBlock {
 TEST_CASE("A block that is carried past a wall keeps the known distance and no more",
           "[grasp][table_motion]") {
   // The wall's top is below the jaws and above the block's lower face, so that the block is
-  // nearest. Gap 7 mm along y.
+  // nearest. The gap is 7 mm along y.
   const HeldBlock held({0.2, 0.02, 0.01});
   const double gap = 0.007;
   const std::vector<RigidTransform> X_WO = {at({0, 0, 0}), at({0.0, 0.02 + gap, 0.187})};
@@ -72,8 +72,8 @@ TEST_CASE("A block that is carried past a wall keeps the known distance and no m
   for (int i = 0; i <= 600; ++i) {
     nearest = std::min(nearest, clearance_at(held.scene, X_WO, past, i / 600.0).hand);
   }
-  CHECK(nearest == Approx(0.0045).epsilon(1e-6));  // the jaws, 2.5 mm wider than the block
-  // A proof is given up after 500 distances, so that it needs some room on a long way.
+  CHECK(nearest == Approx(0.0045).epsilon(1e-6));  // The jaws are 2.5 mm wider than the block.
+  // A proof is given up after 500 distances, so that it needs some margin on a long way.
   CHECK_FALSE(find_collision(held.scene, X_WO, past, nearest - 0.003));
   const auto met = find_collision(held.scene, X_WO, past, gap + 1e-6);
   REQUIRE(met);
@@ -97,8 +97,8 @@ TEST_CASE("A motion through a wall thinner than any step is refused", "[grasp][t
 }
 
 TEST_CASE("A turn is refused whose corner passes into a wall", "[grasp][table_motion]") {
-  // Half the block's diagonal in x and y is 22.4 mm: turning by a right angle about z, its corner
-  // passes at that distance, which the ends (20 and 10 mm) do not show.
+  // Half the block's diagonal in x and y is 22.4 mm. As it turns by a right angle about z, its
+  // corner passes at that distance, which the ends (20 and 10 mm) do not show.
   const HeldBlock held({0.01, 0.3, 0.01});
   const RigidTransform from = at({0, 0, 0.2}, -0.25 * std::numbers::pi);
   const RigidTransform to = at({0, 0, 0.2}, 0.5 * std::numbers::pi - 0.1);
@@ -128,7 +128,7 @@ TEST_CASE("An object rests where it is lifted and placed, and nowhere else",
       find_collision(held.scene, X_WO, held.carry(MotionPhase::Transport, down, up), 0.0);
   REQUIRE(dragged);
   CHECK(dragged->text() == "block and table");
-  // Into the table, by more than rounding.
+  // This goes into the table by more than rounding.
   const RigidTransform below = at({0, 0, 0.015 - 2e-9});
   CHECK(find_collision(held.scene, X_WO, held.carry(MotionPhase::Place, up, below), 0.0));
 }
@@ -155,7 +155,7 @@ TEST_CASE("An approach may touch what it approaches, a reach may not", "[grasp][
 
 TEST_CASE("A hand that stays where it is keeps its distance, or does not",
           "[grasp][table_motion]") {
-  // A wall 50 mm thick far away in x; block elsewhere.
+  // A wall 50 mm thick stands far away in x, and the block elsewhere.
   const HeldBlock held({0.05, 0.4, 0.4});
   std::vector<RigidTransform> X_WO = {at({2, 2, 0.015}), at({1, 0, 0.2})};
   HandConfiguration hand = held.holding(at({0, 0, 0.5}));
@@ -163,22 +163,22 @@ TEST_CASE("A hand that stays where it is keeps its distance, or does not",
     return MotionSegment{MotionPhase::Reach, kBlock, hand, hand, X_WO[kBlock], X_WO[kBlock]};
   };
   CHECK(largest_travel(held.scene, resting()) < 1e-15);
-  // One millimeter over the table.
+  // The hand is one millimeter over the table.
   hand.X_OH.translation().z() -= clearance_at(held.scene, X_WO, resting(), 0.0).hand - 0.001;
   CHECK(clearance_at(held.scene, X_WO, resting(), 0.0).hand == Approx(0.001).epsilon(1e-9));
   CHECK_FALSE(find_collision(held.scene, X_WO, resting(), 0.0005));
   const auto met = find_collision(held.scene, X_WO, resting(), 0.003);
   REQUIRE(met);
   CHECK(met->second == "table");
-  // The same beside the wall, high over the table.
+  // The same holds beside the wall, high over the table.
   hand.X_OH.translation().z() += 0.3;
   const double gap = clearance_at(held.scene, X_WO, resting(), 0.0).hand;
   X_WO[kWall].translation().x() -= 1.0;
-  CHECK(find_collision(held.scene, X_WO, resting(), 0.0));  // in the wall
+  CHECK(find_collision(held.scene, X_WO, resting(), 0.0));  // The hand is in the wall.
   X_WO[kWall].translation().x() += 1.0;
   X_WO[kWall].translation().z() = 5.0;
   CHECK_FALSE(find_collision(held.scene, X_WO, resting(), 0.5 * gap));
-  // And with the block in hand.
+  // The same holds with the block in hand.
   const RigidTransform X_WB = at({0, 0, 0.5});
   X_WO[kWall] = at({0.02 + 0.002 + 0.025, 0, 0.5 - 0.013 - 0.2});
   const MotionSegment carried = held.carry(MotionPhase::Transport, X_WB, X_WB);
@@ -189,7 +189,7 @@ TEST_CASE("A hand that stays where it is keeps its distance, or does not",
 
 TEST_CASE("The end of an approach may be near the object alone, not the table",
           "[grasp][table_motion]") {
-  // Straight down beside the block, until the jaws are 4 um in the table.
+  // The hand goes straight down beside the block, until the jaws are 4 um in the table.
   const HeldBlock held({0.01, 0.01, 0.01});
   const RigidTransform X_WB = at({0, 0.3, 0.015});
   const std::vector<RigidTransform> X_WO = {X_WB, at({1, 1, 1})};
@@ -215,7 +215,7 @@ TEST_CASE("The end of an approach may be near the object alone, not the table",
 
 TEST_CASE("Hulls of objects are those of their surfaces", "[grasp][table_motion]") {
   geometry::TriangleMesh stray = geometry::box({0.04, 0.04, 0.04});
-  stray.vertices.push_back({0, 0, -3.0});  // of no face
+  stray.vertices.push_back({0, 0, -3.0});  // This vertex belongs to no face.
   const TableScene scene(hands::find_hand("parallel_gripper"),
                          {testing::scene_object("box", stray)});
   CHECK(scene.hull_O(0).vertices.size() == 8);
@@ -279,7 +279,8 @@ TEST_CASE("What is proven free is free wherever it is looked at, and what is fre
       CHECK_FALSE(overlaps);
       ++num_free;
     } else {
-      // Between two places, no point moves by more than 1 mm, so distances by 1 mm at most.
+      // Between two samples no point moves by more than 1 mm, and so distances change by 1 mm at
+      // most.
       CHECK(nearest < clearance + 0.001);
       ++num_met;
     }

@@ -44,7 +44,8 @@ TableScene two_blocks() {
                      testing::scene_object("blue", geometry::box({0.05, 0.04, 0.06}))});
 }
 
-/// Each segment begins where the last one ends, the first and last at home.
+/// Checks that each segment begins where the last one ends, and that the first and last are at
+/// home.
 void check_chain(const PlannedMove& move, const PickAndPlaceOptions& options) {
   REQUIRE(move.segments.size() >= 7);
   CHECK(move.segments.front().from.X_OH.matrix() == options.home.X_OH.matrix());
@@ -61,7 +62,8 @@ void check_chain(const PlannedMove& move, const PickAndPlaceOptions& options) {
   }
 }
 
-/// Exact tests on places that no point leaves by more than half a millimeter.
+/// Makes exact tests at samples so close that no point moves by more than half a millimeter between
+/// two.
 void check_free(const TableScene& scene, std::vector<RigidTransform> X_WO,
                 const std::vector<PlannedMove>& moves) {
   for (const PlannedMove& move : moves) {
@@ -84,7 +86,7 @@ TEST_CASE("A block is picked up, turned over and put down at its goal", "[grasp]
   PickAndPlaceOptions options = options_for(scene.hand());
   options.planner.max_attempts = 60;
   const std::vector<RigidTransform> start = {at({-0.1, 0, 0.08}), at({0.02, 0.12, 0.03}, 0.3)};
-  // On its side: what was along y is up.
+  // At the goal the block is on its side: what was along y is up.
   RigidTransform goal = at({0.14, -0.05, 0.03});
   goal.linear() = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix();
   const MoveAttempt attempt = plan_move(scene, start, 0, goal, options);
@@ -93,7 +95,7 @@ TEST_CASE("A block is picked up, turned over and put down at its goal", "[grasp]
   check_chain(*attempt.move, options);
   CHECK(attempt.move->X_WO_to.matrix() == goal.matrix());
   CHECK(attempt.move->grasp.is_valid());
-  // Half open fingers would stand around the object when the palm withdraws.
+  // Half open fingers would stand around the object as the palm withdraws.
   CHECK(attempt.move->grasp.pre_grasp->opening == 1.0);
   check_free(scene, start, {*attempt.move});
   CHECK(attempt.segments_tried == attempt.move->segments_tried);
@@ -111,7 +113,7 @@ TEST_CASE("A move is refused with its reason where there is none", "[grasp][pick
     CHECK(attempt.planner_attempts == 0);
   }
   SECTION("the object is under a lid") {
-    // A plate 20 mm above the block, wide enough that no finger reaches around it.
+    // A plate is 20 mm above the block, wide enough that no finger reaches around it.
     const TableScene scene(hands::find_hand("parallel_gripper"),
                            {testing::scene_object("block", geometry::box({0.04, 0.05, 0.06})),
                             testing::scene_object("lid", geometry::box({1.0, 1.0, 0.01}))});
@@ -125,7 +127,8 @@ TEST_CASE("A move is refused with its reason where there is none", "[grasp][pick
 
 TEST_CASE("Whether an object fits the hand does not depend on how it is turned",
           "[grasp][pick_and_place]") {
-  // 40 mm thick, but 170 mm in both directions of the table where it stands turned by 45 degrees.
+  // The board is 40 mm thick, but 170 mm wide in both directions of the table where it stands
+  // turned by 45 degrees.
   const TableScene scene(hands::find_hand("parallel_gripper"),
                          {testing::scene_object("board", geometry::box({0.04, 0.2, 0.25}))});
   PickAndPlaceOptions options = options_for(scene.hand());
@@ -165,8 +168,8 @@ TEST_CASE("An object of impossible size stays, and the others are moved all the 
 
 TEST_CASE("A grasp has room over the table at the goal too, lower, upside down or far away",
           "[grasp][pick_and_place]") {
-  // A flat block that stands 0.1 m high is grasped from the side by a hand thicker than the block;
-  // on the table there is no room for that.
+  // A flat block that stands 0.1 m high is grasped from the side by a hand thicker than the block,
+  // for which there is no space on the table.
   const TableScene scene(hands::find_hand("parallel_gripper"),
                          {testing::scene_object("tile", geometry::box({0.05, 0.04, 0.012}))});
   PickAndPlaceOptions options = options_for(scene.hand());
@@ -195,7 +198,7 @@ TEST_CASE("A hand whose palm is in the object goes straight down, and none is sa
   PickAndPlaceOptions options = options_for(scene.hand());
   options.planner.max_attempts = 4;
   const std::vector<RigidTransform> start = {at({-0.1, 0, 0.03}), at({0.1, 0, 0.03})};
-  // The palm center at the block's center, exactly.
+  // The palm center is exactly at the block's center.
   options.home.X_OH = RigidTransform::Identity();
   options.home.X_OH.translation() = start[0].translation() - scene.hand().palm.center_H;
   REQUIRE(options.home.X_OH * scene.hand().palm.center_H == start[0].translation());
@@ -256,7 +259,7 @@ TEST_CASE("Two blocks that change places need a third place, and one that is in 
   const RigidTransform right = at({0.12, 0, 0.03});
 
   SECTION("in the way") {
-    // Red wants to stand where blue is; blue wants to go elsewhere.
+    // The red block wants to stand where the blue one is, and the blue one wants to go elsewhere.
     const std::vector<RigidTransform> start = {left, right};
     const std::vector<RigidTransform> goal = {right, at({0.0, 0.15, 0.03})};
     const TidyingResult result = tidy_table(scene, start, goal, options);
@@ -369,7 +372,7 @@ TEST_CASE("Motion files are the same bytes for the same table and are read back"
 
 TEST_CASE("A motion file that contradicts itself, its hand or its objects is refused",
           "[grasp][motion_io]") {
-  // The file of a hand that takes a box from the shape library 50 mm aside.
+  // The file is that of a hand that takes a box from the shape library 50 mm aside.
   const hands::HandModel hand = hands::find_hand("parallel_gripper");
   const testing::TemporaryFolder folder;
   const auto mesh = folder.path() / "block.off";
@@ -416,7 +419,7 @@ TEST_CASE("A motion file that contradicts itself, its hand or its objects is ref
     }
     return std::string("accepted");
   };
-  // Segments share their keyframes: what one is changed to, the next begins with.
+  // Segments share their keyframes: where one is changed, the next begins there.
   const auto moved = [](MotionFile & changed, std::size_t at_move, std::size_t segment) -> auto& {
     return changed.moves[at_move].segments[segment];
   };

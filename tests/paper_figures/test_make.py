@@ -223,7 +223,8 @@ class BadDataIsOneLine(Folder):
 
 
 class Rerun(Folder):
-    """make --rerun on copies of the scripts, with programs that only note how they are called."""
+    """Tests make --rerun on copies of the scripts, with programs that only record how they are
+    called."""
 
     def setUp(self):
         super().setUp()
@@ -237,7 +238,7 @@ class Rerun(Folder):
             path.parent.mkdir(parents=True)
             path.write_text("{}")
         self.log = self.folder / "log"
-        # Refuses, as publishing does, once anything of what was there has changed.
+        # It refuses, as publishing does, once anything of what was there has changed.
         self.program("graspfit", f'''test -e "{self.stale[0]}" -a -e "{self.stale[1]}" || exit 1
             echo "$3" >> "{self.log}"
             mkdir -p "$5"
@@ -277,7 +278,7 @@ class Rerun(Folder):
 
 class Rendered(Folder):
     def colors(self, slug):
-        """Share of pixels near the colors of object, hand and contacts."""
+        """Returns the share of pixels near the colors of object, hand and contacts."""
         with Image.open(self.folder / f"{slug}.png") as image:
             pixels = np.asarray(image.convert("RGB")).reshape(-1, 3).astype(int)
         red, green, blue = pixels.T

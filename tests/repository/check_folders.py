@@ -1,5 +1,5 @@
-"""Folders of sources, each of one topic. One uses those before it in its module's FOLDERS and
-none after it, and holds no more than 25 files, its public headers included.
+"""Checks that folders of sources are each of one topic: one uses those before it in its module's
+FOLDERS and none after it, and holds no more than 25 files, its public headers included.
 
   check_folders.py SOURCE_DIR
 """
@@ -16,7 +16,8 @@ num_modules = 0
 
 
 def folders_of(module):
-    """The folders of a module in the order of its CMakeLists.txt; none if it has one folder only."""
+    """Returns the folders of a module in the order of its CMakeLists.txt; none if it has one
+    folder only."""
     match = re.search(r"\bFOLDERS:?\s+([a-z_ \n]+?)\s*(?:SOURCES|:|$)",
                       (module / "CMakeLists.txt").read_text(), re.M)
     return match.group(1).split() if match else []

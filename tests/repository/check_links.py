@@ -1,4 +1,4 @@
-"""Links of the pages lead to files and headings that are there: check_links.py SOURCE."""
+"""Checks that links of the pages lead to files and headings that exist: check_links.py SOURCE."""
 
 import re
 import subprocess
@@ -11,7 +11,8 @@ CODE = re.compile(r"(?ms)^```.*?^```|`[^`\n]*`")
 
 
 def pages():
-    """Those of the repository; in a copy without it all there are, but for what was built."""
+    """Returns the pages of the repository; in a copy without it all that exist, but for what was
+    built."""
     listed = subprocess.run(["git", "ls-files", "*.md"], cwd=SOURCE, capture_output=True, text=True,
                             check=False).stdout.split()
     if listed:
@@ -20,7 +21,7 @@ def pages():
 
 
 def anchors(page):
-    """The names by which the headings of a page are linked to."""
+    """Returns the names by which the headings of a page are linked to."""
     text = re.sub(r"(?ms)^```.*?^```", "", page.read_text(encoding="utf-8"))
     names = set()
     for heading in re.findall(r"(?m)^#+ (.*)$", text):
@@ -37,7 +38,7 @@ def faults_of(page):
     text = CODE.sub("", page.read_text(encoding="utf-8"))
     for target in LINK.findall(text):
         if re.match(r"[a-z]+:", target):
-            continue  # of the web, which no test of ours reads
+            continue  # It is a page of the web, which no test of ours reads.
         file, _, anchor = target.partition("#")
         place = (page.parent / file).resolve() if file else page
         if not place.exists():

@@ -1,7 +1,7 @@
-"""No published manifest holds a path of the machine that made it.
+"""Checks that no published manifest holds a path of the machine that made it.
 
-Every text in it is looked at, keys included: an absolute path, a home folder or an option --out.
-The strings at the end of this file show what is found and what is not.
+Every text in a manifest is searched, keys included, for an absolute path, a home folder or an
+option --out. The strings at the end of this file show what is found and what is not.
 """
 
 import json
@@ -9,8 +9,8 @@ import pathlib
 import re
 import sys
 
-# A slash that begins a word, or follows what cannot stand in a relative path, and a name after it;
-# a tilde's folder; a drive letter; an option that names a folder of results.
+# It finds a slash that begins a word, or follows what cannot stand in a relative path, and a name
+# after it; a tilde's folder; a drive letter; and an option that names a folder of results.
 MACHINE_PATH = re.compile(r"(?:^|[\s'\"=:,;(])(?:/|~/|~\w+/|file:/+|[A-Za-z]:\\)[\w.-]|--out\b")
 
 FOUND = ["/tmp/out", "graspfit experiment run x --out results", "a '/home/me/x y'", "~/results",

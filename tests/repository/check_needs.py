@@ -1,5 +1,5 @@
-"""The packages that the two commands install, the table of docs/building.md, what CMake looks for, and
-what sources include and scripts import all agree.
+"""Checks that the packages which the two commands install, the table of docs/building.md, what
+CMake looks for, and what sources include and scripts import all agree.
 
   check_needs.py SOURCE_DIR
 """
@@ -15,10 +15,10 @@ PRODUCT = ("base", "geometry", "hands", "grasp", "experiments", "viewer", "app")
 PRODUCT_SCRIPTS = ("viewer",)
 IN_PROGRAM = {"build", "build?", "picture"}
 IN_TESTS = IN_PROGRAM | {"test", "slow"}
-# Headers of the C library and the kernel.
+# These are headers of the C library and the kernel.
 POSIX = {"dlfcn.h", "fcntl.h", "malloc.h", "signal.h", "spawn.h", "stdlib.h", "strings.h", "sys",
          "time.h", "unistd.h"}
-# CMake's own, and our own package, which consumers look for.
+# These are CMake's own package, and ours, which consumers look for.
 OWN_PACKAGES = {"Threads", "graspfit"}
 
 faults = []
@@ -30,7 +30,8 @@ def listed():
 
 
 def table():
-    """Rows (group, package, CMake packages, words of headers and modules) of docs/building.md."""
+    """Returns rows (group, package, CMake packages, words of headers and modules) of
+    docs/building.md."""
     rows = []
     for line in (SOURCE / "docs/building.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
@@ -60,7 +61,7 @@ def compare_cmake(rows):
         for package, version in re.findall(r"find_package\(\s*([\w-]+)(?:\s+(\d[\d.]*\d))?", text):
             if package in OWN_PACKAGES:
                 continue
-            if not version:  # asked for by comparing it afterwards
+            if not version:  # Its version is compared after it was found.
                 match = re.search(package + r"_VERSION VERSION_LESS (\d[\d.]*)", text)
                 version = match.group(1) if match else ""
             found.add((package + " " + version).strip())
@@ -80,7 +81,7 @@ def sources(*suffixes):
 
 
 def compare(file, name, kind, groups):
-    """Whether the package with `name` is in a group that is there where `file` is used."""
+    """Returns whether the package with `name` is in a group that is there where `file` is used."""
     has = groups.get(name)
     if has is None:
         faults.append("%s: %s %s is of no package in docs/building.md" % (file, kind, name))

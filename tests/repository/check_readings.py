@@ -19,7 +19,8 @@ CELL = re.compile(r"(?<!\\) \| ")
 
 
 def options():
-    """Name -> (the flag as the page writes it, numbers of its readings)."""
+    """Returns a dictionary from names to (the flag as the page writes it, numbers of its
+    readings)."""
     found = {}
     for name, values, meaning in OPTION.findall((SOURCE / "docs/options.md").read_text()):
         is_choice = re.fullmatch(r"[a-z0-9-]+(\\\|[a-z0-9-]+)+", values) is not None
@@ -30,7 +31,8 @@ def options():
 
 
 def written(line, known, page):
-    """A row of the page with its options as they are; each stands in a row of its reading."""
+    """Returns a row of the page with its options as they are; each stands in a row of its
+    reading."""
     cells = CELL.split(line)
     if not line.startswith("|") or len(cells) < 6:
         return line

@@ -1,6 +1,6 @@
-// A contact metric on a Surface_mesh of CGAL: which share of a fingertip's pad has surface within
-// reach. CGAL's tree finds the faces near the pad and the distance of its center; graspfit cuts the
-// surface exactly by the volume before the pad.
+// This program computes a contact metric on a Surface_mesh of CGAL: which share of a fingertip's
+// pad has surface within reach. CGAL's tree finds the faces near the pad and the distance of its
+// center; graspfit cuts the surface exactly by the volume before the pad.
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -14,7 +14,8 @@ namespace adapter = graspfit::geometry::cgal;
 using Kernel = adapter::Kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// Somebody's mesh: a square plate with a step along y, as two rows of quads cut into triangles.
+// Returns a mesh as somebody may have it: a square plate with a step along y, as two rows of quads
+// cut into triangles.
 SurfaceMesh stepped_plate(double half_size, double step) {
   SurfaceMesh mesh;
   std::vector<SurfaceMesh::Vertex_index> row[4];
@@ -32,7 +33,7 @@ SurfaceMesh stepped_plate(double half_size, double step) {
   return mesh;
 }
 
-// A pad over the origin with the edge `size` that sees `depth` deep.
+// Returns the share of a pad over the origin with the edge `size` that has surface within `depth`.
 double supported_share(const SurfaceMesh& object, double size, double depth) {
   const graspfit::geometry::TriangleMesh mesh = adapter::triangle_mesh(object);
   const adapter::FaceTree faces(mesh);
@@ -46,7 +47,7 @@ double supported_share(const SurfaceMesh& object, double size, double depth) {
   double area = 0.0;
   for (const auto& piece : graspfit::geometry::clip(mesh, indices, adapter::volume(before_pad))) {
     const auto normal = graspfit::geometry::face_normal(mesh, piece.face);
-    area += piece.area * normal.z();  // as seen by the pad
+    area += piece.area * normal.z();  // This is the area as the pad sees it.
   }
   return area / (size * size);
 }
@@ -58,7 +59,7 @@ int main() {
   std::printf("pad that sees 4 mm deep: %.3f supported\n", deep);
   std::printf("pad that sees 2 mm deep: %.3f supported\n", shallow);
 
-  // The same distance by CGAL's tree and by graspfit's query, side by side.
+  // CGAL's tree and graspfit's query find the same distance.
   const graspfit::geometry::TriangleMesh mesh = adapter::triangle_mesh(plate);
   const adapter::FaceTree faces(mesh);
   const Eigen::Vector3d tip(0.01, 0.004, 0.007);
@@ -68,7 +69,8 @@ int main() {
       std::sqrt(graspfit::geometry::MeshQuery(mesh).closest_point(tip).squared_distance);
   std::printf("distance of a fingertip: %.4f mm, %.4f mm\n", 1e3 * by_cgal, 1e3 * by_graspfit);
 
-  // In closed form: all of the pad, or the half before the step; 10 mm above the lower half.
+  // In closed form the shares are all of the pad, and the half before the step; the distance is 10
+  // mm above the lower half.
   return std::abs(deep - 1.0) < 1e-12 && std::abs(shallow - 0.5) < 1e-12 &&
                  std::abs(by_cgal - 0.01) < 1e-15 && std::abs(by_graspfit - 0.01) < 1e-15
              ? 0

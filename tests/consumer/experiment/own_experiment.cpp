@@ -1,5 +1,5 @@
-// An experiment of one's own on a mesh of one's own: a column that graspfit does not have, over
-// resolution, alpha, beta and a threshold. Writes its table where the program stands.
+// This is an experiment of one's own on a mesh of one's own: a column that graspfit does not have,
+// over resolution, alpha, beta and a threshold. It writes its table into the folder of the program.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -18,7 +18,7 @@ std::vector<sweep::Column> columns() {
           {"palm_spread_m", "m", "largest distance of two of their palms, if there are two"}};
 }
 
-// What one cell computes, on one thread; several cells may run at once.
+// Computes one cell on one thread; several cells may run at once.
 sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   const experiments::PlanningSettings settings = experiments::planning_settings(cell);
   const auto object_file = experiments::load_object(settings.object);
@@ -59,7 +59,7 @@ int main(int, char** argv) {
     return experiments::planning_inputs(experiments::planning_settings(cell));
   };
 
-  // Instead of the configuration's object, as `--object cube.off` would do.
+  // This mesh takes the place of the configuration's object, as `--object cube.off` would.
   const sweep::ExperimentConfig config =
       sweep::read_config(experiment, CONFIGURATION, {.object_files = {mesh}});
   const sweep::RunProgress done =

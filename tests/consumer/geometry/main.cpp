@@ -1,5 +1,5 @@
-// Links every layer below the public headers: mesh building, file formats (assimp) and the exact
-// kernel's containment, from nothing but an installed graspfit.
+// This program links every layer below the public headers: mesh building, file formats (assimp) and
+// the exact kernel's containment, from nothing but an installed graspfit.
 #include <cstdio>
 #include <filesystem>
 
@@ -15,7 +15,7 @@ int main() {
   const geometry::TriangleMesh mesh = geometry::read_mesh(file).mesh;
   std::filesystem::remove(file);
 
-  // 2 pi^2 R r^2 = 3.948e-4 m^3; the inscribed polyhedron has a little less.
+  // The volume is 2 pi^2 R r^2 = 3.948e-4 m^3; the inscribed polyhedron has a little less.
   const double volume = geometry::mass_properties(mesh).volume;
   std::printf("torus: %zu faces, %.6f liters\n", mesh.faces.size(), 1000 * volume);
   if (volume < 3.9e-4 || volume > 3.95e-4) return 1;

@@ -1,5 +1,5 @@
-// Links every layer down to the physics engine from nothing but an installed graspfit: a cube in
-// jaws, with a grasp of one's own making.
+// This program links every layer down to the physics engine from nothing but an installed graspfit.
+// It tests a grasp of its own making of a cube in jaws.
 #include <cstdio>
 
 #include "graspfit/base/errors.hpp"
@@ -23,7 +23,7 @@ int main() {
     }
     return 1;
   }
-  // Wide open beside the cube: nothing holds it.
+  // The jaws stand wide open beside the cube, and nothing holds it.
   grasp::Grasp open;
   open.configuration = hands::open_configuration(gripper);
   open.configuration.X_OH.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
