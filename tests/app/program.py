@@ -12,13 +12,13 @@ import unittest
 PROGRAM = os.environ["GRASPFIT"]
 SOURCE_DIR = pathlib.Path(os.environ["GRASPFIT_SOURCE_DIR"])
 
-# Nothing is left in the cache of whoever runs the tests.
+# The tests leave nothing in the cache of whoever runs them.
 CACHE = tempfile.TemporaryDirectory()
 os.environ["GRASPFIT_CACHE"] = CACHE.name
 
 
 def run(*arguments, cwd=None, env=None):
-    """Exit code, standard output and standard error of one run."""
+    """Returns exit code, standard output and standard error of one run."""
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd,
                           env=env, check=False)
 
@@ -31,7 +31,7 @@ def off_text(vertices, faces):
 
 
 def torus(major=0.05, minor=0.02, rings=32, sides=16):
-    """A closed outward torus around z [m], which a Barrett hand grasps easily."""
+    """Returns a closed outward torus around z [m], which a Barrett hand grasps easily."""
     vertices = []
     for i in range(rings):
         for j in range(sides):
@@ -48,7 +48,7 @@ def torus(major=0.05, minor=0.02, rings=32, sides=16):
 
 
 def box(x, y, z):
-    """A closed outward box around the origin, 12 triangles [m]."""
+    """Returns a closed outward box around the origin, of 12 triangles [m]."""
     vertices = [(sx * x / 2, sy * y / 2, sz * z / 2)
                 for sz in (-1, 1) for sy in (-1, 1) for sx in (-1, 1)]
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
@@ -56,7 +56,8 @@ def box(x, y, z):
 
 
 def german_environment(folder):
-    """With a locale whose decimals have a comma: the system's, or one compiled into `folder`."""
+    """Returns an environment with a locale whose decimals have a comma: the system's, or one
+    compiled into `folder`."""
     done = subprocess.run(["locale", "-a"], capture_output=True, text=True, check=False)
     german = [name for name in done.stdout.split() if name.startswith("de_")]
     if german:
@@ -71,7 +72,7 @@ def german_environment(folder):
 
 
 class ProgramTest(unittest.TestCase):
-    """A test in a temporary folder of its own."""
+    """A test that has a temporary folder of its own."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -90,7 +91,7 @@ class ProgramTest(unittest.TestCase):
         return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
 
     def assert_refused(self, *arguments, code=2, says=(), cwd=None):
-        """One line on standard error, nothing on standard output, no file made."""
+        """Checks for one line on standard error, nothing on standard output, and no new file."""
         before = self.contents()
         done = run(*arguments, cwd=cwd)
         shown = f"graspfit {' '.join(map(str, arguments))}\n{done.stdout}{done.stderr}"
@@ -107,7 +108,8 @@ class ProgramTest(unittest.TestCase):
 def main():
     """Runs the test classes named on the command line, or all of the file.
 
-    "SKIPPED: " makes the whole skipped for ctest, failures or not: said only where nothing ran.
+    The word "SKIPPED: " makes ctest count the whole test as skipped, whether or not something
+    failed. It is printed only where nothing ran.
     """
     outcome = unittest.main(verbosity=2, exit=False).result
     word = "SKIPPED" if outcome.testsRun <= len(outcome.skipped) else "SKIPPED in part"

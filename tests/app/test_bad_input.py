@@ -170,7 +170,7 @@ class BadFlags(program.ProgramTest):
                 with self.subTest(flag=flag, value=value):
                     line = self.assert_refused("plan", self.object, f"--{flag}", value,
                                                says=[f"graspfit plan: --{flag} ", value])
-                    self.assertNotRegex(line, "Options|[a-z]_[a-z]")  # names of C++
+                    self.assertNotRegex(line, "Options|[a-z]_[a-z]")  # These would be names of C++.
         self.refuse("--clearance-mm", "1e30", says="--clearance-mm is 1e+30, must be in [0, 10000]")
         self.refuse("--approach", "0,0,0", says="--approach is a direction without length")
         self.refuse("--fingers", "thumb", says="--fingers asks for 1 finger, must be at least two")
@@ -233,13 +233,13 @@ class BadFlags(program.ProgramTest):
         self.refuse("--style", "presicion", says='did you mean "precision"?')
         self.refuse("--planner", "fiting", says='did you mean "fitting"?')
         self.refuse("--hold", "tabletop-lfit", says=["--hold", 'did you mean "tabletop-lift"?'])
-        # What is near to nothing is not guessed at.
+        # The program guesses at no name that is near to nothing.
         self.assertNotIn("mean", self.assert_refused("grab", self.object))
         self.assertNotIn("mean", self.assert_refused("plan", self.object, "--fastest"))
 
     def test_flags_that_do_not_exist_or_fit(self):
         self.refuse("--fastest", says="--fastest")
-        self.refuse("--cou", "3", says="--cou")  # no guessing of abbreviations
+        self.refuse("--cou", "3", says="--cou")  # Abbreviations are not guessed.
         self.refuse("--count", says="count")
         self.refuse("--count", "1", "--count", "2", says="count")
         self.refuse("second.off", says="more than one")
@@ -283,7 +283,7 @@ class BadFlags(program.ProgramTest):
 
 
 class FileSizeLimit(program.ProgramTest):
-    """What `ulimit -f` does: a file that would grow beyond it."""
+    """Limits the size of files as `ulimit -f` does: a file that would grow beyond it."""
 
     def run_limited(self, size, *arguments, stdout=subprocess.PIPE):
         def limit():
@@ -312,7 +312,8 @@ class FileSizeLimit(program.ProgramTest):
 
 class NoGrasp(program.ProgramTest):
     def test_no_grasp_found_has_its_own_code_and_says_why(self):
-        # Half a degree of friction cone: no two voxels of a torus face each other so well.
+        # The friction cone is half a degree wide, and no two voxels of a torus face each other so
+        # well.
         message = self.assert_refused(
             "plan", self.write_torus(), "--theta-max-deg", "0.5", "--max-attempts", "4",
             "--out", self.folder / "out", code=3, says=["no valid grasp", "4 attempts"])

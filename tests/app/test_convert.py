@@ -20,8 +20,8 @@ try:
 except ImportError:
     yaml = None
 
-# moveit_msgs/Grasp and the messages in it, by their definitions (ROS 2 "jazzy"; ROS 1 has `seq` in
-# headers besides, and `secs`, `nsecs` in times).
+# These are moveit_msgs/Grasp and the messages in it, by their definitions (ROS 2 "jazzy"; ROS 1 has
+# `seq` in headers besides, and `secs`, `nsecs` in times).
 MESSAGES = {
     "Grasp": {"id": str, "pre_grasp_posture": "JointTrajectory", "grasp_posture": "JointTrajectory",
               "grasp_pose": "PoseStamped", "grasp_quality": float,
@@ -52,7 +52,7 @@ def rotation(wxyz):
 
 
 def glb_bodies(data):
-    """Name -> vertices in the root frame and faces, by the glTF 2.0 specification."""
+    """Returns, by name, vertices in the root frame and faces, by the glTF 2.0 specification."""
     magic, version, length = struct.unpack_from("<4sII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))
     json_length, json_type = struct.unpack_from("<I4s", data, 12)
@@ -91,7 +91,7 @@ def glb_bodies(data):
 
 
 def obj_bodies(text):
-    """The same of the OBJ file that `plan` writes."""
+    """Returns the same of the OBJ file that `plan` writes."""
     bodies, first, vertices = {}, 0, []
     for line in text.splitlines():
         kind, _, rest = line.partition(" ")
@@ -107,7 +107,7 @@ def obj_bodies(text):
 
 
 class ConvertTest(program.ProgramTest):
-    """Grasps of a torus, planned once: the file has a pre-grasp and a squeeze for each."""
+    """Tests on grasps of a torus, planned once: the file has a pre-grasp and a squeeze for each."""
 
     @classmethod
     def setUpClass(cls):
@@ -220,7 +220,7 @@ class Written(ConvertTest):
         self.assertEqual(data["object_frame_link"], "Kränzchen 環")
 
     def check_message(self, value, kind, place="Grasp"):
-        """A value is what its message's definition allows; the top message is whole."""
+        """Checks that a value is what its message's definition allows; the top message is whole."""
         if isinstance(kind, list):
             self.assertIsInstance(value, list, place)
             for item in value:
@@ -257,7 +257,7 @@ class Written(ConvertTest):
                                  [{"positions": [joints[name] for name in independent]}])
             approach = message["pre_grasp_approach"]
             self.assertEqual(approach["direction"]["header"]["frame_id"], hand["palm"]["link"])
-            # Back along it from the grasp stands the pre-grasp's palm.
+            # The palm of the pre-grasp stands back along this direction from the grasp.
             direction = rotation(ours["X_OH"]["rotation_wxyz"]) @ [
                 approach["direction"]["vector"][k] for k in "xyz"]
             self.assert_near(
@@ -305,7 +305,7 @@ class Written(ConvertTest):
             self.assertEqual(list(found), list(posed))
             for name, (vertices, faces) in posed.items():
                 self.assertEqual(found[name][1].tolist(), faces.tolist())
-                # Single precision of coordinates below 0.2 m in links' frames.
+                # Coordinates below 0.2 m in links' frames have single precision.
                 self.assert_near(found[name][0], vertices, 3e-8)
         self.convert("out/grasps.json", "best.glb")
         self.assertEqual((self.folder / "best.glb").read_bytes(),
@@ -313,7 +313,7 @@ class Written(ConvertTest):
         self.convert("out/grasps.json", "all", "--format", "glb", "--grasp", "3,1")
         self.assertEqual(sorted(path.name for path in (self.folder / "all").iterdir()),
                          ["grasp_001.glb", "grasp_002.glb"])
-        # In one folder two formats are beside each other, and files of others stay.
+        # Files of two formats are beside each other in one folder, and files of others stay.
         (self.folder / "all/grasp_009.glb.txt").write_text("mine")
         self.convert("out/grasps.json", "all", "--format", "graspit")
         self.convert("out/grasps.json", "all", "--format", "glb", "--grasp", "2")
@@ -389,7 +389,7 @@ class Imported(ConvertTest):
         self.convert("out/grasps.json", "grasps.yaml")
         text = (self.folder / "grasps.yaml").read_text()
         lines = text.splitlines()
-        # The second grasp, 5 cm aside, with the best confidence there is.
+        # The second grasp is 5 cm aside and has the best confidence there is.
         at = [i for i, line in enumerate(lines) if line.startswith("    confidence")][1]
         x, *rest = lines[at + 1].split("[")[1].rstrip("]").split(", ")
         lines[at] = "    confidence: 1.0"

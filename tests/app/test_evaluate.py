@@ -18,7 +18,7 @@ class Evaluate(program.ProgramTest):
         cls.addClassCleanup(cls.planned.cleanup)
         folder = pathlib.Path(cls.planned.name)
         (folder / "torus.off").write_text(program.off_text(*program.torus()))
-        # By a relative name, so that copies of the folder refer to their own object.
+        # The object has a relative name, so that copies of the folder refer to their own object.
         done = program.run("plan", "torus.off", "--count", "2", "--accept", "usable",
                            "--search", "first", "--out", "out", cwd=folder)
         assert done.returncode == 0, done.stderr
@@ -125,7 +125,7 @@ class Evaluate(program.ProgramTest):
         self.assert_refused("evaluate", self.file, says=["torus.off", "--object"],
                             cwd=self.folder)
         self.assertEqual(self.evaluate(self.file, "--object", moved).returncode, 0)
-        shutil.copy(moved, self.folder / "out/torus.off")  # beside the grasp file
+        shutil.copy(moved, self.folder / "out/torus.off")  # This is beside the grasp file.
         self.assertEqual(self.evaluate(self.file).returncode, 0)
         self.write("out/torus.off", program.off_text(*program.torus(0.051)))
         self.assert_refused("evaluate", self.file, says=["torus.off", "SHA-256"],
@@ -168,7 +168,7 @@ class Evaluate(program.ProgramTest):
                 def remove(data, keys=keys):
                     del item(data, *keys[:-1])[keys[-1]]
 
-                if "options" not in keys:  # which have defaults
+                if "options" not in keys:  # Options have defaults.
                     self.assert_refused("evaluate", self.changed(remove), says="is missing")
 
     def test_joint_beyond_its_limits(self):

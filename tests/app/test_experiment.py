@@ -16,7 +16,7 @@ def rows_of(path):
 
 
 class Quick(ProgramTest):
-    """--quick of every experiment."""
+    """Tests of --quick of every experiment."""
 
     def test_every_experiment_runs_without_any_data(self):
         environment = dict(os.environ, GRASPFIT_DATA=str(self.folder / "none"),
@@ -70,10 +70,10 @@ class Quick(ProgramTest):
 
 
 class Shards(ProgramTest):
-    """A sweep of a shape, which needs no data, in parts."""
+    """Tests of a sweep of a shape, which needs no data, in parts."""
 
     SLUG = "parameter_sweeps"
-    CHANGES = ("--quick", "--set", "seed=1,2,3")  # 6 cells
+    CHANGES = ("--quick", "--set", "seed=1,2,3")  # This makes 6 cells.
 
     def run_part(self, out, *arguments):
         done = run("experiment", "run", self.SLUG, *self.CHANGES, "--out", out, *arguments)
@@ -120,7 +120,8 @@ class Shards(ProgramTest):
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
         self.assertIn(f"{table}: is not the table that", done.stderr)
         table.write_text(whole)
-        for folder in (out, other):  # as published before manifests named their tables
+        # Manifests may lack the hashes of their tables.
+        for folder in (out, other):
             manifest = folder / f"{self.SLUG}.manifest.json"
             content = json.loads(manifest.read_text())
             self.assertEqual(len(content.pop("tables_sha256")), 2)
@@ -191,7 +192,7 @@ class Shards(ProgramTest):
         self.run_part(other)
         self.assert_refused("experiment", "run", "measured_contacts", "--quick", "--out", other,
                             says="holds results of parameter_sweeps")
-        self.run_part(other)  # its own may go on
+        self.run_part(other)  # Its own part may go on.
 
     def test_shards_that_cannot_be_are_refused(self):
         part = ("experiment", "run", self.SLUG, "--out", "out", "--shard")
@@ -205,7 +206,7 @@ class Shards(ProgramTest):
 
 
 class Schema(ProgramTest):
-    """experiments/config.schema.json, and the program's own checks beside it."""
+    """Tests of experiments/config.schema.json, and of the program's own checks beside it."""
 
     def setUp(self):
         super().setUp()
@@ -227,7 +228,8 @@ class Schema(ProgramTest):
             self.assertEqual([e.message for e in self.validator.iter_errors(config)], [], slug)
 
     def test_schema_and_program_refuse_the_same(self):
-        """What the schema refuses the program refuses, too, naming file, key and what is allowed."""
+        """Checks that the program, too, refuses what the schema refuses, naming file, key and
+        what is allowed."""
         folder = self.folder / "configs"
         folder.mkdir()
         text = (SOURCE_DIR / "experiments/configs/parameter_sweeps.json").read_text()
@@ -289,7 +291,8 @@ class Columns(ProgramTest):
 
 
 class Hold(ProgramTest):
-    """Grasps put to the hold test. SciPy computes the summary again from the rows per grasp."""
+    """Tests of grasps put to the hold test. SciPy computes the summary again from the rows per
+    grasp."""
 
     def setUp(self):
         super().setUp()
@@ -372,7 +375,7 @@ class Hold(ProgramTest):
 
 
 class Methods(ProgramTest):
-    """Planning methods compared. SciPy computes both tables over all cells again."""
+    """Tests that compare planning methods. SciPy computes both tables over all cells again."""
 
     SLUG = "table1"
 

@@ -13,7 +13,7 @@ from program import PROGRAM, ProgramTest, main, off_text, run, torus
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
 PACKAGED_MESHES = pathlib.Path(os.environ.get("GRASPFIT_PACKAGED_MESHES", CACHE / "graspfit/meshes"))
 
-# One attempt on a coarse grid in every cell.
+# Every cell is one attempt on a coarse grid.
 SHORT = ("--set", "count=1", "--set", "max-attempts=1", "--set", "resolution=10",
          "--set", "weak-thickness-mm=0")
 
@@ -32,7 +32,8 @@ class DataTest(ProgramTest):
         return dict(os.environ, **{name: str(value) for name, value in changes.items()})
 
     def without_data(self, *arguments, **changes):
-        """A run on a machine that has no data folder; what it wrote to standard error."""
+        """Runs on a machine that has no data folder. Returns what the run wrote to standard
+        error."""
         done = run("experiment", "run", *arguments, "--out", self.out,
                    env=self.environment(GRASPFIT_DATA=self.folder / "none", **changes))
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -43,7 +44,8 @@ class DataTest(ProgramTest):
 
 
 class WithoutData(DataTest):
-    """No data folder: objects that every machine has, said, and never published."""
+    """Tests without a data folder: runs have objects that every machine has, say so, and are
+    never published."""
 
     def test_a_sweep_has_objects_that_every_machine_has(self):
         for slug, axis, others in (("planner_everyday", "object", {"gripper", "barrett", "human"}),
@@ -72,7 +74,8 @@ class WithoutData(DataTest):
                           "--set", "planner=fitting")
         rows = rows_of(self.out / "table1.csv")
         self.assertIn("shape_mug", {row["object"] for row in rows})
-        self.assertIn("bowling_ball", {row["object"] for row in rows})  # a shape of the axis itself
+        # This is a shape of the axis itself.
+        self.assertIn("bowling_ball", {row["object"] for row in rows})
         for row in rows:
             self.assertEqual(row["status"], "ok", row)
             self.assertAlmostEqual(float(row["object_extent_m"]), 0.2, places=6)
@@ -99,7 +102,7 @@ class WithoutData(DataTest):
         self.assertEqual(self.manifest_of("object_voxels")["inputs_sha256"]["packaged/bunny00.off"], digest)
 
     def test_every_sweep_has_rows(self):
-        """What describe says a run would have here: no axis is empty."""
+        """Checks what describe says a run would have here: no axis is empty."""
         if not (PACKAGED_MESHES / "bunny00.off").is_file():
             self.skipTest("no packaged meshes; set GRASPFIT_PACKAGED_MESHES")
         environment = self.environment(GRASPFIT_DATA=self.folder / "none")
@@ -115,7 +118,7 @@ class WithoutData(DataTest):
 
 
 class OwnObjects(DataTest):
-    """--object FILE on the axis of objects."""
+    """Tests of --object FILE on the axis of objects."""
 
     def setUp(self):
         super().setUp()
@@ -174,7 +177,7 @@ class OwnObjects(DataTest):
 
 
 class Described(DataTest):
-    """describe: which value needs which data."""
+    """Tests of describe, which says which value needs which data."""
 
     def data_of(self, slug, *arguments, **changes):
         text = run("experiment", "describe", slug, *arguments, env=self.environment(**changes)).stdout

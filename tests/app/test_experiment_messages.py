@@ -26,7 +26,7 @@ class Describe(ProgramTest):
         self.assertIn("34 cells", done.stdout)
 
     def settings_of(self, slug, *arguments):
-        """What describe says of each setting: default, unit, allowed, meaning."""
+        """Returns what describe says of each setting: default, unit, allowed, meaning."""
         done = run("experiment", "describe", slug, *arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stdout.split("\nSettings, ")[1].splitlines()[1:]

@@ -42,7 +42,7 @@ def apply(pose, p):
 
 
 def clip(polygon, normal, offset):
-    """The part of a polygon with normal . p <= offset (Sutherland and Hodgman)."""
+    """Returns the part of a polygon with normal . p <= offset (Sutherland and Hodgman)."""
     result = []
     for p, q in zip(polygon, polygon[1:] + polygon[:1]):
         hp, hq = dot(normal, p) - offset, dot(normal, q) - offset
@@ -62,7 +62,7 @@ def area_vector(polygon):
 
 
 def planned_file():
-    """A grasp file as the program writes it."""
+    """Returns a grasp file as the program writes it."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         mesh = folder / "torus.off"
@@ -117,7 +117,7 @@ class Schema(program.ProgramTest):
                     if place and place[-1] == "readings":
                         break
                     if place[:2] == ("planner", "options"):
-                        continue  # one that is missing has its default
+                        continue  # One that is missing has its default.
                     value = target.pop(key)
                     self.assertFalse(validator.is_valid(changed), f"no {key} in {place}")
                     target[key] = value

@@ -17,7 +17,8 @@ SHIPPED = sorted(path.name for path in MODELS.iterdir() if (path / f"{path.name}
 
 
 def gripper_urdf(extra="", finger_joint="prismatic"):
-    """Two jaws of 10 x 20 x 60 mm on a 100 mm palm, closing along x by up to 40 mm each."""
+    """Returns two jaws of 10 x 20 x 60 mm on a 100 mm palm, which close along x by up to 40 mm
+    each."""
     def link(name, size, center):
         return (f'<link name="{name}"><collision><origin xyz="{center}"/><geometry><box size="{size}"/>'
                 f'</geometry></collision></link>')
@@ -37,7 +38,7 @@ def gripper_urdf(extra="", finger_joint="prismatic"):
 
 
 def gripper_in_millimeters():
-    """The same with every length 1000 times as large."""
+    """Returns the same with every length 1000 times as large."""
     def thousandfold(match):
         return match[1] + " ".join(repr(1000 * float(x)) for x in match[2].split()) + '"'
 
@@ -51,7 +52,7 @@ class List(program.ProgramTest):
         found = re.findall(r"(?m)^(\w+): (\d+) fingers, (\d+) joints, (\d+) independent, (\d+) pads", done.stdout)
         self.assertEqual([name for name, *_ in found], SHIPPED)
         counts = {name: tuple(map(int, numbers)) for name, *numbers in found}
-        # Fingers, joints and independent joints of the paper's three hands.
+        # The counts are fingers, joints and independent joints of the paper's three hands.
         self.assertEqual(counts["parallel_gripper"][:3], (2, 2, 1))
         self.assertEqual(counts["barrett"][:3], (3, 8, 4))
         self.assertEqual(counts["human_hand"][:3], (5, 20, 20))
@@ -71,7 +72,7 @@ class List(program.ProgramTest):
 
 class Show(program.ProgramTest):
     def table(self, text, name):
-        """Rows of the table under a heading, as lists of words."""
+        """Returns the rows of the table under a heading, as lists of words."""
         block = text.split(f"\n\n{name}\n")[1].split("\n\n")[0]
         return [re.split(r"  +", line.strip()) for line in block.strip().splitlines()]
 
@@ -82,7 +83,7 @@ class Show(program.ProgramTest):
         self.assertEqual(joints[0][-3:], ["open", "half", "closed"])
         rows = {row[0]: row[1:] for row in joints[1:]}
         self.assertEqual(len(rows), 8)
-        # 140 degrees; the distal joint follows by one third.
+        # The range is 140 degrees; the distal joint follows by one third.
         self.assertEqual(rows["finger_1_proximal"][3:5], ["0.0000", "2.4435"])
         self.assertRegex(" ".join(rows["finger_1_distal"]), r"0\.3333 finger_1_proximal.* breakaway")
         self.assertEqual({row[0] for row in self.table(done.stdout, "fingers")[1:]},
@@ -102,7 +103,7 @@ class Show(program.ProgramTest):
         self.assertEqual(rows["finger_1_distal"][:2], ["0.2000", "0.4072"])
         self.assertEqual(rows["finger_2_spread"], ["0.0000", "1.5000", "0.0000"])
         self.assertEqual(rows["finger_2_proximal"][0], "0.0000")
-        # Breakaway: the distal joint alone, up to 48 degrees.
+        # After a breakaway the distal joint moves alone, up to 48 degrees.
         alone = program.run("hand", "show", "barrett", "--pose", "finger_1_distal=0.8")
         self.assertEqual(alone.returncode, 0, alone.stderr)
 
@@ -158,7 +159,7 @@ class Picture(program.ProgramTest):
         self.assertGreaterEqual(height, 400)
 
     def test_without_a_display_one_line_and_no_file(self):
-        """A path without xvfb-run, and no display."""
+        """Runs with a path without xvfb-run, and without a display."""
         tools = self.folder / "tools"
         tools.mkdir()
         env = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
@@ -201,7 +202,8 @@ class Check(program.ProgramTest):
         self.assertNotIn("-2147483648", done.stdout)
 
     def check_on_a_terminal(self, path):
-        """What is printed, what the terminal shows, and how many seconds the program ran."""
+        """Returns what is printed, what the terminal shows, and how many seconds the program
+        ran."""
         start = time.monotonic()
         primary, secondary = pty.openpty()
         env = {**os.environ, "TERM": "xterm"}
@@ -213,7 +215,7 @@ class Check(program.ProgramTest):
             try:
                 while block := os.read(primary, 4096):
                     shown += block
-            except OSError:  # the program has closed its end
+            except OSError:  # The program has closed its end.
                 pass
         os.close(primary)
         return out, shown.decode(), time.monotonic() - start
@@ -222,7 +224,7 @@ class Check(program.ProgramTest):
         text = gripper_urdf().replace('<box size="0.01 0.02 0.06"/>',
                                       '<mesh filename="jaw.off" scale="0.1 0.1 0.1"/>')
         path = self.write("slow.urdf", text)
-        # Open jaws, with more and more faces until this machine reads them for seconds.
+        # The jaws are open and have more and more faces until this machine reads them for seconds.
         seconds, around = 0.0, 200
         while seconds < 2.0:
             around *= 2
@@ -339,7 +341,8 @@ class Export(program.ProgramTest):
 
 
 class WithoutSidecar(program.ProgramTest):
-    """A hand of which nobody wrote a sidecar: planning, its record, and evaluation."""
+    """Tests of a hand without a sidecar that somebody wrote: planning, its record, and
+    evaluation."""
 
     def setUp(self):
         super().setUp()
@@ -364,7 +367,7 @@ class WithoutSidecar(program.ProgramTest):
 
     def test_evaluate_refuses_a_hand_that_is_derived_otherwise(self):
         grasps = self.plan()
-        program.run("hand", "derive", self.hand)  # from now on the file counts
+        program.run("hand", "derive", self.hand)  # From now on the file counts.
         sidecar = self.folder / "two_jaws.graspfit.json"
         data = json.loads(sidecar.read_text())
         data["palm"]["center_m"] = [0, 0, 0.5]
@@ -372,7 +375,7 @@ class WithoutSidecar(program.ProgramTest):
         self.assert_refused("evaluate", grasps, says=["two_jaws.graspfit.json", "SHA-256"])
 
     def test_what_is_suspicious_is_said_and_does_not_stop_the_plan(self):
-        # A transmission ratio written into the axis, as in a well-known export.
+        # A transmission ratio is written into the axis, as in a well-known export.
         self.hand.write_text(gripper_urdf().replace('axis xyz="1 0 0"', 'axis xyz="0.333 0 0"'))
         done = program.run("plan", self.object, "--hand", self.hand, "--contacts", "2", "--resolution", "16",
                            "--max-attempts", "1", "--quiet")
@@ -393,7 +396,7 @@ class WithoutSidecar(program.ProgramTest):
         self.assertNotIn("--mesh-unit", lines[-1])
 
     def test_where_no_two_places_fit_the_sizes_are_told(self):
-        # A tetrahedron has no two faces that look away from each other.
+        # No two faces of a tetrahedron look away from each other.
         corners = [(0.02, 0.02, 0.02), (0.02, -0.02, -0.02), (-0.02, 0.02, -0.02), (-0.02, -0.02, 0.02)]
         faces = [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)]
         tetrahedron = self.write("tetrahedron.off", program.off_text(corners, faces))

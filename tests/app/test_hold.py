@@ -13,7 +13,7 @@ try:
 except ImportError:
     jsonschema = None
 
-# A short test: what is told apart here needs no two seconds under load.
+# The test is short: what it tells apart needs no two seconds under load.
 SHORT = ("--set", "hold_time_s=0.4", "--set", "approach_time_s=0.2", "--set", "squeeze_time_s=0.2")
 LOADS = ["+x", "-x", "+y", "-y", "+z", "-z"]
 
@@ -26,7 +26,7 @@ def plan(folder, *flags):
 
 
 class PhysicsTest(program.ProgramTest):
-    """Skipped in a build without the engine, which says so."""
+    """Tests that are skipped in a build without the engine, which says so."""
 
     @classmethod
     def setUpClass(cls):
@@ -71,7 +71,8 @@ class Hold(PhysicsTest):
         for one in grasp["directions"]:
             self.assertEqual(one["failed_at_s"] is not None, one["stage"] == "load")
         self.assertEqual(results["stages"][grasp["stage"]], 1)
-        # A grasp holds just when its margin is above the protocol's force, but for the bisection.
+        # A grasp holds exactly if its margin is above the protocol's force, up to the bisection's
+        # accuracy.
         force = data["protocol"]["parameters"]["force_N"]
         if not 0.95 * force < grasp["margin"]["force_N"] < 1.05 * force:
             self.assertEqual(grasp["held"], grasp["margin"]["force_N"] > force)
@@ -89,7 +90,7 @@ class Hold(PhysicsTest):
                 cell = row[f"{one['load']}_{key}"]
                 self.assertEqual(value_of(cell), one[key])
 
-        self.assertGreaterEqual(data["object"]["pieces"]["num_pieces"], 2)  # a torus is not convex
+        self.assertGreaterEqual(data["object"]["pieces"]["num_pieces"], 2)  # A torus is not convex.
         links = json.loads(self.file.read_text())["hand"]["links"]
         with_surface = [link["name"] for link in links if link["mesh_files"]]
         self.assertEqual([link["name"] for link in data["hand"]["links"]], with_surface)
@@ -107,7 +108,8 @@ class Hold(PhysicsTest):
         self.assertEqual(second["results"]["grasps"], both["results"]["grasps"][1:])
 
     def test_what_the_protocol_asks_decides(self):
-        # A kilonewton tears anything out of a hand; limits that nothing reaches are kept by all.
+        # A kilonewton tears anything out of a hand, and limits that nothing reaches are kept by
+        # all.
         _, data = self.hold("--set", "force_N=1000", out="strong")
         self.assertEqual(data["results"]["stages"]["held"], 0)
         self.assertIn("force_N", data["protocol"]["changed_parameters"])
@@ -142,7 +144,7 @@ class Hold(PhysicsTest):
         for verdict, shown in zip(data["results"]["grasps"][1]["directions"], replay["directions"]):
             self.assertEqual(shown["name"], verdict["load"])
             self.assertEqual(shown["largest_shift"], verdict["largest_shift_m"])
-            # The frames are those of the test: at its checks they stand where it says.
+            # The frames are those of the test: at its checks they are where the test says.
             at_checks = [
                 shift for t, shift in zip(shown["times"], shown["shifts"])
                 if t > start + 1e-6 and abs(remainder(t - start, parameters["check_interval_s"])) < 1e-6
@@ -200,7 +202,8 @@ class PlanHold(PhysicsTest):
         done = plan(self.folder, "--count", "4", "--hold", "dexgraspbench-100g")
         self.assertIn(done.returncode, (0, 3), done.stderr)
         self.assertIn("planned grasps hold under dexgraspbench-100g", done.stdout + done.stderr)
-        if done.returncode == 3:  # no grasp holds: said in one line, nothing written
+        # That no grasp holds is said in one line, and nothing is written.
+        if done.returncode == 3:
             self.assertEqual(len(done.stderr.splitlines()), 1)
             self.assertFalse((self.folder / "out").exists())
             return
@@ -215,7 +218,7 @@ class PlanHold(PhysicsTest):
         self.assertEqual(hold["stages"]["held"], len(margins))
         self.assertIn("margin_N", done.stdout)
 
-        # Tested again from the file: the same.
+        # A second test from the file gives the same.
         done = program.run("hold", "out/grasps.json", "--margin", "--grasp", "1", "--out", "held",
                            cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -225,7 +228,7 @@ class PlanHold(PhysicsTest):
 
 
 def value_of(cell):
-    """None, a number or a text."""
+    """Returns None, a number or a text."""
     try:
         return float(cell) if cell else None
     except ValueError:

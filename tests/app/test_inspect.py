@@ -1,4 +1,4 @@
-"""What `graspfit inspect` prints and writes: files that VTK opens."""
+"""Tests of what `graspfit inspect` prints and of the files it writes, which VTK opens."""
 
 import os
 import re
@@ -24,8 +24,8 @@ class InspectTest(program.ProgramTest):
 
 class Inspect(InspectTest):
     def test_report_of_a_box(self):
-        # 30 voxels of 1 cm along x; the box's faces lie on voxel planes, and each belongs to one of
-        # its two sides.
+        # The grid has 30 voxels of 1 cm along x. The box's faces lie on voxel planes, and each
+        # belongs to one of its two sides.
         path = self.write("box.off", program.off_text(*program.box(0.3, 0.2, 0.1)))
         text = self.inspect(path)
         self.assertIn("8 vertices, 12 faces, 1 part; closed, manifold, outward",
@@ -41,7 +41,7 @@ class Inspect(InspectTest):
         self.assertIn("above 0.6", self.row(text, "above threshold"))
 
     def test_thickness_and_weak_features(self):
-        # A block with a fin of 3 mm, 25 mm of which stand out on one neck.
+        # The block has a fin of 3 mm, 25 mm of which stand out on one neck.
         block, faces = program.box(0.06, 0.04, 0.04)
         fin, _ = program.box(0.03, 0.003, 0.04)
         vertices = block + [(x, y, z + 0.025) for x, y, z in fin]
@@ -55,7 +55,8 @@ class Inspect(InspectTest):
                          r"^\d+\.\d% of the surface; thin regions: 1, 1 weak$")
         self.assertGreater(float(self.row(done.stdout, "weak").split("%")[0]), 5.0)
         self.assertRegex(self.row(done.stdout, "thickness"), r"^lowest 0\.00[34]\d, .* m ")
-        # Found once, then read; what is fragile is up to the user.
+        # The first run finds weak regions, the next ones read them; what is fragile is up to the
+        # user.
         for _ in range(2):
             self.assertEqual(program.run("inspect", path, env=env).stdout, done.stdout)
             self.assertEqual(len(list((self.folder / "cache").rglob("*.txt"))), 1)
@@ -70,7 +71,7 @@ class Inspect(InspectTest):
 
     def test_report_of_defects_and_repairs(self):
         vertices, faces = program.torus()
-        faces = [(a, c, b) for a, b, c in faces[2:]]  # inside out, with a hole
+        faces = [(a, c, b) for a, b, c in faces[2:]]  # The mesh is inside out and has a hole.
         text = self.inspect(self.write("bad.off", program.off_text(vertices, faces)))
         self.assertIn("open", self.row(text, "before repair"))
         self.assertIn("boundary edges 4", self.row(text, "before repair"))
@@ -99,8 +100,9 @@ class Inspect(InspectTest):
     def test_crossing_faces_are_counted_or_resolved(self):
         path = self.write_two_boxes()
         text = self.inspect(path)
-        self.assertEqual(self.crossings(text, "after repair"), 0)  # not looked for
-        # Overlap 0.07 x 0.08 x 0.09 counts once, crossing or not.
+        # The program did not look for them.
+        self.assertEqual(self.crossings(text, "after repair"), 0)
+        # The overlap of 0.07 x 0.08 x 0.09 counts once, whether or not the surfaces cross.
         union = 2 * 0.1 ** 3 - 0.07 * 0.08 * 0.09
         self.assertTrue(self.row(text, "volume").endswith(" m3, parts united"))
         self.assertAlmostEqual(float(self.row(text, "volume").split()[0]), union, places=12)
@@ -119,7 +121,7 @@ class Inspect(InspectTest):
 
     def test_vertices_are_welded_as_far_as_asked(self):
         vertices, faces = program.box(0.1, 0.1, 0.1)
-        # Every face with three vertices of its own, those of the last one 1e-5 m away.
+        # Every face has three vertices of its own, and those of the last one are 1e-5 m away.
         soup = [vertices[v] for face in faces for v in face]
         soup[-3:] = [(x + 1e-5, y, z) for x, y, z in soup[-3:]]
         path = self.write("soup.off", program.off_text(
@@ -194,7 +196,7 @@ class VtkFiles(InspectTest):
         data = voxels.GetCellData().GetArray(0)
         classes = [int(data.GetTuple1(i)) for i in range(data.GetNumberOfTuples())]
         self.assertEqual([classes.count(c) for c in (0, 1, 2)], [empty, partial, full])
-        # The box's center is the torus' own: index order and origin are right.
+        # The box's center is the torus' own, so that index order and origin are right.
         bounds = voxels.GetBounds()
         self.assertAlmostEqual(bounds[0] + bounds[1], 0.0, places=12)
         i, j, k = [int((p - o) / h) for p, o, h in
@@ -208,7 +210,8 @@ class VtkFiles(InspectTest):
             sign = {0: 1, 1: 0, 2: -1}[voxel_class]
             value = distance.GetTuple1(i)
             self.assertEqual((value > 0) - (value < 0), sign)
-            self.assertEqual(score.GetTuple1(i) == score.GetTuple1(i), voxel_class == 1)  # not NaN
+            # The number is not NaN.
+            self.assertEqual(score.GetTuple1(i) == score.GetTuple1(i), voxel_class == 1)
 
         reader = vtkPLYReader()
         reader.SetFileName(str(out / "patches.ply"))
@@ -234,7 +237,8 @@ class VtkFiles(InspectTest):
             v = [x - y for x, y in zip(vertices[c], vertices[a])]
             n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
             whole += sum(x * x for x in n) ** 0.5 / 2
-        # VTK reads coordinates as floats, 24 bits: 1e-6 of the area, with room for 10 000 pieces.
+        # VTK reads coordinates as floats of 24 bits, which is 1e-6 of the area; 10 000 pieces may
+        # add up.
         self.assertAlmostEqual(area / whole, 1.0, delta=1e-5)
 
 

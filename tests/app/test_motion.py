@@ -7,7 +7,8 @@ from program import ProgramTest, main, run
 
 
 class Motion(ProgramTest):
-    """The quick table. Its motion is looked at twice as finely as when it was measured."""
+    """Tests on the quick table. Its motion is checked at half the steps at which it was
+    measured."""
 
     def setUp(self):
         super().setUp()
@@ -41,7 +42,8 @@ class Motion(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn('"check":"not_checked"', page.read_text(encoding="utf-8"))
 
-        # Into the table: the pose in which the first object is put down, 5 mm deeper.
+        # This goes into the table: it is the pose in which the first object is put down, 5 mm
+        # deeper.
         motion = json.loads(self.motion.read_text())
         steps = motion["moves"][0]["to"]
         place = next(i for i, step in enumerate(steps) if step["phase"] == "place")
@@ -54,7 +56,7 @@ class Motion(ProgramTest):
         self.assertIn("and table", done.stdout)
         self.assertIn('"check":"not_free"', page.read_text(encoding="utf-8"))
 
-        # Another mesh than the one that was moved.
+        # This is another mesh than the one that was moved.
         motion["objects"][1].update(file=self.write_torus("bottle.off").name, sha256="0" * 64)
         other = self.write("other.json", json.dumps(motion))
         self.assert_refused("motion", other, "--meshes", self.folder, says=["bottle.off", "SHA-256"])

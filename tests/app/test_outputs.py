@@ -15,15 +15,15 @@ import program
 from test_hand import gripper_urdf
 from test_plan import results_text
 
-# Of Linux: the device that is always full, and the one that swallows everything.
+# On Linux these are the device that is always full, and the one that swallows everything.
 FULL, NULL = (1, 7), (1, 3)
 
 
 class SpecialFiles(program.ProgramTest):
-    """Every command that writes a file whose name it is given."""
+    """Tests of every command that writes a file whose name it is given."""
 
     def commands(self):
-        """Arguments before the file, and the file's extension."""
+        """Yields the arguments before the file, and the file's extension."""
         self.write_torus()
         done = program.run("plan", self.folder / "torus.off", "--max-attempts", "20", "--accept", "usable",
                            "--search", "first", "--count", "1", "--out", self.folder / "plan")
@@ -35,7 +35,7 @@ class SpecialFiles(program.ProgramTest):
         yield ("convert", grasps), ".glb"
 
     def read_pipe(self, pipe, arguments):
-        """What the command writes into it."""
+        """Returns what the command writes into the pipe."""
         got = []
         reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()))
         reader.start()
@@ -108,7 +108,7 @@ class SpecialFiles(program.ProgramTest):
 
 
 class Kills(program.ProgramTest):
-    """A folder of grasps is the old set, the new one, or says that it is neither."""
+    """Tests that a folder of grasps is the old set, the new one, or says that it is neither."""
 
     def plan(self, seed, out, count=3):
         return [program.PROGRAM, "plan", str(self.folder / "torus.off"), "--seed", str(seed), "--accept", "usable",
@@ -120,7 +120,8 @@ class Kills(program.ProgramTest):
         return self.set_in(out)
 
     def set_in(self, out):
-        """Name and content of every file that is not hidden, without the times in grasps.json."""
+        """Returns name and content of every file that is not hidden, without the times in
+        grasps.json."""
         return {path.name: results_text(path) if path.name == "grasps.json" else path.read_bytes()
                 for path in (self.folder / out).iterdir() if path.name[0] != "."}
 
@@ -129,7 +130,7 @@ class Kills(program.ProgramTest):
 
     def test_kills_at_random_moments_never_mix_two_runs_unsaid(self):
         self.write_torus()
-        # Fewer grasps in the new set: files of the old one are to go.
+        # The new set has fewer grasps, so that files of the old one have to go.
         old, new = self.finished(1, "old", count=4), self.finished(2, "new")
         self.assertNotEqual(old.keys(), new.keys())
         start = time.monotonic()

@@ -27,16 +27,17 @@ class OwnHand(program.ProgramTest):
             with self.subTest(command):
                 self.assertEqual(command[0], "graspfit")
                 if "--png" in command:
-                    continue  # needs a display; the pictures have tests of their own
+                    continue  # It needs a display; the pictures have tests of their own.
                 done = program.run(*command[1:], cwd=self.folder)
                 self.assertEqual(done.returncode, 0, done.stderr)
         grasps = json.loads((self.folder / "grasps" / "grasps.json").read_text(encoding="utf-8"))
         self.assertGreaterEqual(len(grasps["results"]["grasps"]), 1)
         sidecar = json.loads((self.folder / "claw.graspfit.json").read_text(encoding="utf-8"))
-        # What the page says was derived.
+        # The derived sidecar is what the page says.
         self.assertEqual([len(finger["links"]) for finger in sidecar["fingers"]], [1, 1])
         self.assertEqual(sidecar["palm"]["direction"], [0.0, 0.0, 1.0])
-        self.assertEqual(sidecar["closing"], {"left_hinge": 1})  # what follows closes with it
+        # What follows a joint closes with it.
+        self.assertEqual(sidecar["closing"], {"left_hinge": 1})
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ from program import SOURCE_DIR
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache")
 PACKAGED_MESHES = pathlib.Path(os.environ.get("GRASPFIT_PACKAGED_MESHES", CACHE / "graspfit/meshes"))
 
-# Commands that take long, change the repository or need what a test has not; what runs the like.
+# These commands take long, change the repository or need what a test has not; beside each stands
+# what runs the like.
 ELSEWHERE = (
     r"\./(quickstart|run-tests)\b",                        # .ci/run, setup/bare-root
     r"cmake --(preset release|install build/release) ",    # .ci/run, tests/repository
@@ -26,13 +27,13 @@ ELSEWHERE = (
 
 
 def pages():
-    """The pages of the repository."""
+    """Returns the pages of the repository."""
     return [*SOURCE_DIR.glob("*.md"), *SOURCE_DIR.glob("docs/*.md"),
             *SOURCE_DIR.glob("*/README.md"), *SOURCE_DIR.glob("grasp/*/README.md")]
 
 
 def commands_of(page):
-    """The commands in the blocks of a page, without prompts and remarks."""
+    """Returns the commands in the blocks of a page, without prompts and remarks."""
     text = page.read_text(encoding="utf-8")
     for language, block in re.findall(r"(?ms)^```(\w*)\n(.*?)^```$", text):
         for line in block.splitlines():
@@ -55,7 +56,7 @@ class Pages(program.ProgramTest):
         shutil.copy(PACKAGED_MESHES / "bunny00.off", self.folder)
 
     def run_line(self, line):
-        """Runs a line of commands joined by &&; the standard output of the last."""
+        """Runs a line of commands joined by &&. Returns the standard output of the last."""
         text = ""
         for command in line.split("&&"):
             words = shlex.split(command)
@@ -67,7 +68,7 @@ class Pages(program.ProgramTest):
         return text
 
     def test_every_command_in_a_block_of_a_page_runs_here_or_elsewhere(self):
-        # In the order of the pages: what is planned by README.md is converted by a later page.
+        # The pages run in their order: what README.md plans is converted by a later page.
         readme = SOURCE_DIR / "README.md"
         exchange = SOURCE_DIR / "grasp/exchange/README.md"
         rest = [page for page in pages() if page not in (readme, exchange)]
@@ -80,7 +81,8 @@ class Pages(program.ProgramTest):
                 with self.subTest(f"{page.relative_to(SOURCE_DIR)}: {command}"):
                     self.run_line(command)
                     num_run += 1
-                    if command.endswith(" bunny.yaml"):  # somebody else's file, for what comes next
+                    # Somebody else's file is written, which the next commands need.
+                    if command.endswith(" bunny.yaml"):
                         shutil.copy(self.folder / "bunny.yaml", self.folder / "theirs.yaml")
         self.assertGreaterEqual(num_run, 10)
         self.assertGreaterEqual(num_elsewhere, 15)
@@ -90,7 +92,7 @@ class Pages(program.ProgramTest):
         (block,) = re.findall(r"(?ms)^```console\n\$ (.*?)^```$", text)
         command, _, shown = block.partition("\n")
         shown, printed = shown.splitlines(), self.run_line(command).splitlines()
-        # Another processor may round sines otherwise, and the search then takes another turn.
+        # Another processor may round sines otherwise, and the search then takes another way.
         self.assertEqual(printed[0], shown[0])
         self.assertEqual(len(printed), len(shown))
         self.assertEqual(printed[-1], shown[-1])
@@ -108,13 +110,13 @@ class Pages(program.ProgramTest):
         helps = {}
         for page in pages():
             if page.name == "CHANGELOG.md":
-                continue  # says what there was
+                continue  # It only says what there was.
             for line in re.findall(r"`graspfit ([^`\n]*)`", page.read_text(encoding="utf-8")):
                 words = line.split()
                 size = 2 if words[0] in ("experiment", "hand") and len(words) > 1 else 1
                 name = tuple(words[:size])
                 if any(word.isupper() or word.startswith("-") for word in name):
-                    continue  # stands for any command
+                    continue  # It stands for any command.
                 if name not in helps:
                     done = program.run(*name, "--help-all")
                     self.assertEqual(done.returncode, 0, f"{page.name}: {line}")

@@ -1,4 +1,4 @@
-"""What `graspfit plan` writes and prints."""
+"""Tests of what `graspfit plan` writes and prints."""
 
 import importlib.util
 import json
@@ -9,12 +9,12 @@ import subprocess
 
 import program
 
-# The first grasps with M > 0 of a few attempts.
+# With these flags the first grasps with M > 0 of a few attempts count.
 FAST = ("--accept", "usable", "--search", "first")
 
 
 def results_text(path):
-    """The results of a grasp file as its own bytes."""
+    """Returns the results of a grasp file as its own bytes."""
     text = path.read_text()
     return text[text.index('\n  "results": '):text.index('\n  "timings": ')]
 
@@ -69,7 +69,8 @@ class Plan(program.ProgramTest):
                                  '"strong"?')
 
     def test_a_solid_that_differs_from_the_file_is_said_everywhere(self):
-        # One face of the torus is missing: 1 of 512 pairs, about 14 mm wide, filled flat.
+        # One face of the torus is missing: 1 of 512 pairs, about 14 mm wide, which repair fills
+        # flat.
         vertices, faces = program.torus(sides=8, rings=16)
         self.write("torus.off", program.off_text(vertices, faces[2:]))
         done = self.plan("--page")
@@ -98,7 +99,7 @@ class Plan(program.ProgramTest):
 
     def test_writes_file_table_and_posed_meshes(self):
         done = self.plan()
-        self.assertEqual(done.stderr, "")  # no progress bar when piped
+        self.assertEqual(done.stderr, "")  # There is no progress bar when piped.
         names = sorted(path.name for path in (self.folder / "out").iterdir())
         posed = [f"grasp_00{i}.{extension}" for i in (1, 2) for extension in ("obj", "ply")]
         meshes = [name for name in names if name.startswith("link_") or name == "object.ply"]
@@ -202,7 +203,8 @@ class Plan(program.ProgramTest):
             self.assertGreater(sum(a * b for a, b in zip(direction_O, (-0.2, 0.1, -1))), 0)
 
     def test_table_and_obstacles_are_recorded_and_their_meshes_written(self):
-        vertices, faces = program.box(20, 20, 20)  # millimeters, beside the way in from above
+        # These are millimeters, beside the way in from above.
+        vertices, faces = program.box(20, 20, 20)
         vertices = [(x + 150, y, z + 110) for x, y, z in vertices]
         obstacle = self.write("box.off", program.off_text(vertices, faces))
         self.plan("--table", "-0.15", "--obstacle", obstacle, "--obstacle-unit", "mm")

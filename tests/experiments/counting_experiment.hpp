@@ -8,7 +8,7 @@
 
 namespace graspfit::testing {
 
-/// A config for `counting_experiment`: 3 x 4 x 2 = 24 cells.
+/// A configuration of `counting_experiment` with 3 x 4 x 2 = 24 cells.
 inline const std::string kCountingConfig = R"({
   "experiment": "counting",
   "question": "What do cells see?",
@@ -24,8 +24,8 @@ inline const std::string kCountingConfig = R"({
   "quick": {"axes": {"letter": ["b"]}, "settings": {"base": 0}, "seeds": 1}
 })";
 
-/// An experiment without geometry. A cell adds its settings and its seed; the cell with letter=c
-/// and step=1 fails. A setting that is no number is refused.
+/// Returns an experiment without geometry. A cell adds its settings and its seed; the cell with
+/// letter=c and step=1 fails. A setting that is no number is refused.
 inline sweep::Experiment counting_experiment() {
   using namespace sweep;
   Experiment experiment;

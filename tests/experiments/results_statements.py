@@ -17,7 +17,7 @@ AS_PUBLISHED = "ma"
 
 
 def digits(value):
-    """Two significant digits, as the page has them; nothing where there is nothing."""
+    """Returns two significant digits, as the page has them; "none" where there is no number."""
     if pandas.isna(value):
         return "none"
     return f"{value:.2f}" if abs(value) >= 0.1 or value == 0 else f"{value:.2g}" if abs(value) >= 1e-4 else f"{value:.1g}"
@@ -41,7 +41,7 @@ class Tables:
         return pandas.read_csv(self.folder / f"{name}.csv", dtype={"size": str})
 
 
-# Tables of planning methods.
+# These functions are about tables of planning methods.
 
 
 #: How a row's second label is written, by the axis that it is of.
@@ -49,7 +49,8 @@ LABELS = {"size": " | {} m", "reading": " | `{}`"}
 
 
 def method_rows(tables, name, row, cell):
-    """One row per object and, if there is one, value of the axis `row`; one cell per method that the table has."""
+    """Yields one row per object and, if there is one, value of the axis `row`, with one cell per
+    method that the table has."""
     summary = tables.table(f"{name}.summary")
     methods = [method for method in METHODS if method in set(summary["planner"])]
     labels = ["object", row] if row else ["object"]
@@ -69,7 +70,7 @@ def quality(row):
 
 
 def orders(tables, name, row, method, objects=None, seconds=None, measure="mean_m"):
-    """Of how many rows with both a method is above each baseline."""
+    """Yields of how many rows with both a method is above each baseline."""
     summary = tables.table(f"{name}.summary")
     if objects:
         summary = summary[summary["object"].isin(objects)]
@@ -87,7 +88,7 @@ def order_sentence(tables, name, row, method, **subset):
 
 
 def state_rows(tables):
-    """What the hands of Table 1 are like, per method, over all rows."""
+    """Yields what the hands of Table 1 are like, per method, over all rows."""
     details = tables.table("table1.details")
     cells = tables.table("table1")
     keys = ["object", "size", "run", "planner"]
@@ -138,11 +139,11 @@ def table1_all_objects(tables):
     yield f"per attempt it is {order_sentence(tables, 'table1_all_objects', None, 'fitting', measure='m_per_attempt')}"
 
 
-# Cases.
+# These functions are about the special cases.
 
 
 def seeds_of(tables, case):
-    """"17 of 20": seeds of a case whose best grasp is as the paper shows it."""
+    """Returns, as "17 of 20", how many seeds of a case have a best grasp as the paper shows it."""
     rows = tables.table("special_cases")
     rows = rows[rows["case"] == case]
     return f"{int((rows['satisfied'] == True).sum())} of {len(rows)}"  # noqa: E712
@@ -177,11 +178,11 @@ def table_tidying(tables):
     yield (f"{1000 * paper['hand_clearance_m']:.1f} mm from hand and {1000 * paper['object_clearance_m']:.1f} mm from object to anything else at the nearest")
 
 
-# The paper's figures, tables and claims, row by row.
+# These functions are about the paper's figures, tables and claims, row by row.
 
 
 def terms_of_voxels(tables):
-    """Fig. 8: C_d and C_a of the voxels that the figure chooses."""
+    """Yields C_d and C_a of the voxels that the figure chooses (Fig. 8)."""
     from score_terms import PLACES, representative
     from voxel_data import Voxels
 
@@ -195,7 +196,7 @@ def terms_of_voxels(tables):
 
 
 def unselected_squirrel(tables):
-    """Figs. 5 and 11: the extremes of the first grasps of the squirrel."""
+    """Yields the extremes of the first grasps of the squirrel (Figs. 5 and 11)."""
     from contact_triangles import by_shape
     from good_and_bad_grasp import largest_miss
 
@@ -228,11 +229,11 @@ GRIPS = {
     "barrett_3_palm": "with the palm too",
     "human_5": "human hand with five fingers",
 }
-LEAST_GRASPS = 5  # behind a mean that the page gives
+LEAST_GRASPS = 5  # The page gives no mean of fewer grasps.
 
 
 def means_by_contacts(tables):
-    """Fig. 13: mean M by the number of contacts, where there are enough grasps."""
+    """Yields mean M by the number of contacts, where there are enough grasps (Fig. 13)."""
     details = tables.table("contacts_and_time.details")
     for grip, words in GRIPS.items():
         means = details[details["grip"] == grip].groupby("num_contacts")["m"].agg(["mean", "count"])
@@ -246,7 +247,7 @@ def means_by_contacts(tables):
 
 
 def times_by_contacts(tables):
-    """Fig. 13: processor time per valid grasp by grip, failures included."""
+    """Yields the processor time per valid grasp by grip, failures included (Fig. 13)."""
     rows = tables.table("planner_paper_objects")
     rows = rows.merge(tables.table("planner_paper_objects.timing")[["object", "grip", "cpu_s"]], on=["object", "grip"])
     rows = rows[rows["status"] == "ok"]
@@ -256,7 +257,8 @@ def times_by_contacts(tables):
 
 
 def branches_and_frames(tables):
-    """Fig. 21: the objects on which the paper's method fails, by number of contacts asked for."""
+    """Yields the objects on which the paper's method fails, by number of contacts asked for
+    (Fig. 21)."""
     rows = tables.table("planner_paper_objects")
     names = {"barrett_3": "Barrett, three", "human_3": "human hand, three", "barrett_power": "Barrett with the palm", "human_5": "human hand, five"}
     for name in ("octopus", "cage"):
@@ -320,7 +322,7 @@ def claims(tables):
 
 
 def made_by(tables):
-    """Which commit's program made which table."""
+    """Yields which commit's program made which table."""
     made = {}
     for path in sorted(tables.folder.glob("*.manifest.json")):
         made.setdefault(json.loads(path.read_text(encoding="utf-8"))["commit"][:7], []).append(path.name.split(".")[0])

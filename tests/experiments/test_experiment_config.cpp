@@ -76,7 +76,7 @@ TEST_CASE("A cell's seed depends on its axes, not on its place", "[experiments][
   swapped.base_seed = 8;
   CHECK(swapped.cell(0).seed != all.sweep.cell(0).seed);
 
-  // Published tables state seeds: SHA-256 of this text as Python's hashlib has it,
+  // Published tables state seeds. This one is the SHA-256 of the text as Python's hashlib has it:
   // int(sha256(b'["counting",7,{"letter":"a","seed":"1","step":"0"}]').hexdigest()[:14], 16) >> 3.
   CHECK(all.sweep.cell(0).seed == 5805151507310987);
 }

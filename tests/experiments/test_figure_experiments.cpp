@@ -1,5 +1,5 @@
-// Experiments whose rows pictures are drawn from: their numbers against closed forms, the library's
-// own results and one another.
+// These tests compare experiments from whose rows pictures are drawn with closed forms, the
+// library's own results and one another.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -68,14 +68,14 @@ const std::string kEast = "[1, 0, 0]";
 const std::string kNorthWest = "[-0.5, 0.86602540378443865, 0]";
 const std::string kSouthWest = "[-0.5, -0.86602540378443865, 0]";
 
-constexpr double kRounding = 1e-9;  // A dozen operations on numbers near one.
+constexpr double kRounding = 1e-9;  // A dozen operations are on numbers near one.
 
 }  // namespace
 
 TEST_CASE("M of contact sets on a ball is what the formulas say",
           "[experiments][measured_contacts]") {
-  // M1 = 0.7 + 2 * 0.4 = 1.5. An equilateral triple has 30 degrees on its three pairs: M2 = 3 (1 -
-  // 30/45) = 1. It is regular and centered: M3 = 1.
+  // Here M1 = 0.7 + 2 * 0.4 = 1.5. An equilateral triple has 30 degrees on its three pairs, so that
+  // M2 = 3 (1 - 30/45) = 1. It is regular and centered, so that M3 = 1.
   const Result good =
       run("measured_contacts",
           contact_set({contact_json(kEast), contact_json(kNorthWest), contact_json(kSouthWest)}));
@@ -87,7 +87,7 @@ TEST_CASE("M of contact sets on a ball is what the formulas say",
   CHECK(good.details[0].at("paired_with") == "1 2");
   CHECK(good.details[2].at("paired_with") == "0 1");
 
-  // One of three on a fragile part: a third of M1 is gone.
+  // One of three contacts is on a fragile part, so that a third of M1 is gone.
   const Result fragile =
       run("measured_contacts", contact_set({contact_json(kEast, "true"), contact_json(kNorthWest),
                                             contact_json(kSouthWest)}));
@@ -116,7 +116,7 @@ TEST_CASE("Contact sets that make no sense are refused by name",
   refused(R"({"radius_m": 1, "pads_of": "barrett"})", "there is no setting contact_set");
   refused(R"({"radius_m": 1, "pads_of": "barrett", "contact_set": [], "size_m": 1})",
           "is no setting");
-  // Elsewhere these mean the planner's hand and a number.
+  // In other experiments these are the planner's hand and a number.
   const std::string known = "is no setting; there are radius_m, pads_of, contact_set";
   refused(R"({"radius_m": 1, "hand": "barrett", "contact_set": []})", known);
   refused(R"({"radius_m": 1, "pads_of": "barrett", "contacts": []})", known);
@@ -141,11 +141,11 @@ TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
         point[axis] = number(voxel, "centroid_" + name + "_m");
         normal[axis] = number(voxel, "normal_" + name);
       }
-      // The ball is a polyhedron of 5120 faces: its radius within half a percent, its normals
-      // within two degrees, and what a patch of one voxel turns, 1/10 rad, averages out.
+      // The ball is a polyhedron of 5120 faces: its radius is right within half a percent, its
+      // normals within two degrees, and what a patch of one voxel turns, 1/10 rad, averages out.
       CHECK(point.norm() == Approx(0.04).epsilon(0.01));
       CHECK(normal.dot(point.normalized()) > 0.99);
-      CHECK(number(voxel, "score") > 0.6);  // all of a ball suits contacts
+      CHECK(number(voxel, "score") > 0.6);  // All of a ball suits contacts.
     } else {
       CHECK((voxel_class == "full" ? distance < 0.0 : distance > 0.0));
       CHECK(voxel.at("j") == ball.row.at("slice"));
@@ -161,7 +161,7 @@ TEST_CASE("Voxels of a ball: signs of distances, scores and normals",
   CHECK(partial == static_cast<std::int64_t>(number(ball.row, "partial")));
   CHECK(number(ball.row, "eligible_share") == 1.0);
   CHECK(number(ball.row, "voxel_size_m") == Approx(0.004));
-  // 20 voxels and 8 of room on each side.
+  // The grid has 20 voxels and a margin of 8 on each side.
   CHECK(slice_rows.size() == 36 * 36);
 
   const Result whole = run("object_voxels", R"({"shape": "ball", "size_m": 0.08, "hand": "barrett",

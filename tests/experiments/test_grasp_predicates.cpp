@@ -17,7 +17,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kAnyGap = std::numeric_limits<double>::infinity();
 
-/// A torus around y with its center of mass at (1, 2, 3): R = 0.05, r = 0.0125.
+/// Returns a torus around y with its center of mass at (1, 2, 3), R = 0.05 and r = 0.0125.
 PredicateObject torus() {
   PredicateObject object;
   object.center_of_mass_O = {1.0, 2.0, 3.0};
@@ -26,7 +26,8 @@ PredicateObject torus() {
   return object;
 }
 
-/// A contact on it, `around` its axis and `tube` around the tube: 0 outermost, π innermost.
+/// Returns a contact on the torus, `around` its axis and `tube` around the tube: 0 outermost, π
+/// innermost.
 Contact on_torus(double around, double tube, int finger = 0) {
   const Eigen::Vector3d radial(std::cos(around), 0.0, std::sin(around));
   const Eigen::Vector3d outward =
@@ -66,7 +67,8 @@ TEST_CASE("A contact inside the hole points to the axis, within the angle",
 }
 
 TEST_CASE("Regions are boxes in shares of the bounding box", "[experiments][grasp_predicates]") {
-  const std::vector<Contact> contacts = {on_torus(0.0, 0.0)};  // at x = 1, y = z = 0.5 of the box
+  // It is at x = 1, y = z = 0.5 of the box.
+  const std::vector<Contact> contacts = {on_torus(0.0, 0.0)};
   const auto is_clear = [&](Eigen::Vector3d lower, Eigen::Vector3d upper) {
     const std::vector<RelativeBox> region = {{{0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}}, {lower, upper}};
     return no_contact_in_region(contacts, torus(), region);
@@ -91,7 +93,7 @@ TEST_CASE("Parts that touch are told by name", "[experiments][grasp_predicates]"
   const auto hand = graspfit::hands::find_hand("barrett");
   std::vector<Contact> contacts(3);
   contacts[0].finger = 0;
-  contacts[1].finger.reset();  // the palm
+  contacts[1].finger.reset();  // This contact is the palm's.
   contacts[2].finger = 1;
   contacts[2].gap = 0.001;
   const std::string first = hand.fingers[0].name;

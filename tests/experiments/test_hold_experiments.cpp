@@ -90,7 +90,8 @@ TEST_CASE("The summary says how well a measure predicts, per grip and for all",
   ParameterSweep sweep;
   sweep.axes = {{"object", {{"ball", "{}"}, {"mug", "{}"}}},
                 {"grip", {{"weak", "{}"}, {"strong", "{}"}}}};
-  // M tells held from lost without fault, epsilon is constant, M1 the wrong way round.
+  // M tells held from lost without fault, epsilon is constant, and M1 tells them the wrong way
+  // round.
   const auto detail = [&](double m, bool is_held, const std::string& margin) {
     std::vector<std::string> row(experiment.details.size());
     const auto set = [&](const std::string& name, const std::string& text) {
@@ -109,7 +110,7 @@ TEST_CASE("The summary says how well a measure predicts, per grip and for all",
       {{"mug", "weak"}, {detail(0.1, false, "0.1"), detail(0.3, true, "2")}},
       {{"mug", "strong"}, {}}};
   const auto rows = experiment.summaries.at(0).rows(sweep, cells);
-  // Groups (all and two grips) x targets x measures x scopes.
+  // There is a row for each of groups (all and two grips) x targets x measures x scopes.
   CHECK(rows.size() == 3 * 5 * correlated_measures().size() * 2);
   const auto fields_of = [&](const std::vector<std::string>& wanted) {
     for (const ResultRow& row : rows) {

@@ -39,7 +39,7 @@ const std::vector<Column> kLayoutDetails = {{"m", "1", "M"},
                                             {"gap_median_m", "m", "a hundredth"},
                                             {"deepest_overlap_m", "m", "a thousandth"}};
 
-/// Rows of `kLayoutDetails`.
+/// Returns rows of `kLayoutDetails`.
 std::vector<Fields> grasps(const std::vector<double>& ms) {
   std::vector<Fields> rows;
   for (const double m : ms) {
@@ -51,7 +51,7 @@ std::vector<Fields> grasps(const std::vector<double>& ms) {
   return rows;
 }
 
-/// A row of `kColumns`.
+/// Returns a row of `kColumns`.
 Fields counts(int attempts, int rejected) {
   return {"a hand", std::to_string(attempts), std::to_string(rejected)};
 }
@@ -100,7 +100,7 @@ TEST_CASE("The four tables compare the same methods, but for rejection by M, wit
     for (const AxisValue& value : methods.values) labels.push_back(value.label);
     Fields expected = {"gs-targets",      "gs",      "ma",
                        "ma-full-retreat", "fitting", "fitting-reject-deviation"};
-    // What selects by the measure that is averaged is compared once.
+    // The method that selects by the measure that is averaged is compared only once.
     if (std::string(slug) == "table1") expected.push_back("fitting-reject-m");
     CHECK(labels == expected);
     if (std::string(slug) == "table1_all_objects") continue;
@@ -134,7 +134,7 @@ TEST_CASE("The summary has a row per method, seeds together, beside the paper's 
       {{"kitten", "0.10", "gs"}, grasps({0.5, 1.5}), counts(2, 0)},
       {{"kitten", "0.10", "ma"}, grasps({0.25}), counts(1, 0)},
       {{"kitten", "0.10", "fitting"}, grasps({1, 2}), counts(7, 2)},
-      {{"kitten", "0.10", "fitting"}, grasps({6}), counts(3, 1)},  // another seed
+      {{"kitten", "0.10", "fitting"}, grasps({6}), counts(3, 1)},  // This is another seed.
       {{"mug", "0.10", "gs"}, {}, counts(4, 0)},
   };
   const auto columns = internal::paper_layout_columns();
@@ -167,7 +167,7 @@ TEST_CASE("The summary has a row per method, seeds together, beside the paper's 
   CHECK(of(2, "above_ma") == "true");
   CHECK(of(2, "above_gs") == "true");
   CHECK(of(2, "above_ma_full_retreat").empty());
-  // What the other details come to: half of M, a tenth, a hundredth, a thousandth.
+  // The other details are half of M, a tenth, a hundredth and a thousandth of it.
   CHECK(std::stod(of(2, "target_distance_m")) == Approx(1.5));
   CHECK(std::stod(of(2, "area_share_median")) == Approx(0.2));
   CHECK(std::stod(of(2, "gap_median_m")) == Approx(0.02));
@@ -203,7 +203,7 @@ TEST_CASE("Rows and correlations may be told apart by another axis", "[experimen
       {{"kitten", "other", "ma"}, {{"5", "0"}}},
   };
   const auto agreement = internal::correlations({"m", "other"}, kDetails, sweep, cells, axes);
-  REQUIRE(agreement.size() == 3 * 2);  // all and two readings, two scopes
+  REQUIRE(agreement.size() == 3 * 2);  // The groups are all and two readings, the scopes two.
   const auto names = internal::correlation_columns(axes);
   CHECK(field_of(agreement[2], names, "reading") == "own");
   CHECK(field_of(agreement[2], names, "spearman") == "1");
@@ -212,7 +212,7 @@ TEST_CASE("Rows and correlations may be told apart by another axis", "[experimen
 }
 
 TEST_CASE("Correlations are of ranks, over all grasps and within cells", "[experiments][methods]") {
-  // Within each cell the measures run against each other, over both cells together.
+  // Within each cell the measures run against each other; over both cells together they do not.
   const std::vector<FinishedCell> cells = {
       {{"kitten", "0.10", "gs"}, {{"1", "2"}, {"2", "1"}, {"3", ""}}},
       {{"mug", "0.10", "gs"}, {{"11", "12"}, {"12", "11"}}},
@@ -220,7 +220,7 @@ TEST_CASE("Correlations are of ranks, over all grasps and within cells", "[exper
   };
   const auto columns = internal::correlation_columns();
   const auto rows = internal::correlations({"m", "other"}, kDetails, sweep_of_methods(), cells);
-  REQUIRE(rows.size() == 4 * 2);  // all and three methods, two scopes
+  REQUIRE(rows.size() == 4 * 2);  // The groups are all and three methods, the scopes two.
   const auto value_of = [&](const std::string& method, const std::string& scope) {
     for (const ResultRow& row : rows) {
       if (field_of(row, columns, "planner") == method && field_of(row, columns, "scope") == scope) {
@@ -229,10 +229,10 @@ TEST_CASE("Correlations are of ranks, over all grasps and within cells", "[exper
     }
     return std::string("no row");
   };
-  // Ranks 1 2 3 4 against 2 1 4 3: 1 - 6 * 4 / (4 * 15) = 0.6.
+  // The ranks are 1 2 3 4 against 2 1 4 3: 1 - 6 * 4 / (4 * 15) = 0.6.
   CHECK(std::stod(value_of("gs", "all")) == Approx(0.6));
   CHECK(value_of("gs", "cell") == "-1 of 4");
-  CHECK(value_of("ma", "all") == " of 2");  // M is the same for both
+  CHECK(value_of("ma", "all") == " of 2");  // M is the same for both.
   CHECK(value_of("fitting", "cell") == " of 0");
 }
 

@@ -2,7 +2,7 @@
 """Executes every notebook of notebooks-data: from first cell to last, in a copy of that folder's
 tables, without errors, each with at least one picture and one table.
 
-As long as parameter_sweeps is not published, its notebook is executed on the tables of a quick run.
+A notebook whose table is not published is executed on the tables of a quick run.
 
 Usage: test_notebooks.py SOURCE_DIR PROGRAM
 """
@@ -25,7 +25,7 @@ except ImportError as missing:
 
 
 def execute(path, folder):
-    """Why the notebook is wrong, or nothing."""
+    """Returns why the notebook is wrong, or nothing."""
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     if any(cell.get("outputs") for cell in notebook.cells):
@@ -46,7 +46,7 @@ def main(source_dir, program):
     notebooks = sorted(data.glob("*.ipynb"))
     wrong = ["no notebooks"] if not notebooks else []
     with tempfile.TemporaryDirectory() as name:
-        # Tables and manifests alone: a notebook that reads anything else fails.
+        # The copy has tables and manifests alone: a notebook that reads anything else fails.
         for pattern in ("*.csv", "*.json"):
             for table in data.glob(pattern):
                 shutil.copy(table, name)

@@ -25,7 +25,7 @@ namespace grasp = graspfit::grasp;
 
 namespace {
 
-/// The settings of a ball and a Barrett hand with these members on top.
+/// Returns the settings of a ball and a Barrett hand with these members added.
 PlanningSettings settings_with(const std::string& members) {
   return planning_settings(R"({"shape": "ball", "hand": "barrett")" + members + "}", 5);
 }
@@ -85,7 +85,7 @@ TEST_CASE("The paper's angle keeps its bits on the way through degrees",
 }
 
 TEST_CASE("A preset is applied before the settings beside it", "[experiments][planning_settings]") {
-  // "keep" and "max-placements" come before "preset" in the file's order of names.
+  // "max-placements" comes before "preset" in the order of names.
   const grasp::PlannerOptions options =
       settings_with(R"(, "max-placements": 3, "preset": "strong")").options;
   CHECK(options.kept == grasp::KeptCandidate::Strongest);
@@ -160,8 +160,10 @@ TEST_CASE("Numbers have the ranges that are written here", "[experiments][planni
 
 TEST_CASE("Ranges of settings end where the planner's own checks do",
           "[experiments][planning_settings]") {
-  constexpr double kJustInside = 1e-9;  // in the setting's unit, beside a bound that is outside
-  // Whether the planner's check accepts the value; all else is so that only it can be wrong.
+  // The difference is in the setting's unit, beside a bound that is itself outside the range.
+  constexpr double kJustInside = 1e-9;
+  // Returns whether the planner's check accepts the value; all else is such that only the value can
+  // be wrong.
   const auto is_accepted = [](const internal::PlanningSetting& setting, double value) {
     const bool is_integer = setting.schema.at("type") == "integer";
     const nlohmann::json json =
@@ -203,7 +205,8 @@ TEST_CASE("Defaults of settings are those of the planner", "[experiments][planni
     CHECK_FALSE(setting.allowed.empty());
     if (setting.fallback.empty() || setting.name.name == "size_axis") continue;
     if (setting.range) CHECK(setting.range->contains(std::stod(setting.fallback)));
-    // Given as it stands there, a default changes nothing: conversions of units keep 12 digits.
+    // A default that is given as it stands there changes nothing: conversions of units keep 12
+    // digits.
     const nlohmann::json parsed = nlohmann::json::parse(setting.fallback, nullptr, false);
     const std::string value = parsed.is_discarded() ? '"' + setting.fallback + '"' : parsed.dump();
     const PlanningSettings given = settings_with(", \"" + setting.name.name + "\": " + value);
@@ -237,9 +240,10 @@ TEST_CASE("Objects come in the size asked for", "[experiments][planning_settings
   torus.size_axis = 0;
   const auto object = load_object(torus);
   CHECK(graspfit::geometry::bounding_box(object->mesh).sizes().x() == Approx(0.16));
-  CHECK(load_object(torus) == object);  // not built again
+  CHECK(load_object(torus) == object);  // The object is not built again.
 
-  // Too thick for the hand: scaled down; its bounding box's shortest edge is along z.
+  // The torus is too thick for the hand and is scaled down; its bounding box's shortest edge is
+  // along z.
   torus.largest_thickness = 0.02;
   const Eigen::Vector3d sizes = graspfit::geometry::bounding_box(load_object(torus)->mesh).sizes();
   CHECK(sizes.minCoeff() == Approx(0.02));
@@ -275,7 +279,7 @@ TEST_CASE("Settings say what they need and whether it is there",
   CHECK_FALSE(has_all_data(R"({"packaged": "no_such_mesh.off"})"));
   CHECK(needs_of(R"({"file": "meshes/paper/bunny.off"})").at(0).source ==
         DataSource::DataFolderOrPackaged);
-  // Nested, and hands that are not shipped.
+  // The last ones are nested, or are hands that are not shipped.
   const auto nested = needs_of(
       R"({"objects": [{"shape": "mug"}, {"file": "meshes/none.obj"}], "hand": "hands/none.urdf"})");
   REQUIRE(nested.size() == 3);
@@ -366,7 +370,8 @@ TEST_CASE("An object is turned about x, then y, then z, after it is scaled",
   CHECK(lying.sizes().y() == Approx(0.2));
   CHECK(lying.min().y() == Approx(-as_it_is.max().z()));
   CHECK(lying.max().z() == Approx(as_it_is.max().y()));
-  // About x first: z goes to -y, which a quarter turn about z takes to x. The other order leaves z.
+  // The first turn is about x: z goes to -y, which a quarter turn about z takes to x. The other
+  // order leaves z.
   const Eigen::AlignedBox3d along_x = box_of(R"(, "rotation_deg": [90, 0, 90])");
   CHECK(along_x.sizes().x() == Approx(0.2));
   CHECK(along_x.max().x() == Approx(as_it_is.max().z()));

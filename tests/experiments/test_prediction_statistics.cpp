@@ -12,7 +12,7 @@ using graspfit::base::Random;
 
 namespace {
 
-/// Ten grasps with ties; expected values below are SciPy 1.10's.
+/// Ten grasps with ties; the expected values below are those of SciPy 1.10.
 const ScoredOutcomes kTied = {{0.3, 0.1, 0.3, 0.9, 0.5, 0.5, 0.5, 0.2, 0.7, 0.4},
                               {1, 0, 0, 1, 1, 0, 1, 0, 0, 1}};
 
@@ -34,7 +34,8 @@ double auc_by_pairs(const ScoredOutcomes& sample) {
 
 TEST_CASE("Equal values share the mean of their ranks", "[experiments][prediction_statistics]") {
   CHECK(midranks(kTied.scores) ==
-        std::vector<double>{3.5, 1, 3.5, 10, 7, 7, 7, 2, 9, 5});  // scipy.stats.rankdata
+        // These are the ranks of scipy.stats.rankdata.
+        std::vector<double>{3.5, 1, 3.5, 10, 7, 7, 7, 2, 9, 5});
   CHECK(midranks({}).empty());
 }
 
@@ -42,7 +43,7 @@ TEST_CASE("Quantiles are linear between order statistics", "[experiments][predic
   const std::vector<double> values = {3, 1, 1, 9, 4, 4, 2, 2, 8, 3};
   for (const auto& [share, expected] : std::vector<std::pair<double, double>>{
            {0, 1}, {0.025, 1}, {0.25, 2}, {0.5, 3}, {0.75, 4}, {1, 9}}) {
-    CHECK(quantile(values, share) == expected);  // numpy.quantile
+    CHECK(quantile(values, share) == expected);  // These are the values of numpy.quantile.
   }
   CHECK(*quantile({1, 2, 4}, 0.4) == Approx(1.8));
   CHECK(quantile({7}, 0.9) == 7.0);
@@ -54,7 +55,8 @@ TEST_CASE("The area under the ROC curve is the share of pairs in order, ties hal
   CHECK(auc({{1, 2, 3, 4}, {0, 0, 1, 1}}) == 1.0);
   CHECK(auc({{4, 3, 2, 1}, {0, 0, 1, 1}}) == 0.0);
   CHECK(auc({{1, 2, 1, 2}, {0, 0, 1, 1}}) == 0.5);
-  CHECK(*auc(kTied) == Approx(0.7));  // scipy.stats.mannwhitneyu over the number of pairs
+  // The value is that of scipy.stats.mannwhitneyu over the number of pairs.
+  CHECK(*auc(kTied) == Approx(0.7));
   Random random(1);
   for (int sample = 0; sample < 20; ++sample) {
     ScoredOutcomes drawn;
@@ -69,10 +71,10 @@ TEST_CASE("The area under the ROC curve is the share of pairs in order, ties hal
 TEST_CASE("Rank correlation is Spearman's", "[experiments][prediction_statistics]") {
   CHECK(*spearman({{1, 2, 3, 4}, {1, 8, 27, 64}}) == Approx(1.0));
   CHECK(*spearman({{1, 2, 3, 4}, {4, 3, 2, -9}}) == Approx(-1.0));
-  // Without ties 1 - 6 sum d^2 / (n (n^2 - 1)); here d = 1, 1, 2, 1, 1.
+  // Without ties it is 1 - 6 sum d^2 / (n (n^2 - 1)); here d = 1, 1, 2, 1, 1.
   CHECK(*spearman({{1, 2, 3, 4, 5}, {2, 1, 5, 3, 4}}) == Approx(1.0 - 6.0 * 8.0 / 120.0));
   CHECK(*spearman({kTied.scores, {3, 1, 1, 9, 4, 4, 2, 2, 8, 3}}) ==
-        Approx(0.8535866965031759));  // scipy.stats.spearmanr
+        Approx(0.8535866965031759));  // The value is that of scipy.stats.spearmanr.
 }
 
 TEST_CASE("What cannot be told has no value", "[experiments][prediction_statistics]") {
@@ -95,7 +97,8 @@ TEST_CASE("What cannot be told has no value", "[experiments][prediction_statisti
 
 TEST_CASE("Within clusters, a score that only tells clusters apart counts nothing",
           "[experiments][prediction_statistics]") {
-  // Successes 11, 1, 2 against failures 10, 0: in order 3 of 3 within, 4 of 6 altogether.
+  // Successes are 11, 1, 2, and failures 10, 0. In order are 3 of 3 pairs within clusters, 4 of 6
+  // altogether.
   const std::vector<ScoredOutcomes> clusters = {{{10, 11}, {0, 1}}, {{0, 1, 2}, {0, 1, 1}}};
   const auto value = [&](RankStatistic statistic, StatisticScope scope) {
     return estimate(clusters, statistic, scope).value;
@@ -103,7 +106,7 @@ TEST_CASE("Within clusters, a score that only tells clusters apart counts nothin
   CHECK(auc_within(clusters) == 1.0);
   CHECK(value(RankStatistic::Auc, StatisticScope::WithinClusters) == 1.0);
   CHECK(*value(RankStatistic::Auc, StatisticScope::All) == Approx(4.0 / 6.0));
-  // Correlations 1 of two grasps and -1 of three: (1 * 1 - 2 * 1) / 3.
+  // The correlations are 1 of two grasps and -1 of three, so that the mean is (1 * 1 - 2 * 1) / 3.
   const std::vector<ScoredOutcomes> opposed = {{{1, 2}, {1, 2}}, {{1, 2, 3}, {3, 2, 1}}};
   CHECK(*spearman_within(opposed) == Approx(-1.0 / 3.0));
 }
@@ -135,7 +138,7 @@ TEST_CASE("An interval needs two clusters and draws that have a value",
   const auto one = [](std::span<const std::size_t>) { return std::optional<double>(1.0); };
   CHECK_FALSE(bootstrap_interval(1, one));
   CHECK(bootstrap_interval(2, one)->high == 1.0);
-  // Both of two clusters are in half of the draws; all of four in 4!/4^4 = 9 %.
+  // Both of two clusters are in half of the draws, all of four in 4!/4^4 = 9 % of them.
   const auto with_all = [](std::size_t count) {
     return [count](std::span<const std::size_t> drawn) -> std::optional<double> {
       for (std::size_t c = 0; c < count; ++c) {
@@ -145,7 +148,7 @@ TEST_CASE("An interval needs two clusters and draws that have a value",
     };
   };
   CHECK_FALSE(bootstrap_interval(4, with_all(4)));
-  // One cluster with a success, one with a failure: a value needs both.
+  // One cluster has a success, one a failure, and a value needs both.
   const std::vector<ScoredOutcomes> clusters = {{{1}, {0}}, {{2}, {1}}};
   CHECK(estimate(clusters, RankStatistic::Auc, StatisticScope::All).value == 1.0);
 }

@@ -17,7 +17,7 @@ TEST_CASE("CSV fields read back as what they are", "[experiments][result_table]"
   CHECK(csv_field(std::numeric_limits<double>::quiet_NaN()).empty());
   CHECK(csv_field(std::numeric_limits<double>::infinity()).empty());
   CHECK(csv_field(std::string("plain")) == "plain");
-  // RFC 4180: commas and quotes are quoted, quotes doubled; a row stays one line.
+  // By RFC 4180 commas and quotes are quoted and quotes doubled; a row stays one line.
   CHECK(csv_field(std::string("a,b")) == "\"a,b\"");
   CHECK(csv_field(std::string("say \"x\"")) == "\"say \"\"x\"\"\"");
   CHECK(csv_field(std::string("two\nlines")) == "two lines");

@@ -24,7 +24,8 @@ import results_statements as statements
 TABLE1_NAMES = (r"Table 1", r"table1[a-z_.]*[`/]?", r"22 objects", r"\d DOF", r"0\.10|0\.15|0\.20", r"first 30|first 100|100 attempts", r"planner seed 1")
 PAPER_OF_TABLE1 = r"0\.96|0\.61|0\.52|1\.18|0\.85|0\.92|1\.36|1\.22|1\.06"
 NAMES = (r"\bA\d+\b", r"\bM[123]?\b", r"[Ss]ection \d+(\.\d)?", r"Figs?\. \d+")
-#: Section of the page, what of the tables stands in it, and what other numbers may.
+# The values are, for each section of the page, what of the tables stands in it, and which other
+# numbers may.
 SECTIONS = {
     "## Results: the tables and what made them": (statements.made_by, (r"\b9afe3d4\b", r"\b52c2df6\b", r"\bf6680b5\b", r"\b6688b61\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
@@ -49,7 +50,7 @@ def flat(text):
 
 
 def pages():
-    """The tables first, then the verdicts that rest on them."""
+    """Returns the tables first, then the verdicts that rest on them."""
     return "\n".join((SOURCE / name).read_text(encoding="utf-8")
                      for name in ("docs/paper-results.md", "REPRODUCTION.md"))
 
@@ -66,7 +67,7 @@ class Page(unittest.TestCase):
         tables = statements.Tables(SOURCE)
         for heading, (says, others) in SECTIONS.items():
             text = flat(section_of(page, heading))
-            # The longest first: a short one may stand within another.
+            # The longest statement comes first, as a short one may stand within another.
             for statement in sorted(says(tables), key=len, reverse=True):
                 with self.subTest(heading, statement=statement):
                     self.assertIn(flat(statement), text)

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The counting experiment with that many seeds: 12 cells each.
+/// Returns the counting experiment with that many seeds, of 12 cells each.
 ExperimentConfig config_with(const TemporaryFolder& folder, int num_seeds) {
   std::string text = kCountingConfig;
   const std::string seeds = "\"seeds\": 2";
@@ -60,7 +60,8 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return run(cell, cells);
   };
-  // Moments from the very beginning of a run to well within it; another seed is another test.
+  // The moments range from the very beginning of a run to well within it; another seed is another
+  // test.
   std::mt19937_64 random(20181012);
   const fs::path out = folder.path() / "killed";
   int num_killed = 0;
@@ -75,7 +76,7 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
     ::waitpid(child, &status, 0);
     if (WIFSIGNALED(status)) ++num_killed;
   }
-  CHECK_FALSE(fs::exists(out / "counting.csv"));  // no run came to its end
+  CHECK_FALSE(fs::exists(out / "counting.csv"));  // No run has come to its end.
   const RunProgress done = run_sweep(counting_experiment(), config, {}, {out, 2});
   CHECK(done.num_resumed > 0);
   CHECK(done.num_resumed < 204);
@@ -87,7 +88,7 @@ TEST_CASE("Memory is flat over 10 000 cells", "[experiments][sweep_runner][full]
   SUCCEED("a sanitizer keeps freed memory");
 #else
   const TemporaryFolder folder;
-  // Texts of 2 kB in every row: 20 MB altogether, of which a run must not keep much.
+  // Every row has texts of 2 kB: 20 MB altogether, of which a run must not keep much.
   Experiment wordy = counting_experiment();
   wordy.run = [run = wordy.run](const Cell& cell, const fs::path& cells) {
     CellResult result = run(cell, cells);
@@ -106,8 +107,8 @@ TEST_CASE("Memory is flat over 10 000 cells", "[experiments][sweep_runner][full]
     CHECK(fs::file_size(out / "counting.csv") > 2000u * 11u * static_cast<unsigned>(num_seeds));
     return usage.ru_maxrss;
   };
-  const long few = peak_kb(84);    // 1 008 cells
-  const long many = peak_kb(834);  // 10 008 cells
+  const long few = peak_kb(84);    // It has 1 008 cells.
+  const long many = peak_kb(834);  // It has 10 008 cells.
   INFO("peak of 1 008 cells " << few << " kB, of 10 008 cells " << many << " kB");
   CHECK(many - few < 4000);
 #endif

@@ -42,14 +42,14 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// The table of a run that nothing disturbs.
+/// Returns the table of a run that nothing disturbs.
 std::string undisturbed_table(const TemporaryFolder& folder) {
   const fs::path out = folder.path() / "undisturbed";
   run_sweep(counting_experiment(), config_in(folder), {}, {out, 1});
   return read_file(out / "counting.csv");
 }
 
-/// The experiment with cells that take a while, so that a kill comes in the middle.
+/// Returns the experiment with cells that take a while, so that a kill comes in the middle.
 Experiment slow_experiment() {
   Experiment experiment = counting_experiment();
   const auto run = experiment.run;
@@ -161,13 +161,13 @@ TEST_CASE("Details and summary are the same bytes for any number of jobs and any
     return read_file(out / "counting.details.csv") + read_file(out / "counting.summary.csv");
   };
   const std::string expected = tables_of(1, "one");
-  CHECK(tables_of(1, "one") == expected);  // all from disk
+  CHECK(tables_of(1, "one") == expected);  // All of it comes from disk.
   CHECK(tables_of(7, "seven") == expected);
   const std::vector<std::string> rows = lines_of(folder.path() / "one/counting.details.csv");
   REQUIRE(rows.size() > 2);
   CHECK(rows[0] == "letter,step,seed,part,note");
   CHECK_THAT(rows[1], graspfit::testing::EndsWith(",0,\"a, b\""));
-  // 24 cells, 8 of them skipped and 2 failed.
+  // Of 24 cells 8 are skipped and 2 fail.
   CHECK(lines_of(folder.path() / "one/counting.summary.csv") ==
         std::vector<std::string>{"cells,parts", "14," + std::to_string(rows.size() - 1)});
 }
@@ -214,7 +214,7 @@ TEST_CASE("Whatever is cut off or damaged of the finished cells is done again",
   CHECK(run_again(cells.substr(0, cells.size() - 1)) == 23);
   CHECK(run_again(cells.substr(0, cells.size() - 40)) == 23);
   std::string damaged = cells;
-  damaged[cells.find('\n', header) + 60] ^= 1;  // behind the line of the run's start
+  damaged[cells.find('\n', header) + 60] ^= 1;  // This is behind the line of the run's start.
   CHECK(run_again(damaged) == 23);
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("A run whose cells are all skipped is an error, and a later one makes 
                     "all 24 cells were skipped, so there is no table; the first, letter=a step=0 "
                     "seed=1: b.off is not there; set \"IT\"");
   CHECK_FALSE(fs::exists(out / "counting.csv"));
-  // Of a shard it is none, of their merged whole it is.
+  // For a shard it is no error that all cells were skipped; for the merged whole it is.
   const fs::path parts = folder.path() / "parts";
   CHECK(run_sweep(without, config, {}, {parts, 1, Shard{1, 1}}).num_skipped == 24);
   CHECK_THROWS_WITH(merge_shards(without, config, {}, parts),
@@ -274,7 +274,7 @@ TEST_CASE("Cells that failed for a reason that may pass are counted, not publish
     return run(cell, cells);
   };
   const RunProgress first = run_sweep(crowded, config, {}, {out, 2});
-  CHECK(first.num_failed == 18);  // 8 and 8, and 2 for good
+  CHECK(first.num_failed == 18);  // They are 8 and 8, and 2 for good.
   CHECK(first.num_not_final == 16);
   const fs::path manifest = out / "counting.manifest.json";
   CHECK(nlohmann::json::parse(read_file(manifest)).at("cells").at("not_final") == 16);
@@ -285,7 +285,7 @@ TEST_CASE("Cells that failed for a reason that may pass are counted, not publish
   CHECK(second.num_failed == 2);
   CHECK(second.num_not_final == 0);
   CHECK_NOTHROW(require_publishable_manifest(manifest));
-  // Manifests from before that do not count them.
+  // A manifest may lack their number.
   auto json = nlohmann::json::parse(read_file(manifest));
   json.at("cells").erase("not_final");
   CHECK_NOTHROW(require_publishable_manifest(folder.write("old.json", json.dump())));
@@ -309,7 +309,7 @@ TEST_CASE("Results of another configuration or another run's folder are not touc
   }
   CHECK(read_file(out / "counting.csv") == expected);
 
-  // A second run in the same folder while the first is at work.
+  // A second run starts in the same folder while the first is at work.
   Experiment nested = counting_experiment();
   std::string refusal;
   nested.run = [&](const Cell&, const fs::path&) -> CellResult {
@@ -332,7 +332,7 @@ TEST_CASE("Neither quick nor modified results are published", "[experiments][swe
   CHECK_THROWS_WITH(
       require_publishable(config_in(folder, {false, {{"letter", {"a"}}}}), source_folder()),
       graspfit::testing::Contains("--set"));
-  // Nor those of a configuration that is not among the sources.
+  // A configuration that is not among the sources cannot be published either.
   CHECK_THROWS_WITH(require_publishable(config_in(folder), source_folder()),
                     graspfit::testing::Contains("is not one of"));
 }
@@ -372,7 +372,7 @@ TEST_CASE("Inputs of one name in the data folder and among the sources are told 
   CHECK(inputs.at("sources/LICENSE") == graspfit::base::sha256_hex(read_file(own)));
   CHECK(inputs.count("CITATION.cff") == 1);
 
-  // Everything lies in the root of the file system: that is no data folder that others have.
+  // All files lie in the root of the file system, which is no data folder that others have.
   const auto at_root = inputs_with("/", {data, other});
   CHECK(at_root.count(data.string()) == 1);
   CHECK(at_root.count("CITATION.cff") == 1);

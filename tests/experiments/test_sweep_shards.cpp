@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The counting experiment, with a file and details of every cell, and without data for step 2.
+/// Returns the counting experiment, with a file and details of every cell, and without data for
+/// step 2.
 Experiment experiment_with_all() {
   Experiment experiment = counting_experiment();
   experiment.details = {{"part", "1", "of the seed"}};
@@ -57,7 +58,7 @@ ExperimentConfig config_in(const TemporaryFolder& folder, const ConfigRequest& r
                      request);
 }
 
-/// All results but timings and manifest, by name.
+/// Returns all results but timings and manifest, by name.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const char* const ending : {".csv", ".details.csv", ".summary.csv"}) {
@@ -86,7 +87,8 @@ TEST_CASE("Shards in any number merge to the bytes of one run", "[experiments][s
   const Experiment experiment = experiment_with_all();
   const RunProgress whole = run_sweep(experiment, config, {}, {folder.path() / "whole", 1});
   const auto expected = results_in(folder.path() / "whole");
-  REQUIRE(expected.size() == 3 + 16);  // 24 cells, 6 without data, 2 fail
+  // Of 24 cells 6 are without data and 2 fail.
+  REQUIRE(expected.size() == 3 + 16);
   for (const std::size_t count : {1, 2, 7, 24, 30}) {
     const fs::path out = folder.path() / std::to_string(count);
     run_shards(experiment, config, out, count);
@@ -99,7 +101,8 @@ TEST_CASE("Shards in any number merge to the bytes of one run", "[experiments][s
     CHECK(merged.num_skipped == 6);
     const auto manifest = nlohmann::json::parse(read_file(out / "counting.manifest.json"));
     CHECK(manifest.at("shards").size() == count);
-    // Again, and by a run that has nothing left to do but the cells without data.
+    // The merge is repeated, and then done by a run that has nothing left to do but the cells
+    // without data.
     merge_shards(experiment, config, {}, out);
     CHECK(run_sweep(experiment, config, {}, {out, 1}).num_resumed == 18);
     CHECK(results_in(out) == expected);
@@ -246,11 +249,11 @@ TEST_CASE("Status counts each cell once and tells what runs", "[experiments][sha
   const std::vector<SweepStatus> after = sweep_status("counting", out);
   CHECK(after[0].name == "all");
   CHECK(after[0].num_cells == 24);
-  // Of the numbers 0 to 23 the even ones, 0 mod 3 and 1 mod 3: 12 + 4 + 4. Without data are 6 and 7
-  // mod 8; of those 23 is not among them.
+  // Of the cells 0 to 23 the even ones are done and those of 0 mod 3 and 1 mod 3: 12 + 4 + 4. Cells
+  // of 6 and 7 mod 8 are without data, and 23 is not among those that are done.
   CHECK(after[0].num_done + after[0].num_tried_again == 20);
   CHECK(after[0].num_tried_again == 5);
-  CHECK(after[0].num_failed == 2);  // 20 and 21
+  CHECK(after[0].num_failed == 2);  // They are 20 and 21.
   CHECK_FALSE(after[0].is_running);
 }
 
@@ -260,7 +263,7 @@ TEST_CASE("A run that starts while its status is asked for is not refused",
   const ExperimentConfig config = config_in(folder);
   const fs::path out = folder.path() / "out";
   run_sweep(counting_experiment(), config, {}, {out, 1});
-  // Who asks has a shared lock for a moment; this one takes 0.1 s.
+  // Who asks for the status holds a shared lock for a moment; this one holds it for 0.1 s.
   const int descriptor = ::open((out / "counting.cells").c_str(), O_RDONLY | O_CLOEXEC);
   REQUIRE(descriptor >= 0);
   REQUIRE(::flock(descriptor, LOCK_SH | LOCK_NB) == 0);

@@ -1,9 +1,11 @@
 #!/usr/bin/python3
-"""The hands of the published Table 1 are closed on the object: test_table1_state.py TABLES.
+"""Checks that the hands of the published Table 1 are closed on the object: test_table1_state.py
+TABLES.
 
-Medians over all grasps of a method: pads lie on the surface with a share of their area, and touch
-it to a fifth of a clip volume's depth. No link is in a full voxel, and none is deeper in the object
-than a voxel's edge; only MA as published, which backs off by 15 mm at most and then closes, may be.
+By the medians over all grasps of a method, pads lie on the surface with a share of their area,
+and touch it to a fifth of a clip volume's depth. No link is in a full voxel, and none is deeper
+in the object than a voxel's edge; only MA as published, which backs off by 15 mm at most and
+then closes, may be.
 """
 
 import csv

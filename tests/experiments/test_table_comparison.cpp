@@ -21,7 +21,7 @@ TableComparison compare(const std::string& ours, const std::string& theirs,
   return compare_tables(table("name,value\n" + ours), table("name,value\n" + theirs), 1, options);
 }
 
-/// The counting experiment with three rows of details a cell and a summary of two rows.
+/// Returns the counting experiment with three rows of details a cell and a summary of two rows.
 Experiment detailed_experiment() {
   Experiment experiment = graspfit::testing::counting_experiment();
   experiment.details = {{"part", "1", "its number"}};
@@ -84,12 +84,13 @@ TEST_CASE("Numbers are compared relatively, counts, seeds and texts exactly",
   CHECK_FALSE(are_near("0.5", "0.50000000051"));
   CHECK(are_near("-2.5e+20", "-2.5000000001e+20"));
   CHECK_FALSE(are_near("0.5", "-0.5"));
-  CHECK(are_near("1", "1.0000000001"));  // a number that is whole on one machine
-  CHECK_FALSE(are_near("5805151507310987", "5805151507310988"));  // a seed
-  CHECK(are_near("1e-17", "-3e-16"));                             // zeros but for rounding
+  CHECK(are_near("1", "1.0000000001"));  // The number is whole on one machine.
+  CHECK_FALSE(are_near("5805151507310987", "5805151507310988"));  // These are seeds.
+  CHECK(are_near("1e-17", "-3e-16"));  // These are zeros but for rounding.
   CHECK_FALSE(are_near("1e-17", "1e-11"));
-  CHECK(are_near("-0", "0"));  // look like integers, and are one number
-  CHECK_FALSE(are_near("9007199254740993", "9007199254740992"));  // are not, but as doubles
+  CHECK(are_near("-0", "0"));  // These look like integers, and are one number.
+  // As doubles these are one number, as integers they are not.
+  CHECK_FALSE(are_near("9007199254740993", "9007199254740992"));
   CHECK_FALSE(are_near("", "0"));
   CHECK_FALSE(are_near("true", "false"));
   CHECK_FALSE(are_near("index 0.02; palm", "index 0.03; palm"));
@@ -216,7 +217,7 @@ TEST_CASE("A table that is not the one its manifest was written for is named",
                       graspfit::testing::Contains("tables_sha256"));
     graspfit::base::write_file_atomically(table, text);
   }
-  // Manifests from before that say nothing of tables.
+  // A manifest may say nothing of tables.
   cut(folder.path() / "published/counting.timing.csv", 1);
   CHECK(compare_both().size() == 3);
 }

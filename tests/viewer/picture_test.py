@@ -1,4 +1,5 @@
-"""What the tests of pictures share: a page of write_sample_pages has the scene that a script draws.
+"""The tests of pictures share this: a page of write_sample_pages has the scene that a script
+draws.
 
 A test's file is called as TEST.py SCRIPT_PY PAGES [--keep-pictures FOLDER].
 """
@@ -42,7 +43,7 @@ class PictureTest(unittest.TestCase):
             capture_output=True, text=True, timeout=500, check=False)
 
     def drawn(self, name, *flags):
-        """The file of a picture of the page's scene."""
+        """Returns the file of a picture of the page's scene."""
         done = self.draw(self.text, name, *flags)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
         if self.pictures:

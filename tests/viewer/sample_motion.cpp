@@ -21,7 +21,7 @@ RigidTransform at(double x, double y, double z, double turn = 0.0) {
   return X;
 }
 
-/// A hand over an object, palm down.
+/// Returns a configuration of the hand over an object, palm down.
 hands::HandConfiguration over(const hands::HandModel& hand, const RigidTransform& X_WO,
                               double height, double q) {
   hands::HandConfiguration configuration{

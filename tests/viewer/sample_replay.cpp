@@ -17,7 +17,7 @@ constexpr double kClosing = 0.2;
 constexpr double kSqueezing = 0.2;
 constexpr double kHolding = 0.6;
 
-/// Where the ball is, so long after the load began.
+/// Returns the pose of the ball at this time after the load began.
 RigidTransform ball_pose(bool slides, double t) {
   RigidTransform X = RigidTransform::Identity();
   if (slides) {

@@ -22,7 +22,7 @@ RigidTransform translation(const Eigen::Vector3d& p) {
   return X;
 }
 
-// Palm: a box below the plane z = 0 of H, looking along +z.
+// Returns a hand whose palm is a box below the plane z = 0 of H and looks along +z.
 hands::HandModel three_finger_hand() {
   hands::HandModel hand;
   hand.name = "sample";
@@ -35,8 +35,8 @@ hands::HandModel three_finger_hand() {
 
   for (int i = 0; i < 3; ++i) {
     const double angle = 2 * std::numbers::pi * i / 3;
-    // Link frame: z along the finger, x toward the palm's axis, so that the pad's plane is the
-    // plane x = thickness / 2, at the ball's radius from the axis.
+    // The link frame has z along the finger and x toward the palm's axis, so that the pad's plane
+    // is the plane x = thickness / 2, at the ball's radius from the axis.
     hands::Joint joint;
     joint.name = "joint_" + std::to_string(i + 1);
     joint.parent_link = 0;
@@ -62,7 +62,7 @@ hands::HandModel three_finger_hand() {
     pad.name = link.name + "_pad";
     pad.link = i + 1;
     pad.finger = i;
-    pad.X_LC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // C's z along the link's x
+    pad.X_LC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // This puts C's z along the link's x.
     pad.X_LC.translation() = Eigen::Vector3d(kFingerThickness / 2, 0.0, 0.065);
     pad.outline = {{-0.01, -0.02}, {0.01, -0.02}, {0.01, 0.02}, {-0.01, 0.02}};
     hand.pads.push_back(pad);
@@ -78,10 +78,11 @@ hands::HandModel three_finger_hand() {
   return hand;
 }
 
-// A grasp with the fingers turned by `q`, and contacts on the equator at the first `num_contacts`.
+// Returns a grasp with the fingers turned by `q`, and contacts on the equator at the first
+// `num_contacts`.
 grasp::Grasp grasp_at(double q, int num_contacts) {
   grasp::Grasp grasp;
-  // The palm below the ball, its pads' centers at the height of the ball's center.
+  // The palm is below the ball, the pads' centers are at the height of the ball's center.
   grasp.configuration.X_OH = translation({0.0, 0.0, -0.065});
   grasp.configuration.q = Eigen::VectorXd::Constant(3, q);
   for (int i = 0; i < num_contacts; ++i) {
@@ -106,7 +107,7 @@ grasp::Grasp grasp_at(double q, int num_contacts) {
     target.finger = i;
     grasp.targets.contacts.push_back(target);
   }
-  // Lines of an equilateral triangle make 30° with the normals.
+  // The lines of an equilateral triangle make 30° with the normals.
   for (int i = 0; i < num_contacts; ++i) {
     for (int j = i + 1; j < num_contacts; ++j) {
       grasp.quality.stable_pairs.push_back({i, j, std::numbers::pi / 6});
@@ -151,7 +152,7 @@ SampleScene sample_scene() {
   valid.iterations = 61;
 
   grasp::Grasp penetrating = grasp_at(0.12, 3);
-  // As of two contacts that are opposite each other but for rounding.
+  // This is as of two contacts that are opposite each other but for rounding.
   penetrating.wrench.emplace();
   penetrating.wrench->epsilon = 1e-17;
   penetrating.wrench->is_force_closure = true;

@@ -15,15 +15,15 @@ namespace graspfit::testing {
 struct SampleScene {
   geometry::TriangleMesh object_O;
   hands::HandModel hand;
-  /// #1 valid (M 0.4), #2 usable but penetrating (M 0.6), #3 with two contacts of three and M 0.
-  /// The first has a pre-grasp 30 mm back, a squeeze, and ε 0.1234.
+  /// Grasp #1 is valid (M 0.4), #2 usable but penetrating (M 0.6), #3 has two contacts of three and
+  /// M 0. The first has a pre-grasp 30 mm back, a squeeze, and ε 0.1234.
   std::vector<grasp::Grasp> grasps;
   grasp::Surroundings surroundings;  ///< A table at z = -0.12 m and a cube on it, off the hand.
 };
 SampleScene sample_scene();
 
-/// The same hand by itself, open and closed: joint_2 follows joint_1 by a half plus 0.1, joint_3
-/// follows it alike, but may break away, and slides.
+/// Returns the same hand by itself, open and closed: joint_2 follows joint_1 by a half plus 0.1,
+/// joint_3 follows it alike, but may break away, and slides.
 viewer::HandScene sample_hand_scene();
 
 }  // namespace graspfit::testing

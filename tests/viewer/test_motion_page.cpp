@@ -36,7 +36,7 @@ TEST_CASE("A motion's frames are as near as asked for and belong to one phase ea
     }
   }
   CHECK(data["num_frames"] == frames);
-  // 7 floats of 4 bytes per body, in base64.
+  // A body has 7 floats of 4 bytes per frame, in base64.
   const auto length = [&](std::size_t bodies) { return (28 * bodies * frames + 2) / 3 * 4; };
   CHECK(data["object_poses"].get<std::string>().size() == length(3));
   CHECK(data["link_poses"].get<std::string>().size() == length(input.scene.hand().links.size()));

@@ -58,7 +58,7 @@ TEST_CASE("Link meshes are in the page once, however many grasps there are", "[v
   const std::size_t one = page_html(input).size();
   input.grasps.push_back(input.grasps.front());
   const std::size_t two = page_html(input).size();
-  input.hand.links.front().mesh_L = input.object_O;  // 2562 vertices, 5120 faces
+  input.hand.links.front().mesh_L = input.object_O;  // It has 2562 vertices and 5120 faces.
   const std::size_t two_with_large_link = page_html(input).size();
   CHECK(two - one < 16000);
   // Base64 takes 4/3 of 12 bytes per vertex and per face.

@@ -15,7 +15,8 @@ import tempfile
 import unittest
 
 PACKAGES = "apt-get install chromium chromium-driver python3-selenium python3-pil"
-os.environ["NO_PROXY"] = os.environ["no_proxy"] = "localhost,127.0.0.1"  # the driver is local
+# The driver is on this machine.
+os.environ["NO_PROXY"] = os.environ["no_proxy"] = "localhost,127.0.0.1"
 
 try:
     from PIL import Image, ImageChops
@@ -37,7 +38,8 @@ PICTURES = None
 
 
 class LoopbackService(Service):
-    """The driver by address: a bare system may have no /etc/hosts, and then no "localhost"."""
+    """Finds the driver by address: a bare system may have no /etc/hosts, and then no
+    "localhost"."""
 
     @property
     def service_url(self):
@@ -52,15 +54,15 @@ def start_browser(chromium, chromedriver, profile):
     options.binary_location = chromium
     for flag in (
         "--headless=new",
-        "--no-sandbox",  # tests may run as root in a container
+        "--no-sandbox",  # Tests may run as root in a container.
         "--disable-dev-shm-usage",
-        "--use-angle=swiftshader",  # WebGL without a graphics card
+        "--use-angle=swiftshader",  # WebGL works without a graphics card then.
         "--enable-unsafe-swiftshader",
         "--ignore-gpu-blocklist",
         "--disable-background-networking",
         "--disable-component-update",
         "--disable-sync",
-        "--remote-debugging-pipe",  # or the driver, too, looks for "localhost"
+        "--remote-debugging-pipe",  # Otherwise the driver, too, looks for "localhost".
         "--no-first-run",
         "--no-proxy-server",
         "--force-device-scale-factor=1",
@@ -80,7 +82,8 @@ class PageInBrowser(unittest.TestCase):
 
     @classmethod
     def started(cls):
-        """A browser with a profile of its own. On a busy machine its first start may time out: a second is tried."""
+        """Returns a browser with a profile of its own. On a busy machine its first start may
+        time out, and a second is tried."""
         for is_last in (False, True):
             profile = tempfile.TemporaryDirectory(prefix="graspfit_browser_", ignore_cleanup_errors=True)
             try:
@@ -104,7 +107,7 @@ class PageInBrowser(unittest.TestCase):
         self.assertEqual(messages, [], "messages in the console")
 
     def settle(self):
-        """Until what was asked for is drawn: the page draws in the next animation frame."""
+        """Waits until what was asked for is drawn: the page draws in the next animation frame."""
         self.browser.execute_async_script(
             "const done = arguments[0];"
             "requestAnimationFrame(() => requestAnimationFrame(done));"
@@ -114,7 +117,8 @@ class PageInBrowser(unittest.TestCase):
         return self.browser.find_element(By.ID, name)
 
     def picture(self, name=None):
-        """What WebGL drew. Text above it is hidden: browsers smooth it differently from time to time."""
+        """Returns what WebGL drew. Text above it is hidden, as browsers smooth it differently
+        from time to time."""
         if PICTURES and name:
             self.settle()
             self.browser.save_screenshot(str(PICTURES / f"{name}.png"))
@@ -124,7 +128,10 @@ class PageInBrowser(unittest.TestCase):
         return image
 
     def show_text_on_scene(self, is_shown):
-        """Hidden when this returns, and what was asked for before drawn; one call, for calls take most of the time."""
+        """Shows or hides text on the scene. Once text is hidden, what was asked for before is drawn.
+
+        It is one call, as calls take most of the time.
+        """
         self.browser.execute_async_script(
             "const [is_shown, done] = arguments;"
             "for (const element of document.querySelectorAll('#stage > :not(canvas):not(#message)'))"
@@ -138,7 +145,7 @@ class PageInBrowser(unittest.TestCase):
 
     @staticmethod
     def share_near(image, color, tolerance=40):
-        """Share of the pixels whose channels all are within `tolerance` of `color`."""
+        """Returns the share of the pixels whose channels all are within `tolerance` of `color`."""
         distances = ImageChops.difference(image, Image.new("RGB", image.size, color)).split()
         largest = ImageChops.lighter(ImageChops.lighter(distances[0], distances[1]), distances[2])
         return sum(largest.histogram()[: tolerance + 1]) / (image.width * image.height)
@@ -151,10 +158,11 @@ class PageInBrowser(unittest.TestCase):
 
 
 class GraspsInBrowser(PageInBrowser):
-    """The page of grasps."""
+    """Tests of the page of grasps."""
 
     def test_scene_is_drawn(self):
-        self.open("without_model.html")  # nor surroundings, which shrink the rest
+        # This page has no surroundings either, which would shrink the rest.
+        self.open("without_model.html")
         image = self.picture("page")
         background = self.share_near(image, (0xF4, 0xF5, 0xF4), 2)
         self.assertLess(background, 0.9)
@@ -169,7 +177,7 @@ class GraspsInBrowser(PageInBrowser):
         self.assertEqual(self.browser.find_element(By.TAG_NAME, "h1").text, self.browser.title)
         self.assertIn("3 grasps, 2 usable, 1 valid", self.text("summary"))
         self.assertIn("80 × 80 × 80 mm", self.text("summary"))
-        # best M first
+        # The rows are ordered by M, largest first.
         rows = self.browser.find_elements(By.CSS_SELECTOR, "#list > div")
         self.assertEqual([row.get_attribute("id") for row in rows], ["grasp-2", "grasp-1", "grasp-3"])
         badges = [row.find_element(By.CLASS_NAME, "badge").text for row in rows]
@@ -205,7 +213,8 @@ class GraspsInBrowser(PageInBrowser):
         self.open("ball.html")
         self.element("grasp-1").click()
         contacts = [row.text for row in self.browser.find_elements(By.CSS_SELECTOR, "#contacts tbody tr")]
-        # finger, gap [mm], area [mm²], d [mm], S of tests/viewer/sample_scene.cpp
+        # The columns are finger, gap [mm], area [mm²], d [mm] and S of
+        # tests/viewer/sample_scene.cpp.
         self.assertEqual(contacts, ["1 thumb 0.000 40.0 8.00 1", "2 finger_1 0.200 50.0 8.50 1",
                                     "3 finger_2 0.400 60.0 9.00 1"])
         measures = self.text("measures")
@@ -245,7 +254,7 @@ class GraspsInBrowser(PageInBrowser):
         for part in ("Pre-grasp clearance", "6.5 mm", "30.0 mm", "balanced", "1.2 %"):
             self.assertIn(part, self.text("ways"))
 
-        # A grasp without either shows itself, and its buttons are off.
+        # A grasp without pre-grasp and squeeze shows itself, and its buttons are off.
         self.element("configuration-pre_grasp").click()
         self.assertIn("shown in its pre-grasp", self.text("shown"))
         self.element("grasp-2").click()
@@ -278,7 +287,7 @@ class GraspsInBrowser(PageInBrowser):
 
     def test_scores_color_the_object_and_the_voxels(self):
         self.open("ball.html")
-        # Of these the obstacles have nearly the object's color.
+        # Of the layers that are hidden here the obstacles have nearly the object's color.
         for layer in ("hand", "contacts", "polygon", "palm", "center", "surroundings"):
             self.element(f"show-{layer}").click()
         beige = self.share_near(self.picture(), (0xC4, 0xBB, 0xAC))
@@ -301,7 +310,7 @@ class GraspsInBrowser(PageInBrowser):
         self.browser.execute_script(
             "arguments[0].dispatchEvent(new WheelEvent('wheel', {deltaY: -240, cancelable: true}))", canvas)
         self.assert_differs(panned, self.picture(), "wheel")
-        # Fit keeps the direction, so twice is once.
+        # Fit keeps the direction, so that twice is the same as once.
         fit = self.browser.find_element(By.CSS_SELECTOR, '[data-view="fit"]')
         fit.click()
         fitted = self.picture()
@@ -336,7 +345,7 @@ class GraspsInBrowser(PageInBrowser):
 
 
 class HandInBrowser(PageInBrowser):
-    """The page of a hand: tests/viewer/sample_scene.cpp, sample_hand_scene."""
+    """Tests of the page of a hand: tests/viewer/sample_scene.cpp, sample_hand_scene."""
 
     def setUp(self):
         self.open("hand.html")
@@ -344,13 +353,13 @@ class HandInBrowser(PageInBrowser):
         self.scene = json.loads(text)
 
     def tips(self):
-        """Positions of the tip pads [mm] as the page shows them."""
+        """Returns the positions of the tip pads [mm] as the page shows them."""
         rows = self.browser.find_elements(By.CSS_SELECTOR, "#tips tbody tr")
         cells = [[cell.text for cell in row.find_elements(By.TAG_NAME, "td")] for row in rows]
         return {name: [float(x) for x in point] for name, *point, _ in cells}
 
     def expected_tips(self, pose):
-        """The same from the link poses that forward kinematics in C++ gave."""
+        """Returns the same from the link poses that forward kinematics in C++ gave."""
         hand = self.scene["hand"]
         tips = {}
         for finger in hand["fingers"]:
@@ -367,7 +376,7 @@ class HandInBrowser(PageInBrowser):
         self.assertEqual(shown.keys(), expected.keys())
         for name, point in expected.items():
             for a, b in zip(shown[name], point):
-                self.assertAlmostEqual(a, b, delta=0.00501)  # two digits are shown
+                self.assertAlmostEqual(a, b, delta=0.00501)  # Two digits are shown.
 
     def move(self, joint, value):
         self.browser.execute_script(
@@ -412,9 +421,9 @@ class HandInBrowser(PageInBrowser):
         self.assertTrue(self.element("joint-2").is_enabled())
         self.element("pose-0").click()
         coupled = self.scene["poses"][0]["q"][2]
-        self.move(2, 0.5)  # further closed: it stays
+        self.move(2, 0.5)  # It is further closed, and stays.
         self.assertEqual(self.text("value-2"), "500.0 mm")
-        self.move(2, -0.8)  # less closed than its leader asks for: it does not
+        self.move(2, -0.8)  # It is less closed than its leader asks for, and does not stay.
         self.assertEqual(self.text("value-2"), f"{1000 * coupled:.1f} mm")
 
     def test_layers_and_views_change_the_picture(self):
@@ -433,7 +442,7 @@ class HandInBrowser(PageInBrowser):
 
 
 class ReplayInBrowser(PageInBrowser):
-    """The page of a hold test: tests/viewer/sample_replay.cpp."""
+    """Tests of the page of a hold test: tests/viewer/sample_replay.cpp."""
 
     def setUp(self):
         self.open("replay.html")
@@ -454,7 +463,8 @@ class ReplayInBrowser(PageInBrowser):
         self.assertEqual(badges, ["held", "held", "lost under load"])
         self.assertIn("lost under load", self.text("verdict"))
         self.assertIn("12.5 N", self.text("verdict"))
-        # 2.5 t² = 50 mm at 0.141 s; the next of the frames is 0.16 s after the load began.
+        # It reaches 2.5 t² = 50 mm at 0.141 s; the next of the frames is 0.16 s after the load
+        # began.
         story = self.text("story")
         for part in ("along +y with 1.00 N", "check after 0.2 s", "100.0 mm", "passed 50 mm after 0.16 s"):
             self.assertIn(part, story)
@@ -464,8 +474,8 @@ class ReplayInBrowser(PageInBrowser):
         self.assertIn("9.2 °", self.text("value-turn"))
 
     def test_axis_labels_stay_at_their_axes_while_the_window_grows(self):
-        # Observers are called in the order in which they were made, the page's first: what this one finds is what
-        # is painted next.
+        # Observers are called in the order in which they were made, the page's first: this one
+        # finds what is painted next.
         canvas, stage, tops = self.browser.execute_async_script(
             "const done = arguments[0];"
             "const stage = document.getElementById('stage'), canvas = document.getElementById('scene');"
@@ -478,9 +488,9 @@ class ReplayInBrowser(PageInBrowser):
             "  done([canvas.height, canvas.clientHeight, tops().map((top, i) => top - before[i])]);"
             "}).observe(stage);"
         )
-        self.assertEqual(canvas, stage)  # one pixel of the picture each
+        self.assertEqual(canvas, stage)  # One pixel is one of the picture.
         self.assertEqual(len(tops), 3)
-        for moved in tops:  # distances from the lower edge, where the axes are
+        for moved in tops:  # These are distances from the lower edge, where the axes are.
             self.assertLess(abs(moved), 0.2)
 
     def test_slider_moves_hand_and_object_and_back(self):
@@ -523,7 +533,7 @@ class ReplayInBrowser(PageInBrowser):
         WebDriverWait(self.browser, 60).until(lambda _: self.text("play") == "Play")
         end = int(self.element("time").get_attribute("max"))
         self.assertEqual(int(self.element("time").get_property("value")), end)
-        # From the end it starts anew, and stands still when paused.
+        # From the end it starts anew, and it stands still when paused.
         self.browser.execute_script(
             "const play = document.getElementById('play'); play.click(); play.click();")
         self.assertEqual(self.text("play"), "Play")
@@ -554,7 +564,7 @@ class ReplayInBrowser(PageInBrowser):
 
 
 class MotionInBrowser(PageInBrowser):
-    """The page of a hand that moves objects: tests/viewer/sample_motion.cpp."""
+    """Tests of the page of a hand that moves objects: tests/viewer/sample_motion.cpp."""
 
     def setUp(self):
         self.open("motion.html")

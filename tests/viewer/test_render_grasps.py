@@ -26,7 +26,7 @@ RADIUS = 0.04
 
 
 def ball_obj(first):
-    """OBJ text of a ball of 40 mm radius, its first vertex having this index."""
+    """Returns OBJ text of a ball of 40 mm radius, its first vertex having this index."""
     rows, columns = 24, 48
     lines = []
     for i in range(rows + 1):
@@ -54,7 +54,7 @@ def box_obj(first, low, high):
 
 
 def write_sample(folder):
-    """One grasp of a ball by two box fingers and a thumb behind them, palm below."""
+    """Returns one grasp of a ball by two box fingers and a thumb behind them, palm below."""
     lines, count = ball_obj(1)
     text = ["o object", *lines]
     boxes = {
@@ -160,7 +160,7 @@ class RenderGrasps(unittest.TestCase):
         self.assertGreater(white, 0.3)
         self.assertLess(white, 0.9)
         for half, name in ((0, "left view"), (450, "right view")):
-            view = image.crop((half, 60, half + 450, 530))  # without caption and legend
+            view = image.crop((half, 60, half + 450, 530))  # This is without caption and legend.
             with self.subTest(view=name):
                 self.assertGreater(share_near(view, (208, 196, 176), 45), 0.05, "object's color")
                 self.assertGreater(share_near(view, (98, 124, 150), 40), 0.02, "hand's color")
@@ -191,7 +191,7 @@ class RenderGrasps(unittest.TestCase):
         thirds = [image.crop((300 * k, 50, 300 * (k + 1), 440)) for k in range(3)]
         for third in thirds:
             self.assertGreater(share_near(third, (98, 124, 150), 40), 0.02, "hand's color")
-        # The same direction of view, but the hand is elsewhere.
+        # The direction of view is the same, but the hand is elsewhere.
         self.assertIsNotNone(ImageChops.difference(thirds[0], thirds[2]).getbbox())
         self.assertGreater(share_near(thirds[2], (196, 207, 193), 25), 0.01, "table's color")
 

@@ -6,13 +6,13 @@ PAGES holds what write_sample_pages wrote; a replay's page has the scene that th
 
 import json
 
-from picture_test import PictureTest, main  # first: says what is missing
+from picture_test import PictureTest, main  # It comes first, as it says what is missing.
 
 from PIL import Image, ImageChops
 
 
 def share_near(image, color, tolerance=45):
-    """Share of the pixels whose channels all are within `tolerance` of `color`."""
+    """Returns the share of the pixels whose channels all are within `tolerance` of `color`."""
     distances = ImageChops.difference(image, Image.new("RGB", image.size, color)).split()
     largest = ImageChops.lighter(ImageChops.lighter(distances[0], distances[1]), distances[2])
     return sum(largest.histogram()[: tolerance + 1]) / (image.width * image.height)
@@ -24,8 +24,8 @@ class RenderHold(PictureTest):
     def test_shows_the_hand_closing_and_the_load_pulling_the_ball_away(self):
         file = self.drawn("replay.gif", "--width", "320", "--height", "310")
         with Image.open(file) as image:
-            # The ball passes 50 mm at 0.56 s, then 0.2 s more: a frame every 0.04 s, but no farther
-            # than the frames that the scene has (0.72 s).
+            # The ball passes 50 mm at 0.56 s, and 0.2 s more are shown: a frame every 0.04 s, but
+            # no farther than the frames that the scene has (0.72 s).
             self.assertEqual(image.n_frames, 19)
             frames = []
             for i in range(image.n_frames):

@@ -6,7 +6,7 @@ PAGES holds what write_sample_pages wrote; a motion's page has the scene that th
 
 import json
 
-from picture_test import PictureTest, main  # first: says what is missing
+from picture_test import PictureTest, main  # It comes first, as it says what is missing.
 
 from PIL import Image, ImageChops
 

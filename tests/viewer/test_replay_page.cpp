@@ -28,7 +28,7 @@ TEST_CASE("A replay's page names no other file and no network address", "[viewer
 TEST_CASE("A replay's shifts and turns are the object's as the palm sees it",
           "[viewer][replay_page]") {
   viewer::ReplayInput input = sample_replay();
-  // The whole scene moved while under load, as a lift does: nothing slips.
+  // The whole scene is moved while under load, as by a lift, so that nothing slips.
   auto& lifted = input.replays[1];
   for (hold_test::HoldFrame& frame : lifted) {
     if (frame.time <= 0.4 + 1e-9) continue;
@@ -48,7 +48,7 @@ TEST_CASE("A replay's shifts and turns are the object's as the palm sees it",
     CHECK(slides["shifts"][i].get<double>() == Approx(2.5 * t * t).margin(1e-12));
     CHECK(slides["turns"][i].get<double>() == Approx(t).margin(1e-7));
   }
-  // The ball's diagonal is 80 mm · sqrt(3): frames end with the first beyond two of them.
+  // The ball's diagonal is 80 mm · sqrt(3), and frames end with the first beyond two of them.
   const auto& shifts = slides["shifts"];
   const double far = 2.0 * 0.08 * std::sqrt(3.0);
   CHECK(shifts.back().get<double>() > far);
@@ -74,7 +74,7 @@ TEST_CASE("The direction that a replay starts with failed first or came nearest 
   CHECK(viewer::telling_direction(verdict, input.protocol) == 2);
   verdict.directions[0].stage = HoldStage::Approach;
   CHECK(viewer::telling_direction(verdict, input.protocol) == 0);
-  // 0.1 of the shift is less than 0.2 of the turn.
+  // The share 0.1 of the largest shift is less than 0.2 of the largest turn.
   verdict.directions = {{Eigen::Vector3d::UnitX(), HoldStage::Held, std::nullopt,
                          0.1 * input.protocol.largest_shift, 0.0},
                         {Eigen::Vector3d::UnitY(), HoldStage::Held, std::nullopt, 0.0,

@@ -1,4 +1,4 @@
-// Writes the pages that the browser test opens: write_sample_pages FOLDER.
+// The program writes the pages that the browser test opens: write_sample_pages FOLDER.
 
 #include <filesystem>
 #include <iostream>
