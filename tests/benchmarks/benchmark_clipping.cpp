@@ -1,12 +1,12 @@
 // What it measures: cutting all of the bunny (75 408 faces) into the surface patches of its voxels,
-// with area, centroids and normals, on one thread: `surface_patches`, whose decisions are exact,
-// against the same loop in plain doubles, against CGAL's exact constructions, and, for 50 voxels,
-// against clipping the mesh by CGAL. Then how it grows with the resolution.
+// with area, centroids and normals, on one thread. It compares `surface_patches`, whose decisions
+// are exact, with the same loop in plain doubles, with CGAL's exact constructions, and, for 50
+// voxels, with clipping the mesh by CGAL. Then it measures how the time grows with the resolution.
 //
-// How to read it: processor time of the process, so that a busy machine matters little; medians of
-// repetitions that take turns; memory of the results only. All run on memory that the process
-// already has (see keep_memory). The bounds are those of issue 3. Run:
-// build/unity/bin/graspfit_benchmarks "[clipping]".
+// How to read it: times are processor times of the process, so that a busy machine matters little;
+// they are medians of repetitions that take turns. Memory is that of the results only. All run on
+// memory that the process already has (see keep_memory). Beside two ratios stand the bounds that
+// they are to keep. Run: build/unity/bin/graspfit_benchmarks "[clipping]".
 #include <malloc.h>
 
 #include <algorithm>
@@ -62,10 +62,10 @@ struct DoubleArithmetic {
   }
 };
 
-// Else every run would give its memory back to the system and get it anew, page by page, or not,
-// depending on the largest piece of memory asked for before.
+// Otherwise each run would, or would not, give its memory back to the system and get it anew, page
+// by page, depending on the largest piece of memory asked for before.
 void keep_memory() {
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // As much as it takes.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // This is the most it takes.
   mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("Clipping a mesh into surface patches", "[!benchmark][clipping]") {
           seconds_of([&] { frugal = testing::surface_patches_by_frugal_epeck(mesh, lattice); }));
     }
   }
-  // In general position all find the same, to what doubles can tell of the smallest.
+  // In general position all find the same patches, as far as doubles can tell of the smallest.
   REQUIRE(doubles.size() == ours.size());
   REQUIRE(epeck.size() == ours.size());
   REQUIRE(frugal.size() == ours.size());

@@ -1,9 +1,9 @@
 // What it measures: convex decompositions of shapes built in code, 0.15 m long, at 1 mm, with 64
 // and with 256 pieces.
 //
-// How to read it: wall time, pieces, deviations and volume error as the result states them. "ok":
-// within 1 mm; else the pieces did not suffice. Run: build/unity/bin/graspfit_benchmarks
-// "[convex_decomposition]".
+// How to read it: it prints wall time, pieces, deviations and volume error as the result states
+// them. "ok" means that the result is within 1 mm; otherwise the pieces did not suffice. Run:
+// build/unity/bin/graspfit_benchmarks "[convex_decomposition]".
 #include <cstdio>
 
 #include "graspfit/geometry/convex_decomposition.hpp"

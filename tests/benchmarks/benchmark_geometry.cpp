@@ -1,13 +1,14 @@
 // What it measures, on the bunny (75 408 faces):
 //   1. mesh -> dense signed distance map, step by step, beside OpenVDB's narrow band (a smaller
-//      answer) on the same lattice, 8 voxels of room on every side; and how time and memory grow;
+//      answer) on the same lattice with a margin of 8 voxels on every side; and how time and memory
+//      grow;
 //   2. the same for the interaction box of a Barrett hand around an object of 0.15 m;
 //   3. mesh file -> score map at 30 voxels.
 //
-// How to read it: wall times, medians of repetitions that are interleaved, so that whatever else
-// the machine does hits both sides. Ours uses one thread; OpenVDB's are named. "ratio" is ours over
-// OpenVDB's, below 1 is faster. Memory is the process's growth to its peak within a step.
-// Run: build/unity/bin/graspfit_benchmarks "[geometry]".
+// How to read it: times are wall times, medians of repetitions that are interleaved, so that
+// whatever else the machine does hits both sides. Ours uses one thread; OpenVDB's are named.
+// "ratio" is ours over OpenVDB's: below 1 is faster. Memory is the process's growth to its peak
+// within a step. Run: build/unity/bin/graspfit_benchmarks "[geometry]".
 #include <malloc.h>
 
 #include <array>
@@ -41,7 +42,7 @@ using testing::seconds_of;
 constexpr double kMilli = 1e3;
 constexpr double kMegabyte = 0x1p20;
 
-// A field of /proc/self/status in bytes.
+// Returns a field of /proc/self/status in bytes.
 double process_bytes(const std::string& field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -50,7 +51,8 @@ double process_bytes(const std::string& field) {
   return 0.0;
 }
 
-// How far the process's memory grows while `work` runs; what it frees before its end counts.
+// Returns how far the process's memory grows while `work` runs; what it frees before its end
+// counts.
 double peak_bytes_of(const std::function<void()>& work) {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";  // The peak starts anew.
@@ -65,12 +67,12 @@ struct Step {
   double bytes = 0.0;
 };
 
-// The way from a mesh to its distance map, all results kept from step to step.
+// The steps from a mesh to its distance map, whose results are all kept from step to step.
 struct DistanceMapSteps {
   std::array<Step, 4> steps = {Step{"box tree", {}, 0}, Step{"surface patches", {}, 0},
                                Step{"voxel classes", {}, 0}, Step{"distance map", {}, 0}};
 
-  // `measure` runs a step and returns its cost.
+  // `measured` runs a step and returns its cost.
   template <typename Use>
   void run(const geometry::TriangleMesh& mesh, const VoxelLattice& lattice, const Use& measured) {
     std::optional<geometry::MeshQuery> query;
@@ -102,7 +104,7 @@ struct DistanceMapSteps {
 
 struct Comparison {
   DistanceMapSteps ours;
-  std::array<std::vector<double>, 2> theirs;  // With one thread, with two.
+  std::array<std::vector<double>, 2> theirs;  // The first are with one thread, the second with two.
   std::size_t their_bytes = 0;
 };
 
@@ -140,7 +142,7 @@ void print_row(const VoxelLattice& lattice, const Comparison& result) {
   std::printf("\n");
 }
 
-// Voxels of `resolution` along the longest extent, 8 more on every side.
+// Returns a lattice with `resolution` voxels along the longest extent and 8 more on every side.
 VoxelLattice grown_lattice(const geometry::TriangleMesh& mesh, int resolution) {
   const double voxel_size = geometry::longest_extent(mesh) / resolution;
   return geometry::lattice_around(geometry::bounding_box(mesh),
@@ -223,7 +225,7 @@ TEST_CASE("From mesh file to score map", "[!benchmark][geometry]") {
     timed(5, [&] { grid = geometry::voxelize(*query, lattice, patches); });
     timed(6, [&] { geometry::signed_distance_map(grid); });
   }
-  // The score map needs no more than the first four.
+  // The score map needs only the first four steps.
   const auto sum = [&](int first, int last) {
     std::vector<double> sums(kRuns, 0.0);
     for (int run = 0; run < kRuns; ++run) {

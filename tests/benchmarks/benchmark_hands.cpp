@@ -1,8 +1,9 @@
-// What it measures: link against object for the Barrett hand on the bunny (75 408 faces, 0.15 m, 30
-// voxels), at the poses that lead to grasps, and the workspace of every shipped hand.
+// What it measures: tests of a link against the object, for the Barrett hand on the bunny (75 408
+// faces, 0.15 m, 30 voxels), at the poses that lead to grasps, and the workspace of every shipped
+// hand.
 //
-// How to read it: the time of one exact test by how far the hand was closed: what a bound that
-// comes first could spare. Run: build/unity/bin/graspfit_benchmarks "[hands]".
+// How to read it: it prints the time of one exact test by how far the hand was closed, which is
+// what a bound that comes first could spare. Run: build/unity/bin/graspfit_benchmarks "[hands]".
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -47,7 +48,7 @@ TEST_CASE("Exact collision tests on the way to a grasp", "[!benchmark][hands]") 
     double exact_s = 0.0;
     int poses = 0, clear = 0;
   };
-  // Shares of the way from the open hand to the grasp.
+  // These are shares of the way from the open hand to the grasp.
   constexpr std::array<double, 6> kShares = {0.0, 0.5, 0.8, 0.95, 0.99, 1.0};
   std::printf("\n%-8s %7s %7s %11s\n", "closed", "poses", "clear", "exact");
   for (const double share : kShares) {

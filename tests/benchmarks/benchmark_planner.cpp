@@ -1,11 +1,11 @@
 // What it measures: one core's time per valid grasp on the bunny (75 408 faces), failures counted,
-// until the first 100 valid ones of one seed are found: with the Barrett hand (0.15 m, three
-// fingers) and the human hand (three fingers); the share of each stage; and the ratio to building
-// CGAL's AABB tree on the same mesh in the same run.
+// until the first 100 valid ones of one seed are found, with the Barrett hand (0.15 m, three
+// fingers) and the human hand (three fingers). It also measures the share of each stage, and the
+// ratio to building CGAL's AABB tree on the same mesh in the same run.
 //
-// How to read it: "with the object's model" adds a hundredth of its cost (reading the file and the
-// offline search for weak features left out; that one is kept in the user's cache).
-// Run: build/unity/bin/graspfit_benchmarks "[planner]".
+// How to read it: "with the object's model" adds a hundredth of its cost (without reading the file,
+// and without the offline search for weak features, which is kept in the user's cache). Run:
+// build/unity/bin/graspfit_benchmarks "[planner]".
 #include <algorithm>
 #include <cstdio>
 #include <string>
@@ -35,7 +35,7 @@ void plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_na
   options.max_attempts = 5000;
   options.search = grasp::SearchRule::First;
   options.distinct = {0.0, 0.0, 0.0};
-  grasp::prepare_object(mesh, hand, options);  // weak features come from the cache from here on
+  grasp::prepare_object(mesh, hand, options);  // From here on weak features come from the cache.
   grasp::ObjectModelTimings model;
   const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options, &model);
   const grasp::PlannerResult result =

@@ -85,7 +85,8 @@ void compare(const std::string& name, const std::function<MatrixXd()>& next_poin
 
 using NextContacts = std::function<std::vector<contact::Contact>()>;
 
-/// Contacts to epsilon: wrenches, hull, nearest facet. Qhull gets the wrenches for nothing.
+/// Compares the way from contacts to epsilon: wrenches, hull, nearest facet. Qhull gets the
+/// wrenches for free.
 void compare_epsilon(const std::string& name, const NextContacts& next_contacts) {
   std::vector<double> ours, theirs;
   double largest_difference = 0.0;
@@ -120,7 +121,7 @@ void time_measures(const std::string& name, const NextContacts& next_contacts) {
           contact::epsilon_linf(contacts, {.options = {.friction = 0.5, .torque_scale = 1.0}});
     });
     weight.push_back(seconds_of([&] { contact::min_weight(wrenches); }));
-    if (epsilon.upper == 0.0) continue;  // seen at once
+    if (epsilon.upper == 0.0) continue;  // This is seen at once.
     linf.push_back(seconds);
     points.push_back(epsilon.num_points);
   }

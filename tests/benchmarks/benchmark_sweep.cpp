@@ -33,7 +33,7 @@ TEST_CASE("Two jobs against one", "[!benchmark][sweep]") {
     const auto out = folder.path() / std::to_string(run++);
     return testing::seconds_of([&] { sweep::run_sweep(experiment, config, {}, {out, jobs}); });
   };
-  seconds(1);  // fills the cache
+  seconds(1);  // It fills the cache.
   std::vector<double> ratios;
   for (int i = 0; i < 5; ++i) {
     const double one = seconds(1);

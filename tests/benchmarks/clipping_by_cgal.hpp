@@ -7,18 +7,19 @@
 
 namespace graspfit::testing {
 
-/// The same loop as in doubles with the points and numbers of CGAL's kernel with exact
-/// constructions (Epeck) in their place: what one gets who changes the kernel of such a program.
+/// Runs the same loop as in doubles with the points and numbers of CGAL's kernel with exact
+/// constructions (Epeck) in their place: this is what one gets by changing the kernel of such a
+/// program.
 std::vector<geometry::SurfacePatch> surface_patches_by_epeck(const geometry::TriangleMesh& mesh,
                                                              const geometry::VoxelLattice& lattice);
 
-/// The same with as few constructions as can be: one for each corner, area and centroid, none for
-/// faces within one voxel.
+/// Runs the same loop with as few constructions as possible: one for each corner, area and
+/// centroid, none for faces within one voxel.
 std::vector<geometry::SurfacePatch> surface_patches_by_frugal_epeck(
     const geometry::TriangleMesh& mesh, const geometry::VoxelLattice& lattice);
 
 /// Processor time [s] and area [m²] of CGAL's `Polygon_mesh_processing::clip` of the whole mesh by
-/// one voxel, as a surface; copying the mesh, which it changes, is not counted.
+/// one voxel, as a surface. It changes the mesh, whose copying is not counted.
 struct CgalClip {
   double seconds = 0.0;
   double area = 0.0;

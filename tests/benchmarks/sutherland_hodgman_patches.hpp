@@ -12,7 +12,8 @@
 
 namespace graspfit::testing {
 
-/// Point of a closed triangle nearest to `p`, by the Voronoi regions [Ericson 2005, 5.1.5].
+/// Returns the point of a closed triangle nearest to `p`, by the Voronoi regions [Ericson 2005,
+/// 5.1.5].
 inline Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                            const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
@@ -36,12 +37,12 @@ inline Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& p, const Eigen
   return a + vb * scale * ab + vc * scale * ac;
 }
 
-/// What `surface_patches` gives, by Sutherland and Hodgman's clipping in the given arithmetic: the
-/// yardstick of the benchmark. Every face is cut into slabs along z, each slab along y, each of
-/// those along x; what is not arithmetic is as quick as the library's and done in the same way (one
-/// pass over vertices for their cells, faces within one voxel as they are, one layer of voxels
-/// after the other in memory that is used again, sorting by digits, projection with balls that
-/// exclude far pieces, memory fetched ahead).
+/// Gives what `surface_patches` gives, by Sutherland and Hodgman's clipping in the given
+/// arithmetic, as the benchmark's reference. Every face is cut into slabs along z, each slab along
+/// y, each of those along x. What is not arithmetic is as quick as the library's and done in the
+/// same way (one pass over vertices for their cells, faces within one voxel as they are, one layer
+/// of voxels after the other in memory that is used again, sorting by digits, projection with balls
+/// that exclude far pieces, memory fetched ahead).
 ///
 /// `Arithmetic` has
 ///   Point, Plane;
@@ -108,7 +109,7 @@ class SutherlandHodgmanPatches {
   using Point = typename Arithmetic::Point;
   using Plane = typename Arithmetic::Plane;
 
-  // A triangle and six planes: nine corners at most, one more while rounding has its way.
+  // A triangle cut by six planes has nine corners at most, and one more where rounding adds it.
   struct Polygon {
     std::array<Point, 12> corners;
     int n = 0;
@@ -376,7 +377,7 @@ class SutherlandHodgmanPatches {
 
   struct Level {
     Polygon below;
-    std::array<Polygon, 2> above;  // In turns.
+    std::array<Polygon, 2> above;  // They are used in turns.
   };
   static constexpr std::size_t kAhead = 16;
 

@@ -7,7 +7,7 @@
 
 #include "timing.hpp"
 
-#if __has_include(<CGAL/AABB_traits_3.h>)  // CGAL 6, where the other name is deprecated
+#if __has_include(<CGAL/AABB_traits_3.h>)  // In CGAL 6 the other name is deprecated.
 #include <CGAL/AABB_traits_3.h>
 template <typename Kernel, typename Primitive>
 using TreeTraits = CGAL::AABB_traits_3<Kernel, Primitive>;

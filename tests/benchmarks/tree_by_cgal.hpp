@@ -4,8 +4,9 @@
 
 namespace graspfit::testing {
 
-/// Seconds that CGAL takes to build its AABB tree, with the search tree for distances, over the
-/// faces of a mesh in ordinary doubles (Simple_cartesian): the unit in which planning is timed.
+/// Returns the seconds that CGAL takes to build its AABB tree, with the search tree for distances,
+/// over the faces of a mesh in ordinary doubles (Simple_cartesian): the unit in which planning is
+/// timed.
 double seconds_of_cgal_tree(const geometry::TriangleMesh& mesh);
 
 }  // namespace graspfit::testing

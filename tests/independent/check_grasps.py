@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Recomputes what a grasp file claims, from the files and meshes alone, and compares.
+"""Recomputes what a grasp file records, from the files and meshes alone, and compares.
 
     check_grasps.py grasps.json [...]
 
-Nothing of graspfit is used: mesh and hand files are read, triangles clipped and measured, hulls
-taken (Qhull) by what stands in this folder, with numpy and scipy. Only whether a contact is on a
-weak feature is taken from the file. One row per grasp; exit code 1 if a value differs by more than
-its tolerance, 2 if a file cannot be checked.
+Nothing of graspfit is used: what stands in this folder, with numpy and scipy, reads mesh and
+hand files, clips and measures triangles, and takes hulls (Qhull). Only whether a contact is on a
+weak feature is taken from the file. It prints one row per grasp; the exit code is 1 if a value
+differs by more than its tolerance, 2 if a file cannot be checked.
 """
 
 import argparse
@@ -21,8 +21,8 @@ import hand_files
 import measures
 import recompute
 
-# Largest differences that rounding explains. Coordinates are tenths of meters in doubles, so
-# lengths differ by 1e-16 m or so; what amplifies that is named.
+# These are the largest differences that rounding explains. Coordinates are tenths of meters in
+# doubles, so that lengths differ by 1e-16 m or so; what amplifies that is named.
 TOLERANCE = {
     "volume": 1e-9,       # relative
     "center": 1e-10,      # [m]
@@ -43,12 +43,12 @@ TOLERANCE = {
     "squeeze": 1e-7,      # [rad] or [m]: central differences
 }
 
-BEYOND = 1e-3     # what is so much farther than a stated clearance is not looked at [m]
-WAY_SAMPLES = 12  # of the straight way from the pre-grasp to the grasp
+BEYOND = 1e-3  # What is so much farther than a stated clearance is not measured [m].
+WAY_SAMPLES = 12  # These are on the straight way from the pre-grasp to the grasp.
 
 
 class Comparison:
-    """Differences of one grasp, or of what all grasps share."""
+    """The differences of one grasp, or of what all grasps share."""
 
     def __init__(self):
         self.largest, self.failures = {}, []
@@ -65,7 +65,7 @@ class Comparison:
 
 
 def check_shared(scene):
-    """Object and pads, which all grasps have in common."""
+    """Compares object and pads, which all grasps have in common."""
     found, item = Comparison(), scene.record["object"]
     found.equal("volume", "volume_m3", scene.volume / item["volume_m3"], 1.0)
     found.equal("center", "center_of_mass_O_m", scene.center_of_mass, item["center_of_mass_O_m"])
@@ -85,7 +85,7 @@ def check_shared(scene):
 
 
 def check_configuration(scene, configuration, found, where):
-    """Limits and couplings of joint values; returns the link poses."""
+    """Compares limits and couplings of joint values. Returns the link poses."""
     values = configuration["joints"]
     for joint in scene.hand.joints:
         if joint.kind == "fixed":
@@ -102,8 +102,8 @@ def check_configuration(scene, configuration, found, where):
 
 
 def check_penetration(scene, grasp, links, found):
-    """Whether links share a point with the object or one another, and how deep; returns the
-    smallest distance to the object."""
+    """Compares whether links share a point with the object or one another, and how deep. Returns
+    the smallest distance to the object."""
     stored = grasp["penetration"]
     near = scene.object_clearances(links, recompute.FAR)
     hits = [name for name, distance in near.items() if distance == 0]
@@ -126,7 +126,8 @@ def check_penetration(scene, grasp, links, found):
 
 
 def check_contacts(scene, grasp, X_OL, found):
-    """Contacts of all pads; returns them in the file's order, or None where the pads differ."""
+    """Compares contacts of all pads. Returns them in the file's order, or None where the pads
+    differ."""
     recomputed = scene.contacts(X_OL)
     stored = {contact["pad"]: contact for contact in grasp["contacts"]}
     found.require(f"pads with contact: recomputed {list(recomputed)}, stored {list(stored)}",
@@ -161,7 +162,7 @@ def check_measure(scene, grasp, contacts, found):
 
 
 def touching(scene, contacts):
-    """Those that bear forces: of refined grasps within the largest gap."""
+    """Returns the contacts that bear forces: of refined grasps those within the largest gap."""
     limit = scene.options["refinement"]["largest_gap_m"]
     is_refined = scene.options["refine"] and not scene.record.get("imported")
     return [contact.contact for contact in contacts.values()
@@ -169,7 +170,8 @@ def touching(scene, contacts):
 
 
 def check_wrench(scene, stored, contacts, found):
-    """Epsilon in the convention of the file, which must be GraspIt!'s; None where not recorded."""
+    """Compares epsilon in the convention of the file, which must be GraspIt!'s. Returns None
+    where it is not recorded."""
     if stored is None:
         return None
     convention = stored["convention"]
@@ -188,7 +190,7 @@ def check_wrench(scene, stored, contacts, found):
     found.equal("epsilon", "epsilon", epsilon, stored["epsilon"])
     found.equal("wrench volume", "wrench volume", space.volume, stored["volume"],
                 1e-6 * abs(space.volume) + 1e-15)
-    if abs(epsilon) > TOLERANCE["epsilon"]:  # nearer to the border rounding decides
+    if abs(epsilon) > TOLERANCE["epsilon"]:  # Nearer to the border rounding decides.
         found.require(f"is_force_closure, epsilon {epsilon}",
                       stored["is_force_closure"] == (epsilon > 0))
         found.require(f"rank: recomputed {space.rank}", stored["rank"] == space.rank)
@@ -196,7 +198,8 @@ def check_wrench(scene, stored, contacts, found):
 
 
 def check_pre_grasp(scene, grasp, found):
-    """Clear by what it says, back along the palm's direction, and free on samples of the way."""
+    """Checks that the pre-grasp is clear by what the file says, back along the palm's direction,
+    and that samples of the way are free."""
     stored = grasp["pre_grasp"]
     if stored is None:
         return None
@@ -233,7 +236,7 @@ def check_pre_grasp(scene, grasp, found):
 
 
 def check_squeeze(scene, grasp, contacts, found):
-    """Forces in their cones, as balanced as stated, and joints by J^T f / kp."""
+    """Checks that forces are in their cones and as balanced as stated, and joints by J^T f / kp."""
     stored = grasp["squeeze"]
     if stored is None:
         return
@@ -278,7 +281,8 @@ def check_poses(X_OL, stored, found, where):
 
 
 def check_requested(scene, grasp, contacts, quality, found):
-    """What follows from contacts and penetration: gaps of requested parts, usable, valid."""
+    """Compares what follows from contacts and penetration: gaps of requested parts, usable,
+    valid."""
     requested = set(scene.used["fingers"]) | ({"palm"} if scene.used["palm"] else set())
     requested_pads = {c["pad"] for c in grasp["contacts"] if c["target"]}
     gaps = [contacts[name].gap for name in requested_pads]
@@ -301,7 +305,7 @@ def check_requested(scene, grasp, contacts, quality, found):
 
 
 def check_grasp(scene, grasp):
-    """A row of the table and what failed."""
+    """Returns a row of the table and what failed."""
     found = Comparison()
     X_OL = check_configuration(scene, grasp, found, "")
     check_poses(X_OL, grasp, found, "")
@@ -329,7 +333,7 @@ def check_grasp(scene, grasp):
 
 
 def check_file(path):
-    """Prints the table of one file; the number of grasps that differ."""
+    """Prints the table of one file. Returns the number of grasps that differ."""
     record = json.loads(path.read_text())
     scene = recompute.Scene(record, path.parent)
     shared = check_shared(scene)

@@ -1,17 +1,18 @@
-"""Pre-grasp and squeeze of a grasp: what the ways and forces of a file amount to."""
+"""Computes pre-grasp and squeeze of a grasp: what the ways and forces of a file amount to."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 import hand_files
 
-STEP = 1e-6      # of joints in central differences [rad] or [m]: errors of 1e-12 over lengths
-FOLLOWS = 1e-9   # a follower this near to where its leader puts it stands there [rad] or [m]
+# Steps of joints in central differences [rad] or [m] give errors of 1e-12 over lengths.
+STEP = 1e-6
+FOLLOWS = 1e-9  # A follower this near to where its leader puts it stands there [rad] or [m].
 
 
 def way(first, last, shares):
-    """(X_OH, joint values) along the straight way: the palm's origin linear, its rotation along the
-    shortest arc, joints linear."""
+    """Returns (X_OH, joint values) along the straight way: the palm's origin moves linearly, its
+    rotation along the shortest arc, joints linearly."""
     X_first, X_last = (hand_files.pose_of_json(c["X_OH"]) for c in (first, last))
     turns = Slerp([0, 1], Rotation.from_matrix([X_first[:3, :3], X_last[:3, :3]]))(shares)
     for share, turn in zip(shares, turns):
@@ -22,15 +23,15 @@ def way(first, last, shares):
 
 
 def coupled_value(joint, coupling, values):
-    """Where its leader puts a follower, within its limits."""
+    """Returns where its leader puts a follower, within its limits."""
     return np.clip(coupling.ratio * values[coupling.leader] + coupling.offset, joint.lower,
                    joint.upper)
 
 
 def generalized_forces(hand, configuration, links, points_O, forces_O):
-    """d/dq of the sum of forces . points that move with their links, per independent joint (joint
-    transpose J^T f), by central differences. A follower moves with its leader where it stands at
-    its coupled value inside its limits."""
+    """Returns d/dq of the sum of forces . points that move with their links, per independent
+    joint (joint transpose J^T f), by central differences. A follower moves with its leader where
+    it stands at its coupled value inside its limits."""
     X_OH = hand_files.pose_of_json(configuration["X_OH"])
     values = configuration["joints"]
     start = hand.link_poses(X_OH, values)
@@ -61,10 +62,11 @@ def generalized_forces(hand, configuration, links, points_O, forces_O):
 
 
 def squeezed_joints(hand, configuration, generalized, stiffness, slide_stiffness, closing):
-    """Joint values commanded so that joints press with the generalized forces, within limits.
+    """Returns joint values commanded so that joints press with the generalized forces, within
+    limits.
 
-    `closing`: +1 or -1 per joint; a breakaway follower that is further closed than its leader puts
-    it stays.
+    `closing` is +1 or -1 per joint. A breakaway follower that is further closed than its leader
+    puts it stays.
     """
     values = dict(configuration["joints"])
     joints = {joint.name: joint for joint in hand.joints}
@@ -82,6 +84,6 @@ def squeezed_joints(hand, configuration, generalized, stiffness, slide_stiffness
 
 
 def residual(points_O, forces_O, center, torque_scale, normal_sum):
-    """Unbalanced wrench of contact forces over the sum of their normal parts."""
+    """Returns the unbalanced wrench of contact forces over the sum of their normal parts."""
     torque = np.cross(points_O - center, forces_O).sum(axis=0) / torque_scale
     return np.linalg.norm(np.concatenate([forces_O.sum(axis=0), torque])) / normal_sum

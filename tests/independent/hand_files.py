@@ -15,11 +15,11 @@ from scipy.spatial.transform import Rotation
 import mesh_files
 import triangles
 
-PAD_DEPTH = 1e-3  # faces of the link entirely deeper than this below the pad are inner walls [m]
+PAD_DEPTH = 1e-3  # Faces of the link entirely deeper than this below the pad are inner walls [m].
 
 
 def pose(translation, rotation):
-    """Of a vector and a scipy Rotation."""
+    """Returns the pose of a vector and a scipy Rotation."""
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = rotation.as_matrix(), translation
     return result
@@ -31,7 +31,7 @@ def pose_of_json(value):
 
 
 def pose_of_origin(element):
-    """Of URDF's <origin xyz rpy>: roll, pitch, yaw about fixed axes."""
+    """Returns the pose of URDF's <origin xyz rpy>: roll, pitch, yaw about fixed axes."""
     if element is None:
         return np.eye(4)
     xyz = [float(word) for word in element.get("xyz", "0 0 0").split()]
@@ -88,19 +88,20 @@ class Pad:
     clip_thickness: float | None  # of its own, or the planner's
 
     def edges(self):
-        """Unit outward normals and offsets of the outline's edges."""
+        """Returns unit outward normals and offsets of the outline's edges."""
         way = np.roll(self.outline, -1, axis=0) - self.outline
         normals = np.stack([way[:, 1], -way[:, 0]], axis=1)
         normals /= np.linalg.norm(normals, axis=1)[:, None]
         return normals, np.einsum("ij,ij->i", normals, self.outline)
 
     def boundary_distance(self, point_C):
-        """From the outline, in the pad's plane; 0 outside."""
+        """Returns the distance from the outline, in the pad's plane; 0 outside."""
         normals, offsets = self.edges()
         return max(0.0, (offsets - normals @ point_C[:2]).min())
 
     def largest_boundary_distance(self):
-        """Inradius of the outline: the largest r with normal . p + r <= offset for every edge."""
+        """Returns the inradius of the outline: the largest r with normal . p + r <= offset for
+        every edge."""
         from scipy.optimize import linprog
         normals, offsets = self.edges()
         program = linprog([0, 0, -1], A_ub=np.column_stack([normals, np.ones(len(normals))]),
@@ -112,13 +113,13 @@ class Pad:
         return (x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
     def base_points(self):
-        """Corners of the pad in C: of its outline, and of its bulge."""
+        """Returns the corners of the pad in C: of its outline, and of its bulge."""
         flat = np.column_stack([self.outline, np.zeros(len(self.outline))])
         return np.vstack([flat, self.surface]) if len(self.surface) else flat
 
     def clip_volume(self, thickness):
-        """Half-spaces normal . p <= offset, in C, of the pad's surface offset along z (paper
-        section 10): a prism over a flat pad, else the hull of the bulge here and there."""
+        """Returns half-spaces normal . p <= offset, in C, of the pad's surface offset along z
+        (paper section 10): a prism over a flat pad, else the hull of the bulge here and there."""
         depth = self.clip_thickness or thickness
         if not len(self.surface):
             normals, offsets = self.edges()
@@ -130,7 +131,7 @@ class Pad:
         return planes[:, :3], -planes[:, 3]
 
     def upper_side(self):
-        """Triangles of the surface that is meant to touch, in C."""
+        """Returns triangles of the surface that is meant to touch, in C."""
         base = self.base_points()
         if not len(self.surface):
             return np.array([base[[0, k, k + 1]] for k in range(1, len(base) - 1)])
@@ -138,7 +139,8 @@ class Pad:
         return base[hull.simplices[hull.equations[:, 2] > 0]]
 
     def heights(self, points):
-        """Over the surface along z, in C; beside the outline over its planes, extended."""
+        """Returns heights over the surface along z, in C; beside the outline over its planes,
+        extended."""
         if not len(self.surface):
             return points[..., 2]
         planes = ConvexHull(self.base_points()).equations
@@ -146,9 +148,9 @@ class Pad:
         return ((points @ planes[:, :3].T + planes[:, 3]) / planes[:, 2]).max(axis=-1)
 
     def part_of_link(self, faces_L):
-        """The faces of a link's mesh that are this pad, [n, 3, 3] in L: those that look along the
-        pad's z, cut along the prism over the outline, without any that is entirely deeper than
-        PAD_DEPTH below the pad. The modeled surface where there is none."""
+        """Returns the faces of a link's mesh that are this pad, [n, 3, 3] in L: those that look
+        along the pad's z, cut along the prism over the outline, without any that is entirely
+        deeper than PAD_DEPTH below the pad. Where there is none, it returns the modeled surface."""
         faces_C = moved(inverse(self.X_LC), faces_L)
         faces_C = faces_C[triangles.area_vectors(faces_C)[:, 2] > 0]
         normals, offsets = self.edges()
@@ -162,7 +164,7 @@ class Pad:
 
 
 def geometry_mesh(geometry, folder):
-    """Mesh of a URDF <geometry>, in meters."""
+    """Returns the mesh of a URDF <geometry>, in meters."""
     mesh = geometry.find("mesh")
     if mesh is not None:
         name = mesh.get("filename")
@@ -187,8 +189,9 @@ class Hand:
     """Links with meshes, joints, pads, couplings and what may overlap."""
 
     def __init__(self, description, sidecar, recorded, used_meshes):
-        """`sidecar`: None where there is none; pads and the like then come from `recorded`, the
-        grasp file's own hand. `used_meshes`: paths of the planner's own link meshes by name."""
+        """Reads the hand. `sidecar` is None where there is none; pads and the like then come
+        from `recorded`, the grasp file's own hand. `used_meshes` has paths of the planner's own
+        link meshes by name."""
         description = pathlib.Path(description)
         root = ElementTree.parse(description).getroot()
         if root.tag != "robot" or root.find("link") is None:
@@ -223,9 +226,9 @@ class Hand:
 
     @staticmethod
     def _mesh(link, folder, used):
-        """Collision geometry, or visual where there is none; several are one surface. `used`: the
-        path of the mesh that the planner used, taken for primitives and where the files' surface
-        is open and was closed."""
+        """Returns the collision geometry, or visual where there is none; several are one
+        surface. `used` is the path of the mesh that the planner used, which is taken for
+        primitives and where the files' surface is open and was closed."""
         shapes = link.findall("collision") or link.findall("visual")
         shapes = [shape for shape in shapes if shape.find("geometry") is not None]
         if used and any(shape.find("geometry").find("mesh") is None for shape in shapes):
@@ -286,7 +289,7 @@ class Hand:
 
     def _fixed_to_each_other(self):
         group = {name: name for name in self.meshes}
-        for joint in self.joints:  # parents first
+        for joint in self.joints:  # Parents come first.
             if joint.kind == "fixed":
                 group[joint.child] = group[joint.parent]
         names = list(self.meshes)
@@ -294,7 +297,7 @@ class Hand:
                 if a != b and group[a] == group[b]}
 
     def link_poses(self, X_OH, values):
-        """X_OL of every link by its name, from joint values by name."""
+        """Returns X_OL of every link by its name, from joint values by name."""
         result = {self.palm: X_OH}
         for joint in self.joints:
             result[joint.child] = (result[joint.parent] @ joint.X_PJ

@@ -1,4 +1,5 @@
-"""The paper's measure M (its section 4) and epsilon of the grasp wrench space, from contacts."""
+"""Computes the paper's measure M (its section 4) and epsilon of the grasp wrench space, from
+contacts."""
 
 import dataclasses
 
@@ -8,8 +9,8 @@ from scipy.spatial import ConvexHull
 EPS = 1e-3                 # least regularity
 COLLINEAR = 1e-3           # second over first singular value
 PLANAR = 0.1               # thickness over extent
-FLAT = 1e-12               # singular values below this over the largest are none
-SAME_FACE = np.radians(5)  # dihedral angle of triangles that count as one face
+FLAT = 1e-12  # Singular values below this over the largest count as zero.
+SAME_FACE = np.radians(5)  # This is the dihedral angle of triangles that count as one face.
 
 
 @dataclasses.dataclass
@@ -28,7 +29,7 @@ def angle_between(a, b):
 
 
 def merged(points, distance):
-    """Points linked by distances below `distance` become their mean."""
+    """Replaces points linked by distances below `distance` by their mean."""
     points = np.asarray(points, dtype=float)
     near = np.linalg.norm(points[:, None] - points[None], axis=2) < distance
     label = np.arange(len(points))
@@ -38,7 +39,8 @@ def merged(points, distance):
 
 
 def shape_index(polygon):
-    """Q of a polygon [Park & Starr; Roa & Suarez]: 0 for a regular one, 1 for a collapsed one."""
+    """Returns Q of a polygon [Park & Starr; Roa & Suarez]: 0 for a regular one, 1 for a
+    collapsed one."""
     n = len(polygon)
     angles = [np.degrees(angle_between(polygon[i - 1] - polygon[i],
                                        polygon[(i + 1) % n] - polygon[i])) for i in range(n)]
@@ -47,14 +49,15 @@ def shape_index(polygon):
 
 
 def flattened(polygon):
-    """A slightly folded polygon seen along its area vector."""
+    """Returns a slightly folded polygon as seen along its area vector."""
     normal = sum(np.cross(a, b) for a, b in zip(polygon, np.roll(polygon, -1, axis=0)))
     normal = normal / np.linalg.norm(normal)
     return polygon - np.outer((polygon - polygon.mean(axis=0)) @ normal, normal)
 
 
 def hull_polygon(points):
-    """Corners of the hull of nearly planar points, in their best-fit plane, and the frame of it."""
+    """Returns corners of the hull of nearly planar points, in their best-fit plane, and its
+    frame."""
     center = points.mean(axis=0)
     _, _, axes = np.linalg.svd(points - center)
     flat = (points - center) @ axes[:2].T
@@ -62,8 +65,8 @@ def hull_polygon(points):
 
 
 def hull_faces(points):
-    """Faces of the hull of points in space, as ordered corners; triangles within 5 degrees of
-    their neighbors are one face."""
+    """Returns faces of the hull of points in space, as ordered corners; triangles within 5
+    degrees of their neighbors are one face."""
     hull = ConvexHull(points)
     group = np.arange(len(hull.simplices))
     normals = hull.equations[:, :3]
@@ -92,7 +95,7 @@ def hull_faces(points):
 
 
 def flatness(points):
-    """(second over first singular value, thickness over extent) of three points or more.
+    """Returns (second over first singular value, thickness over extent) of three points or more.
 
     Thickness is the points' range along the normal of their best-fit plane, extent their range
     along their first principal axis.
@@ -131,7 +134,8 @@ def polygon_centroid(polygon):
 
 
 def hull_centroid(points, definition):
-    """Of the area of the polygon, the volume of the polyhedron, or the corners of either."""
+    """Returns the centroid of the area of the polygon, the volume of the polyhedron, or the
+    corners of either."""
     if len(points) <= 2:
         return points.mean(axis=0)
     line, plane = flatness(points)
@@ -153,7 +157,7 @@ def hull_centroid(points, definition):
 
 
 def stable_pairs(contacts, theta_max):
-    """(i, j, mean angle) of contacts of different fingers whose line lies in both cones."""
+    """Returns (i, j, mean angle) of contacts of different fingers whose line lies in both cones."""
     pairs = []
     for i, a in enumerate(contacts):
         for j in range(i + 1, len(contacts)):
@@ -179,7 +183,7 @@ class Quality:
 
 
 def measure(contacts, pads, center_of_mass, radius, options, merge_distance):
-    """M of contacts; `pads` by name have area() and largest_boundary_distance()."""
+    """Returns M of contacts; `pads` by name have area() and largest_boundary_distance()."""
     if not contacts:
         return Quality(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, [])
     normalized = options["units"] == "normalized"
@@ -209,7 +213,7 @@ def measure(contacts, pads, center_of_mass, radius, options, merge_distance):
 
 
 def cone_edges(normal, friction, count):
-    """Edges of the pyramid in the friction cone, of unit normal part, [count, 3]."""
+    """Returns edges of the pyramid in the friction cone, of unit normal part, [count, 3]."""
     first = np.cross(normal, [1, 0, 0] if abs(normal[0]) < 0.9 else [0, 1, 0])
     first /= np.linalg.norm(first)
     second = np.cross(normal, first)
@@ -218,7 +222,7 @@ def cone_edges(normal, friction, count):
 
 
 def contact_wrenches(contacts, center, torque_scale, friction, count):
-    """[force; torque / torque_scale] of every cone edge of every contact, [n, 6]."""
+    """Returns [force; torque / torque_scale] of every cone edge of every contact, [n, 6]."""
     rows = []
     for contact in contacts:
         forces = cone_edges(contact.normal, friction, count)
@@ -235,7 +239,7 @@ class WrenchSpace:
 
 
 def wrench_space(wrenches):
-    """Of the convex hull of rows, by Qhull."""
+    """Returns the wrench space of the convex hull of rows, by Qhull."""
     points = np.asarray(wrenches)
     sizes = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     rank = int((sizes > FLAT * sizes[0]).sum())

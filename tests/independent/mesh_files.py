@@ -11,7 +11,7 @@ import numpy as np
 
 
 def fans(polygons):
-    """Triangles of polygons, each as a fan from its first corner."""
+    """Returns triangles of polygons, each as a fan from its first corner."""
     return np.array([(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)],
                     dtype=np.int64).reshape(-1, 3)
 
@@ -52,7 +52,7 @@ PLY_TYPES = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h",
 
 
 class PlyValues:
-    """The numbers of a PLY body one after the other, in text or binary."""
+    """Reads the numbers of a PLY body one after the other, in text or binary."""
 
     def __init__(self, body, form):
         self.position = 0
@@ -128,22 +128,23 @@ def read_mesh(path):
 
 
 def box(size):
-    """A closed outward box around the origin."""
+    """Returns a closed outward box around the origin."""
     signs = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=float)
     quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     return signs * np.asarray(size, dtype=float) / 2, fans(quads)
 
 
 def volume_and_center(vertices, faces):
-    """Volume and center of mass of the solid that a closed outward surface bounds."""
+    """Returns volume and center of mass of the solid that a closed outward surface bounds."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
-    sixfold = np.einsum("ij,ij->i", a, np.cross(b, c))  # of the tetrahedra with the origin
+    # These are of the tetrahedra with the origin.
+    sixfold = np.einsum("ij,ij->i", a, np.cross(b, c))
     volume = sixfold.sum() / 6
     return volume, (sixfold[:, None] * (a + b + c)).sum(axis=0) / 24 / volume
 
 
 def parts(num_vertices, faces):
-    """One vertex of every connected part of a surface."""
+    """Returns one vertex of every connected part of a surface."""
     label = np.arange(num_vertices)
     while True:
         low = label[faces].min(axis=1)
@@ -157,7 +158,8 @@ def parts(num_vertices, faces):
 
 
 def is_closed(faces):
-    """Whether every edge has its opposite, as often: no border, one side all around."""
+    """Returns whether every edge has its opposite, as often: there is no border, and one side
+    all around."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     forth = np.sort(edges[:, 0] * (edges.max(initial=0) + 1) + edges[:, 1])
     back = np.sort(edges[:, 1] * (edges.max(initial=0) + 1) + edges[:, 0])
@@ -165,6 +167,6 @@ def is_closed(faces):
 
 
 def welded(vertices, faces):
-    """The same with equal vertices as one."""
+    """Returns the same mesh with equal vertices as one."""
     unique, which = np.unique(vertices, axis=0, return_inverse=True)
     return unique, which.reshape(-1)[faces]

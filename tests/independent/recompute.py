@@ -1,4 +1,4 @@
-"""What a grasp is, from the object's mesh, the hand's files and joint values alone."""
+"""Computes what a grasp is, from the object's mesh, the hand's files and joint values alone."""
 
 import dataclasses
 import hashlib
@@ -17,11 +17,12 @@ import triangles
 SHIPPED_HANDS = pathlib.Path(__file__).resolve().parents[2] / "hands/models"
 TOUCHING = 1e-12       # surfaces nearer than this share a point as far as doubles can tell [m]
 FAR = 0.02             # links farther than this from the object do not matter [m]
-LEAST_NORMAL = 0.1     # mean normals shorter than this are none: both sides of a plate
+LEAST_NORMAL = 0.1  # Mean normals shorter than this are none, as on both sides of a plate.
 LEAST_AREA = 1e-14     # less of the object in a clip volume than this is touching at an edge [m^2]
-SAMPLE_SPACING = 1e-3  # of points on a surface whose depth is looked up [m]
-LONGEST_EDGE = 4e-3    # of triangles in search trees: boxes around long ones are wide [m]
-CHUNK = 2000           # points whose nearest ones are looked for at a time, for memory
+SAMPLE_SPACING = 1e-3  # Points on a surface whose depth is computed are this far apart [m].
+# Triangles in search trees have no longer edges, as boxes around them are wide [m].
+LONGEST_EDGE = 4e-3
+CHUNK = 2000  # Nearest points are searched of so many at a time, to limit memory.
 
 
 @dataclasses.dataclass
@@ -33,7 +34,7 @@ class PadContact:
 
 
 class Solid:
-    """A closed surface, one vertex of every part, and a search tree over small triangles."""
+    """A closed surface, with one vertex of every part, and a search tree over small triangles."""
 
     def __init__(self, vertices, faces):
         self.vertices, self.faces = vertices, faces
@@ -57,8 +58,8 @@ class Solid:
         return inside
 
     def samples(self, lower, upper):
-        """Points of the surface in a box, not farther apart than SAMPLE_SPACING along edges of
-        the grid on each triangle."""
+        """Returns points of the surface in a box, not farther apart than SAMPLE_SPACING along
+        edges of the grid on each triangle."""
         near = triangles.near_box(self.tree.triangles, lower, upper)
         longest = np.linalg.norm(near - np.roll(near, 1, axis=1), axis=2).max(axis=1, initial=0)
         steps = np.maximum(1, np.ceil(longest / SAMPLE_SPACING).astype(int))
@@ -71,7 +72,8 @@ class Solid:
 
 
 def clearance(first, second, limit=np.inf):
-    """Smallest distance of two solids: 0 where they share a point, infinity above `limit`."""
+    """Returns the smallest distance of two solids: 0 where they share a point, infinity above
+    `limit`."""
     boxes = (*first.tree.corners_of_box(), *second.tree.corners_of_box())
     if np.linalg.norm(np.maximum(0, np.maximum(boxes[2] - boxes[1], boxes[0] - boxes[3]))) > limit:
         return np.inf
@@ -84,8 +86,8 @@ def clearance(first, second, limit=np.inf):
 
 
 def depth(first, second):
-    """Deepest sampled point of either surface inside the other: at most the true depth, and less
-    by SAMPLE_SPACING at most."""
+    """Returns the depth of the deepest sampled point of either surface inside the other: at most
+    the true depth, and less by SAMPLE_SPACING at most."""
     deepest = 0.0
     low = np.maximum(first.tree.corners_of_box()[0], second.tree.corners_of_box()[0])
     high = np.minimum(first.tree.corners_of_box()[1], second.tree.corners_of_box()[1])
@@ -100,14 +102,15 @@ def depth(first, second):
 
 
 def path_of_text(text):
-    """A recorded path: where it is not UTF-8, as file: and percent-encoded bytes."""
+    """Returns a recorded path; where it is not UTF-8, it is recorded as file: and
+    percent-encoded bytes."""
     if not text.startswith("file:"):
         return text
     return os.fsdecode(urllib.parse.unquote_to_bytes(text.removeprefix("file:")))
 
 
 def found_file(text, places):
-    """A recorded path as it is, or below one of the folders."""
+    """Returns a recorded path as it is, or below one of the folders."""
     name = path_of_text(text)
     for place in (pathlib.Path("."), *places):
         if (place / name).exists():
@@ -121,7 +124,7 @@ def require_sha256(path, expected):
 
 
 class Scene:
-    """Object, surroundings and hand of a grasp file."""
+    """The object, surroundings and hand of a grasp file."""
 
     def __init__(self, record, folder):
         if record["version"] not in (4, 5, 6):
@@ -143,7 +146,8 @@ class Scene:
         self._read_hand(record["hand"])
 
     def _solid(self, item):
-        """From the file and its scale; where that was repaired, the mesh that was used."""
+        """Reads a mesh from the file and its scale; where it was repaired, the mesh that was
+        used."""
         if item["repair"]["steps"]:
             if not item["used_mesh_file"]:
                 raise ValueError(f"{item['file']} was repaired, and the result is not beside this")
@@ -178,12 +182,13 @@ class Scene:
         return {name: solid.moved(X_OL[name]) for name, solid in self.links.items()}
 
     def object_clearances(self, links, limit):
-        """Of every link by its name; those above `limit` left out."""
+        """Returns the distance of every link from the object by its name; those above `limit`
+        are left out."""
         found = {name: clearance(link, self.object, limit) for name, link in links.items()}
         return {name: distance for name, distance in found.items() if distance <= limit}
 
     def surroundings_clearance(self, links, limit):
-        """Of the hand from table and obstacles; infinity above `limit`."""
+        """Returns the distance of the hand from table and obstacles; infinity above `limit`."""
         distances = [np.inf]
         for link in links.values():
             if self.table_z is not None:
@@ -203,7 +208,7 @@ class Scene:
         return found
 
     def contact(self, pad, X_OL):
-        """Contact of one pad (paper section 10) with its gap, or None."""
+        """Returns the contact of one pad (paper section 10) with its gap, or None."""
         X_OC = X_OL[pad.link] @ pad.X_LC
         normals, offsets = pad.clip_volume(self.used["clip_thickness_m"])
         normals_O = normals @ X_OC[:3, :3].T
@@ -238,7 +243,7 @@ class Scene:
 
     @staticmethod
     def _plain_means(owner, areas, middles, vectors):
-        """Every clipped triangle counts alike."""
+        """Returns averages in which every clipped triangle counts alike."""
         middle, direction = [], []
         for k in np.unique(owner):
             own = owner == k
@@ -249,12 +254,13 @@ class Scene:
         return np.mean(middle, axis=0), np.mean(direction, axis=0)
 
     def gap(self, pad, X_OL):
-        """Distance of the pad's part of the link's mesh from the object's surface."""
+        """Returns the distance of the pad's part of the link's mesh from the object's surface."""
         surface = self.pad_surfaces[pad.name].moved(X_OL[:3, :3], X_OL[:3, 3])
         return triangles.surface_distance(surface, self.object.tree)
 
     def contacts(self, X_OL):
-        """Of all pads that count and have one, by the pad's name, in the hand's order."""
+        """Returns contacts of all pads that count and have one, by the pad's name, in the hand's
+        order."""
         if self.options["contact_pieces"] != "joined":
             raise ValueError("contacts of several pieces are not recomputed")
         counted = self.options["counted_pads"] or (
@@ -270,6 +276,6 @@ class Scene:
 
 
 def pose_difference(a, b):
-    """Distance of two poses' origins [m] and angle between them [rad]."""
+    """Returns the distance of two poses' origins [m] and the angle between them [rad]."""
     turn = Rotation.from_matrix(a[:3, :3].T @ b[:3, :3]).magnitude()
     return np.linalg.norm(a[:3, 3] - b[:3, 3]), turn

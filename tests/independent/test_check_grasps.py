@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The independent check itself, against closed forms and published values."""
+"""Tests the independent check itself, against closed forms and published values."""
 
 import pathlib
 import struct
@@ -24,7 +24,7 @@ import triangles  # noqa: E402
 
 
 def ball(subdivisions=4, radius=1.0):
-    """An icosphere."""
+    """Returns an icosphere."""
     golden = (1 + 5**0.5) / 2
     vertices = np.array([(0, s, t * golden) for s in (-1, 1) for t in (-1, 1)], dtype=float)
     vertices = np.vstack([np.roll(vertices, k, axis=1) for k in range(3)])
@@ -46,7 +46,8 @@ def box_triangles(size, center=(0, 0, 0)):
 
 
 def solid_angles(points, faces):
-    """Of the surface seen from each point [Van Oosterom & Strackee 1983]."""
+    """Returns the solid angle of the surface as seen from each point [Van Oosterom & Strackee
+    1983]."""
     result = []
     for point in points:
         corner = faces - point
@@ -75,10 +76,11 @@ class Clipping(unittest.TestCase):
         square = box_triangles([2, 2, 2])
         self.assertAlmostEqual(self.clipped_area(square, [[1, 0, 0]], [0.5]), 4 + 4 * 3, 12)
         self.assertAlmostEqual(
-            self.clipped_area(square, [[-1, -1, -1]], [-2.0]), 3 / 2, 12)  # three half squares
+            # These are three half squares.
+            self.clipped_area(square, [[-1, -1, -1]], [-2.0]), 3 / 2, 12)
         self.assertEqual(self.clipped_area(square, [[1, 0, 0]], [-1.5]), 0)
 
-    def test_cap_of_a_ball_has_the_area_of_its_cylinder(self):  # Archimedes: 2 pi R h
+    def test_cap_of_a_ball_has_the_area_of_its_cylinder(self):  # Archimedes: it is 2 pi R h.
         area = self.clipped_area(ball(5), [[0, 0, -1]], [-0.7])
         self.assertAlmostEqual(area, 2 * np.pi * 0.3, delta=2e-3)
 
@@ -142,7 +144,8 @@ class Distances(unittest.TestCase):
                 triangles.winding_numbers(points, triangles.BoxTree(faces)), angles, atol=1e-9)
 
     def test_winding_number_counts_an_edge_or_corner_above_once(self):
-        tree = triangles.BoxTree(box_triangles([2, 2, 2]))  # diagonals, edges, corners above
+        # Diagonals, edges and corners are above the points.
+        tree = triangles.BoxTree(box_triangles([2, 2, 2]))
         points = np.array([(0.0, 0, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0), (0, 0, -3), (0, 0, 3)])
         np.testing.assert_array_equal(triangles.winding_numbers(points, tree), [1, 1, 1, 0, 0])
 
@@ -161,7 +164,7 @@ class Solids(unittest.TestCase):
 
 
 class Epsilon(unittest.TestCase):
-    """Values of the table in Ferrari & Canny's sense: unit normal forces, L1, torque scale 1."""
+    """Tests values in Ferrari & Canny's sense: unit normal forces, L1, torque scale 1."""
 
     def test_six_faces_of_a_cube(self):
         normals = np.vstack([np.eye(3), -np.eye(3)])
@@ -214,7 +217,7 @@ class Measure(unittest.TestCase):
                                  (tetrahedron, 1.298), (np.vstack([np.eye(3), -np.eye(3)]), 3.0),
                                  (pyramid, 2.0)):
             contacts = [contact(p, -np.array(p), str(k)) for k, p in enumerate(points)]
-            # The strict test leaves pairs 90 degrees apart, whose angle is 45, out.
+            # The strict test leaves out pairs 90 degrees apart, whose angle is 45.
             pairs = measures.stable_pairs(contacts, np.pi / 4 - 1e-9)
             m2 = sum(1 - angle / (np.pi / 4) for _, _, angle in pairs)
             self.assertAlmostEqual(m2, expected, delta=5e-4)
@@ -227,7 +230,7 @@ class Measure(unittest.TestCase):
         np.testing.assert_allclose(measures.hull_centroid(simplex, "measure"), [1, 1, 1],
                                    atol=1e-12)
         house = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 3, 0]], dtype=float)
-        # Square of area 4 at height 1 and triangle of area 1 at height 7/3.
+        # The shape is a square of area 4 at height 1 and a triangle of area 1 at height 7/3.
         np.testing.assert_allclose(measures.hull_centroid(house, "measure"),
                                    [1, (4 + 7 / 3) / 5, 0], atol=1e-12)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Grasps that the program plans, recomputed by the independent check; and files with wrong numbers,
-which it must find. The program is $GRASPFIT."""
+"""Tests that the independent check recomputes grasps that the program plans, and that it finds
+wrong numbers in files. The program is $GRASPFIT."""
 
 import copy
 import json
@@ -40,7 +40,7 @@ class Planned(unittest.TestCase):
         return self.folder / f"{kind}.off"
 
     def plan(self, mesh, *arguments):
-        """Path of the file, and what is in it."""
+        """Returns the path of the file, and what is in it."""
         out = self.folder / "out"
         self.run_program("plan", mesh, "--out", out, "--quiet", *arguments)
         path = out / "grasps.json"
@@ -70,8 +70,9 @@ class Hands(Planned):
             name = max(grasp["joints"], key=grasp["joints"].get)
             grasp["joints"][name] += 1e-6
 
-        # The first grasp alone and, since sampling the way in is most of the work, but for
-        # "clearance" without its pre-grasp: that this by itself agrees is the first of all.
+        # Files hold the first grasp alone. Sampling the way in is most of the work, so that all but
+        # "clearance" are without its pre-grasp; that the grasp agrees without a change is the first
+        # of them.
         changes = {
             "nothing": lambda g: None,
             "a joint": turn_joint,
@@ -96,7 +97,7 @@ class Hands(Planned):
             files[what].write_text(json.dumps(changed))
         done = self.check(*files.values())
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-        # The report of a file begins with its path.
+        # The report of a file begins with the file's path.
         reports = done.stdout.split(str(path.parent / "altered_"))[1:]
         self.assertEqual(len(reports), len(files), done.stdout)
         for what, report in zip(files, reports):
@@ -123,7 +124,7 @@ class Hands(Planned):
 
 
 class Bunny(Planned):
-    """75 408 triangles: Barrett and human hand, precision and power, 50 grasps in all."""
+    """Tests on 75 408 triangles: Barrett and human hand, precision and power, 50 grasps in all."""
 
     def test_fifty_grasps(self):
         if not BUNNY.is_file():

@@ -1,13 +1,14 @@
-"""Triangles in space: clipping by half-spaces, distances, crossings, winding numbers.
+"""Computes with triangles in space: clipping by half-spaces, distances, crossings, winding
+numbers.
 
-Plain double arithmetic, all of it vectorized. Distances are right to about 1e-15 times the size of
-the coordinates, and to 1e-9 times the edges' length where two edges are nearly parallel.
+It is plain double arithmetic, all of it vectorized. Distances are right to about 1e-15 times the
+size of the coordinates, and to 1e-9 times the edges' length where two edges are nearly parallel.
 """
 
 import numpy as np
 
-PARALLEL_SINE_SQUARED = 1e-14  # edges nearer to parallel than this are left to their end points
-CHUNK = 40_000                 # pairs of triangles taken at a time, for memory
+PARALLEL_SINE_SQUARED = 1e-14  # Edges nearer to parallel than this are left to their end points.
+CHUNK = 40_000  # So many pairs of triangles are taken at a time, to limit memory.
 
 
 def dot(a, b):
@@ -15,10 +16,10 @@ def dot(a, b):
 
 
 def clip_polygons(polygons, counts, normals, offsets):
-    """Convex polygons cut by the half-spaces normal . p <= offset [Sutherland & Hodgman 1974].
+    """Cuts convex polygons by the half-spaces normal . p <= offset [Sutherland & Hodgman 1974].
 
-    polygons [n, v, 3] with the first counts[i] corners in use. Returns (polygons, counts, which):
-    what is left of those that are not empty, and their indices.
+    The polygons are [n, v, 3] with the first counts[i] corners in use. Returns (polygons,
+    counts, which): what is left of those that are not empty, and their indices.
     """
     which = np.arange(len(polygons))
     for normal, offset in zip(normals, offsets):
@@ -37,7 +38,8 @@ def clip_polygons(polygons, counts, normals, offsets):
         crosses = used & (((height < 0) & (next_height > 0)) | ((height > 0) & (next_height < 0)))
         share = np.where(crosses, height / np.where(crosses, height - next_height, 1), 0)
         cut = polygons + share[..., None] * (next_corner - polygons)
-        # Every corner makes up to two: itself if inside, then the cut of the edge that follows.
+        # Every corner makes up to two: itself if it is inside, then the cut of the edge that
+        # follows.
         corners = np.stack([polygons, cut], axis=2).reshape(n, 2 * v, 3)
         flags = np.stack([inside, crosses], axis=2).reshape(n, 2 * v)
         order = np.argsort(~flags, axis=1, kind="stable")
@@ -50,7 +52,7 @@ def clip_polygons(polygons, counts, normals, offsets):
 
 
 def fan_triangles(polygons, counts):
-    """Fans of convex polygons, [k, 3, 3], and the polygon that each triangle is of."""
+    """Returns fans of convex polygons, [k, 3, 3], and the polygon that each triangle is of."""
     triangles, owners = [], []
     for k in range(1, polygons.shape[1] - 1):
         alive = np.flatnonzero(counts > k + 1)
@@ -62,8 +64,8 @@ def fan_triangles(polygons, counts):
 
 
 def split(triangles, longest):
-    """The same surface in triangles whose edges are at most `longest`: longest edges are halved,
-    with the middle rounded."""
+    """Returns the same surface in triangles whose edges are at most `longest`: longest edges are
+    halved, with the middle rounded."""
     small = []
     while len(triangles):
         edges = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
@@ -78,12 +80,12 @@ def split(triangles, longest):
 
 
 def area_vectors(triangles):
-    """Normals with the triangles' areas as lengths."""
+    """Returns normals with the triangles' areas as lengths."""
     return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]) / 2
 
 
 def nearest_on_triangles(points, triangles):
-    """Nearest point of triangle i to point i, [n, 3]."""
+    """Returns the nearest point of triangle i to point i, [n, 3]."""
     best = np.full(len(points), np.inf)
     nearest = np.zeros_like(points)
     for k in range(3):
@@ -107,7 +109,8 @@ def nearest_on_triangles(points, triangles):
 
 
 def edges_inner_distance(p, p_edge, q, q_edge):
-    """Distance of the lines of two edges where both feet lie within the edges, else infinity."""
+    """Returns the distance of the lines of two edges where both feet lie within the edges, else
+    infinity."""
     a, b, c = dot(p_edge, p_edge), dot(p_edge, q_edge), dot(q_edge, q_edge)
     d, e = dot(p_edge, p - q), dot(q_edge, p - q)
     determinant = a * c - b * b
@@ -120,7 +123,7 @@ def edges_inner_distance(p, p_edge, q, q_edge):
 
 
 def edge_crosses(p, q, triangles):
-    """Whether the segment p q meets the plane of the triangle inside the triangle."""
+    """Returns whether the segment p q meets the plane of the triangle inside the triangle."""
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
     normal = np.cross(b - a, c - a)
     hp, hq = dot(p - a, normal), dot(q - a, normal)
@@ -132,7 +135,8 @@ def edge_crosses(p, q, triangles):
 
 
 def triangle_distances(first, second):
-    """Distance of triangle i of the one to triangle i of the other; 0 where they cross."""
+    """Returns the distance of triangle i of the one to triangle i of the other; 0 where they
+    cross."""
     result = np.full(len(first), np.inf)
     for start in range(0, len(first), CHUNK):
         a, b = first[start:start + CHUNK], second[start:start + CHUNK]
@@ -153,7 +157,7 @@ def triangle_distances(first, second):
 
 
 def spread_bits(values):
-    """Three binary digits apart, for Morton codes of 21 bits an axis."""
+    """Spreads bits three digits apart, for Morton codes of 21 bits an axis."""
     values = values.astype(np.uint64)
     for shift, mask in ((32, 0x1F00000000FFFF), (16, 0x1F0000FF0000FF), (8, 0x100F00F00F00F00F),
                         (4, 0x10C30C30C30C30C3), (2, 0x1249249249249249)):
@@ -183,17 +187,19 @@ class BoxTree:
         upper[:len(order)] = triangles[order].max(axis=1)
         corner = np.full((size, 3), np.inf)
         corner[:len(order)] = triangles[order][:, 0]
-        self.levels = [(lower, upper, corner)]  # of the box: lower, upper corner; a surface point
+        # These are of the box: lower, upper corner; a surface point.
+        self.levels = [(lower, upper, corner)]
         while len(lower) > 1:
             lower, upper = np.minimum(lower[::2], lower[1::2]), np.maximum(upper[::2], upper[1::2])
-            corner = corner[::2]  # empty boxes come last, so the first of two is the fuller one
+            # Empty boxes come last, so that the first of two is the fuller one.
+            corner = corner[::2]
             self.levels.insert(0, (lower, upper, corner))
 
     def moved(self, rotation, translation):
         return BoxTree(self.triangles @ rotation.T + translation, self.order)
 
     def child_level(self, level, node):
-        """Children of nodes, or the nodes themselves on the last level, [n, 1 or 2]."""
+        """Returns children of nodes, or the nodes themselves on the last level, [n, 1 or 2]."""
         if level + 1 < len(self.levels):
             return level + 1, np.stack([2 * node, 2 * node + 1], axis=1)
         return level, node[:, None]
@@ -208,17 +214,17 @@ def box_distances(first, i, second, j):
 
 
 def near_pairs(first, second, limit, tighten=True):
-    """Triangles (i, j) of two trees whose boxes are within `limit` of each other.
+    """Returns triangles (i, j) of two trees whose boxes are within `limit` of each other.
 
-    With `tighten` only pairs that may be the nearest ones: the limit falls to the smallest distance
-    seen between points of the two surfaces.
+    With `tighten` it returns only pairs that may be the nearest ones: the limit falls to the
+    smallest distance seen between points of the two surfaces.
     """
     a, b, level_a, level_b = np.zeros(1, dtype=int), np.zeros(1, dtype=int), 0, 0
     while True:
         one, other = first.levels[level_a], second.levels[level_b]
         near = box_distances(one, a, other, b)
         if tighten and len(a):
-            with np.errstate(invalid="ignore"):  # empty boxes have their points at infinity
+            with np.errstate(invalid="ignore"):  # Empty boxes have their points at infinity.
                 seen = one[2][a] - other[2][b]
                 limit = np.fmin(limit, np.fmin.reduce(np.sqrt(dot(seen, seen))))
         keep = near <= limit
@@ -233,7 +239,8 @@ def near_pairs(first, second, limit, tighten=True):
 
 
 def surface_distance(first, second, limit=np.inf):
-    """Smallest distance of two surfaces; 0 where they cross, infinity if above `limit`."""
+    """Returns the smallest distance of two surfaces; 0 where they cross, infinity if above
+    `limit`."""
     i, j = near_pairs(first, second, limit)
     apart = np.maximum(first.triangles[i].min(axis=1) - second.triangles[j].max(axis=1),
                        second.triangles[j].min(axis=1) - first.triangles[i].max(axis=1))
@@ -250,13 +257,13 @@ def surface_distance(first, second, limit=np.inf):
 
 
 def near_box(triangles, lower, upper):
-    """Those whose boxes meet the box."""
+    """Returns those triangles whose boxes meet the box."""
     return triangles[((triangles.min(axis=1) <= upper)
                       & (triangles.max(axis=1) >= lower)).all(axis=1)]
 
 
 def nearest_on_surface(points, tree):
-    """Nearest points of the surface to points, [n, 3]."""
+    """Returns the nearest points of the surface to points, [n, 3]."""
     who, node, level = np.arange(len(points)), np.zeros(len(points), dtype=int), 0
     limit = np.full(len(points), np.inf)
     while True:
@@ -278,8 +285,8 @@ def nearest_on_surface(points, tree):
 
 
 def side_of_edge(points, a, b):
-    """Whether the ray from each point along +x crosses the edge a b, all seen along z. The same for
-    both directions of an edge, so that neighbors agree."""
+    """Returns whether the ray from each point along +x crosses the edge a b, all seen along z.
+    It is the same for both directions of an edge, so that neighbors agree."""
     swap = (a[:, 1] > b[:, 1])[:, None]
     low, high = np.where(swap, b, a), np.where(swap, a, b)
     x, y = points[:, 0], points[:, 1]
@@ -289,8 +296,9 @@ def side_of_edge(points, a, b):
 
 
 def winding_numbers(points, tree):
-    """How often a closed surface winds around each point: the faces that a ray along +z meets, +1
-    where it leaves and -1 where it enters. 1 inside an outward surface, 0 outside."""
+    """Returns how often a closed surface winds around each point: the faces that a ray along +z
+    meets, +1 where it leaves and -1 where it enters. It is 1 inside an outward surface, 0
+    outside."""
     who, node, level = np.arange(len(points)), np.zeros(len(points), dtype=int), 0
     while True:
         low, high, _ = tree.levels[level]
