@@ -15,8 +15,8 @@
 #include "support/temporary_folder.hpp"
 
 /// \file
-/// What is wrong with a hand's files is said in one line that names the file, the item and the
-/// value.
+/// Checks that what is wrong with a hand's files is said in one line that names the file, the item
+/// and the value.
 
 namespace graspfit::testing {
 
@@ -25,14 +25,15 @@ using base::InvalidInput;
 using base::IoError;
 namespace fs = std::filesystem;
 
-/// The small hand's files, one of them broken or not.
+/// The small hand's files, of which one may be broken.
 struct HandFiles {
   std::string urdf = kSmallHandUrdf;
   std::string sidecar = kSmallHandSidecar;
   std::string mesh = kSmallHandMesh;
 };
 
-/// In a package of its own, so that meshes have an outside that is still in the test's folder.
+/// Writes the files into a package of their own, so that meshes have an outside that is still in
+/// the test's folder.
 inline fs::path write(const TemporaryFolder& folder, const HandFiles& files) {
   folder.write("package/meshes/bar.obj", files.mesh);
   folder.write("package/pincer.graspfit.json", files.sidecar);
@@ -46,8 +47,8 @@ inline bool is_one_line(const std::string& message) {
 
 enum class Refusal { Io, Invalid };
 
-/// `read_hand` refuses the file with one line that has all of `named` in it, and `check_hand`
-/// reports the same as a fault instead of throwing.
+/// Checks that `read_hand` refuses the file with one line that has all of `named` in it, and that
+/// `check_hand` reports the same as a fault instead of throwing.
 inline void check_refused(const fs::path& file, Refusal expected,
                           const std::vector<std::string>& named) {
   std::string message;
@@ -82,7 +83,7 @@ inline void check_refused(const fs::path& file, Refusal expected,
   for (const hands::HandFinding& finding : report.findings) CHECK(is_one_line(finding.what));
 }
 
-/// One edit of a good file and what the message has to name besides the file.
+/// One edit of a good file, and what the message has to name besides the file.
 struct Row {
   std::string old, fresh;
   std::vector<std::string> named;

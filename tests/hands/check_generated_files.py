@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The committed hands are, byte for byte, what generate.py writes, and their sidecars obey the schema."""
+"""Checks that the committed hands are, byte for byte, what generate.py writes, and that their
+sidecars obey the schema."""
 
 import argparse
 import json
@@ -51,7 +52,7 @@ def main():
               if "surface_m" in pad]
     if not curved:
         problems.append("no hand has a curved pad")
-    # The schema must also say no: a misspelled field, a pad without an outline, a wrong version.
+    # The schema must also refuse: a misspelled field, a pad without an outline, a wrong version.
     def broken(change):
         value = json.loads(json.dumps(sidecar))
         change(value)

@@ -6,7 +6,8 @@
 
 namespace graspfit::testing {
 
-/// Share `closing` of the way from open to closed, neutral joints at the value nearest zero.
+/// Returns the hand at the share `closing` of the way from open to closed; neutral joints are at
+/// the value nearest zero.
 inline hands::HandConfiguration closed_by(const hands::HandModel& hand, double closing) {
   hands::HandConfiguration c = hands::open_configuration(hand);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
@@ -16,7 +17,7 @@ inline hands::HandConfiguration closed_by(const hands::HandModel& hand, double c
     const double closed = joint.closing_sign > 0 ? joint.upper : joint.lower;
     c.q[static_cast<Eigen::Index>(j)] = open + closing * (closed - open);
   }
-  // Followers where their leaders put them: breakaway joints would stay further closed.
+  // Followers are where their leaders put them; breakaway joints would stay further closed.
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
     const auto& coupling = hand.joints[j].coupling;
     if (!coupling) continue;

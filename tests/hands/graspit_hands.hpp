@@ -24,7 +24,7 @@ inline bool mentions(const std::vector<hands::HandFinding>& findings, hands::Fin
   });
 }
 
-/// Every joint anywhere between its limits, followers as well.
+/// Draws every joint from anywhere between its limits, followers as well.
 inline hands::HandConfiguration random_configuration(const hands::HandModel& hand,
                                                      base::Random& random) {
   hands::HandConfiguration c;

@@ -40,7 +40,7 @@ struct KdlHand::Parts {
 
 struct KdlHand::Chain::Parts {
   explicit Parts(const KDL::Chain& from_base) : chain(from_base), forward(chain), jacobian(chain) {}
-  KDL::Chain chain;  // before the solvers, which refer to it
+  KDL::Chain chain;  // It comes before the solvers, which refer to it.
   KDL::ChainFkSolverPos_recursive forward;
   KDL::ChainJntToJacSolver jacobian;
   std::vector<std::string> joints;

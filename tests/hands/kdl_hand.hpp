@@ -10,8 +10,8 @@
 
 namespace graspfit::testing {
 
-/// A URDF as two other libraries understand it: urdfdom parses the file, Orocos KDL computes its
-/// kinematics (kdl_parser joins them). What descriptions of ours are compared with.
+/// Reads a URDF as two other libraries understand it: urdfdom parses the file, Orocos KDL computes
+/// its kinematics (kdl_parser joins them). The tests compare our own reading with it.
 class KdlHand {
  public:
   /// @throws std::runtime_error if urdfdom refuses the file.
@@ -39,14 +39,14 @@ class KdlHand {
   const std::vector<Link>& links() const;    ///< In the order of their names.
   const std::vector<Joint>& joints() const;  ///< Movable ones, in the order of their names.
 
-  /// The way from one link to another that hangs on it.
+  /// The chain of joints from one link to another that hangs on it.
   class Chain {
    public:
     /// Movable joints from base to tip.
     const std::vector<std::string>& joints() const;
     /// Pose of the tip link in the base link's frame, positions in the order of `joints`.
     Eigen::Isometry3d pose(const Eigen::VectorXd& q) const;
-    /// 6 x joints, [linear; angular] in the base link's frame, of a point of the tip link.
+    /// Returns 6 x joints, [linear; angular] in the base link's frame, of a point of the tip link.
     Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(const Eigen::VectorXd& q,
                                                       const Eigen::Vector3d& point_tip) const;
 

@@ -33,7 +33,7 @@
 #include "support/test_data.hpp"
 
 /// \file
-/// Reading MJCF, and MuJoCo's own kinematics of the same file.
+/// Reads MJCF, and computes MuJoCo's own kinematics of the same file.
 
 namespace graspfit::testing {
 
@@ -86,7 +86,7 @@ inline Reading read(const fs::path& file) {
   return reading;
 }
 
-/// Angles in radians, limits where there is a range.
+/// Returns MJCF with angles in radians and limits where there is a range.
 inline std::string mjcf(const std::string& worldbody, const std::string& rest = "") {
   return "<mujoco model=\"test\"><compiler angle=\"radian\" autolimits=\"true\"/>" + rest +
          "<worldbody>" + worldbody + "</worldbody></mujoco>";
@@ -95,7 +95,8 @@ inline std::string mjcf(const std::string& worldbody, const std::string& rest = 
 using Positions = std::map<std::string, double>;
 using Poses = std::map<std::string, RigidTransform>;
 
-/// Poses of the links in the root's frame, joint by joint; joints that `q` leaves out are at 0.
+/// Returns poses of the links in the root's frame, joint by joint; joints that `q` leaves out are
+/// at 0.
 inline Poses link_poses(const RobotDescription& robot, const Positions& q) {
   Poses poses;
   for (const DescribedLink& link : robot.links) poses[link.name] = RigidTransform::Identity();
@@ -114,7 +115,7 @@ inline Poses link_poses(const RobotDescription& robot, const Positions& q) {
   return poses;
 }
 
-/// MuJoCo's own kinematics.
+/// Computes MuJoCo's own kinematics.
 class Mujoco {
  public:
   explicit Mujoco(const fs::path& file) {
@@ -143,7 +144,7 @@ class Mujoco {
     mj_kinematics(model_, data_);
   }
 
-  /// Poses of the named bodies in the frame of one of them.
+  /// Returns poses of the named bodies in the frame of one of them.
   Poses poses(const std::string& root) const {
     const RigidTransform X_RW = pose(mj_name2id(model_, mjOBJ_BODY, root.c_str())).inverse();
     Poses result;
@@ -154,7 +155,7 @@ class Mujoco {
     return result;
   }
 
-  /// By how much active equality constraints are missed at the position that was set.
+  /// Returns by how much active equality constraints are missed at the position that was set.
   std::vector<double> missed() {
     mj_fwdPosition(model_, data_);
     return {data_->efc_pos, data_->efc_pos + data_->ne};
@@ -182,12 +183,12 @@ inline Positions random_positions(const RobotDescription& robot, base::Random& r
   return q;
 }
 
-/// The largest difference of two poses' entries: of a position [m] or of a rotation matrix.
+/// Returns the largest difference of two poses' entries: of a position [m] or of a rotation matrix.
 inline double largest_difference(const RigidTransform& X, const RigidTransform& Y) {
   return (X.matrix() - Y.matrix()).cwiseAbs().maxCoeff();
 }
 
-/// Over the names that both have, at least `least` of them.
+/// Returns the largest difference over the names that both have, at least `least` of them.
 inline double largest_difference(const Poses& some, const Poses& others, std::size_t least) {
   double largest = 0.0;
   std::size_t shared = 0;
@@ -201,7 +202,7 @@ inline double largest_difference(const Poses& some, const Poses& others, std::si
   return largest;
 }
 
-// Two fingers on a palm, as a start.
+// Two fingers on a palm from which tests start.
 const std::string kTwoFingers = R"(
   <body name="palm"><geom type="box" size=".1 .1 .01"/>
     <body name="a" pos=".1 0 0"><joint name="ja" axis="0 1 0" range="0 1"/><geom size=".01"/>
@@ -209,7 +210,8 @@ const std::string kTwoFingers = R"(
     <body name="c" pos="-.1 0 0"><joint name="jc" axis="0 1 0" range="-1 0" ref="-.5"/><geom size=".01"/></body>
   </body>)";
 
-/// A tree of bodies with up to three joints each, frames, anchors, axes and refs at random.
+/// Returns a tree of bodies with up to three joints each; frames, anchors, axes and refs are
+/// random.
 inline std::string random_tree(std::uint64_t seed) {
   base::Random random(seed);
   std::ostringstream text;
@@ -229,7 +231,7 @@ inline std::string random_tree(std::uint64_t seed) {
     numbers("pos", 3);
     numbers("quat", 4);
     text << "><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\"/>";
-    // The first one below the root has a joint, so that there is one.
+    // The first body below the root has a joint, so that there is one.
     const int joints = b == 0 ? 0 : b == 1 ? 2 : static_cast<int>(random.index(4));
     for (int j = 0; j < joints; ++j) {
       const bool slides = random.index(3) == 0;

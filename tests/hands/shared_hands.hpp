@@ -14,14 +14,14 @@ struct SharedHand {
   std::string folder;
   std::string urdf;
   int num_fingers = 0;
-  int num_movable = 0;      ///< Joints of the file that move.
-  int num_independent = 0;  ///< Those without <mimic>.
+  int num_movable = 0;      ///< Number of joints of the file that move.
+  int num_independent = 0;  ///< Number of those without <mimic>.
   std::string thumb_link;   ///< A link of the thumb; empty for grippers, whose fingers are alike.
-  /// Movable joints before the palm (a wrist), which a reader may leave out.
+  /// Number of movable joints before the palm (a wrist), which a reader may leave out.
   int num_before_palm = 0;
 };
 
-/// The seven folders; counts from the table in SOURCES.md of the data folder.
+/// Returns the seven folders, with counts from the table in SOURCES.md of the data folder.
 inline std::vector<SharedHand> shared_hands() {
   return {{"robotiq_2f_85", "robotiq_2f_85.urdf", 2, 6, 1, "", 0},
           {"panda_gripper", "franka_panda.urdf", 2, 2, 1, "", 0},

@@ -7,8 +7,8 @@
 
 namespace graspfit::testing {
 
-/// The least that a sidecar can say: one finger of one link and joint, no pads. Enough for the
-/// kinematics of any description.
+/// Returns the least that a sidecar can say: one finger of one link and joint, no pads. It is
+/// enough for the kinematics of any description.
 inline std::string least_sidecar(const std::string& palm, const std::string& link,
                                  const std::string& joint,
                                  const std::vector<std::string>& closing) {
@@ -23,7 +23,7 @@ inline std::string least_sidecar(const std::string& palm, const std::string& lin
          signs + R"(}, "exclusions": []})";
 }
 
-/// `text` with the only occurrence of `old` replaced.
+/// Returns `text` with the only occurrence of `old` replaced.
 inline std::string with(std::string text, const std::string& old, const std::string& fresh) {
   INFO(old);
   const std::size_t at = text.find(old);

@@ -26,7 +26,7 @@ using hands::HandFinding;
 using testing::TemporaryFolder;
 using testing::with;
 
-/// Two fingers of two boxes that bend toward each other over a palm.
+/// The description of two fingers of two boxes that bend toward each other over a palm.
 const std::string kPinch = R"(<robot name="pinch">
   <link name="base">
     <collision><origin xyz="0 0 -0.011"/><geometry><box size="0.1 0.04 0.02"/></geometry></collision>
@@ -89,7 +89,7 @@ bool has(const HandCheck& check, FindingKind kind, const std::string& item,
   });
 }
 
-/// The findings of a kind, for messages of failing tests.
+/// Returns the findings of a kind, for messages of failing tests.
 std::string listed(const HandCheck& check, FindingKind kind) {
   std::string text;
   for (const HandFinding& finding : check.findings) {
@@ -134,7 +134,7 @@ TEST_CASE("All faults of a description are in one report", "[hands][hand_check]"
     CHECK(has(check, FindingKind::Fault, item, what));
   }
   CHECK(check.count(FindingKind::Fault) == faults.size());
-  // Faults, then suspicious, then notes; each in one line.
+  // Faults come first, then what is suspicious, then notes, each in one line.
   CHECK(std::is_sorted(check.findings.begin(), check.findings.end(),
                        [](const auto& a, const auto& b) { return a.kind < b.kind; }));
   for (const HandFinding& finding : check.findings) {
@@ -212,11 +212,12 @@ TEST_CASE("A sound hand gives notes only, a damaged one says what looks wrong",
   }
 }
 
-/// The pinch with every length multiplied: of its surfaces alone, or of its joints' places too.
+/// Returns the pinch with every length multiplied, of its surfaces alone or of its joints'
+/// positions, too.
 std::string scaled_pinch(double factor) {
   std::string text;
   std::string_view rest = kPinch;
-  // Lengths are in origins, sizes and inertias' places; axes and limits of turns are not.
+  // Lengths are in origins, sizes and positions of inertias; axes and limits of turns are none.
   for (;;) {
     const std::size_t origin = rest.find("<origin xyz=\"");
     const std::size_t size = rest.find("<box size=\"");
@@ -236,7 +237,8 @@ std::string scaled_pinch(double factor) {
 
 TEST_CASE("A hand in another unit is suspicious with the factor that mends it",
           "[hands][hand_check]") {
-  // 0.11 m high when open: two links of 44 mm, the palm's 20 mm and joints between.
+  // The hand is 0.11 m high when open: it has two links of 44 mm, the palm's 20 mm and joints
+  // between.
   struct Row {
     double factor;
     std::string what;
@@ -256,7 +258,7 @@ TEST_CASE("A hand in another unit is suspicious with the factor that mends it",
   const HandCheck millimeters = check_text(scaled_pinch(1000.0), "");
   CHECK(has(millimeters, FindingKind::Suspicious, "",
             "Write scale=\"0.001 0.001 0.001\" into every <mesh>"));
-  // Pads of square meters are no negative ones.
+  // Areas of square meters are not printed as negative numbers.
   CHECK(has(millimeters, FindingKind::Note, "pad a2_pad", " mm^2"));
   CHECK_FALSE(has(millimeters, FindingKind::Note, "pad a2_pad", "-"));
   for (const double factor : {0.2, 1.0, 5.0}) {
@@ -283,7 +285,7 @@ TEST_CASE("The reader of a hand finds its size suspicious, too", "[hands][hand_c
 }
 
 TEST_CASE("A finger that meeting links keep open is named with the links", "[hands][hand_check]") {
-  // A stop on the palm, 1 mm before the bent finger's way, that the open finger does not touch.
+  // A stop on the palm is 1 mm before the bent finger's way, and the open finger does not touch it.
   const std::string stop = R"(
     <collision><origin xyz="-0.029 0 0.03"/><geometry><box size="0.01 0.02 0.02"/></geometry></collision>
     <inertial><origin xyz="0 0 -0.011"/>)";
@@ -327,7 +329,7 @@ TEST_CASE("A hand whose limits only let it open does not close", "[hands][hand_c
   CHECK(has(check, FindingKind::Suspicious, "joint b_bend", "backward"));
 }
 
-/// A link of the given name on a joint, after `parent`.
+/// Returns a link of the given name on a joint, after `parent`.
 std::string moved_link(const std::string& name, const std::string& parent, const std::string& type,
                        const std::string& origin, const std::string& axis,
                        const std::string& limits, const std::string& more = "") {
@@ -347,7 +349,7 @@ bool looks_coupled(const std::string& urdf, const std::string& item, const std::
 
 TEST_CASE("Twin fingers that swing by a right angle look like one spread, abduction does not",
           "[hands][hand_check]") {
-  // Fingers along y, flexing about x; the second mirrors the first at x = 0.
+  // The fingers are along y and flex about x; the second mirrors the first at x = 0.
   const auto twins = [](const std::string& limits_a, const std::string& limits_b,
                         const std::string& bone_b) {
     return robot(moved_link("a", "base", "revolute", "xyz=\"-0.03 0 0\"", "0 0 1", limits_a) +
@@ -363,7 +365,7 @@ TEST_CASE("Twin fingers that swing by a right angle look like one spread, abduct
   const std::string mirrored = "0.01 0.05 -0.04";
   CHECK(looks_coupled(twins(out, in, mirrored), "joint b_joint",
                       "\"leader\": \"a_joint\", \"ratio\": -1"));
-  // An axis the other way around turns the sign.
+  // With an axis the other way around the sign of the ratio is the other one.
   std::string turned = twins(out, out, mirrored);
   turned.replace(turned.rfind("0 0 1"), 5, "0 0 -1");
   CHECK(looks_coupled(turned, "joint b_joint", "\"leader\": \"a_joint\", \"ratio\": 1"));
@@ -426,7 +428,7 @@ TEST_CASE("Nothing about any shipped hand is suspicious", "[hands][hand_check][f
   for (const std::string& name : hands::shipped_hands()) check_sound(name);
 }
 
-/// Checks a hand of the data folder, or skips.
+/// Checks a hand of the data folder; skips if it is not there.
 #define CHECK_SHARED(check, name)                                         \
   const auto check##_file = testing::find_data("hands/" name);            \
   if (!check##_file) {                                                    \
@@ -437,7 +439,8 @@ TEST_CASE("Nothing about any shipped hand is suspicious", "[hands][hand_check][f
 
 TEST_CASE("The coupling that GraspIt!'s URDF of the Barrett hand lost is found",
           "[hands][hand_check][barrett]") {
-  // SOURCES.md: "drops the coupling (distal axis is written as 0 0 0.333 instead)".
+  // SOURCES.md of the data folder says: "drops the coupling (distal axis is written as 0 0 0.333
+  // instead)".
   CHECK_SHARED(urdf, "barrett_graspit/Barrett.urdf");
   for (const char* joint :
        {"joint a_link2_link3_joint", "joint b_link2_link3_joint", "joint c_link2_link3_joint"}) {
@@ -445,15 +448,15 @@ TEST_CASE("The coupling that GraspIt!'s URDF of the Barrett hand lost is found",
   }
   CHECK(has(urdf, FindingKind::Suspicious, "joint b_palm_link1_joint",
             "\"leader\": \"a_palm_link1_joint\", \"ratio\": 1}"));
-  // The XML has it: nothing is amiss there.
+  // The XML has the coupling, and nothing is wrong there.
   CHECK_SHARED(xml, "barrett_graspit/graspit_Barrett.xml");
   CHECK(listed(xml, FindingKind::Suspicious).find("coupling") == std::string::npos);
 }
 
 TEST_CASE("The couplings that Barrett's own URDF never had are found",
           "[hands][hand_check][barrett]") {
-  // SOURCES.md: "couple them: spread finger_1_prox = -finger_2_prox; each dist follows its med
-  // (about 1/3)".
+  // SOURCES.md of the data folder says: "couple them: spread finger_1_prox = -finger_2_prox; each
+  // dist follows its med (about 1/3)".
   CHECK_SHARED(check, "barrett_hand/bhand_model.urdf");
   CHECK(has(check, FindingKind::Suspicious, "joint finger_2_prox_joint",
             "\"leader\": \"finger_1_prox_joint\", \"ratio\": -1}"));
@@ -468,14 +471,15 @@ TEST_CASE("Missing couplings of the Shadow hand are suspicious, those of the All
           "[hands][hand_check]") {
   CHECK_SHARED(shadow, "shadow_hand/shadow_hand_right.urdf");
   CHECK(has(shadow, FindingKind::Suspicious, "", "FFJ1 after FFJ2"));
-  // 16 motors for 16 joints.
+  // The hand has 16 motors for 16 joints.
   CHECK_SHARED(allegro, "allegro_hand/allegro_hand_right.urdf");
   CHECK(listed(allegro, FindingKind::Suspicious).find("coupling") == std::string::npos);
   CHECK(has(allegro, FindingKind::Note, "", "no joint follows another"));
 }
 
 TEST_CASE("The open skin of GraspIt!'s human hand is said", "[hands][hand_check]") {
-  // SOURCES.md: "skin meshes are OPEN tubes (not closed)". 20 joints: no more than hands drive.
+  // SOURCES.md of the data folder says: "skin meshes are OPEN tubes (not closed)". The hand has 20
+  // joints, which is no more than hands drive.
   CHECK_SHARED(check, "human_hand_20dof/HumanHand.urdf");
   CAPTURE(listed(check, FindingKind::Note));
   for (const char* link : {"link palm", "link index1", "link mid2", "link thumb3"}) {

@@ -58,7 +58,8 @@ class StrippedHands {
   Folder folder_;
 };
 
-/// The shipped hands, all derived but their couplings (a URDF cannot say that they break away).
+/// Returns a shipped hand of which all is derived but its couplings (a URDF cannot say that they
+/// break away).
 const hands::HandReading& derived(const std::string& name) {
   static const StrippedHands stripped({"couplings"});
   static std::map<std::string, hands::HandReading> known;
@@ -78,7 +79,8 @@ std::vector<std::string> link_names(const HandModel& hand, const Finger& finger)
   return names;
 }
 
-/// Share `closing` of the way from open to closed, followers where their leaders put them.
+/// Returns link poses at the share `closing` of the way from open to closed, with followers where
+/// their leaders put them.
 std::vector<RigidTransform> closed_by(const HandModel& hand, double closing) {
   hands::HandConfiguration c = hands::open_configuration(hand);
   HandModel rigid = hand;
@@ -94,7 +96,7 @@ std::vector<RigidTransform> closed_by(const HandModel& hand, double closing) {
   return hands::forward_kinematics(hand, c);
 }
 
-/// Mean distance between the centers of the fingers' tip pads.
+/// Returns the mean distance between the centers of the fingers' tip pads.
 double tip_distance(const HandModel& hand, double closing) {
   const auto X_HL = closed_by(hand, closing);
   double sum = 0.0;
@@ -149,9 +151,10 @@ TEST_CASE("Of shipped hands without sidecars, palms and pads are found where the
     double largest_area;
     double deviation;  ///< Of derived pads' tops from the mesh [m].
   };
-  // Measured. Grippers and the Barrett hand: made pads keep a little off the edges of their planes,
-  // and palms end where the jaws' way does. Human hands: made pads are narrow ellipses, derived
-  // ones go on to where the skin leans by 50 degrees; made tip pads look 14 degrees toward the tip.
+  // The bounds were measured. For grippers and the Barrett hand, made pads keep a little off the
+  // edges of their planes, and palms end where the jaws' way does. For human hands, made pads are
+  // narrow ellipses, derived ones go on to where the skin leans by 50 degrees; made tip pads look
+  // 14 degrees toward the tip.
   const std::vector<Case> cases = {
       {"parallel_gripper", 0.01, 0.1, 0.8, 1.1, 1e-6},
       {"franka_gripper", 0.01, 0.1, 0.8, 1.1, 1e-6},
@@ -191,7 +194,8 @@ struct SharedHand {
   double closest;  ///< Mean tip distance somewhere between open and closed is below this, of open.
 };
 
-// Numbers of SOURCES.md beside them; the Shadow hand without its two wrist joints.
+// The counts are those of SOURCES.md beside the hands; the Shadow hand is without its two wrist
+// joints.
 const std::vector<SharedHand>& shared_hands() {
   static const std::vector<SharedHand> hands = {
       {"hands/robotiq_2f_85/robotiq_2f_85.urdf", 2, "", 1, 0.2},
@@ -205,7 +209,7 @@ const std::vector<SharedHand>& shared_hands() {
   return hands;
 }
 
-/// A shared hand read once; nullptr if it is not there.
+/// Returns a shared hand, read once; nullptr if it is not there.
 const hands::HandReading* shared(const std::string& relative) {
   static std::map<std::string, hands::HandReading> known;
   const auto found = known.find(relative);
@@ -248,7 +252,7 @@ TEST_CASE("Shared hands close on something: tips come together and tip pads turn
     double least = open;
     for (int i = 1; i <= 10; ++i) least = std::min(least, tip_distance(hand, 0.1 * i));
     CHECK(least <= expected.closest * open);
-    // No pad turns its back on what the hand closes on: a point before the palm, between the tips.
+    // No pad turns its back on what the hand closes on, a point before the palm between the tips.
     const auto X_HL = closed_by(hand, 0.5);
     Vector3d between = Vector3d::Zero();
     for (const Finger& finger : hand.fingers) {
@@ -261,7 +265,8 @@ TEST_CASE("Shared hands close on something: tips come together and tip pads turn
       CAPTURE(finger.name);
       const RigidTransform pad = hands::pad_pose(hand, *finger.tip_pad, X_HL);
       const Vector3d goal = hand.fingers.size() == 2 ? between : held;
-      // 75 degrees: fingers of Barrett hands are far past each other when all joints are half way.
+      // The bound is 75 degrees, as fingers of Barrett hands are far past each other when all
+      // joints are half way.
       CHECK(pad.linear().col(2).dot((goal - pad.translation()).normalized()) > 0.25);
     }
   }
@@ -289,7 +294,7 @@ TEST_CASE("A derived sidecar reads back as the hand that was derived",
     const fs::path file = stripped.file(name);
     const HandModel& first = derived(name).model;
     const std::string text = hands::derived_sidecar_text(file);
-    CHECK(text == hands::derived_sidecar_text(file));  // same input, same bytes
+    CHECK(text == hands::derived_sidecar_text(file));  // The same input gives the same bytes.
     std::ofstream(hands::sidecar_file_of(file), std::ios::binary) << text;
     const hands::HandReading second = hands::read_hand(file);
     CHECK(second.findings.empty());
@@ -304,7 +309,7 @@ TEST_CASE("A derived sidecar reads back as the hand that was derived",
   }
 }
 
-// ---- Small hands, written here ------------------------------------------------------------------
+// These small hands are written here.
 
 std::string box_link(const std::string& name, const std::string& size, const std::string& at) {
   return "<link name=\"" + name + "\"><collision><origin xyz=\"" + at +
@@ -319,7 +324,8 @@ std::string joint(const std::string& name, const std::string& type, const std::s
          "\"/><limit " + limits + " effort=\"1\" velocity=\"1\"/>" + more + "</joint>\n";
 }
 
-/// Two fingers of two boxes that curl toward each other over a plate (its top at z = 0.01).
+/// Returns the links of two fingers of two boxes that curl toward each other over a plate (its top
+/// at z = 0.01).
 std::string pinch_links() {
   std::string text = box_link("plate", "0.1 0.06 0.02", "0 0 0");
   for (const std::string side : {"left", "right"}) {
@@ -354,7 +360,7 @@ TEST_CASE(
     CHECK_FALSE(finger.swing_joint);
     const ContactPad& pad = hand.pads[static_cast<std::size_t>(*finger.tip_pad)];
     CHECK(pad.surface.empty());
-    // The inner face of a box 0.01 x 0.02 x 0.04 whose middle is at z = 0.02.
+    // The pad is the inner face of a box 0.01 x 0.02 x 0.04 whose middle is at z = 0.02.
     CHECK(degrees_between(pad.X_LC.linear().col(2), Vector3d::UnitX()) < 1e-6);
     CHECK((pad.X_LC.translation() - Vector3d(0.005, 0, 0.02)).norm() < 1e-9);
     CHECK(hands::pad_area(pad) == Approx(0.02 * 0.04).epsilon(1e-9));
@@ -362,7 +368,7 @@ TEST_CASE(
   CHECK(hand.palm.direction_H == Vector3d::UnitZ());
   CHECK(hand.palm.center_H.z() == Approx(0.01).margin(1e-9));
   const ContactPad& palm = hand.pads[static_cast<std::size_t>(*hand.palm.pad)];
-  // As wide as the first joints stand apart, 0.09; the plate's 0.06 the other way.
+  // It is as wide as the first joints stand apart, 0.09; the other way it has the plate's 0.06.
   CHECK(hands::pad_area(palm) == Approx(0.09 * 0.06).epsilon(1e-9));
 }
 
@@ -440,7 +446,7 @@ TEST_CASE("An arm before the hand is left out, unless the sidecar's palm link sa
 }
 
 TEST_CASE("A bar of a linkage is no finger", "[hands][derivation]") {
-  // A bar beside the left finger that follows its joints, overlaps its upper link, ends lower.
+  // A bar beside the left finger follows its joints, overlaps its upper link and ends lower.
   const std::string follow = "<mimic joint=\"right_bend\" multiplier=\"1\"/>";
   std::string links = pinch_links();
   const auto coupled = [&](const std::string& name, const std::string& ratio) {

@@ -54,7 +54,8 @@ TEST_CASE("What is wrong in a sidecar is named by its place and value", "[hands]
       {R"([0.005, 0, 0])", R"([0.005, 0])", {"translation_m"}},
       {R"([0.5, 0.5, 0.5, 0.5])", R"([0.5, 0.5, 0.5, 0.6])", {"rotation_wxyz"}},
       {R"([0.5, 0.5, 0.5, 0.5])", R"([0, 0, 0, 0])", {"rotation_wxyz"}},
-      // Clockwise, not convex, touching itself, without area, too few corners.
+      // The outlines are clockwise, not convex, touching themselves, without area, or with too few
+      // corners.
       {outline, "[[0, 0.02], [0.03, -0.01], [-0.03, -0.01]]", {"palm_pad", "outline"}},
       {outline, "[[-0.03, -0.01], [0, 0], [0.03, -0.01], [0, 0.02]]", {"palm_pad", "outline"}},
       {outline, "[[0, 0], [1, 0], [0, 1], [1, 1]]", {"palm_pad", "outline"}},
@@ -87,7 +88,7 @@ TEST_CASE("What is wrong in a sidecar is named by its place and value", "[hands]
       {R"(["right", "tip"]])", R"(["right", "tips"]])", {"exclusions", "tips"}},
       {R"(["right", "tip"]])", R"(["right"]])", {"exclusions"}},
       {R"("hand": "pincer")", "\"hands\\nhands\": \"pincer\"", {"hands"}},
-      // No JSON any more.
+      // These are no JSON any more.
       {R"("version": 1)", R"("version": NaN)", {"not JSON"}, Refusal::Io},
       {R"("version": 1)", R"("version": 0x1)", {"not JSON"}, Refusal::Io},
       {R"([0.005, 0, 0])", R"([0.005, 1e999, 0])", {"1e999"}, Refusal::Io},
@@ -134,7 +135,7 @@ TEST_CASE("A sidecar that nests too deep is refused with place and limit",
                 {"pincer.graspfit.json: line 1, column 73", "64 levels"});
 }
 
-/// `text` without what stands from `member` to the next member, or to the end.
+/// Returns `text` without what stands from `member` to the next member, or to the end.
 std::string without(std::string text, const std::string& member, const std::string& next) {
   const std::size_t from = text.find(member);
   REQUIRE(from != std::string::npos);
@@ -145,7 +146,7 @@ std::string without(std::string text, const std::string& member, const std::stri
 
 TEST_CASE("Every member of a sidecar may be left out, and is derived", "[hands][bad_hand_files]") {
   const TemporaryFolder folder;
-  // Fingers and pads name each other; what is derived bears other names.
+  // Fingers and pads name each other; what is derived has other names.
   for (const auto& [member, next] :
        std::vector<std::pair<std::string, std::string>>{{"\"palm\": {", "\"closing\""},
                                                         {"\"closing\"", "\"couplings\""},
@@ -158,24 +159,24 @@ TEST_CASE("Every member of a sidecar may be left out, and is derived", "[hands][
     CHECK(reading.model.fingers.size() == 2);
     CHECK(reading.model.fingers[0].name == "one");
     CHECK(reading.model.pads.size() >= 3);
-    if (member == "\"couplings\"") {  // the URDF's own
+    if (member == "\"couplings\"") {  // These are the URDF's own.
       const auto& coupling = reading.model.joints[2].coupling;
       REQUIRE(coupling.has_value());
       CHECK(coupling->ratio == 0.5);
       CHECK_FALSE(coupling->breakaway);
-    } else if (member == "\"exclusions\"") {  // nothing that never meets
+    } else if (member == "\"exclusions\"") {  // Then nothing that never meets is excluded.
       CHECK_FALSE(reading.model.is_excluded(reading.model.link_index("left"),
                                             reading.model.link_index("tip")));
     } else {
       CHECK_FALSE(reading.findings.empty());
     }
   }
-  // Nothing but the format: all of it.
+  // With nothing but the format all of it is derived.
   const hands::HandReading bare = hands::read_hand(
       write(folder, {.sidecar = R"({"format": {"name": "graspfit hand sidecar", "version": 1}})"}));
   CHECK(bare.model.fingers.size() == 2);
   CHECK_FALSE(bare.findings.empty());
-  // No sidecar: the same hand.
+  // Without a sidecar the hand is the same.
   const fs::path urdf = write(folder, {});
   fs::remove(folder.path() / "package/pincer.graspfit.json");
   const hands::HandReading none = hands::read_hand(urdf);

@@ -95,7 +95,7 @@ TEST_CASE("Trees of a URDF that are none are refused with the names at fault",
       {R"(<parent link="right"/>)", "", {"bend", "parent"}},
       {R"(<child link="tip"/>)", "", {"bend", "child"}},
       {R"(<child link="tip"/>)", R"(<child/>)", {"bend", "child"}},
-      // A name with a line feed in it, as XML may have: still one line.
+      // A name has a line feed in it, as XML may have; the message is still one line.
       {R"(<child link="tip"/>)", "<child link=\"ti&#10;pp\"/>", {"bend"}},
       {R"(<parent link="right"/>)", R"(<parent link="tip"/>)", {"tip"}},
       {R"(<joint name="bend" type="revolute">)",
@@ -175,7 +175,7 @@ TEST_CASE("What is no robot description at all is refused by what it is",
   refused("<html><body>404 Not Found</body></html>", {"html"});
   refused(with(kSmallHandUrdf, "</robot>", ""));
   refused(with(kSmallHandUrdf, R"(name="pincer">)", R"(name="pincer>)"));
-  // Nesting that would use up a stack.
+  // The nesting would use up a stack.
   std::string deep = "<robot name=\"deep\">";
   for (int i = 0; i < 200000; ++i) deep += "<a>";
   refused(deep);
@@ -191,8 +191,8 @@ TEST_CASE("What is no robot description at all is refused by what it is",
 TEST_CASE("Mesh paths that lead nowhere or out of the package are refused with link and path",
           "[hands][bad_hand_files]") {
   const TemporaryFolder folder;
-  // Good meshes that are none of this hand's business, and ways to them that stay hidden until
-  // links are followed.
+  // Good meshes that are none of this hand's business lie outside, and ways to them stay hidden
+  // until links are followed.
   const fs::path outside = folder.write("outside/bar.obj", kSmallHandMesh);
   write(folder, {});
   fs::create_symlink(outside, folder.path() / "package/meshes/link.obj");
@@ -233,7 +233,8 @@ TEST_CASE("Mesh paths that lead nowhere or out of the package are refused with l
     files.urdf = with(files.urdf, "meshes/bar.obj", row.path);
     check_refused(write(folder, files), row.expected, {"pincer.urdf", "left", row.path, row.named});
   }
-  // What would let the description have the file is said: what begins a package, and where.
+  // The message says what would let the description have the file: what begins a package, and
+  // where.
   const auto with_path = [&](const std::string& path) {
     HandFiles files;
     files.urdf = with(files.urdf, "meshes/bar.obj", path);
@@ -250,7 +251,7 @@ TEST_CASE("Mesh paths that lead nowhere or out of the package are refused with l
                 {"; move its package.xml to " + fs::weakly_canonical(folder.path()).string()});
   fs::remove(folder.path() / "package.xml");
   fs::remove(folder.path() / "package/package.xml");
-  // The same mesh within the package is fine, however roundabout.
+  // The same mesh within the package is accepted, however roundabout its path is.
   for (const std::string& path : {std::string("package://pincer/meshes/bar.obj"),
                                   "file://" + (folder.path() / "package/meshes/bar.obj").string(),
                                   std::string("./meshes//../meshes/bar.obj")}) {
@@ -267,17 +268,17 @@ TEST_CASE("Mesh files that hold no mesh are refused with link and path",
   const std::string last = "f 4 5 8\n";
   for (const std::string& mesh :
        {std::string(), std::string("not a mesh\n"), std::string(200, '\0'),
-        std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n"),  // no faces
+        std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n"),  // It has no faces.
         std::string("f 1 2 3\n"), with(kSmallHandMesh, last, "f 4 5 9\n"),
         with(kSmallHandMesh, last, "f 4 5 2147483648\n"),
         with(kSmallHandMesh, last, "f 4 5 18446744073709551617\n"),
         with(kSmallHandMesh, last, "f 4 5 0\n"), with(kSmallHandMesh, last, "f 4 5 -9\n"),
         with(kSmallHandMesh, "v 0.5 0.5 0.5\n", "v 0.5 nan 0.5\n"),
         with(kSmallHandMesh, "v 0.5 0.5 0.5\n", "v 0.5 1e999 0.5\n"),
-        std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")}) {  // no area
+        std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")}) {  // It has no area.
     CAPTURE(mesh);
     const fs::path file = write(folder, {.mesh = mesh});
-    // Which of the two depends on whether the file or what it holds is at fault.
+    // Which of the two is thrown depends on whether the file or what it holds is at fault.
     std::string message;
     try {
       hands::read_hand(file);
@@ -289,7 +290,7 @@ TEST_CASE("Mesh files that hold no mesh are refused with link and path",
     CHECK(is_one_line(message));
     CHECK(message.find("pincer.urdf") != std::string::npos);
     CHECK(message.find("link left") != std::string::npos);
-    // A surface that cannot be closed is the link's, of one or more files.
+    // A surface that cannot be closed is that of the link, of one or more files.
     const bool names_mesh = message.find("bar.obj") != std::string::npos;
     CHECK((names_mesh || message.find("its surface is not closed") != std::string::npos));
     CHECK(hands::check_hand(file).count(hands::FindingKind::Fault) > 0);

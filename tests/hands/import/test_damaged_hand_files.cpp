@@ -15,8 +15,8 @@ namespace {
 using namespace graspfit;
 using namespace graspfit::testing;
 
-/// Whether the hand was read; refusals are of our own and in one line, and what is read holds the
-/// model's promises.
+/// Returns whether the hand was read. Refusals are of our own and in one line, and what is read
+/// holds the model's promises.
 bool is_read(const fs::path& file) {
   try {
     const hands::HandModel hand = hands::read_hand_model(file);
@@ -39,7 +39,7 @@ TEST_CASE("Every prefix of a hand's files is read or refused in one line",
   int num_read = 0;
   for (std::string HandFiles::*member : {&HandFiles::urdf, &HandFiles::sidecar, &HandFiles::mesh}) {
     const std::string whole = HandFiles{}.*member;
-    // A sidecar is only looked at when the URDF is good, which takes longer.
+    // A sidecar is only read when the URDF is good, which takes longer.
     const std::size_t step = member == &HandFiles::urdf ? 1 : 3;
     for (std::size_t size = 0; size < whole.size(); size += step) {
       HandFiles files;
@@ -50,7 +50,7 @@ TEST_CASE("Every prefix of a hand's files is read or refused in one line",
       num_read += read;
     }
   }
-  CHECK(num_read < 60);  // without the line feed at the end, or an OBJ of fewer faces
+  CHECK(num_read < 60);  // It may lack the line feed at the end, or be an OBJ of fewer faces.
 }
 
 void damage_the_hand(int times) {
@@ -67,13 +67,13 @@ void damage_the_hand(int times) {
     REQUIRE_NOTHROW(read = is_read(write(folder, files)));
     num_read += read;
   }
-  // Both happen: names and numbers may change without harm.
+  // Both happen, as names and numbers may change without harm.
   CHECK(num_read > times / 200);
   CHECK(num_read < times / 2);
 }
 
 TEST_CASE("Damaged URDFs and sidecars are read or refused in one line", "[hands][bad_hand_files]") {
-  damage_the_hand(400);  // the first ones of those below
+  damage_the_hand(400);  // These are the first ones of those below.
 }
 
 TEST_CASE("Many more damaged URDFs and sidecars are read or refused in one line",
@@ -81,7 +81,7 @@ TEST_CASE("Many more damaged URDFs and sidecars are read or refused in one line"
   damage_the_hand(200000);
 }
 
-/// A chain of links, every joint but the first of one type; its finger has the first.
+/// Returns a chain of links, every joint but the first of one type; its finger has the first.
 HandFiles long_chain(int num_links, const std::string& type, bool is_coupled) {
   std::ostringstream urdf;
   urdf << "<robot name=\"chain\"><link name=\"l0\"/>";
@@ -110,7 +110,7 @@ TEST_CASE("A chain of ten thousand links uses up neither stack nor patience",
         hands::read_hand_model(write(folder, long_chain(kNumLinks, type, false)));
     REQUIRE(hand.links.size() == kNumLinks);
     const auto X_OL = hands::forward_kinematics(hand, hands::open_configuration(hand));
-    // Sums of ten thousand roundings of at most half a unit in the last place of 10 m.
+    // The sum of ten thousand roundings is of at most half a unit in the last place of 10 m each.
     CHECK(X_OL.back().translation().z() == Approx(0.001 * (kNumLinks - 1)).margin(1e-11));
   }
   const hands::HandModel coupled =
@@ -119,7 +119,7 @@ TEST_CASE("A chain of ten thousand links uses up neither stack nor patience",
   CHECK(coupled.joints.back().coupling->leader == 0);
 }
 
-/// A locale whose decimals have a comma while it lives: the system's, or one compiled here.
+/// Sets a locale whose decimals have a comma while it lives: the system's, or one compiled here.
 class GermanLocale {
  public:
   GermanLocale() : old_(std::setlocale(LC_ALL, nullptr)) {

@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 constexpr double kDegree = pi / 180.0;
 constexpr double kMillimeter = 1e-3;
 
-/// Rz(theta) Tz(d) Tx(a) Rx(alpha) multiplied out; degrees and millimeters.
+/// Returns Rz(theta) Tz(d) Tx(a) Rx(alpha) multiplied out, in degrees and millimeters.
 Matrix4d dh(double theta_deg, double d, double a, double alpha_deg) {
   const double ct = std::cos(theta_deg * kDegree);
   const double st = std::sin(theta_deg * kDegree);
@@ -49,8 +49,8 @@ Matrix4d dh(double theta_deg, double d, double a, double alpha_deg) {
   return T;
 }
 
-// A chain with everything: a transform of several parts, a universal joint, a sliding joint,
-// offsets, ratios of both signs; and one more chain on the first degrees of freedom.
+// The chain has everything: a transform of several parts, a universal joint, a sliding joint,
+// offsets, ratios of both signs; and there is one more chain on the first degrees of freedom.
 const std::string kRobot = R"(<?xml version="1.0" ?>
 <robot type="Hand" DBName="Odd">
   <palm>palm.xml</palm>
@@ -111,7 +111,8 @@ TEST_CASE("GraspIt!'s chains are multiplied as Denavit and Hartenberg say", "[ha
       (Eigen::AngleAxisd(-pi / 2, Vector3d::UnitY()) * Eigen::AngleAxisd(pi / 2, Vector3d::UnitZ()))
           .toRotationMatrix();
   base.topRightCorner<3, 1>() << 10, 20, 30;
-  Matrix4d last = Matrix4d::Identity();  // (0.8 0.6 0 0): about x, sine 0.96, cosine 0.28
+  // The quaternion (0.8 0.6 0 0) is a turn about x with the sine 0.96 and the cosine 0.28.
+  Matrix4d last = Matrix4d::Identity();
   last.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0.28, -0.96, 0, 0.96, 0.28;
   last.topRightCorner<3, 1>() << 1, 2, 3;
   base = base * last;
@@ -120,7 +121,7 @@ TEST_CASE("GraspIt!'s chains are multiplied as Denavit and Hartenberg say", "[ha
   for (int k = 0; k < 100; ++k) {
     const HandConfiguration c = random_configuration(hand, random);
     const auto X_OL = hands::forward_kinematics(hand, c);
-    // Positions are without the offsets of theta and d, ratios included.
+    // Positions are without the offsets of theta and d, and include ratios.
     const auto q = [&](const char* name) { return c.q[hand.joint_index(name)]; };
     const Matrix4d first = base * dh(q("d0_chain0_joint0") / kDegree + 12, 4, 0, 90);
     const Matrix4d bar = first * dh(q("d1_chain0_joint1") / kDegree - 7.5, 0, 40, -30);
@@ -148,7 +149,7 @@ TEST_CASE("GraspIt!'s chains are multiplied as Denavit and Hartenberg say", "[ha
     check_mesh("chain0_bar", bar);
     check_mesh("slider", slider);
     check_mesh("chain1_bar", other);
-    CHECK(hand.links[0].mesh_L.faces.empty());  // palm.xml is not there
+    CHECK(hand.links[0].mesh_L.faces.empty());  // The file palm.xml is not there.
   }
 }
 
@@ -168,14 +169,14 @@ TEST_CASE("Joints on one degree of freedom follow the first, within the limits o
   CHECK(follower.coupling->ratio == Approx(0.5 / 2.0).epsilon(1e-15));
   CHECK(follower.coupling->offset == 0.0);
   CHECK(follower.coupling->breakaway);
-  // d1 from max(-10/2, 0/0.5) = 0 to min(90/2, 20/0.5) = 40: the leader 0 to 80, the follower its
-  // own 0 to 20.
+  // The range of d1 is from max(-10/2, 0/0.5) = 0 to min(90/2, 20/0.5) = 40: the leader moves from
+  // 0 to 80, the follower within its own 0 to 20.
   CHECK(leader.lower == 0.0);
   CHECK(leader.upper == Approx(80 * kDegree).epsilon(1e-12));
   CHECK(follower.upper == Approx(20 * kDegree).epsilon(1e-12));
   CHECK(mentions(reading.findings, hands::FindingKind::Note, "joint d1_chain0_joint1",
                  "limits narrowed"));
-  // Joints alone on their degree of freedom are as the file says, whatever their ratio.
+  // Joints that are alone on their degree of freedom are as the file says, whatever their ratio.
   CHECK_FALSE(joint(hand, "d2_chain0_joint2").coupling.has_value());
   CHECK(joint(hand, "d2_chain0_joint2").type == hands::JointType::Prismatic);
   CHECK(joint(hand, "d2_chain0_joint2").lower == Approx(-0.005));
@@ -225,16 +226,15 @@ TEST_CASE("A bad GraspIt! file gives one line with the file and the item", "[han
       "its links hang on 2 joints, but it has 3");
   bad("dynamicJointType=\"Universal\"", "dynamicJointType=\"Saddle\"", "dynamicJointType Saddle");
   bad("<joint type=\"Prismatic\">", "<joint type=\"Ball\">", "neither Revolute nor Prismatic");
-  // d1*0.5 at 60 to 80 degrees asks for d1 of 120 to 160, the other joint for at most 45.
+  // With d1*0.5 at 60 to 80 degrees d1 would be 120 to 160, with the other joint at most 45.
   bad("<minValue>0</minValue><maxValue>20</maxValue>",
       "<minValue>60</minValue><maxValue>80</maxValue>", "exclude each other");
 }
 
-// ---- Meshes of a URDF beside it
-// ---------------------------------------------------------------------
+// The following tests are about the meshes of a URDF beside the file.
 
-// A finger of two bones whose body files are not there, and the same as a URDF that counts its
-// angles from elsewhere, with its frames elsewhere and one axis the other way around.
+// A finger of two bones has body files that are not there. The same finger is a URDF that counts
+// its angles from elsewhere, with its frames elsewhere and one axis the other way around.
 const std::string kFinger = R"(<robot type="Hand">
   <palm>palm.xml</palm>
   <dof type="r"/><dof type="r"/>
@@ -250,8 +250,8 @@ const std::string kFinger = R"(<robot type="Hand">
 </robot>
 )";
 
-// At `turn` = 0 the bone lies along y: zero of d0 (30 degrees from x) is turn = -60 degrees. The
-// axis of `bend` is minus the chain's: limits -80 to 10 are its 80 to -10.
+// At `turn` = 0 the bone lies along y: the zero of d0 (30 degrees from x) is turn = -60 degrees.
+// The axis of `bend` is minus the chain's, so that limits -80 to 10 are its 80 to -10.
 const std::string kFingerUrdf = R"(<robot name="finger">
   <link name="mount"/>
   <link name="base"><visual><origin xyz="0 0 0.002"/><geometry><box size="0.03 0.03 0.01"/></geometry></visual></link>
@@ -329,7 +329,7 @@ TEST_CASE("A URDF whose joints stand elsewhere lends no mesh, and the finding sa
   check({with(kFingerUrdf, "<joint name=\"turn\" type=\"revolute\">",
               "<joint name=\"turn\" type=\"fixed\">")},
         "it has 1 joints, not 2");
-  // 40 um is within it: no finding.
+  // 40 um is within the tolerance and gives no finding.
   const TemporaryFolder folder;
   folder.write("other.urdf", with(kFingerUrdf, "0 0.05 -0.007", "0 0.05004 -0.007"));
   folder.write("finger.graspfit.json", least_sidecar("palm", "one", "d0_chain0_joint0", {}));

@@ -17,7 +17,7 @@
 
 namespace test_graspit_of_shared_hands {
 
-// The hands that GraspIt! ships, against the URDFs beside them and against ours.
+// These tests compare the hands that GraspIt! ships with the URDFs beside them and with ours.
 namespace {
 
 using namespace graspfit;
@@ -74,7 +74,7 @@ endsolid t
 )";
 
 /// A hand of the data folder, in a folder of its own with a sidecar that leaves its kinematics
-/// alone and small closed meshes in place of its own, which may be open.
+/// alone, and with small closed meshes in place of its own, which may be open.
 struct SharedHand {
   std::string folder, file, palm, link, joint;
   std::vector<std::string> closing = {};
@@ -109,7 +109,7 @@ hands::HandReading read_shared(const SharedHand& hand, const fs::path& file) {
   return hands::read_hand(copy);
 }
 
-/// Reads a hand of the data folder into `reading`, or skips.
+/// Reads a hand of the data folder into `reading`; skips if it is not there.
 #define READ_SHARED(reading, hand)                                                              \
   const auto reading##_file = testing::find_data("hands/" + (hand).folder + "/" + (hand).file); \
   if (!reading##_file) {                                                                        \
@@ -117,8 +117,8 @@ hands::HandReading read_shared(const SharedHand& hand, const fs::path& file) {
   }                                                                                             \
   const hands::HandReading reading = read_shared(hand, *reading##_file)
 
-/// Meshes of both stand at the same places when all joints, in the order of both files, have the
-/// same positions.
+/// Checks that meshes of both have the same poses when all joints, in the order of both files, have
+/// the same positions.
 void check_same_meshes(const hands::HandReading& xml, const HandModel& urdf, double tolerance) {
   const HandModel& hand = xml.model;
   REQUIRE(hand.joints.size() == urdf.joints.size());
@@ -128,7 +128,7 @@ void check_same_meshes(const hands::HandReading& xml, const HandModel& urdf, dou
     const HandConfiguration c = random_configuration(hand, random);
     const auto X_OL = hands::forward_kinematics(hand, c);
     const auto X_OU = hands::forward_kinematics(urdf, c);
-    std::size_t u = 0;  // links with meshes come in the same order
+    std::size_t u = 0;  // Links with meshes come in the same order.
     for (std::size_t l = 0; l < hand.links.size(); ++l) {
       const auto& mesh = hand.links[l].mesh_L;
       if (mesh.faces.empty()) continue;
@@ -166,7 +166,7 @@ TEST_CASE("GraspIt!'s Barrett is its URDF with the coupling that the URDF lost",
     CHECK(mentions(xml.findings, hands::FindingKind::Note, "link " + link.name,
                    "taken from Barrett.urdf"));
   }
-  // The URDF writes eight decimals: 5e-9 rad in each of six angles on 0.2 m.
+  // The URDF writes eight decimals, which leaves 5e-9 rad in each of six angles on 0.2 m.
   check_same_meshes(xml, urdf.model, 1e-8);
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("GraspIt!'s human hand is its URDF", "[hands][graspit][human_hand]") {
   READ_SHARED(urdf, kHumanUrdf);
   CHECK(xml.model.num_intrinsic_dof() == 20);
   // The thumb's base is a matrix with four decimals, 5e-5 in nine entries, of which the URDF takes
-  // some angles and we the nearest rotation: 1e-4 rad at most, on 0.15 m.
+  // some angles and we the nearest rotation. They differ by 1e-4 rad at most, on 0.15 m.
   check_same_meshes(xml, urdf.model, 1.5e-5);
 }
 
@@ -200,8 +200,8 @@ struct JointPair {
   double offset_deg;
 };
 
-/// The axes of all pairs in random configurations of `theirs`, moved by `X_HT` and, where a joint's
-/// name in ours starts with "thumb", by `thumb_shift` besides.
+/// Compares the axes of all pairs in random configurations of `theirs`, moved by `X_HT` and, where
+/// a joint's name in ours starts with "thumb", by `thumb_shift` besides.
 AxisDifference difference_of(const HandModel& ours, const HandModel& theirs,
                              const std::vector<JointPair>& pairs, const RigidTransform& X_HT,
                              const Vector3d& thumb_shift) {
@@ -248,17 +248,17 @@ std::vector<JointPair> barrett_pairs(double proximal_deg, double distal_deg) {
 TEST_CASE("GraspIt!'s Barrett and ours have the same axes", "[hands][graspit][barrett]") {
   READ_SHARED(xml, kBarrettXml);
   const HandModel ours = hands::find_hand("barrett");
-  // GraspIt!'s older file is of the BH8-262, ours of its BH8-280: the bases lie 2.32 mm lower (the
+  // GraspIt!'s older file is of the BH8-262, ours of its BH8-280. The bases lie 2.32 mm lower (the
   // thumb's 2.05 mm, and 0.8 mm aside), the proximal link starts at -2.46 and not at +5 degrees,
-  // the distal at 42.46 and not at 40. With that taken off, all axes agree to rounding.
+  // the distal one at 42.46 and not at 40. With that taken off, all axes agree to rounding.
   const RigidTransform lower = shift(0, 0, -3.32 + 1.0);
   const Vector3d thumb = kMillimeter * Vector3d(0.8, 0, -3.05 + 3.32);
   const AxisDifference explained =
       difference_of(ours, xml.model, barrett_pairs(5 + 2.46, 40 - 42.46), lower, thumb);
   CHECK(explained.place < 1e-12);
   CHECK(explained.direction < 1e-12);
-  // At equal joint positions the bases' 2.32 mm and 7.46 degrees of the 70 mm proximal link,
-  // a chord of 9.11 mm: the two together at most.
+  // At equal joint positions they differ by the bases' 2.32 mm and by 7.46 degrees of the 70 mm
+  // proximal link, a chord of 9.11 mm: by the two together at most.
   const AxisDifference plain = difference_of(ours, xml.model, barrett_pairs(0, 0),
                                              RigidTransform::Identity(), Vector3d::Zero());
   const double chord = 2 * 70 * std::sin(7.46 / 2 * kDegree) * kMillimeter;
@@ -287,9 +287,9 @@ TEST_CASE("Barrett's own URDF and ours have the same axes", "[hands][graspit][ba
   const AxisDifference difference =
       difference_of(ours, urdf.model, pairs, shift(0, 0, -3.32 - 41.5 - 33.9),
                     kMillimeter * Vector3d(0.8, 0, 0.27));
-  // Their second finger's proximal link is another, atan(3.4087 / 69.917) = 2.791 degrees: 0.335
-  // degrees on 70 mm are 0.41 mm. Right angles are written 1.5708, 4e-6 rad too large, twice on
-  // 0.2 m.
+  // Their second finger has another proximal link, atan(3.4087 / 69.917) = 2.791 degrees: 0.335
+  // degrees on 70 mm are 0.41 mm. Right angles are written 1.5708, 4e-6 rad too large, twice on 0.2
+  // m.
   const double other = std::atan2(3.4087, 69.917) - rise_deg * kDegree;
   CHECK(difference.place < 0.070 * other + 2e-6);
   CHECK(difference.place > 0.070 * other - 2e-6);
@@ -318,13 +318,13 @@ TEST_CASE("GraspIt!'s human hand and ours have the same axes and limits",
     CHECK(joint(ours, names[j]).upper == Approx(theirs.upper).epsilon(1e-12));
     pairs.push_back({names[j].c_str(), theirs.name.c_str(), 1, 0});
   }
-  // From GraspIt!'s palm frame to H, see SOURCE.md: x from z, y from -x - 130 mm, z from -y - 15
-  // mm.
+  // This takes GraspIt!'s palm frame to H, as hands/models/human_hand/SOURCE.md says: x from z, y
+  // from -x - 130 mm, z from -y - 15 mm.
   RigidTransform X_HT = shift(0, -130, -15);
   X_HT.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const AxisDifference difference = difference_of(ours, xml.model, pairs, X_HT, Vector3d::Zero());
-  // Ours has two decimals of a millimeter, 0.005 in each of three coordinates of the base and of
-  // two bones: 0.019 mm. The thumb's base is a matrix with four decimals, made orthonormal in
+  // Ours has two decimals of a millimeter: 0.005 in each of three coordinates of the base and of
+  // two bones are 0.019 mm. The thumb's base is a matrix with four decimals, made orthonormal in
   // different ways: 1e-4 rad on the 93 mm of its bones.
   CHECK(difference.place < 3e-5);
   CHECK(difference.direction < 1e-4);

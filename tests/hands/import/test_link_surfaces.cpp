@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using namespace graspfit;
 using hands::TriangleMesh;
 
-/// A gripper of two boxes and a base whose collision geometry is `parts`, and its findings.
+/// Reads a gripper of two boxes and a base whose collision geometry is `parts`, with its findings.
 class Gripper {
  public:
   explicit Gripper(const std::vector<TriangleMesh>& parts) {
@@ -126,12 +126,12 @@ TEST_CASE("A link that is a flat sheet is wrapped, and a sound part beside it st
   const Gripper alone({sheet});
   CHECK(geometry::analyze(alone.base()).is_closed);
   REQUIRE(alone.notes_on_base().size() == 1);
-  // 0.005 of 100 mm, as the note says.
+  // As the note says, the distance is 0.005 of 100 mm.
   CHECK(alone.notes_on_base()[0].find("wrapped at a distance of 0.5 mm") != std::string::npos);
   const auto away =
       geometry::hausdorff_distance(geometry::MeshQuery(alone.base()), geometry::MeshQuery(sheet));
   CHECK(away.upper >= 0.0005);
-  CHECK(away.lower <= 0.0025);  // corners stand a few offsets away
+  CHECK(away.lower <= 0.0025);  // Corners stand a few offsets away.
 
   const Gripper beside({geometry::concatenated({sheet, box})});
   const TriangleMesh& mesh = beside.base();

@@ -34,8 +34,8 @@ TEST_CASE("MJCF: includes, defaults, degrees and frames come out as written", "[
   CHECK((bend.axis - Vector3d(0, 0.6, 0.8)).norm() < 1e-15);
   CHECK(bend.lower == Approx(-kPi / 6).epsilon(1e-15));
   CHECK(bend.upper == Approx(kPi / 2).epsilon(1e-15));
-  // Turned about z by 0, then about the new y by 90, then about the new x by 30 degrees: x looks
-  // down, y lies in the parent's x-y plane.
+  // The frame is turned about z by 0, then about the new y by 90, then about the new x by 30
+  // degrees: x looks down, y lies in the parent's x-y plane.
   CHECK((bend.X_PJ.translation() - Vector3d(0.1, 0.2, 0.3)).norm() < 1e-15);
   CHECK((bend.X_PJ.linear().col(0) - Vector3d(0, 0, -1)).norm() < 1e-15);
   CHECK((bend.X_PJ.linear().col(1) - Vector3d(0.5, std::sqrt(0.75), 0)).norm() < 1e-15);
@@ -63,14 +63,14 @@ TEST_CASE("MJCF: a joint's anchor and ref move the link as MuJoCo does", "[hands
   CHECK(reading.joint("slide").parent == "f__turn");
   CHECK(reading.joint("slide").child == "f");
   CHECK(!reading.link("f__turn").inertia.has_value());
-  // An anchor on the axis through the origin is none; an unlimited hinge makes one turn.
+  // An anchor on the axis through the origin counts as none; an unlimited hinge makes one turn.
   const DescribedJoint& free = reading.joint("body_3_joint");
   CHECK(free.child == "body_3");
   CHECK(free.type == DescribedJoint::Type::Continuous);
   CHECK(free.lower == -kPi);
   CHECK(free.upper == kPi);
-  // A quarter turn beyond ref about (0.1, 0): the origin goes to (0.1, -0.1), x becomes y; then
-  // 3 cm along that.
+  // A quarter turn beyond ref about (0.1, 0) takes the origin to (0.1, -0.1) and x to y; the slide
+  // then goes 3 cm along that.
   const RigidTransform X =
       link_poses(reading.robot, {{"turn", 0.5 + kPi / 2}, {"slide", 0.05}}).at("f");
   CHECK((X.translation() - Vector3d(0.1, -0.07, 1.0)).norm() < 1e-15);
@@ -79,7 +79,7 @@ TEST_CASE("MJCF: a joint's anchor and ref move the link as MuJoCo does", "[hands
 
 TEST_CASE("MJCF: geoms of every kind become the shapes that they are", "[hands][mjcf]") {
   const TemporaryFolder folder;
-  // A tetrahedron of volume 1/6 beside the origin, as OBJ with two normals per corner.
+  // The mesh is a tetrahedron of volume 1/6 beside the origin, as OBJ with two normals per corner.
   folder.write("package.xml", "");
   folder.write("meshes/corner.obj",
                "v 2 0 0\nv 3 0 0\nv 2 1 0\nv 2 0 1\nvn 0 0 -1\nvn 1 0 0\n"
@@ -115,7 +115,7 @@ TEST_CASE("MJCF: geoms of every kind become the shapes that they are", "[hands][
   CHECK(reading.has(FindingKind::Note, "link palm: its planes"));
   CHECK(reading.has(FindingKind::Note, "single precision"));
 
-  // The mesh lies where the file says, though MuJoCo keeps it about its center of mass.
+  // The mesh is where the file says, though MuJoCo keeps it about its center of mass.
   const auto& loaded = std::get<LoadedMeshShape>(parts[5].shape);
   CHECK(loaded.filename == "../meshes/corner.obj");
   REQUIRE(loaded.mesh.vertices.size() == 4);
@@ -126,7 +126,7 @@ TEST_CASE("MJCF: geoms of every kind become the shapes that they are", "[hands][
   for (const Vector3d& corner : corners) {
     double nearest = 1.0;
     for (const Vector3d& v : mesh_L.vertices) nearest = std::min(nearest, (v - corner).norm());
-    CHECK(nearest < 1e-7);  // single precision of 0.3 m is 3e-8
+    CHECK(nearest < 1e-7);  // Single precision of 0.3 m is 3e-8.
   }
   CHECK(geometry::signed_volume(mesh_L) == Approx(0.1 * 0.1 * 0.2 / 6).epsilon(1e-5));
 }
@@ -140,13 +140,14 @@ TEST_CASE("MJCF: masses and inertias are turned into the link's frame", "[hands]
     </body>)")));
   const hands::LinkInertia& palm = *reading.link("palm").inertia;
   CHECK(palm.mass == Approx(0.2 * 0.4 * 0.6 * 100).epsilon(1e-14));
-  // Of a box: m (b² + c²) / 12.
+  // The moment of a box is m (b² + c²) / 12.
   CHECK(palm.inertia_L(0, 0) == Approx(4.8 * (0.16 + 0.36) / 12).epsilon(1e-14));
   CHECK(palm.inertia_L(2, 2) == Approx(4.8 * (0.04 + 0.16) / 12).epsilon(1e-14));
   const hands::LinkInertia& f = *reading.link("f").inertia;
   CHECK(f.mass == 2.0);
   CHECK(f.center_L == Vector3d(1, 2, 3));
-  // R = [c −s; s c] with c = −0.28, s = 0.96: Ixx = c² 0.1 + s² 0.2, Ixy = c s (0.1 − 0.2).
+  // With R = [c −s; s c], c = −0.28 and s = 0.96 it is Ixx = c² 0.1 + s² 0.2, Ixy = c s (0.1 −
+  // 0.2).
   CHECK(f.inertia_L(0, 0) == Approx(0.0784 * 0.1 + 0.9216 * 0.2).epsilon(1e-14));
   CHECK(f.inertia_L(0, 1) == Approx(-0.28 * 0.96 * (0.1 - 0.2)).epsilon(1e-14));
   CHECK(f.inertia_L(2, 2) == Approx(0.25).epsilon(1e-14));

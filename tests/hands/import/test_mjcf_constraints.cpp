@@ -16,16 +16,16 @@ TEST_CASE("MJCF: linear equalities become couplings that MuJoCo's constraints ac
     double ratio;
     double offset;
   };
-  // refs: ja 0, jb 0.25, jc −0.5
+  // The refs are ja 0, jb 0.25 and jc −0.5.
   const std::vector<Case> cases = {
       {R"(<equality><joint joint1="ja" joint2="jb"/></equality>)", "ja", "jb", 1.0, -0.25},
       {R"(<equality><joint joint1="jb" joint2="jc" polycoef=".1 -2 0 0 0"/></equality>)", "jb",
        "jc", -2.0, 0.25 + 0.1 + 2.0 * -0.5},
-      // 2 (ja − 0) + 4 (jb − 0.25) = 0.4
+      // The equation is 2 (ja − 0) + 4 (jb − 0.25) = 0.4.
       {R"(<tendon><fixed name="t"><joint joint="ja" coef="2"/><joint joint="jb" coef="4"/></fixed></tendon>
           <equality><tendon tendon1="t" polycoef=".4 0 0 0 0"/></equality>)",
        "jb", "ja", -0.5, 0.25 + 0.1},
-      // 2 (jc + 0.5) = 0.1 + 3 · 4 (ja − 0)
+      // The equation is 2 (jc + 0.5) = 0.1 + 3 · 4 (ja − 0).
       {R"(<tendon><fixed name="t"><joint joint="jc" coef="2"/></fixed>
                   <fixed name="u"><joint joint="ja" coef="4"/></fixed></tendon>
           <equality><tendon tendon1="t" tendon2="u" polycoef=".1 3 0 0 0"/></equality>)",
@@ -53,7 +53,8 @@ TEST_CASE("MJCF: linear equalities become couplings that MuJoCo's constraints ac
 
 TEST_CASE("MJCF: a curved equality becomes the nearest line, and is said to", "[hands][mjcf]") {
   const TemporaryFolder folder;
-  // jb − 0.25 = ja²; over 0 to 1 the nearest line to x² is x − 1/6, off by 1/6 at both ends.
+  // The equation is jb − 0.25 = ja²; over 0 to 1 the nearest line to x² is x − 1/6, off by 1/6 at
+  // both ends.
   const Reading square = read(folder.write(
       "square.xml",
       mjcf(
@@ -63,7 +64,8 @@ TEST_CASE("MJCF: a curved equality becomes the nearest line, and is said to", "[
   CHECK(square.joint("jb").coupling->offset == Approx(0.25 - 1.0 / 6).epsilon(1e-14));
   CHECK(square.has(FindingKind::Suspicious, "equality e: is a curve between joints ja and jb"));
   CHECK(square.has(FindingKind::Suspicious, "up to 0.1666"));
-  // All powers of x = jb − 0.25, against the normal equations of many samples of jb from 0 to 2.
+  // The polynomial has all powers of x = jb − 0.25; the reference is the normal equations of many
+  // samples of jb from 0 to 2.
   const Reading quartic = read(folder.write(
       "quartic.xml",
       mjcf(
@@ -94,19 +96,19 @@ TEST_CASE("MJCF: a tendon with an actuator closes its joints together, and lets 
       "hand.xml",
       mjcf(kTwoFingers, pulls + R"(<actuator><position name="m" tendon="t"/></actuator>)")));
   CHECK(!driven.joint("ja").coupling.has_value());
-  const auto& same_way = driven.joint("jb").coupling;  // 0..1 and 0..2
+  const auto& same_way = driven.joint("jb").coupling;  // The ranges are 0..1 and 0..2.
   REQUIRE(same_way.has_value());
   CHECK(same_way->joint == "ja");
   CHECK(same_way->multiplier == 2.0);
   CHECK(same_way->offset == 0.0);
   CHECK(same_way->breakaway);
-  const auto& other_way = driven.joint("jc").coupling;  // 0..1 and 0..−1
+  const auto& other_way = driven.joint("jc").coupling;  // The ranges are 0..1 and 0..−1.
   REQUIRE(other_way.has_value());
   CHECK(other_way->multiplier == -1.0);
   CHECK(other_way->offset == 0.0);
   CHECK(driven.has(FindingKind::Note, "tendon t: is driven by actuator m and shared by joints ja"));
 
-  // Joints with actuators or leaders of their own are left as they are; so is an idle tendon.
+  // Joints with actuators or leaders of their own stay as they are; so does an idle tendon.
   const Reading own = read(folder.write(
       "own.xml", mjcf(kTwoFingers, pulls + R"(<equality><joint joint1="jb" joint2="ja"/></equality>
                       <actuator><motor tendon="t"/><motor joint="jc"/></actuator>)")));
@@ -124,7 +126,7 @@ TEST_CASE("MJCF: constraints that no coupling says are held, left out, and said"
   };
   const Reading held = with(R"(<equality><joint joint1="jb" joint2="ja" polycoef="0 2 0 0 0"/>
       <joint joint1="ja" polycoef=".5 0 0 0 0"/></equality>)");
-  // ja is held at 0.5, so its follower at 0.25 + 1.
+  // Since ja is held at 0.5, its follower is at 0.25 + 1.
   CHECK(held.joint("ja").type == DescribedJoint::Type::Fixed);
   CHECK(held.joint("jb").type == DescribedJoint::Type::Fixed);
   const Reading loose = with("");
@@ -155,7 +157,7 @@ TEST_CASE("MJCF: constraints that no coupling says are held, left out, and said"
 TEST_CASE("MJCF: <exclude>, contype and conaffinity exclude pairs, <pair> includes them",
           "[hands][mjcf]") {
   const TemporaryFolder folder;
-  // Bits: a 1/1, b 2/2, c 1/2 (meets both), d none (only seen).
+  // The bits are: a 1/1, b 2/2, c 1/2 (which meets both), d none (which is only seen).
   const std::string bodies = R"(
     <body name="a"><geom name="ga" size=".1" contype="1" conaffinity="1"/>
       <body name="b"><joint name="jb" axis="0 0 1"/><geom name="gb" size=".1" contype="2" conaffinity="2"/></body>

@@ -15,16 +15,17 @@ TEST_CASE("MJCF: the root is what the hand hangs on, and scenery stays away", "[
   const std::string joint = R"(<joint axis="0 0 1"/><geom size=".1"/>)";
   const std::string finger = R"(<body name="f">)" + joint + "</body>";
   const std::vector<Case> cases = {
-      // a hand that floats, over a floor, with a ball and a table
+      // This is a hand that floats, over a floor, with a ball and a table.
       {R"(<geom type="plane" size="1 1 1"/><body name="palm"><freejoint/><geom size=".1"/>)" +
            finger + R"(</body><body name="ball"><freejoint/><geom size=".1"/></body>
            <body name="table"><geom type="box" size="1 1 .1"/></body>)",
        {"palm", "f"}},
-      // a mount without joints
+      // This is a mount without joints.
       {R"(<geom type="box" size="1 1 .1"/><body name="mount"><body name="palm"><geom size=".1"/>)" +
            finger + "</body></body>",
        {"mount", "palm", "f"}},
-      // as MuJoCo's URDF reader leaves it: the palm is the world's, one fingertip fixed to it
+      // This is as MuJoCo's URDF reader leaves it: the palm is the world's, one fingertip is fixed
+      // to it.
       {R"(<geom type="box" size=".1 .1 .1"/>)" + finger + R"(<body name="g">)" + joint +
            R"(</body><body name="bump"><geom size=".1"/></body><body name="target" mocap="true"/>)",
        {"world", "f", "g", "bump"}},
@@ -42,7 +43,7 @@ TEST_CASE("MJCF: the root is what the hand hangs on, and scenery stays away", "[
   CHECK(first.has(FindingKind::Note, "link palm: its free joint is left out"));
 }
 
-/// Numbers as 1.234,5.
+/// Writes numbers as 1.234,5.
 struct CommaNumbers : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
   char do_thousands_sep() const override { return '.'; }

@@ -7,8 +7,8 @@ namespace {
 using namespace graspfit;
 using namespace graspfit::testing;
 
-/// Decimals that MuJoCo's XML writer keeps, while it lives. The library exports the setting for its
-/// own tests and declares it nowhere; where it is not there, nothing changes.
+/// Sets the decimals that MuJoCo's XML writer keeps, while it lives. The library exports the
+/// setting for its own tests and declares it nowhere; where it is not there, nothing changes.
 class WriterDigits {
  public:
   explicit WriterDigits(int digits) {
@@ -34,10 +34,10 @@ class WriterDigits {
   bool is_set_ = false;
 };
 
-/// `urdf` beside itself as MuJoCo writes it, `hand.xml`. What MuJoCo refuses of the shared hands is
-/// told to it or changed first: paths of meshes are kept; links without mass get some, which moving
-/// bodies must have; the visual geometry goes, since two mesh files of one name (visual and
-/// collision) are one to MuJoCo.
+/// Writes `urdf` beside itself as MuJoCo writes it, `hand.xml`. What MuJoCo refuses of the shared
+/// hands is told to it or changed first: paths of meshes are kept; links without mass get some,
+/// which moving bodies must have; the visual geometry goes, since two mesh files of one name
+/// (visual and collision) are one to MuJoCo.
 fs::path converted_by_mujoco(const fs::path& urdf, bool fuses) {
   tinyxml2::XMLDocument document;
   REQUIRE(document.LoadFile(urdf.c_str()) == tinyxml2::XML_SUCCESS);
@@ -77,10 +77,11 @@ fs::path converted_by_mujoco(const fs::path& urdf, bool fuses) {
 TEST_CASE("MJCF: what MuJoCo writes of each shared URDF stands as the URDF does", "[hands][mjcf]") {
   struct Hand {
     std::string urdf;
-    std::size_t links;  ///< Of the same name when fixed ones are kept.
-    std::size_t fused;  ///< And when MuJoCo fuses them with their parents.
+    std::size_t links;  ///< Number of links of the same name when fixed ones are kept.
+    std::size_t fused;  ///< The same when MuJoCo fuses them with their parents.
   };
-  // Movable joints of SOURCES.md; each moves one link, which fusing keeps.
+  // The counts are the movable joints of SOURCES.md in the data folder; each moves one link, which
+  // fusing keeps.
   const std::vector<Hand> all = {{"robotiq_2f_85/robotiq_2f_85.urdf", 12, 6},
                                  {"panda_gripper/franka_panda.urdf", 4, 2},
                                  {"barrett_hand/bhand_model.urdf", 9, 8},
@@ -93,8 +94,8 @@ TEST_CASE("MJCF: what MuJoCo writes of each shared URDF stands as the URDF does"
     double tolerance;
     int configurations;
   };
-  // MuJoCo writes 6 significant digits unless told otherwise: 5e-7 of each number, and some ten of
-  // them, quaternions included, stand between the palm and a fingertip. Measured: 1.5e-6.
+  // MuJoCo writes 6 significant digits unless told otherwise: this is 5e-7 of each number, and some
+  // ten of them, quaternions included, are between the palm and a fingertip. Measured was 1.5e-6.
   for (const Digits writer : {Digits{17, 1e-9, 1000}, Digits{6, 1e-5, 100}}) {
     const WriterDigits digits(writer.digits);
     if (writer.digits == 17 && !digits.is_set()) continue;
@@ -120,7 +121,7 @@ TEST_CASE("MJCF: what MuJoCo writes of each shared URDF stands as the URDF does"
         for (int i = 0; i < writer.configurations; ++i) {
           const Positions q = random_positions(original, random);
           Poses expected = link_poses(original, q);
-          // A fixed link above a jointless body is the world's, and not kept.
+          // A fixed link above a body without joints is the world's, and not kept.
           if (const auto root = expected.find(robot.links[0].name); root != expected.end()) {
             const RigidTransform X_RO = root->second.inverse();
             for (auto& [name, X] : expected) X = X_RO * X;

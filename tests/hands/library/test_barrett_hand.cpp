@@ -54,7 +54,8 @@ TEST_CASE("The Barrett hand has four independent joints, three fingers, a thumb 
 }
 
 TEST_CASE("Joint limits of the Barrett hand are the published ones", "[hands][barrett]") {
-  // Spread 0 to 180, proximal 0 to 140, distal 0 to 48 degrees (jhu-lcsr/barrett_model, GraspIt!).
+  // The ranges are spread 0 to 180, proximal 0 to 140, distal 0 to 48 degrees
+  // (jhu-lcsr/barrett_model, GraspIt!).
   for (const hands::Joint& joint : barrett().joints) {
     CAPTURE(joint.name);
     CHECK(joint.lower == 0.0);
@@ -89,8 +90,8 @@ TEST_CASE("Link meshes are closed, manifold, outward and free of self-intersecti
 }
 
 TEST_CASE("Link meshes have the stated sizes", "[hands][barrett]") {
-  // Extents of GraspIt!'s meshes: palm 89 x 109 x 90 to 96, proximal 92 x 26 x 19 to 21, distal
-  // 68 x 20 x 23 mm. Ours follow to 1 mm.
+  // GraspIt!'s meshes have the extents palm 89 x 109 x 90 to 96, proximal 92 x 26 x 19 to 21,
+  // distal 68 x 20 x 23 mm. Ours follow to 1 mm.
   const auto check = [](const char* name, const Vector3d& low, const Vector3d& high) {
     CAPTURE(name);
     const Vector3d size = geometry::bounding_box(link(name).mesh_L).sizes() * 1000;
@@ -99,13 +100,13 @@ TEST_CASE("Link meshes have the stated sizes", "[hands][barrett]") {
     CHECK(((high - size).array() > -1.0).all());
   };
   check("palm", {89, 109, 90}, {89, 109, 96});
-  // D_w of Barrett's wiki: 76 mm from the wrist plane to the knuckle axes, which GraspIt! puts 3.32
-  // mm below the palm.
+  // D_w of Barrett's wiki is 76 mm from the wrist plane to the knuckle axes, which GraspIt! puts
+  // 3.32 mm below the palm.
   CHECK(geometry::bounding_box(link("palm").mesh_L).min().z() ==
         Approx(-0.076 - 0.00332).margin(1e-9));
   check("finger_1_proximal_link", {92, 26, 19}, {92, 26, 21});
   check("thumb_distal_link", {68, 20, 23}, {68, 20, 23});
-  // Knuckle: cylinder r 15 x 24 at its end (jhu-lcsr/barrett_model).
+  // The knuckle is a cylinder r 15 x 24 at its end (jhu-lcsr/barrett_model).
   const Eigen::AlignedBox3d knuckle = geometry::bounding_box(link("finger_2_knuckle").mesh_L);
   CHECK(knuckle.sizes().y() == Approx(0.024).margin(1e-6));
   CHECK(knuckle.max().z() == Approx(0.015).margin(2e-4));
@@ -113,7 +114,7 @@ TEST_CASE("Link meshes have the stated sizes", "[hands][barrett]") {
 }
 
 TEST_CASE("Links of the Barrett hand have the published masses", "[hands][barrett]") {
-  // jhu-lcsr/barrett_model, models/hand.urdf.xacro [kg].
+  // The masses are those of jhu-lcsr/barrett_model, models/hand.urdf.xacro [kg].
   for (const Link& l : barrett().links) {
     CAPTURE(l.name);
     REQUIRE(l.inertia.has_value());
@@ -131,24 +132,26 @@ TEST_CASE("Every pad is a flat part of its link's mesh: a contact of the pad is 
     CAPTURE(pad.name);
     const Link& l = barrett().links[static_cast<std::size_t>(pad.link)];
     const RigidTransform X_CL = pad.X_LC.inverse();
-    // Coordinates in the files have 10 decimals: planes agree to 1e-9 m.
+    // Coordinates in the files have 10 decimals, so that planes agree to 1e-9 m.
     constexpr double kTolerance = 1e-9;
     double covered = 0.0;
     const geometry::ConvexVolume slab = hands::transformed(
         [&] {
           geometry::ConvexVolume v = hands::clip_volume_C(pad, 1.0);
-          v[v.size() - 2].offset = kTolerance;  // −z ≤ tolerance: keep what lies in the plane
+          // −z ≤ tolerance keeps what lies in the plane.
+          v[v.size() - 2].offset = kTolerance;
           return v;
         }(),
         pad.X_LC);
     for (std::size_t f = 0; f < l.mesh_L.faces.size(); ++f) {
       const auto piece = geometry::clip(geometry::corners(l.mesh_L, f), slab);
       // Faces that only border on the pad leave slivers as thin as the tolerance.
-      constexpr double kSliver = 1e-9;  // [m²]; 52 mm x 1e-9 m is twenty times smaller
+      // The unit is m²; 52 mm x 1e-9 m is twenty times smaller.
+      constexpr double kSliver = 1e-9;
       if (!piece || piece->area < kSliver) continue;
-      // Above the pad's outline nothing stands out of the pad's plane ...
+      // Above the pad's outline nothing stands out of the pad's plane.
       for (const Vector3d& corner : piece->polygon) CHECK((X_CL * corner).z() < kTolerance);
-      // ... and what lies in it faces outward.
+      // What lies in the pad's plane faces outward.
       CHECK((X_CL.linear() * geometry::face_normal(l.mesh_L, f)).z() > 1 - 1e-9);
       covered += piece->area;
     }
@@ -157,13 +160,13 @@ TEST_CASE("Every pad is a flat part of its link's mesh: a contact of the pad is 
 }
 
 TEST_CASE("Pads of the Barrett hand have the stated sizes", "[hands][barrett]") {
-  // 52 x 23 mm: the inner pad box of jhu-lcsr/barrett_model.
+  // The inner pad box of jhu-lcsr/barrett_model is 52 x 23 mm.
   const ContactPad& tip = barrett().pads[static_cast<std::size_t>(*barrett().fingers[0].tip_pad)];
   CHECK(hands::pad_area(tip) == Approx(0.052 * 0.023).epsilon(1e-9));
   CHECK(hands::largest_boundary_distance(tip) == Approx(0.0115).epsilon(1e-9));
-  // The pad's plane is tangent to the base cylinder: 9.5 mm from the distal axis, Barrett's D3.
+  // The pad's plane is tangent to the base cylinder, 9.5 mm from the distal axis, Barrett's D3.
   CHECK(tip.X_LC.translation().dot(tip.X_LC.linear().col(2)) == Approx(0.0095).epsilon(1e-9));
-  // Palm: 76 x 46 mm with cut corners, less an edge of 1.5 mm.
+  // The palm is 76 x 46 mm with cut corners, less an edge of 1.5 mm.
   const ContactPad& palm = barrett().pads[static_cast<std::size_t>(*barrett().palm.pad)];
   CHECK(palm.outline.size() == 8);
   CHECK(hands::largest_boundary_distance(palm) == Approx(0.0215).epsilon(1e-9));
@@ -171,7 +174,7 @@ TEST_CASE("Pads of the Barrett hand have the stated sizes", "[hands][barrett]") 
 
 TEST_CASE("The reach of the Barrett hand covers its fingertips and little more",
           "[hands][barrett]") {
-  // At a spread of 90 degrees finger 1 lies along x from its base at 25 mm: every vertex of the
+  // At a spread of 90 degrees finger 1 lies along x from its base at 25 mm. Every vertex of the
   // hand is within the bound, which straightens the finger: 25.2 + 50 + 70 + at most 59.5 mm to the
   // palm center.
   const double reach = hands::largest_reach(barrett());
@@ -186,7 +189,7 @@ TEST_CASE("The reach of the Barrett hand covers its fingertips and little more",
       farthest = std::max(farthest, (X_OL[i] * vertex).norm());
     }
   }
-  CHECK(farthest > 0.188);  // the tip point alone: 25 + 162.8
+  CHECK(farthest > 0.188);  // The tip point alone is at 25 + 162.8.
   CHECK(farthest <= reach);
 }
 

@@ -32,7 +32,7 @@ double difference(const RigidTransform& a, const RigidTransform& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
 }
 
-/// Two links and a joint, with the least that a hand needs.
+/// Returns two links and a joint, with the least that a hand needs.
 HandModel two_links() {
   HandModel hand;
   hand.name = "pair";
@@ -58,7 +58,7 @@ HandModel two_links() {
   return hand;
 }
 
-/// Everything that an export promises to keep.
+/// Checks everything that an export promises to keep.
 void require_same(const HandModel& a, const HandModel& b) {
   CHECK(b.name == a.name);
   REQUIRE(b.links.size() == a.links.size());
@@ -152,10 +152,11 @@ TEST_CASE("Exporting twice gives the same bytes, and what is exported of the exp
     names.insert(files[i].filename());
     const std::string bytes = base::read_file(files[i]);
     CHECK(base::read_file(again[i]) == bytes);
-    // Angles and quaternions are rounded once more, so only the surfaces must be the same bytes.
+    // Angles and quaternions are rounded once more, so that only the surfaces must be the same
+    // bytes.
     if (files[i].extension() == ".obj") CHECK(base::read_file(third[i]) == bytes);
   }
-  // One file per link with a surface, the URDF and the sidecar, and nothing else is left there.
+  // There are one file per link with a surface, the URDF and the sidecar, and nothing else is left.
   const auto num_surfaces =
       std::count_if(hand.links.begin(), hand.links.end(),
                     [](const hands::Link& link) { return !link.mesh_L.faces.empty(); });

@@ -60,14 +60,14 @@ fs::path write_hand(const Folder& folder, const std::string& urdf = kUrdf,
   return folder.write("pinch.urdf", urdf);
 }
 
-/// `text` with the only occurrence of `old` replaced.
+/// Returns `text` with the only occurrence of `old` replaced.
 std::string with(std::string text, const std::string& old, const std::string& fresh) {
   const std::size_t at = text.find(old);
   REQUIRE(at != std::string::npos);
   return text.replace(at, old.size(), fresh);
 }
 
-/// Reading throws `Exception` with one line that names the file and contains `about`.
+/// Checks that reading throws `Exception` with one line that names the file and contains `about`.
 template <typename Exception>
 void check_refused(const fs::path& file, const std::string& names_file, const std::string& about) {
   CAPTURE(about);
@@ -105,17 +105,18 @@ TEST_CASE("A small description is read as it is written", "[hands][hand_io]") {
   REQUIRE(turn.coupling.has_value());
   CHECK(turn.coupling->ratio == -2.0);
   CHECK(turn.coupling->offset == 0.5);
-  CHECK(turn.closing_sign == 1);  // follows a closing joint of sign −1 by a negative ratio
+  // It follows a closing joint of sign −1 by a negative ratio.
+  CHECK(turn.closing_sign == 1);
   CHECK(hand.palm.direction_H == Vector3d(0, 0, 1));
   CHECK(!hand.palm.pad);
   CHECK(hand.fingers[0].tip_pad == 0);
   CHECK(!hand.fingers[1].tip_pad);
   CHECK(hand.is_excluded(0, 1));
-  CHECK(hand.is_excluded(1, 2));  // fixed to each other
+  CHECK(hand.is_excluded(1, 2));  // They are fixed to each other.
   CHECK_FALSE(hand.is_excluded(0, 2));
   CHECK_FALSE(hand.pads[0].clip_thickness.has_value());
   CHECK((hand.pads[0].X_LC.linear().col(2) - Vector3d(1, 0, 0)).norm() < 1e-12);
-  // Primitives: the box exactly, the cylinder inscribed and moved.
+  // Of the primitives the box is exact, the cylinder inscribed and moved.
   CHECK(geometry::signed_volume(hand.links[0].mesh_L) == Approx(0.1 * 0.1 * 0.02));
   CHECK(geometry::bounding_box(hand.links[1].mesh_L).min().z() == Approx(0.0).margin(1e-12));
   CHECK(geometry::bounding_box(hand.links[1].mesh_L).max().z() == Approx(0.1));
@@ -169,7 +170,7 @@ TEST_CASE("Meshes may lie in a folder meshes beside the description's own, and n
     CAPTURE(name);
     CHECK_THROWS_AS(hand_of(name), base::InvalidInput);
   }
-  // A folder that only looks as if it were there.
+  // This folder only looks as if it were there.
   fs::remove_all(folder.path() / "clone/meshes");
   fs::create_directory_symlink(folder.path() / "clone/other", folder.path() / "clone/meshes");
   CHECK_THROWS_AS(hand_of("../meshes/part.obj"), base::InvalidInput);
@@ -214,7 +215,7 @@ TEST_CASE("The sidecar's couplings override <mimic>, and chains lead to the firs
     <limit lower="0" upper="1"/><mimic joint="turn" multiplier="3" offset="0.1"/></joint>
 </robot>)");
   const HandModel chained = hands::read_hand_model(write_hand(folder, chain));
-  // 3 (-2 q + 0.5) + 0.1
+  // The equation is 3 (-2 q + 0.5) + 0.1.
   CHECK(chained.joints[2].coupling->leader == 0);
   CHECK(chained.joints[2].coupling->ratio == -6.0);
   CHECK(chained.joints[2].coupling->offset == Approx(1.6));
@@ -375,7 +376,7 @@ TEST_CASE("Masses are read where they are given, inertia turned into the link's 
         folder,
         with(kUrdf, old, "<link name=\"right\"><inertial>" + inertial + "</inertial></link>"));
   };
-  // A quarter turn about z swaps x and y: ixx and iyy change places, ixy its sign.
+  // A quarter turn about z swaps x and y: ixx and iyy are swapped, and ixy has the other sign.
   const HandModel hand = hands::read_hand_model(
       hand_with(R"(<origin xyz="0.1 0 -0.2" rpy="0 0 1.5707963267948966"/><mass value="0.25"/>
                    <inertia ixx="1e-4" ixy="2e-5" ixz="0" iyy="3e-4" iyz="0" izz="4e-4"/>)"));
@@ -395,7 +396,7 @@ TEST_CASE("Masses are read where they are given, inertia turned into the link's 
                                     "is not finite");
 }
 
-/// Decimal comma, as in many countries.
+/// Writes a decimal comma, as in many countries.
 class DecimalComma : public std::numpunct<char> {
  protected:
   char do_decimal_point() const override { return ','; }
@@ -406,7 +407,8 @@ TEST_CASE("Numbers are read the same in a locale with a decimal comma", "[hands]
   const fs::path file = write_hand(folder);
   const std::locale old = std::locale::global(std::locale(std::locale(), new DecimalComma));
   const std::string old_c = std::setlocale(LC_ALL, nullptr);
-  std::setlocale(LC_ALL, "de_DE.UTF-8");  // without effect where it is not installed
+  // This has no effect where the locale is not installed.
+  std::setlocale(LC_ALL, "de_DE.UTF-8");
   const HandModel hand = hands::read_hand_model(file);
   std::setlocale(LC_ALL, old_c.c_str());
   std::locale::global(old);

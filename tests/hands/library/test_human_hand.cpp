@@ -26,7 +26,8 @@ const HandModel& human() {
   return hand;
 }
 
-/// GraspIt!, models/robots/HumanHand/HumanHand20DOF.xml: mm and degrees in its palm frame G.
+/// The numbers are those of GraspIt!, models/robots/HumanHand/HumanHand20DOF.xml, in mm and degrees
+/// in its palm frame G.
 struct Digit {
   const char* name;
   Vector3d base_G;
@@ -38,8 +39,8 @@ const Digit kFingers[] = {{"index", {-140.06, 11.20, 36.42}, {43.19, 29.56, 25.3
                           {"ring", {-145.66, 5.60, -19.61}, {39.12, 28.31, 24.48}, 20},
                           {"little", {-134.46, -8.40, -42.02}, {29.91, 21.10, 23.16}, 30}};
 
-/// From G (fingers along -x, palm direction -y, thumb side +z) to H (thumb side x, fingers y, palm
-/// direction z), whose origin is G's approach reference (-130, -15, 0).
+/// Takes a point from G (fingers along -x, palm direction -y, thumb side +z) to H (thumb side x,
+/// fingers y, palm direction z), whose origin is G's approach reference (-130, -15, 0).
 Vector3d in_H(const Vector3d& p_G) { return {p_G.z(), -p_G.x() - 130, -p_G.y() - 15}; }
 
 const hands::Joint& joint(const HandModel& hand, const std::string& name) {
@@ -96,10 +97,11 @@ TEST_CASE("Straight and fully bent fingers end where their bones add up to",
     return Vector3d(pose(human(), c, std::string(finger.name) + "_distal") *
                     Vector3d(finger.bones[2] * kMillimeter, 0, 0) / kMillimeter);
   };
-  // Straight, the middle finger: base (8.40, 15.66, -26.20) and 46.20 + 30.99 + 29.20 along y.
+  // Straight, the middle finger has its base at (8.40, 15.66, -26.20) and 46.20 + 30.99 + 29.20
+  // along y.
   CHECK((tip(kFingers[1]) - Vector3d(8.40, 122.05, -26.20)).norm() < 1e-9);
   CHECK((tip(kFingers[3]) - Vector3d(-42.02, 78.63, -6.60)).norm() < 1e-9);
-  // All three joints at 90 degrees: up, back, down.
+  // With all three joints at 90 degrees the bones go up, back and down.
   for (const Digit& finger : kFingers) {
     for (const char* flexion : {"_mcp", "_pip", "_dip"}) {
       c.q[human().joint_index(std::string(finger.name) + flexion)] = pi / 2;
@@ -117,7 +119,7 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
     m.topLeftCorner<2, 2>() << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
     return m;
   };
-  // Rz(theta) Tx(a) Rx(alpha), mm and degrees.
+  // Returns Rz(theta) Tx(a) Rx(alpha), in mm and degrees.
   const auto dh = [&](double theta, double a, double alpha) {
     Matrix4d m = Matrix4d::Identity();
     m(0, 3) = a;
@@ -126,13 +128,14 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
     return Matrix4d(rotation_z(theta * kDegree) * m);
   };
   Matrix4d base = Matrix4d::Identity();
-  // The file gives the rotation with four digits: x as it stands, y made orthogonal to it.
+  // The file gives the rotation with four digits; x is as it stands, y is made orthogonal to it.
   Matrix3d in_file;
   in_file << -0.1486, 0.2665, -0.9522, -0.9003, 0.3618, 0.2418, 0.4089, 0.8933, 0.1862;
   const Vector3d x = in_file.col(0).normalized();
   const Vector3d y = (in_file.col(1) - x.dot(in_file.col(1)) * x).normalized();
   base.topLeftCorner<3, 3>() << x, y, x.cross(y);
-  REQUIRE((base.topLeftCorner<3, 3>() - in_file).norm() < 3e-4);  // nine entries, twice 5e-5 each
+  // There are nine entries, each off by twice 5e-5.
+  REQUIRE((base.topLeftCorner<3, 3>() - in_file).norm() < 3e-4);
   base.topRightCorner<3, 1>() << -50.62, -11.51, 18.93;
 
   base::Random random(17);
@@ -146,7 +149,8 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
     const auto q = [&](const std::string& name) { return c.q[human().joint_index(name)]; };
     for (const Digit& finger : kFingers) {
       const std::string name = finger.name;
-      // Turned by the abduction toward the thumb (x), then flexed out of the palm's plane (z).
+      // The bone is turned by the abduction toward the thumb (x), then flexed out of the palm's
+      // plane (z).
       const double a = q(name + "_abduction");
       double flexion = 0.0;
       Vector3d expected = in_H(finger.base_G);
@@ -174,7 +178,7 @@ TEST_CASE("Fingertips agree with trigonometry and the thumb with GraspIt!'s D-H 
 }
 
 TEST_CASE("The smaller hands are the human hand scaled to their lengths", "[hands][human_hand]") {
-  // Wrist crease (40 mm from G's origin) to the tip of the middle finger.
+  // The length is from the wrist crease (40 mm from G's origin) to the tip of the middle finger.
   const double native = 145.66 - 40 + 46.20 + 30.99 + 29.20;
   for (const auto& [name, length] :
        {std::pair<std::string, double>{"human_hand_medium", 185}, {"human_hand_small", 165}}) {

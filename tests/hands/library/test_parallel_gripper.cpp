@@ -33,8 +33,8 @@ TEST_CASE("Stroke and pads of the grippers are the published ones", "[hands][par
   for (const Row& row :
        {// Robotiq 2F-85: stroke by its name; pad 22 x 37.5 mm in MuJoCo Menagerie.
         Row{"parallel_gripper", 0.085, 0.022, 0.0375, 0.062},
-        // franka_hand.xacro: 0 to 40 mm per finger, rubber tip 17.5 wide and 18.5 long, grasp point
-        // 103.4 mm from the flange; our body's top is 65 mm from it.
+        // franka_hand.xacro has 0 to 40 mm per finger, a rubber tip 17.5 wide and 18.5 long, and
+        // the grasp point 103.4 mm from the flange; our body's top is 65 mm from it.
         Row{"franka_gripper", 0.080, 0.0175, 0.0185, 0.1034 - 0.065}}) {
     CAPTURE(row.name);
     const HandModel hand = hands::find_hand(row.name);

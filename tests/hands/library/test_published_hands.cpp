@@ -9,8 +9,8 @@
 
 namespace test_published_hands {
 
-// The shipped hands against published numbers that they were not written from, or measured on
-// their meshes instead of their joints.
+// These tests compare the shipped hands with published numbers that they were not written from, or
+// that are measured on their meshes instead of their joints.
 namespace {
 
 using namespace graspfit;
@@ -23,20 +23,21 @@ using std::numbers::pi;
 constexpr double kDegree = pi / 180.0;
 constexpr double kMillimeter = 1e-3;
 
-/// Craig's link transform: Rx(alpha) Tx(a) Rz(theta) Tz(d), the one of Barrett's manual.
+/// Returns Craig's link transform, Rx(alpha) Tx(a) Rz(theta) Tz(d), as in Barrett's manual.
 RigidTransform modified_dh(double a, double alpha, double d, double theta) {
   return RigidTransform(Eigen::AngleAxisd(alpha, Vector3d::UnitX())) *
          Eigen::Translation3d(a, 0, 0) * Eigen::AngleAxisd(theta, Vector3d::UnitZ()) *
          Eigen::Translation3d(0, 0, d);
 }
 
-/// The tip of finger k (0, 1, 2 for F1, F2 and the thumb F3) by the table of the BH8-262 manual,
-/// p. 75, in its wrist frame [mm], with the bend of the BH8-280 (-2.46 and 42.46 degrees) and
-/// GraspIt!'s tip, 56 mm from the distal joint.
+/// Returns the tip of finger k (0, 1, 2 for F1, F2 and the thumb F3) by the table of the BH8-262
+/// manual, p. 75, in its wrist frame [mm], with the bend of the BH8-280 (-2.46 and 42.46 degrees)
+/// and GraspIt!'s tip, 56 mm from the distal joint.
 Vector3d tip_by_manual(int k, double spread, double proximal) {
   const double r[3] = {-1, 1, 0};
   const double j[3] = {1, 1, -1};
-  const double distal = proximal / 3;  // gears 125:1 and 93.75:1, and 125 / 93.75 - 1 = 1 / 3
+  // The gears are 125:1 and 93.75:1, and 125 / 93.75 - 1 = 1 / 3.
+  const double distal = proximal / 3;
   const RigidTransform X = modified_dh(r[k] * 25, 0, 76, r[k] * spread - pi / 2 * j[k]) *
                            modified_dh(50, pi / 2, 0, proximal - 2.46 * kDegree) *
                            modified_dh(70, 0, 0, distal + 42.46 * kDegree);
@@ -67,7 +68,7 @@ TEST_CASE("Fingertips of the Barrett hand are as far apart as by the manual's D-
     }
     CHECK((tip[0] - tip[1]).norm() == Approx((expected[0] - expected[1]).norm()).margin(1e-9));
     // GraspIt!'s thumb stands 0.8 mm beside the middle and 3.32 - 3.05 mm above the others, the
-    // manual's does not: 0.85 mm between the two descriptions at most.
+    // manual's does not: the two descriptions differ by 0.85 mm at most.
     for (const int k : {0, 1}) {
       CHECK((tip[k] - tip[2]).norm() ==
             Approx((expected[k] - expected[2]).norm()).margin(std::hypot(0.8, 0.27)));
@@ -77,7 +78,8 @@ TEST_CASE("Fingertips of the Barrett hand are as far apart as by the manual's D-
 
 TEST_CASE("The Barrett hand's knuckle axes stand 76 mm above its wrist",
           "[hands][published_hands]") {
-  // D_w of Barrett's D-H table for the BH8-28x; on fingers 1 and 2, whose base GraspIt! gives.
+  // The check is of D_w in Barrett's D-H table for the BH8-28x, on fingers 1 and 2, whose base
+  // GraspIt! gives.
   const HandModel hand = hands::find_hand("barrett");
   const auto X_OL = hands::forward_kinematics(hand, hands::open_configuration(hand));
   const double wrist = geometry::bounding_box(hand.links[0].mesh_L).min().z();
@@ -87,7 +89,7 @@ TEST_CASE("The Barrett hand's knuckle axes stand 76 mm above its wrist",
         X_OL[static_cast<std::size_t>(knuckle.parent_link)] * knuckle.X_PJ.translation();
     CHECK(axis_point.z() - wrist == Approx(0.076).margin(1e-6));
   }
-  // 140 x 1/3 = 46.7 degrees by coupling; breakaway adds the rest of 48.
+  // The coupling gives 140 x 1/3 = 46.7 degrees; breakaway adds the rest of 48.
   HandConfiguration closed = hands::open_configuration(hand);
   closed.q[hand.joint_index("thumb_proximal")] = 140 * kDegree;
   hands::apply_couplings(hand, closed.q);
@@ -98,8 +100,8 @@ TEST_CASE("The Barrett hand's knuckle axes stand 76 mm above its wrist",
   CHECK(closed.q[hand.joint_index("thumb_distal")] / kDegree == Approx(48.0).margin(1e-9));
 }
 
-/// Where the joints of a straight finger stand along it, and its farthest vertex: bone lengths as
-/// they are seen on the hand [mm].
+/// Returns where the joints of a straight finger stand along it, and its farthest vertex: bone
+/// lengths as they are seen on the hand [mm].
 Vector3d bones(const HandModel& hand, const std::string& finger) {
   const HandConfiguration straight{
       .q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(hand.joints.size()))};
@@ -124,7 +126,8 @@ TEST_CASE("Fingers of the human hand have the published lengths and shares of bo
     double total_mm;
     Vector3d shares_percent;
   };
-  // GraspIt!'s totals and shares, rounded to 1 mm and 1 %; the skin ends within 0.5 mm of the bone.
+  // GraspIt!'s totals and shares are rounded to 1 mm and 1 %; the skin ends within 0.5 mm of the
+  // bone.
   for (const Row& row : {Row{"index", 98, {44, 30, 26}}, Row{"middle", 106, {43, 29, 27}},
                          Row{"ring", 92, {43, 31, 27}}, Row{"little", 74, {40, 28, 31}}}) {
     const Vector3d lengths = bones(hand, row.finger);
@@ -136,8 +139,8 @@ TEST_CASE("Fingers of the human hand have the published lengths and shares of bo
 
 TEST_CASE("The human hands are as long as their sizes say, from the wrist to the middle fingertip",
           "[hands][published_hands]") {
-  // 185 mm is the mean of men; GraspIt!'s hand is a large one. The palm ends 40 mm behind the
-  // wrist crease at GraspIt!'s size, and is scaled with the rest.
+  // The mean of men is 185 mm; GraspIt!'s hand is a large one. The palm ends 40 mm behind the wrist
+  // crease at GraspIt!'s size, and is scaled with the rest.
   const double native = 145.66 - 40 + 46.20 + 30.99 + 29.20;
   for (const auto& [name, length] : {std::pair<std::string, double>{"human_hand", native},
                                      {"human_hand_medium", 185},

@@ -18,7 +18,8 @@
 
 namespace test_shared_hands {
 
-// Hands as others describe them, without a sidecar: everything that a plan needs is derived.
+// These are hands as others describe them, without a sidecar: everything that a plan needs is
+// derived.
 namespace {
 
 using namespace graspfit;
@@ -38,7 +39,7 @@ struct Read {
   hands::HandReading reading;
 };
 
-/// All seven, read once; empty if one is not there.
+/// Returns all seven, read once; empty if one is not there.
 const std::vector<Read>& seven() {
   static const std::vector<Read> all = [] {
     std::vector<Read> result;
@@ -75,7 +76,7 @@ TEST_CASE("The seven shared hands have the fingers, thumb and joints that their 
     for (const hands::HandFinding& finding : reading.findings) {
       CHECK(finding.kind != FindingKind::Fault);
     }
-    // A wrist may be left out, and only that.
+    // A wrist may be left out, and nothing else.
     const int num_left_out = source.num_movable - static_cast<int>(hand.joints.size());
     CHECK((num_left_out == 0 || num_left_out == source.num_before_palm));
     CHECK(hand.num_intrinsic_dof() == source.num_independent - num_left_out);
@@ -139,7 +140,7 @@ TEST_CASE("Closing brings the tips of the shared hands to the thumb, pads face t
       CHECK(nearest < 0.6 * open);
       num_facing += faces;
     }
-    // Of five fingers, those beside the thumb see it: closing moves no thumb sideways.
+    // Of five fingers, those beside the thumb see it, as closing moves no thumb sideways.
     CAPTURE(source.folder);
     CHECK(num_facing >= (source.num_fingers == 5 ? 2 : source.num_fingers - 1));
   }
@@ -173,11 +174,12 @@ TEST_CASE("Tip pads of the shared hands lie on their link and look where closing
       const Vector3d normal =
           X_OL[static_cast<std::size_t>(pad.link)].linear() * pad.X_LC.linear().col(2);
       CHECK(velocity.normalized().dot(normal) > 0.5);
-      // A pad is part of the surface: its middle is that near the mesh.
+      // A pad is part of the surface, so that its middle is that near the mesh.
       const geometry::MeshQuery skin(link_of(hand, pad).mesh_L);
       const Vector3d middle_L = pad.X_LC * hands::pad_contact_point_C(pad);
       CHECK((skin.closest_point(middle_L).point - middle_L).norm() < 3e-3);
-      CHECK(hands::pad_area(pad) > 20e-6);  // [m²] a child's fingertip has more
+      // The bound is in m²; a child's fingertip has more.
+      CHECK(hands::pad_area(pad) > 20e-6);
       CHECK(hands::pad_area(pad) < 5e-3);
     }
   }
@@ -210,7 +212,7 @@ TEST_CASE("No shared hand touches itself when open, exclusions aside", "[hands][
   }
 }
 
-/// The findings whose item or text has all the words in it.
+/// Returns the findings whose item or text has all the words in it.
 std::vector<hands::HandFinding> matching(const hands::HandCheck& check, FindingKind kind,
                                          const std::vector<std::string>& words) {
   std::vector<hands::HandFinding> result;
@@ -225,7 +227,7 @@ std::vector<hands::HandFinding> matching(const hands::HandCheck& check, FindingK
   return result;
 }
 
-/// Whether a link's mesh files, taken by themselves, leave an edge open.
+/// Returns whether a link's mesh files, taken by themselves, leave an edge open.
 bool is_open(const fs::path& urdf, const std::vector<std::string>& mesh_files) {
   return std::any_of(mesh_files.begin(), mesh_files.end(), [&](const std::string& file) {
     return !geometry::analyze(geometry::read_mesh(urdf.parent_path() / file).mesh).is_closed;
@@ -245,7 +247,7 @@ void check_shared_hand(const SharedHand& source) {
     CHECK_FALSE(finding.what.empty());
     CHECK(finding.what.find('\n') == std::string::npos);
   }
-  // Open skins are closed for collision, and each is said: as many as there are by themselves.
+  // Open skins are closed for collision, and each is reported: as many as there are by themselves.
   const testing::KdlHand file(*urdf);
   for (const testing::KdlHand::Link& link : file.links()) {
     if (!is_open(*urdf, link.mesh_files)) continue;
@@ -256,7 +258,7 @@ void check_shared_hand(const SharedHand& source) {
     CHECK(is_said);
   }
   if (source.folder == "barrett_graspit") {
-    // The coupling distal = proximal / 3 became an axis of that length.
+    // The coupling distal = proximal / 3 is written as an axis of that length.
     for (const char* joint :
          {"a_link2_link3_joint", "b_link2_link3_joint", "c_link2_link3_joint"}) {
       CAPTURE(joint);
@@ -264,7 +266,7 @@ void check_shared_hand(const SharedHand& source) {
     }
   }
   if (source.folder == "barrett_hand") {
-    // No <mimic>: eight joints of a hand with four motors.
+    // There is no <mimic>: the hand has eight joints and four motors.
     for (const char* joint :
          {"finger_1_dist_joint", "finger_2_dist_joint", "finger_3_dist_joint"}) {
       CAPTURE(joint);
@@ -274,7 +276,7 @@ void check_shared_hand(const SharedHand& source) {
   }
 }
 
-/// Whether all seven folders are there; nothing is read.
+/// Returns whether all seven folders are there; nothing is read.
 bool are_there() {
   const std::vector<SharedHand> all = testing::shared_hands();
   return std::all_of(all.begin(), all.end(),
@@ -284,7 +286,7 @@ bool are_there() {
 TEST_CASE("Checking shared hands of up to four fingers finds what their sources name",
           "[hands][shared_hands]") {
   if (!are_there()) GRASPFIT_SKIP_TEST(kWhySkipped);
-  // Hands of five fingers take half a minute: below.
+  // Hands of five fingers take half a minute; they have a test of their own.
   for (const SharedHand& source : testing::shared_hands()) {
     if (source.num_fingers < 5) check_shared_hand(source);
   }
@@ -307,7 +309,7 @@ TEST_CASE("The human hand's skin is open everywhere, and closed for collision",
   for (const testing::KdlHand::Link& link : file.links()) {
     num_open += is_open(human->urdf, link.mesh_files);
   }
-  CHECK(num_open == 16);  // palm and three per finger
+  CHECK(num_open == 16);  // They are the palm and three per finger.
   for (const hands::Link& link : human->reading.model.links) {
     if (link.mesh_L.faces.empty()) continue;
     CAPTURE(link.name);
@@ -331,17 +333,17 @@ TEST_CASE("GraspIt!'s own files give back the couplings that the URDFs beside th
     if (!joint.coupling || joint.coupling->ratio == 1.0) continue;
     CAPTURE(joint.name);
     ++num_distal;
-    CHECK(joint.coupling->ratio == 0.333333333);  // as the file writes it
-    CHECK(joint.coupling->breakaway);             // its DOFs are of type b
+    CHECK(joint.coupling->ratio == 0.333333333);  // It is as the file writes it.
+    CHECK(joint.coupling->breakaway);             // Its degrees of freedom are of type b.
   }
   CHECK(num_distal == 3);
   CHECK(three.palm.direction_H == Vector3d::UnitZ());
   const HandModel five = hands::read_hand_model(*human);
   CHECK(five.fingers.size() == 5);
   CHECK(five.num_intrinsic_dof() == 20);
-  // As GraspIt! has it: approach direction (0, -1, 0) from (-130, -15, 0) mm.
+  // GraspIt! has it so: approach direction (0, -1, 0) from (-130, -15, 0) mm.
   CHECK((five.palm.direction_H - Vector3d(0, -1, 0)).norm() < 1e-12);
-  // The file's own point is not read; the derived center lies beside it on the palm.
+  // The file's own point is not read; the derived center is beside it on the palm.
   CHECK((five.palm.center_H - Vector3d(-0.130, -0.015, 0)).norm() < 0.012);
 }
 

@@ -39,8 +39,8 @@ const Link& link_of(const HandModel& hand, const ContactPad& pad) {
 
 TEST_CASE("The paper's three hands are shipped with their options and degrees of freedom",
           "[hands][shipped_hands]") {
-  // Paper: gripper 1, Barrett 4, human hand 20. Options: Franka's proportions, Barrett with free
-  // distal joints (1 spread, 3 proximal, 3 distal), end joints coupled by 2/3, sizes.
+  // The paper has gripper 1, Barrett 4, human hand 20. Options are Franka's proportions, Barrett
+  // with free distal joints (1 spread, 3 proximal, 3 distal), end joints coupled by 2/3, and sizes.
   const std::map<std::string, std::pair<int, std::size_t>> expected{
       {"parallel_gripper", {1, 2}},  {"franka_gripper", {1, 2}},     {"barrett", {4, 3}},
       {"barrett_7dof", {7, 3}},      {"human_hand", {20, 5}},        {"human_hand_medium", {20, 5}},
@@ -63,7 +63,7 @@ TEST_CASE("Every shipped link is closed, manifold, outward, one part and free of
           "[hands][shipped_hands]") {
   std::size_t num_checked = 0;
   for (const auto& [name, hand] : shipped()) {
-    if (name.starts_with("human_hand_")) continue;  // human_hand's meshes, scaled
+    if (name.starts_with("human_hand_")) continue;  // Their meshes are human_hand's, scaled.
     for (const Link& link : hand.links) {
       if (link.mesh_L.faces.empty()) continue;
       CAPTURE(name, link.name);
@@ -94,7 +94,8 @@ TEST_CASE(
       CHECK(
           (link.inertia->center_L - geometry::mass_properties(link.mesh_L).center_of_mass).norm() <
           1e-6);
-      // Principal moments of a body: positive, and none larger than the other two together.
+      // The principal moments of a body are positive, and none is larger than the other two
+      // together.
       const Vector3d moments =
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia->inertia_L).eigenvalues();
       CHECK(moments[0] > 0.0);
@@ -104,20 +105,22 @@ TEST_CASE(
 }
 
 TEST_CASE("Flat pads of the grippers are a part of their link's mesh", "[hands][shipped_hands]") {
-  // As the Barrett hand's, see there.
+  // This is checked as for the Barrett hand in test_barrett_hand.cpp.
   for (const std::string name : {"parallel_gripper", "franka_gripper"}) {
     const HandModel& hand = shipped().at(name);
     for (const ContactPad& pad : hand.pads) {
       CAPTURE(name, pad.name);
       const geometry::TriangleMesh& mesh = link_of(hand, pad).mesh_L;
-      constexpr double kTolerance = 1e-9;  // coordinates in the files have 10 decimals
+      // Coordinates in the files have 10 decimals.
+      constexpr double kTolerance = 1e-9;
       geometry::ConvexVolume slab_C = hands::clip_volume_C(pad, 1.0);
       slab_C[slab_C.size() - 2].offset = kTolerance;
       const geometry::ConvexVolume slab = hands::transformed(slab_C, pad.X_LC);
       double covered = 0.0;
       for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
         const auto piece = geometry::clip(geometry::corners(mesh, f), slab);
-        constexpr double kSliver = 1e-9;  // [m²] of faces that only border on the pad
+        // These are the areas [m²] of faces that only border on the pad.
+        constexpr double kSliver = 1e-9;
         if (!piece || piece->area < kSliver) continue;
         for (const Vector3d& corner : piece->polygon) {
           CHECK((pad.X_LC.inverse() * corner).z() < kTolerance);
@@ -198,7 +201,7 @@ TEST_CASE("No shipped hand touches itself open or half closed", "[hands][shipped
 
 TEST_CASE("Closing brings the thumb's pad and the fingers' pads face to face",
           "[hands][shipped_hands]") {
-  // A quarter of the way for the human hand, a half for the others.
+  // The human hand is closed by a quarter of the way, the others by 45 %.
   for (const auto& [name, hand] : shipped()) {
     const bool is_human = name.starts_with("human");
     const auto X_OL = hands::forward_kinematics(hand, closed_by(hand, is_human ? 0.25 : 0.45));

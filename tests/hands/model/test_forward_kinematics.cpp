@@ -20,7 +20,7 @@ using std::numbers::pi;
 
 constexpr double kDegree = pi / 180.0;
 constexpr double kMillimeter = 1e-3;
-// Distance of the tip point of the check table from the distal joint (GraspIt!'s mesh, 56 to 59
+// The tip point of the check table is this far from the distal joint (GraspIt!'s mesh has 56 to 59
 // mm).
 const Vector3d kTip_L(56 * kMillimeter, 0, 0);
 
@@ -29,7 +29,7 @@ const HandModel& barrett() {
   return hand;
 }
 
-/// Spread s, proximal joint of each finger; the rest follows.
+/// Returns the hand with spread s and the proximal joint of each finger; the rest follows.
 HandConfiguration configuration(double spread, double finger_1, double finger_2, double thumb) {
   HandConfiguration result = hands::open_configuration(barrett());
   result.q[barrett().joint_index("finger_1_spread")] = spread;
@@ -46,9 +46,9 @@ Vector3d tip(const std::vector<RigidTransform>& X_OL, const std::string& finger)
 
 TEST_CASE("Fingertips of the Barrett hand lie where the published numbers put them",
           "[hands][forward_kinematics]") {
-  // Reach x from the palm axis and height z above the finger's base, from GraspIt!'s BH8-280
-  // numbers: x = 50 + 70 cos t1 + 56 cos t2, z = 70 sin t1 + 56 sin t2, t1 = q - 2.46, t2 = t1 +
-  // q/3 + 42.46.
+  // The table has the reach x from the palm axis and the height z above the finger's base, from
+  // GraspIt!'s BH8-280 numbers: x = 50 + 70 cos t1 + 56 cos t2, z = 70 sin t1 + 56 sin t2, t1 = q -
+  // 2.46, t2 = t1 + q/3 + 42.46.
   struct Row {
     double angle_deg, x_mm, z_mm;
   };
@@ -113,7 +113,7 @@ TEST_CASE("Fingers 1 and 2 mirror each other at any spread", "[hands][forward_ki
     const Vector3d two = tip(X_OL, "finger_2");
     CHECK((one - Vector3d(-two.x(), two.y(), two.z())).norm() < 1e-12);
   }
-  // Opposite the thumb at 0, beside it at pi, without crossing in between.
+  // The finger is opposite the thumb at 0 and beside it at pi, without crossing in between.
   CHECK(tip(hands::forward_kinematics(barrett(), configuration(0, 0, 0, 0)), "finger_1").y() > 0.1);
   CHECK(tip(hands::forward_kinematics(barrett(), configuration(pi, 0, 0, 0)), "finger_1").y() <
         -0.1);
@@ -127,7 +127,7 @@ TEST_CASE("Opposed fingertips meet near 90 degrees and open to about 325 mm",
     const auto X_OL = hands::forward_kinematics(barrett(), configuration(0, q, q, q));
     return tip(X_OL, "finger_1").y() - tip(X_OL, "thumb").y();
   };
-  CHECK(opening(0.0) == Approx(0.325).margin(0.001));  // 2 x 162.8
+  CHECK(opening(0.0) == Approx(0.325).margin(0.001));  // This is 2 x 162.8.
   double meets = 0.0;
   while (opening(meets) > 0.0) meets += 0.1 * kDegree;
   CHECK(meets / kDegree == Approx(90.0).margin(1.0));
@@ -163,7 +163,7 @@ TEST_CASE("A joint moves the links beyond it and, through couplings, those of it
   CHECK_THROWS_AS(hands::links_moved_by(hand, 8), base::InvalidInput);
   CHECK_THROWS_AS(hands::links_moved_by(hand, -1), base::InvalidInput);
 
-  // And nothing else: those are exactly the links whose pose changes.
+  // The links that are listed are exactly those whose pose changes.
   for (int joint = 0; joint < 8; ++joint) {
     if (hand.joints[static_cast<std::size_t>(joint)].coupling) continue;
     HandConfiguration before = configuration(0.5, 0.3, 0.3, 0.3);
@@ -199,7 +199,7 @@ TEST_CASE("Fixed links move with their parent and prismatic joints translate",
   hand.joints.push_back(joint);
   const auto X_OL =
       hands::forward_kinematics(hand, HandConfiguration{.q = Eigen::VectorXd::Constant(1, 0.25)});
-  // z of the joint frame is -y of the parent.
+  // The z axis of the joint frame is -y of the parent.
   CHECK((X_OL[1].translation() - Vector3d(0, -0.25, 0)).norm() < 1e-15);
   CHECK((X_OL[2].translation() - Vector3d(0, -0.75, 0)).norm() < 1e-15);
   CHECK_THROWS_AS(hands::forward_kinematics(hand, HandConfiguration{}), base::InvalidInput);

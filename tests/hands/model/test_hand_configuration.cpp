@@ -45,7 +45,8 @@ TEST_CASE("A joint that opens as it grows starts at its upper limit; a neutral o
 
 TEST_CASE("Distal joints follow by one third and the second spread joint by one",
           "[hands][hand_configuration]") {
-  // GraspIt!'s d/3; OpenRAVE's 0.33333; Barrett's gears, 125:1 over 93.75:1 less one.
+  // The ratio is GraspIt!'s d/3, OpenRAVE's 0.33333, and that of Barrett's gears, 125:1 over
+  // 93.75:1 less one.
   Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
   at(q, "finger_1_spread") = 0.9;
   at(q, "finger_1_proximal") = 1.5;
@@ -54,23 +55,23 @@ TEST_CASE("Distal joints follow by one third and the second spread joint by one"
   CHECK(at(q, "finger_2_spread") == 0.9);
   CHECK(at(q, "finger_1_distal") == Approx(0.5).epsilon(1e-12));
   CHECK(at(q, "finger_2_distal") == 0.0);
-  // 140 / 3 = 46.67 degrees: within the joint's own 48.
+  // The coupled value is 140 / 3 = 46.67 degrees, within the joint's own 48.
   CHECK(at(q, "thumb_distal") == Approx(140.0 / 3.0 / 180.0 * pi).epsilon(1e-12));
 }
 
 TEST_CASE(
     "After breakaway a distal joint keeps what it closed beyond its coupling, up to its limit",
     "[hands][hand_configuration]") {
-  // Barrett's TorqueSwitch (support wiki, BH8-262 and BH8-280): a clutch frees a blocked proximal
+  // In Barrett's TorqueSwitch (support wiki, BH8-262 and BH8-280) a clutch frees a blocked proximal
   // link and the motor goes on closing the distal one; its range of 48 degrees is that of
   // jhu-lcsr/barrett_model.
   Eigen::VectorXd q = Eigen::VectorXd::Zero(8);
-  at(q, "finger_1_proximal") = 0.6;  // asks for 0.2
-  at(q, "finger_1_distal") = 0.7;    // has gone on
+  at(q, "finger_1_proximal") = 0.6;  // It asks for 0.2.
+  at(q, "finger_1_distal") = 0.7;    // It has gone on.
   at(q, "finger_2_proximal") = 0.6;
-  at(q, "finger_2_distal") = 0.1;  // less closed than asked for: follows
+  at(q, "finger_2_distal") = 0.1;  // It is less closed than asked for, and follows.
   at(q, "thumb_proximal") = 0.6;
-  at(q, "thumb_distal") = 2.0;  // beyond its limit of 48 degrees
+  at(q, "thumb_distal") = 2.0;  // It is beyond its limit of 48 degrees.
   hands::apply_couplings(barrett(), q);
   CHECK(at(q, "finger_1_distal") == 0.7);
   CHECK(at(q, "finger_2_distal") == Approx(0.2).epsilon(1e-12));

@@ -44,7 +44,7 @@ ContactPad regular_polygon(int corners, double side_distance) {
   return pad_of(outline);
 }
 
-/// Palm, one finger of two links: the smallest hand that has everything.
+/// Returns a palm and one finger of two links, the smallest hand that has everything.
 HandModel small_hand() {
   HandModel hand;
   hand.name = "small";
@@ -80,7 +80,7 @@ HandModel small_hand() {
 
 TEST_CASE("Area, inradius and boundary distance of a rectangular pad have their closed forms",
           "[hands][hand_model]") {
-  // The distal pad of the Barrett hand: 52 x 23 mm. The inradius is half the shorter side.
+  // The distal pad of the Barrett hand is 52 x 23 mm. The inradius is half the shorter side.
   const ContactPad pad = rectangle(0.052, 0.023);
   CHECK(hands::pad_area(pad) == Approx(0.052 * 0.023).epsilon(1e-12));
   CHECK(hands::largest_boundary_distance(pad) == Approx(0.0115).epsilon(1e-12));
@@ -103,7 +103,7 @@ TEST_CASE("Area and inradius of a hexagonal and a triangular pad have their clos
     CHECK(hands::largest_boundary_distance(pad) == Approx(r).epsilon(1e-12));
     CHECK(hands::boundary_distance(pad, {0, 0}) == Approx(r).epsilon(1e-12));
   }
-  // The 3-4-5 triangle: inradius (3 + 4 - 5) / 2 = 1.
+  // The triangle with sides 3, 4, 5 has the inradius (3 + 4 - 5) / 2 = 1.
   CHECK(hands::largest_boundary_distance(pad_of({{0, 0}, {4, 0}, {0, 3}})) == Approx(1.0));
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("No point of a pad is farther from the outline than its inradius",
   }
   const double inradius = hands::largest_boundary_distance(pad);
   CHECK(farthest <= inradius + 1e-15);
-  // The distance is 1-Lipschitz and the grid's points at most 0.0002 / sqrt(2) from any point.
+  // The distance is 1-Lipschitz, and the grid's points are at most 0.0002 / sqrt(2) from any point.
   CHECK(farthest >= inradius - 0.00015);
 }
 
@@ -151,7 +151,8 @@ TEST_CASE("The clip volume is the prism over the outline, in any frame", "[hands
   CHECK_THROWS_AS(hands::clip_volume_C(pad, std::nan("")), base::InvalidInput);
 }
 
-/// A half ellipsoid's upper part over a decagon: corners of the rim raised, a ring, the top.
+/// Returns a half ellipsoid's upper part over a decagon: corners of the rim raised, a ring, the
+/// top.
 ContactPad dome() {
   ContactPad pad;
   pad.name = "dome";
@@ -182,7 +183,7 @@ TEST_CASE(
     "[hands][hand_model]") {
   const ContactPad pad = dome();
   constexpr double kThickness = 0.0015;
-  // The oracle: the hull as CGAL finds it.
+  // The oracle is the hull as CGAL finds it.
   std::vector<Vector3d> points;
   for (const Vector2d& corner : pad.outline) points.emplace_back(corner.x(), corner.y(), 0.0);
   points.insert(points.end(), pad.surface.begin(), pad.surface.end());
@@ -200,9 +201,9 @@ TEST_CASE(
     expected.push_back({n, n.dot(points[facet[0]])});
   }
   const geometry::ConvexVolume volume = hands::clip_volume_C(pad, kThickness);
-  // Both directions: the volume's corners ...
+  // The volume holds its corners.
   for (const Vector3d& point : points) CHECK(contains(volume, point, 1e-15));
-  // ... and nothing more: random points are inside both or outside both, but for a band of
+  // It holds nothing more: random points are inside both or outside both, but for a band of
   // rounding.
   base::Random random(2);
   int num_inside = 0;
@@ -226,7 +227,8 @@ TEST_CASE("The mesh of a clip volume is closed and bounds the same volume", "[ha
     CHECK(analysis.is_outward);
     const geometry::ConvexVolume volume = hands::clip_volume_C(pad, kThickness);
     for (const Vector3d& vertex : mesh.vertices) CHECK(contains(volume, vertex, 1e-15));
-    for (const geometry::HalfSpace& half_space : volume) {  // every half-space has a face in it
+    // Every half-space has a face in it.
+    for (const geometry::HalfSpace& half_space : volume) {
       int num_in_plane = 0;
       for (const Vector3d& vertex : mesh.vertices) {
         num_in_plane += half_space.normal.dot(vertex) > half_space.offset - 1e-12 ? 1 : 0;
@@ -247,7 +249,7 @@ TEST_CASE("Heights over a curved pad vanish on its corners, and it has those of 
     CHECK(hands::height_over_pad(pad, point + Vector3d(0, 0, 0.002)) == Approx(0.002));
   }
   CHECK(hands::pad_height(pad) == Approx(0.005).epsilon(1e-12));
-  // d of M1 stays in the plane: the dome does not change it.
+  // The distance d of M1 is measured in the plane, so that the dome does not change it.
   ContactPad flat = pad;
   flat.surface.clear();
   flat.planes.clear();
@@ -259,7 +261,8 @@ TEST_CASE("Heights over a curved pad vanish on its corners, and it has those of 
 }
 
 TEST_CASE("Coplanar facets of a curved pad count once", "[hands][hand_model]") {
-  // A roof over a square: two slopes, each a rectangle that the hull cuts into triangles.
+  // The pad is a roof over a square: two slopes, each a rectangle that the hull cuts into
+  // triangles.
   ContactPad roof = rectangle(0.02, 0.02);
   roof.surface = {{0.01, 0, 0.005}, {-0.01, 0, 0.005}};
   roof.planes = hands::surface_planes(roof);
@@ -368,7 +371,7 @@ TEST_CASE("The reach bounds every vertex over revolute and prismatic joints",
   HandModel hand = small_hand();
   hand.palm.center_H = Vector3d(0.0, 0.0, 0.02);
   hand.links[2].mesh_L.vertices = {Vector3d(0.03, 0.04, 0.0)};
-  // |(0.05, 0, 0) - (0, 0, 0.02)| + 0.05 + |(0.03, 0.04, 0)|
+  // The reach is |(0.05, 0, 0) - (0, 0, 0.02)| + 0.05 + |(0.03, 0.04, 0)|.
   CHECK(hands::largest_reach(hand) == Approx(std::hypot(0.05, 0.02) + 0.05 + 0.05).epsilon(1e-12));
   hand.joints[1].type = hands::JointType::Prismatic;
   hand.joints[1].lower = -0.2;

@@ -18,7 +18,8 @@ using hands::HandConfiguration;
 using hands::HandModel;
 using hands::RigidTransform;
 
-/// A chain with everything: turn, fixed link, slide, turn that follows the slide.
+/// Returns a chain with everything: a turn, a fixed link, a slide, and a turn that follows the
+/// slide.
 HandModel mixed_chain() {
   HandModel hand;
   hand.name = "chain";
@@ -48,11 +49,12 @@ HandModel mixed_chain() {
   return hand;
 }
 
-/// Central difference of the point's position and of its link's rotation over `step` of column
-/// `set`.
+/// Returns the central difference of the point's position and of its link's rotation over
+/// `direction`, a change of joint positions.
 Eigen::Matrix<double, 6, 1> difference(const HandModel& hand, const HandConfiguration& at, int link,
                                        const Vector3d& point_L, const Eigen::VectorXd& direction) {
-  constexpr double kStep = 1e-5;  // error of second order 1e-10, of rounding 1e-16 / 1e-5
+  // The error of second order is 1e-10, that of rounding 1e-16 / 1e-5.
+  constexpr double kStep = 1e-5;
   HandConfiguration plus = at, minus = at;
   plus.q += kStep * direction;
   minus.q -= kStep * direction;
@@ -86,7 +88,7 @@ void check_against_differences(const HandModel& hand, base::Random& random) {
           difference(hand, c, link, point_L, Eigen::VectorXd::Unit(c.q.size(), j));
       CHECK((jacobian.col(j) - expected).norm() < 1e-8);
     }
-    // Folded: moving an independent joint moves its followers by their ratios.
+    // When the Jacobian is folded, moving an independent joint moves its followers by their ratios.
     const MatrixXd independent = hands::folded(hand, jacobian);
     const std::vector<int> leaders = hands::independent_joints(hand);
     REQUIRE(independent.cols() == static_cast<Eigen::Index>(hand.num_intrinsic_dof()));
@@ -128,7 +130,8 @@ TEST_CASE("A folded Jacobian is what apply_couplings does away from limits", "[h
   const Vector3d tip(0.056, 0, 0);
   HandConfiguration c = hands::open_configuration(hand);
   const auto at = [&](double q) {
-    // From the open hand: a breakaway joint that was further closed would stay there.
+    // The joints start from the open hand, as a breakaway joint that was further closed would stay
+    // there.
     HandConfiguration result = hands::open_configuration(hand);
     result.q[leader] = q;
     hands::apply_couplings(hand, result.q);
@@ -143,7 +146,8 @@ TEST_CASE("A folded Jacobian is what apply_couplings does away from limits", "[h
   const auto column = std::find(joints.begin(), joints.end(), leader) - joints.begin();
   const MatrixXd folded = hands::folded(hand, hands::point_jacobian(hand, c, link, tip));
   CHECK((folded.col(column).head<3>() - moved).norm() < 1e-8);
-  // The coupled distal joint adds a third of its own motion: it is not the plain column.
+  // The coupled distal joint adds a third of its own motion, so that the motion is not the plain
+  // column.
   CHECK((hands::point_jacobian(hand, c, link, tip).col(leader).head<3>() - moved).norm() > 0.01);
 }
 

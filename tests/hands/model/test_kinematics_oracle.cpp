@@ -14,8 +14,8 @@
 
 namespace test_kinematics_oracle {
 
-// Our reader, tree, kinematics and Jacobians against urdfdom and Orocos KDL, which share no line
-// with them.
+// These tests compare our reader, tree, kinematics and Jacobians with urdfdom and Orocos KDL, which
+// share no line with them.
 namespace {
 
 using namespace graspfit;
@@ -28,7 +28,8 @@ using testing::KdlHand;
 namespace fs = std::filesystem;
 
 // Both sides round some ten products of numbers below 1 per link, which leaves 1e-15.
-constexpr double kTolerance = 1e-9;  // [m], and per entry of a rotation or a Jacobian
+// The unit is m, or an entry of a rotation or a Jacobian.
+constexpr double kTolerance = 1e-9;
 
 constexpr int kNumConfigurations = 1000;
 
@@ -36,14 +37,14 @@ RigidTransform random_pose(Random& random) {
   Eigen::Vector4d quaternion;
   do {
     for (int i = 0; i < 4; ++i) quaternion[i] = random.uniform(-1.0, 1.0);
-  } while (quaternion.norm() < 0.1 || quaternion.norm() > 1.0);  // uniform over rotations
+  } while (quaternion.norm() < 0.1 || quaternion.norm() > 1.0);  // This is uniform over rotations.
   RigidTransform X = RigidTransform::Identity();
   X.linear() = Eigen::Quaterniond(quaternion.normalized()).toRotationMatrix();
   for (int i = 0; i < 3; ++i) X.translation()[i] = random.uniform(-1.0, 1.0);
   return X;
 }
 
-/// Within all limits; every second time coupled joints follow their leaders.
+/// Draws a configuration within all limits; every second time coupled joints follow their leaders.
 HandConfiguration random_configuration(const HandModel& hand, Random& random, int k) {
   HandConfiguration c{.X_OH = random_pose(random),
                       .q = Eigen::VectorXd(static_cast<Eigen::Index>(hand.joints.size()))};
@@ -54,7 +55,7 @@ HandConfiguration random_configuration(const HandModel& hand, Random& random, in
   return c;
 }
 
-/// One link in both libraries: KDL's chain to it from the palm, and our indices of its joints.
+/// One link in both libraries, with KDL's chain to it from the palm, and our indices of its joints.
 struct Compared {
   KdlHand::Chain chain;
   std::vector<Eigen::Index> joints;
@@ -75,7 +76,7 @@ std::vector<Compared> compared_links(const HandModel& hand, const KdlHand& kdl) 
   return result;
 }
 
-/// Every link that the file has is in the model, except what the palm itself hangs on.
+/// Checks that every link that the file has is in the model, except what the palm itself hangs on.
 void check_tree(const HandModel& hand, const KdlHand& kdl) {
   std::map<std::string, std::optional<std::string>> parents;
   std::set<std::string> missing;
@@ -100,7 +101,7 @@ void check_tree(const HandModel& hand, const KdlHand& kdl) {
   }
 }
 
-/// Types, limits and couplings are those that urdfdom reads.
+/// Checks that types, limits and couplings are those that urdfdom reads.
 void check_joints(const HandModel& hand, const KdlHand& kdl) {
   std::map<std::string, KdlHand::Joint> others;
   for (const KdlHand::Joint& joint : kdl.joints()) others[joint.name] = joint;
@@ -149,7 +150,8 @@ void check_jacobians(const HandModel& hand, const std::vector<Compared>& links) 
     for (std::size_t i = 0; i < links.size(); ++i) {
       const Vector3d point_L = random_pose(random).translation();
       const auto own = hands::point_jacobian(hand, c, static_cast<int>(i), point_L);
-      // KDL's in the palm's frame, turned into O; joints beside the chain do not move the link.
+      // KDL's Jacobian is in the palm's frame and is turned into O; joints beside the chain do not
+      // move the link.
       Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(6, c.q.size());
       const auto chain = links[i].chain.jacobian(links[i].positions(c.q), point_L);
       for (std::size_t j = 0; j < links[i].joints.size(); ++j) {

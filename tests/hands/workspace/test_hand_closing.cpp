@@ -14,8 +14,9 @@ using namespace graspfit;
 using Eigen::Vector3d;
 using hands::HandModel;
 
-/// Two blocks of 20 mm on a rail along x, centers at -60 and 60 mm while open; each may travel
-/// 100 mm toward the other. `gap` moves the second one out of the first one's way along y.
+/// Returns two blocks of 20 mm on a rail along x, with centers at -60 and 60 mm while open; each
+/// may travel 100 mm toward the other. `gap` moves the second one out of the first one's way along
+/// y.
 HandModel rail(double gap) {
   HandModel hand;
   hand.name = "rail";
@@ -52,7 +53,7 @@ HandModel rail(double gap) {
 TEST_CASE("Fingers that meet stop a step before they touch", "[hands][hand_closing]") {
   const HandModel hand = rail(0.0);
   // The blocks touch when they have come 100 mm closer together. A step is 100/64 mm: after 32 each
-  // they would touch exactly, so the first, which goes ahead, makes 32 and the second 31.
+  // they would touch exactly, so that the first, which goes ahead, makes 32 and the second 31.
   const Eigen::VectorXd q = hands::closed_without_overlap(hand, 1.0).q;
   CHECK(q[0] == Approx(0.1 * 32 / 64).epsilon(1e-12));
   CHECK(q[1] == Approx(-0.1 * 31 / 64).epsilon(1e-12));
@@ -63,7 +64,7 @@ TEST_CASE("Fingers that meet stop a step before they touch", "[hands][hand_closi
   CHECK((stops[1].finger == 0 && stops[1].share == 32.0 / 64));
   for (const hands::ClosingStop& stop : stops) CHECK((stop.link_a == 1 && stop.link_b == 2));
   CHECK(hands::closing_stops(rail(0.05), 1.0).empty());
-  // Half closed they would just touch: all but the last step of 50/64 mm.
+  // Half closed they would just touch, so they make all but the last step of 50/64 mm.
   const Eigen::VectorXd half = hands::closed_without_overlap(hand, 0.5).q;
   CHECK(half[0] == Approx(0.05).epsilon(1e-12));
   CHECK(half[1] == Approx(-0.05 * 63 / 64).epsilon(1e-12));
@@ -80,7 +81,8 @@ TEST_CASE("Fingers that miss each other close to their limits", "[hands][hand_cl
 TEST_CASE("What overlaps while the hand is open does not stop its fingers",
           "[hands][hand_closing]") {
   HandModel hand = rail(0.021);
-  hand.links[0].mesh_L = geometry::box({0.3, 0.01, 0.01});  // the rail runs through the left block
+  // The rail runs through the left block.
+  hand.links[0].mesh_L = geometry::box({0.3, 0.01, 0.01});
   REQUIRE(hands::HandCollision(hand)
               .against_self(hands::forward_kinematics(hand, hands::open_configuration(hand)))
               .intersects);
@@ -98,7 +100,8 @@ TEST_CASE("The paper's hands close until something stops them, and overlap nowhe
     CHECK_FALSE(hands::HandCollision(hand)
                     .against_self(hands::forward_kinematics(hand, closed))
                     .intersects);
-    CHECK((closed.q - open.q).cwiseAbs().maxCoeff() > 0.02);  // a jaw's stroke or a radian and more
+    // This is a jaw's stroke, or a radian and more.
+    CHECK((closed.q - open.q).cwiseAbs().maxCoeff() > 0.02);
   }
 }
 

@@ -94,7 +94,8 @@ TEST_CASE("Self-collision does not depend on where the hand is", "[hands][hand_c
     CHECK(here.depth == Approx(there.depth).margin(2e-5));
     collides += here.intersects ? 1 : 0;
   }
-  // Uniform joint positions close the fingers on nothing: 14 of these 60 hands touch themselves.
+  // Uniform joint positions close the fingers on nothing, and 14 of these 60 hands touch
+  // themselves.
   CHECK(collides > 0);
   CHECK(collides < kCount / 2);
 }
@@ -107,7 +108,7 @@ TEST_CASE("A ball is hit exactly when it reaches the palm, and the depth is how 
   double lowest = 0.0;
   for (const Vector3d& v : ball.vertices) lowest = std::min(lowest, v.z());
   for (const double height :
-       {0.01, 0.001, -0.001, -0.005}) {  // of the ball's lowest point over z = 0
+       {0.01, 0.001, -0.001, -0.005}) {  // These are heights of the ball's lowest point over z = 0.
     CAPTURE(height);
     hands::RigidTransform lift = hands::RigidTransform::Identity();
     lift.translation().z() = height - lowest;

@@ -58,7 +58,7 @@ int add_link(HandModel& hand, int parent, const RigidTransform& X_PJ, double low
   return link;
 }
 
-/// A finger of the last `num_links` links whose pad has pose `X_LC` on the last.
+/// Adds a finger of the last `num_links` links whose pad has pose `X_LC` on the last.
 void add_finger(HandModel& hand, int num_links, const RigidTransform& X_LC) {
   const int index = static_cast<int>(hand.fingers.size());
   hands::Finger& finger = hand.fingers.emplace_back();
@@ -85,9 +85,9 @@ HandModel bare_palm() {
   return hand;
 }
 
-/// Two fingers in the x-z plane, mirrored, with bases at x = ±base: each a chain of links of given
-/// lengths, straight outward at q = 0, each joint turning from 0 to `upper` toward z and inward.
-/// The pads look where the fingers close.
+/// Returns two fingers in the x-z plane, mirrored, with bases at x = ±base. Each is a chain of
+/// links of given lengths, straight outward at q = 0, and each joint turns from 0 to `upper` toward
+/// z and inward. The pads look where the fingers close.
 HandModel planar_hand(double base, const std::vector<double>& lengths, double upper) {
   HandModel hand = bare_palm();
   for (const double side : {1.0, -1.0}) {
@@ -109,35 +109,38 @@ TEST_CASE("Two planar fingers of two links reach what two rings reach", "[hands]
     double tips, palm;  ///< Smallest distances between the tips, and from the middle to a tip.
   };
   // A tip of two links reaches a ring around its base, here the upper half of it and more (each
-  // joint turns by 1.3 pi); the nearest points of the rings lie on the line between the bases.
-  for (const Case& c : {Case{0.05, 0.07, 0.05, 0.0, 0.0},      // rings cross, and hold the middle
-                        Case{0.15, 0.07, 0.05, 0.06, 0.03},    // 2 (150 − 120), 150 − 120
-                        Case{0.12, 0.07, 0.05, 0.0, 0.0},      // they touch in the middle
-                        Case{0.01, 0.09, 0.03, 0.0, 0.05}}) {  // the middle in the hole: 60 − 10
+  // joint turns by 1.3 pi). The nearest points of the rings lie on the line between the bases.
+  // In the first case the rings cross and hold the middle, in the second the distances are 2 (150 −
+  // 120) and 150 − 120, in the third the rings touch in the middle, and in the last the middle is
+  // in the hole, 60 − 10 from the ring.
+  for (const Case& c : {Case{0.05, 0.07, 0.05, 0.0, 0.0}, Case{0.15, 0.07, 0.05, 0.06, 0.03},
+                        Case{0.12, 0.07, 0.05, 0.0, 0.0}, Case{0.01, 0.09, 0.03, 0.0, 0.05}}) {
     CAPTURE(c.base);
     const HandModel hand = planar_hand(c.base, {c.proximal, c.distal}, 1.3 * pi);
     const double widest = 2 * (c.base + c.proximal + c.distal);
     struct Grid {
       WorkspaceOptions options;
-      double margin;  ///< Of the whole grid, about its step; moved on from a coarser one, the
-                      ///< documented 0.1 mm.
+      double margin;  ///< Margin of the whole grid, about its step; moved on from a coarser one,
+                      ///< the documented 0.1 mm.
     };
     for (const Grid& grid : {Grid{{}, 0.012}, Grid{{.max_configurations = 6 * 6 * 6 * 6}, 1e-4}}) {
       const HandWorkspace workspace = hands::hand_workspace(hand, grid.options);
       const DistanceRange tips = workspace.tip_to_tip[0][1];
       CAPTURE(grid.margin, tips.smallest, tips.largest, tips.error);
-      CHECK(tips.largest == Approx(widest).margin(1e-12));  // at limits, so on every grid
+      // It is at limits, and so on every grid.
+      CHECK(tips.largest == Approx(widest).margin(1e-12));
       CHECK(tips.smallest >= c.tips - 1e-12);
       CHECK(tips.smallest <= c.tips + grid.margin);
       CHECK(tips.smallest <= c.tips + tips.error);
       for (const DistanceRange& palm : workspace.palm_to_tip) {
         CHECK(palm.largest == Approx(widest / 2).margin(1e-12));
         CHECK(palm.smallest >= c.palm - 1e-12);
-        CHECK(palm.smallest <= c.palm + 0.012);  // two joints: always the whole grid
+        CHECK(palm.smallest <= c.palm + 0.012);  // Two joints always have the whole grid.
         CHECK(palm.smallest <= c.palm + palm.error);
       }
     }
-    // Half a step of 1.3 pi, for the two joints of two fingers, at most this far from the tips.
+    // The error is half a step of 1.3 pi, for the two joints of two fingers, at most this far from
+    // the tips.
     const DistanceRange tips = hands::tip_distances(hand)[0][1];
     CHECK(tips.error == Approx(2 * (c.proximal + 2 * c.distal) * 0.5 * 1.3 * pi / 23));
   }
@@ -145,10 +148,11 @@ TEST_CASE("Two planar fingers of two links reach what two rings reach", "[hands]
 
 TEST_CASE("Pads on arms that turn face each other between the angles that the cone allows",
           "[hands][hand_workspace]") {
-  // Arms of length l at ±b, both raised by s: distance 2 (b + l cos s), and the pads look along the
-  // line between them within |s − 90°|. Raised differently they are no farther apart and no nearer
-  // at the same mean angle s: (distance / 2)² = b² + 2 b l cos s cos t + l² cos² s, where t is half
-  // the difference. So with a facing angle of f: 2 (b ± l sin f), as long as b > l sin f.
+  // Arms of length l at ±b, both raised by s, have the distance 2 (b + l cos s), and the pads look
+  // along the line between them within |s − 90°|. Raised differently they are no farther apart and
+  // no nearer at the same mean angle s: (distance / 2)² = b² + 2 b l cos s cos t + l² cos² s, where
+  // t is half the difference. So with a facing angle of f the distances are 2 (b ± l sin f), as
+  // long as b > l sin f.
   const double base = 0.06, length = 0.08;
   const HandModel hand = planar_hand(base, {length}, pi);
   for (const double facing_deg : {5.0, 30.0, 45.0}) {
@@ -173,7 +177,7 @@ TEST_CASE("Pads on arms that turn face each other between the angles that the co
 
 TEST_CASE("What stands between the jaws is not graspable, and pads that meet are no collision",
           "[hands][hand_workspace]") {
-  // Jaws that slide from ±50 mm to the middle, as blocks 10 mm thick behind their pads.
+  // The jaws slide from ±50 mm to the middle, as blocks 10 mm thick behind their pads.
   HandModel hand = bare_palm();
   for (const double side : {1.0, -1.0}) {
     RigidTransform X = at({side * 0.05, 0, 0.1});
@@ -181,18 +185,19 @@ TEST_CASE("What stands between the jaws is not graspable, and pads that meet are
     const int link = add_link(hand, 0, X, 0.0, 0.05, hands::JointType::Prismatic);
     hand.links[link].mesh_L =
         geometry::transformed(geometry::box({0.01, 0.02, 0.02}), at({-0.005, 0, 0}));
-    RigidTransform X_LC = RigidTransform::Identity();  // z of the pad along x of the jaw
+    // The pad's z axis is along x of the jaw.
+    RigidTransform X_LC = RigidTransform::Identity();
     X_LC.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     add_finger(hand, 1, X_LC);
   }
   const auto range = [&] { return hands::hand_workspace(hand).any_graspable_diameter; };
   CHECK(range().smallest == Approx(0.0).margin(1e-12));
   CHECK(range().largest == Approx(0.1).margin(1e-12));
-  // A post 30 mm wide, of the palm: the jaws may sink 0.1 mm into it on either side.
+  // The palm has a post 30 mm wide, and the jaws may sink 0.1 mm into it on either side.
   hand.links[0].mesh_L = geometry::transformed(geometry::box({0.03, 0.02, 0.2}), at({0, 0, 0.05}));
   CHECK(range().smallest == Approx(0.0298).margin(2e-5));
   CHECK(range().largest == Approx(0.1).margin(1e-12));
-  // Distances of the tips do not mind.
+  // Distances of the tips do not depend on it.
   CHECK(hands::tip_distances(hand)[0][1].smallest == Approx(0.0).margin(1e-12));
   hand.exclusions = {{0, 1}, {0, 2}};
   CHECK(range().smallest == Approx(0.0).margin(1e-12));
@@ -202,7 +207,7 @@ TEST_CASE("Joints that carry both tips count for nothing, except through what fo
           "[hands][hand_workspace]") {
   const HandModel hand = planar_hand(0.05, {0.07, 0.05}, 2.0);
   const HandWorkspace still = hands::hand_workspace(hand);
-  // The same on a wrist: links and joints moved up by one.
+  // The hand is the same on a wrist: links and joints are moved up by one.
   const auto on_wrist = [&hand] {
     HandModel result = bare_palm();
     add_link(result, 0, at({0.01, 0.02, 0.03}), -1.0, 1.0);
@@ -252,8 +257,8 @@ TEST_CASE("Joints that carry both tips count for nothing, except through what fo
   CHECK(hands::tip_distances(wrist)[0][1].largest >= largest - 1e-12);
 }
 
-/// Smallest and largest distance of two fingers' tip pads over a grid of the independent joints,
-/// one configuration of the whole hand after the other.
+/// Returns the smallest and largest distance of two fingers' tip pads over a grid of the
+/// independent joints, one configuration of the whole hand after the other.
 DistanceRange searched_range(const HandModel& hand, int finger_a, int finger_b, int samples) {
   std::vector<int> free_joints;
   for (const int finger : {finger_a, finger_b}) {
@@ -274,7 +279,8 @@ DistanceRange searched_range(const HandModel& hand, int finger_a, int finger_b, 
       const double share = static_cast<double>(step[i]) / (samples - 1);
       configuration.q[free_joints[i]] = joint.lower + share * (joint.upper - joint.lower);
     }
-    // From the coupled position, not from a breakaway left behind by the step before.
+    // The search starts from the coupled position, not from a breakaway left behind by the step
+    // before.
     for (std::size_t i = 0; i < hand.joints.size(); ++i) {
       if (const auto& coupling = hand.joints[i].coupling) {
         configuration.q[i] =
@@ -310,7 +316,8 @@ TEST_CASE("Tip distances of the Barrett hand are those of its kinematics",
                                 << " to " << range.largest);
       CHECK(range == distances[b][a]);
 
-      // Bit by bit what all configurations of the grid give: planned grasps depend on it.
+      // The result is bit by bit what all configurations of the grid give, as planned grasps depend
+      // on it.
       const DistanceRange searched =
           searched_range(hand, static_cast<int>(a), static_cast<int>(b), 24);
       CHECK(range.smallest == searched.smallest);
@@ -320,12 +327,12 @@ TEST_CASE("Tip distances of the Barrett hand are those of its kinematics",
       CHECK(range.smallest >= 0.0);
       CHECK(range.smallest < 0.030);
 
-      // Published: at full opening a tip reaches 162.8 mm from the palm's axis, opposed tips are
-      // about 325 mm apart. With the thumb: sqrt(25² + 325.6²) = 326.6 mm. Fingers 1
-      // and 2, whose bases are 50 mm apart, at spread 90°: 375.6 mm. The pad's center lies on the
-      // distal link of 56 mm, 26.8 mm from its joint and 6.8 mm off its axis, so within
-      // sqrt(29.2² + 6.8²) < 30 mm of the tip point: at most 60 mm less than the tips, and not more
-      // since the pad is on the inner side.
+      // By published numbers, at full opening a tip reaches 162.8 mm from the palm's axis, and
+      // opposed tips are about 325 mm apart. With the thumb it is sqrt(25² + 325.6²) = 326.6 mm,
+      // for fingers 1 and 2, whose bases are 50 mm apart, at spread 90° 375.6 mm. The pad's center
+      // lies on the distal link of 56 mm, 26.8 mm from its joint and 6.8 mm off its axis, so within
+      // sqrt(29.2² + 6.8²) < 30 mm of the tip point: the pads are at most 60 mm less apart than the
+      // tips, and not more, since the pad is on the inner side.
       const bool with_thumb = static_cast<int>(a) == thumb || static_cast<int>(b) == thumb;
       const double tips = with_thumb ? 0.3266 : 0.3756;
       CHECK(range.largest < tips);
@@ -335,8 +342,8 @@ TEST_CASE("Tip distances of the Barrett hand are those of its kinematics",
       const DistanceRange finer =
           searched_range(hand, static_cast<int>(a), static_cast<int>(b), 47);
       CHECK(range.smallest <= finer.smallest + range.error);
-      // The widest opening is at joint limits, but for the spread, in which it is stationary:
-      // an error of second order, below 0.14 m · 0.068².
+      // The widest opening is at joint limits, but for the spread, in which it is stationary: the
+      // error is of second order, below 0.14 m · 0.068².
       CHECK(std::abs(range.largest - finer.largest) < 1e-3);
     }
   }
@@ -375,15 +382,15 @@ TEST_CASE("The Barrett hand's graspable diameters are those of its grid, and a l
       whole.smallest = std::min(whole.smallest, between.norm());
       whole.largest = std::max(whole.largest, between.norm());
     }
-    // Facing each other, the fingers are far apart: no configuration of these touches itself. In
-    // the plane of a finger, its link is at 40° + 4/3 q and its pad looks at the axis within 45°
+    // Facing each other, the fingers are far apart, and no configuration of these touches itself.
+    // In the plane of a finger, its link is at 40° + 4/3 q and its pad looks at the axis within 45°
     // for q up to 71°; there the pad's center is 52 mm from it, less what turning the other finger
     // gives.
     const DistanceRange& range = workspace.graspable_diameter[finger];
     CAPTURE(name, range.smallest, range.largest, whole.smallest, whole.largest);
     CHECK(range.smallest <= whole.smallest);
     CHECK(range.largest >= whole.largest);
-    // Half a step (3° of two proximal joints at 0.12 m) either way.
+    // They differ by half a step (3° of two proximal joints at 0.12 m) either way.
     CHECK(range.smallest >= whole.smallest - 0.015);
     CHECK(range.largest <= whole.largest + 0.015);
   }
@@ -406,8 +413,8 @@ TEST_CASE("A finer sampling of the joints only widens the tip distances",
 TEST_CASE("A human thumb meets every finger, and spans what a hand of its length spans",
           "[hands][hand_workspace]") {
   // Pads that face each other come within a few millimeters of touching, at the index and middle
-  // finger, where thumbs are opposed. The widest is less than what thumb and little finger span
-  // stretched out, about the length of the hand (212 mm, GraspIt!'s size) and a half.
+  // finger, where thumbs are opposed. The widest distance is less than what thumb and little finger
+  // span stretched out, about the length of the hand (212 mm, GraspIt!'s size) and a half.
   const HandModel hand = hands::find_hand("human_hand");
   const HandWorkspace workspace = hands::hand_workspace(hand);
   for (const char* name : {"index", "middle"}) {
@@ -424,7 +431,7 @@ TEST_CASE("A human thumb meets every finger, and spans what a hand of its length
 }
 
 TEST_CASE("Grippers grasp from nothing to their stroke", "[hands][hand_workspace]") {
-  // Robotiq 2F-85: stroke 85 mm; Franka hand: 2 × 40 mm.
+  // The Robotiq 2F-85 has a stroke of 85 mm, the Franka hand 2 × 40 mm.
   for (const auto& [name, stroke] :
        {std::pair{"parallel_gripper", 0.085}, std::pair{"franka_gripper", 0.080}}) {
     CAPTURE(name);
@@ -469,7 +476,7 @@ TEST_CASE("Ranges of every shipped hand hold the distances of 1000 random config
         }
       }
     }
-    // The bound is far from what happens: no configuration is more than 5 mm beyond.
+    // The bound is far from what happens, as no configuration is more than 5 mm beyond.
     CHECK(beyond < 0.005);
   }
 }
@@ -477,10 +484,10 @@ TEST_CASE("Ranges of every shipped hand hold the distances of 1000 random config
 TEST_CASE("More joints than the grid has room for are sampled at random",
           "[hands][hand_workspace]") {
   const HandModel hand = planar_hand(0.05, {0.03, 0.03, 0.03}, 1.0);
-  const WorkspaceOptions options{.max_configurations = 32};  // 2^6 would be 64
+  const WorkspaceOptions options{.max_configurations = 32};  // 2^6 would be 64.
   const DistanceRange range = hands::tip_distances(hand, options)[0][1];
   const DistanceRange whole = hands::tip_distances(hand)[0][1];
-  CHECK(range.largest == Approx(whole.largest).margin(1e-6));  // moved on to the limits
+  CHECK(range.largest == Approx(whole.largest).margin(1e-6));  // It is moved on to the limits.
   CHECK(range.smallest == Approx(whole.smallest).margin(1e-4));
   CHECK(range.error > whole.error);
   CHECK(hands::tip_distances(hand, options)[0][1] == range);
@@ -518,7 +525,7 @@ TEST_CASE("A hand's workspace is kept by all that it depends on", "[hands][hand_
   const HandWorkspace found = hands::hand_workspace(hand, options);
   CHECK(hands::cached_hand_workspace(hand, options, cache) == found);
   REQUIRE(num_kept() == 1);
-  // Another value, sealed, shows that it is the entry that is read.
+  // Another value, sealed, shows that the entry is what is read.
   const fs::path file = fs::directory_iterator(folder.path() / "hand_workspace")->path();
   const std::string key = file.stem().string();
   std::string text = *cache.read("hand_workspace", key);

@@ -31,16 +31,16 @@ TEST_CASE("A tip's reach is the cells that it visits, by the way its pad looks",
   };
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
   CHECK(at(0.0, 0.0, x) == 0.0);
-  CHECK(at(1.0, 0.0, x) == 0.0);  // 45 degrees off
+  CHECK(at(1.0, 0.0, x) == 0.0);  // The normal is 45 degrees off.
   CHECK(at(1.0, 0.0, y) == 0.0);
-  // Float distances of whole cells.
+  // Distances are floats of whole cells.
   CHECK(at(0.3, 0.0, x) == Approx(0.3).epsilon(1e-6));
   CHECK(at(0.0, 0.0, y) == Approx(1.0).epsilon(1e-6));
   CHECK(at(0.0, 0.0, -x) == std::numeric_limits<double>::infinity());
   CHECK(at(0.0, 0.0, Vector3d::UnitZ()) == std::numeric_limits<double>::infinity());
-  CHECK(at(2.5, 0.0, x) > 1.0);  // beyond the lattice
+  CHECK(at(2.5, 0.0, x) > 1.0);  // This is beyond the lattice.
   CHECK_THROWS_AS(hands::TipReach({}, cell), base::InvalidInput);
-  // A hand in millimeters, or of no size at all: more cells than fit into memory or an int.
+  // A hand in millimeters, or of no finite size, has more cells than fit into memory or an int.
   for (const double far : {300.0, 1e300, std::numeric_limits<double>::infinity()}) {
     const Vector3d corner = Vector3d::Constant(far);
     CHECK_THROWS_AS(
@@ -52,7 +52,7 @@ TEST_CASE("A tip's reach is the cells that it visits, by the way its pad looks",
 TEST_CASE("Whatever its joints, a tip is where its reach says", "[hands][tip_reach]") {
   struct Hand {
     const char* name;
-    double spacing;  ///< Between samples at the tip, about [m].
+    double spacing;  ///< Distance between samples at the tip, about [m].
   };
   for (const Hand& c :
        {Hand{"parallel_gripper", 0.001}, Hand{"barrett", 0.006}, Hand{"human_hand", 0.02}}) {
@@ -77,7 +77,7 @@ TEST_CASE("Whatever its joints, a tip is where its reach says", "[hands][tip_rea
         REQUIRE(reaches[f].has_value());
         const Vector3d point = hands::pad_contact_point(hand, pad, X_HL);
         const Vector3d normal = hands::pad_pose(hand, pad, X_HL).linear().col(2);
-        // A cell's diagonal off, and the nearest sample.
+        // The reach may be off by a cell's diagonal and by the nearest sample.
         CHECK(reaches[f]->distance(point, normal) <= 0.006 * std::sqrt(3.0) + c.spacing);
         CHECK(reaches[f]->distance(point + Vector3d(0, 0, 1.0), normal) > 0.5);
       }
