@@ -15,7 +15,7 @@
 #include "graspfit/hands/hand_library.hpp"
 
 /// \file
-/// Scenes for tests of fitting: an object, a hand, and targets placed on it by hand.
+/// Scenes for tests of fitting: an object, a hand, and targets that are given by the test.
 
 namespace graspfit::testing {
 
@@ -45,7 +45,8 @@ struct Scene {
     return grasp::fit_hand(grasp_scene(), style, assigned_targets, placement, options);
   }
   grasp::GraspScene grasp_scene() const { return {fitting_hand, object, nothing, contact_options}; }
-  /// Of all pads where the hand has ended, those of requested parts marked as targets.
+  /// Returns the contacts of all pads where the hand has ended, those of requested parts marked as
+  /// targets.
   std::vector<contact::Contact> contacts(const grasp::FittingResult& result) const {
     std::vector<contact::Contact> contacts = contact::estimate_contacts(
         hand, hands::forward_kinematics(hand, result.configuration), object.query, contact_options);
@@ -61,7 +62,7 @@ struct Scene {
   grasp::FittingHand fitting_hand;
   hands::HandCollision collision;
   contact::ContactEstimationOptions contact_options;
-  grasp::RequestedParts parts;  ///< Thumb first.
+  grasp::RequestedParts parts;  ///< The parts have the thumb first.
   grasp::SurroundingsCollision nothing;
 };
 
@@ -78,8 +79,8 @@ inline grasp::TargetContacts targets_at(const std::vector<Eigen::Vector3d>& poin
   return targets;
 }
 
-/// Three targets 120° apart on the circle of radius `radius` around `X_OT`'s z axis, normals
-/// radial, the seed at angle `turn`.
+/// Returns three targets 120° apart on the circle of radius `radius` around `X_OT`'s z axis, with
+/// radial normals and the seed at angle `turn`.
 inline grasp::TargetContacts equilateral_targets(
     double radius, double turn,
     const geometry::RigidTransform& X_OT = geometry::RigidTransform::Identity()) {
@@ -110,7 +111,8 @@ inline grasp::TargetContacts on_surface(const grasp::ObjectModel& object,
   return targets;
 }
 
-/// Points on every triangle of a mesh, on a grid not wider than `spacing`; corners included.
+/// Returns points on every triangle of a mesh, on a grid not wider than `spacing`, corners
+/// included.
 inline std::vector<Eigen::Vector3d> dense_points(const geometry::TriangleMesh& mesh,
                                                  double spacing) {
   std::vector<Eigen::Vector3d> points;

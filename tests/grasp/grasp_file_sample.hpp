@@ -15,7 +15,8 @@
 
 namespace graspfit::testing {
 
-/// Every field away from its default, so that one that is not written, or not read, shows.
+/// Returns options of which every field is away from its default, so that one that is not written,
+/// or not read, shows.
 inline grasp::PlannerOptions unusual_options() {
   grasp::PlannerOptions options;
   options.planner = "ma";
@@ -34,7 +35,7 @@ inline grasp::PlannerOptions unusual_options() {
                              .least_spread_rel = 0.002};
   options.style = grasp::GraspStyle::Power;
   options.palm = false;
-  options.seed = 18446744073709551615U;  // the largest there is
+  options.seed = 18446744073709551615U;  // It is the largest there is.
   options.search = grasp::SearchRule::First;
   options.acceptance = grasp::Acceptance::Usable;
   options.rejection = grasp::Rejection::Quality;
@@ -46,7 +47,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.refinement.near_pad_steps = 5;
   options.count = 7;
   options.max_attempts = 77;
-  options.max_iterations = 5000000000;  // more than an int holds
+  options.max_iterations = 5000000000;  // It is more than an int holds.
   options.approach_O = Eigen::Vector3d(0.1, -1.0 / 3.0, 0.7);
   options.approach_angle = 0.4;
   options.wall_clock_limit_s = 12.5;
@@ -74,7 +75,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.fitting.guard_self = true;
   options.refine = false;
   options.refinement.wanted_gap = 3e-5;
-  options.refinement.largest_gap = 0.2;  // so large that every contact bears forces
+  options.refinement.largest_gap = 0.2;  // It is so large that every contact bears forces.
   options.refinement.least_distance = 2e-6;
   options.refinement.max_iterations = 61;
   options.refinement.slide_steps = 3;
@@ -105,7 +106,8 @@ inline grasp::PlannerOptions unusual_options() {
   return options;
 }
 
-/// A Barrett hand in some pose around a ball of 5 cm radius, measured as the planner measures.
+/// Returns a Barrett hand in some pose around a ball of 5 cm radius, measured as the planner
+/// measures.
 inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
   geometry::write_mesh(object_file, geometry::ball(0.05, 2));
   const grasp::ObjectFile object = grasp::read_object_file(object_file);
@@ -127,12 +129,12 @@ inline grasp::GraspFile sample_file(const std::filesystem::path& object_file) {
   file.options = unusual_options();
   file.options.quality.units = contact::MeasureUnits::Normalized;
   file.options.counted_pads = contact::CountedPads::All;
-  file.options.weak.reset();  // a search takes seconds
+  file.options.weak.reset();  // A search would take seconds.
   file.surroundings.table_z_O = -0.2;
   file.surroundings.obstacles.push_back(object.record);
   file.fingers = {"thumb", "finger_1", "finger_2"};
   file.voxel_size = 0.1 / 30.0;
-  file.clip_thickness = 0.1;  // so thick that every pad meets the ball
+  file.clip_thickness = 0.1;  // It is so thick that every pad meets the ball.
   file.merge_distance = 0.1 * file.voxel_size;
   file.stop = grasp::PlannerStop::WallClock;
   file.statistics.attempts = 5;

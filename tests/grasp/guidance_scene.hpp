@@ -26,7 +26,7 @@ struct Guided {
   std::unique_ptr<grasp::GraspGuidance> guidance;
 };
 
-/// The paper's level: voxels guard, nothing is refined.
+/// Returns options at the paper's level: voxels guard, nothing is refined.
 inline grasp::PlannerOptions at_voxel_level(const std::string& planner) {
   grasp::PlannerOptions options;
   options.planner = planner;
@@ -39,7 +39,7 @@ inline grasp::PlannerOptions at_voxel_level(const std::string& planner) {
   return options;
 }
 
-/// Σ (observed − expected)² / expected.
+/// Returns Σ (observed − expected)² / expected.
 template <class Observed, class Expected>
 double chi_square(const Observed& observed, const Expected& expected) {
   double sum = 0.0;

@@ -6,14 +6,15 @@
 #include "graspfit/contact/wrench_convention.hpp"
 
 /// \file
-/// Sets of contacts whose measures are known in closed form, named as in the project's table of
-/// known values. Torque scale 1, torques about the origin.
+/// Sets of contacts whose measures are known in closed form. The cases have the letters by which
+/// tests of wrench spaces and min-weights name them, too. The torque scale is 1, and torques are
+/// about the origin.
 
 namespace graspfit::testing {
 
 using Contacts = std::vector<contact::Contact>;
 
-/// Points of the unit sphere held along its normals.
+/// Returns contacts at points of the unit sphere, held along its normals.
 inline Contacts on_sphere(const std::vector<Eigen::Vector3d>& directions) {
   Contacts contacts;
   for (const Eigen::Vector3d& direction : directions) {
@@ -22,20 +23,20 @@ inline Contacts on_sphere(const std::vector<Eigen::Vector3d>& directions) {
   return contacts;
 }
 
-/// Case E: two contacts opposite each other; rank 5.
+/// Case E has two contacts opposite each other, of rank 5.
 inline Contacts antipodal() { return on_sphere({{1, 0, 0}, {-1, 0, 0}}); }
 
-/// Case F: the middles of the faces of a cube with half edge 1.
+/// Case F has the middles of the faces of a cube with half edge 1.
 inline Contacts on_cube() {
   return on_sphere({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}});
 }
 
-/// Case G.
+/// Case G has the corners of a regular tetrahedron.
 inline Contacts on_tetrahedron() {
   return on_sphere({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}});
 }
 
-/// What tools scale by: the unit ball.
+/// Returns the object by which tools scale: the unit ball.
 inline contact::WrenchObject unit_ball() {
   return {.center_of_mass_O = Eigen::Vector3d::Zero(),
           .largest_radius = 1.0,

@@ -20,7 +20,7 @@
 #include "graspfit/hands/hand_library.hpp"
 
 /// \file
-/// A run of the planner, every bit of what it returns, and all that must hold of it.
+/// Runs the planner, and checks every bit of what it returns, and all that must hold of it.
 
 namespace graspfit::testing {
 
@@ -47,7 +47,7 @@ inline const std::vector<AttemptOutcome> kOutcomes = {
     AttemptOutcome::Unstable,       AttemptOutcome::PoorShape,
 };
 
-/// Every number of a grasp, written so that two are equal exactly if their bits are.
+/// Returns every number of a grasp, written so that two texts are equal exactly if the bits are.
 inline std::string all_fields(const Grasp& grasp) {
   std::ostringstream out;
   out << std::hexfloat;
@@ -109,7 +109,7 @@ inline std::string all_fields(const Grasp& grasp) {
   return out.str();
 }
 
-/// Everything of a result but its timings.
+/// Returns everything of a result but its timings.
 inline std::string all_fields(const PlannerResult& result) {
   std::ostringstream out;
   out << static_cast<int>(result.stop) << ' ' << result.statistics.attempts << '\n';
@@ -145,7 +145,7 @@ struct Run {
   grasp::Surroundings surroundings;
 };
 
-/// What `run` measures with.
+/// Returns the scene with which `run` measures.
 inline grasp::MeasuringScene measuring_scene(const Run& run,
                                              const grasp::SurroundingsCollision& surroundings) {
   const double voxel_size = run.object.grid.lattice.voxel_size;
@@ -168,14 +168,14 @@ inline grasp::MeasuringScene measuring_scene(const Run& run,
   return scene;
 }
 
-/// The narrower side of the pad's outline in its own frame: one pad width [m].
+/// Returns the narrower side of the pad's outline in its own frame: one pad width [m].
 inline double pad_width(const hands::ContactPad& pad) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : pad.outline) box.extend(corner);
   return box.sizes().minCoeff();
 }
 
-/// The finger that a link belongs to; −1 for the palm and for no link.
+/// Returns the finger that a link belongs to; −1 for the palm and for no link.
 inline int finger_of_link(const hands::HandModel& hand, std::optional<int> link) {
   for (std::size_t i = 0; i < hand.fingers.size(); ++i) {
     const std::vector<int>& links = hand.fingers[i].links;
@@ -184,7 +184,7 @@ inline int finger_of_link(const hands::HandModel& hand, std::optional<int> link)
   return -1;
 }
 
-/// All that has to hold of a planner's result, one line for each thing that does not.
+/// Returns all that has to hold of a planner's result and does not, one line for each.
 inline std::vector<std::string> broken_promises(const Run& run, const PlannerResult& result) {
   std::vector<std::string> broken;
   const auto report = [&](const auto&... parts) {
@@ -200,7 +200,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   const bool has_targets = options.planner == "fitting" || options.planner == "gs-targets";
   const bool are_chosen = options.planner == "fitting";
 
-  // Statistics.
+  // These lines check the statistics.
   const grasp::PlannerStatistics& statistics = result.statistics;
   std::int64_t sum = 0;
   for (const AttemptOutcome outcome : kOutcomes) {
@@ -234,7 +234,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   }
   if (target_failures != count_of(AttemptOutcome::NoTargets)) report("sum of target failures");
 
-  // Number and order of grasps.
+  // These lines check number and order of grasps.
   const std::int64_t num_grasps = static_cast<std::int64_t>(result.grasps.size());
   if (num_grasps > options.count) report(num_grasps, " grasps of ", options.count);
   if (result.stop == PlannerStop::WallClock) report("stopped by the clock");
@@ -266,7 +266,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     }
   }
 
-  // Each grasp.
+  // These lines check each grasp.
   const grasp::RequestedParts parts = grasp::requested_parts(hand, options);
   const std::vector<int>& fingers = parts.fingers;
   const grasp::PartDistances distances = grasp::part_distances(hand);
@@ -291,7 +291,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       wrong("iterations ", g.iterations);
     }
 
-    // Acceptance.
+    // These lines check whether the grasp is accepted.
     if (!(g.quality.m > 0.0) || !g.is_usable()) wrong("not usable");
     if (options.acceptance == Acceptance::Valid && !g.is_valid()) wrong("not valid");
     const double least_m = has_targets ? std::min(0.5 * g.ideal_m, 0.6) : 0.6;
@@ -310,7 +310,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     }
     if (has_targets ? !(g.ideal_m > 0.0) : g.ideal_m != 0.0) wrong("ideal M ", g.ideal_m);
 
-    // Targets.
+    // These lines check its targets.
     if (!has_targets && !g.targets.contacts.empty()) wrong("targets of a method without");
     for (const std::string& line :
          are_chosen
@@ -326,7 +326,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     }
     if (!assigned.empty() && assigned.front() != fingers.front()) wrong("seed's finger");
 
-    // Configuration.
+    // These lines check its configuration.
     try {
       hands::validate(hand, g.configuration);
     } catch (const base::InvalidInput& error) {
@@ -335,7 +335,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     const Vector3d direction = g.configuration.X_OH.linear() * hand.palm.direction_H;
     if (options.approach_O && direction.dot(*options.approach_O) <= 0.0) wrong("approach");
 
-    // Exact penetration.
+    // These lines check penetration exactly.
     const auto X_OL = hands::forward_kinematics(hand, g.configuration);
     const auto with_object = run.collision.against_object(run.object.query, X_OL);
     const auto with_itself = run.collision.against_self(X_OL);
@@ -354,7 +354,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       wrong("fingers overlap by ", with_itself.depth);
     }
     if (options.refine) {
-      // What refinement promises: real contact everywhere, exactly nothing inside.
+      // Refinement promises real contact everywhere, and exactly nothing inside.
       if (with_object.intersects || with_itself.intersects) wrong("refined, but intersecting");
       for (const auto& contact : g.contacts) {
         if (contact.is_target && contact.gap > options.refinement.largest_gap) {
@@ -365,7 +365,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
     }
     if (g.is_valid() && (with_object.intersects || with_itself.intersects)) wrong("not valid");
 
-    // Contacts and measure from the meshes alone.
+    // These lines check contacts and measure from the meshes alone.
     bool has_all = true;
     for (const int finger : fingers) {
       has_all = has_all && std::any_of(g.contacts.begin(), g.contacts.end(),
@@ -395,7 +395,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
         }
       }
     }
-    // The measure of the contacts that are stored, computed directly.
+    // The measure of the contacts that are stored is computed directly.
     const auto direct =
         contact::contact_quality(g.contacts, scene.quality_context, scene.quality_options);
     compare("m of the stored contacts", g.quality.m, direct.m);
@@ -403,7 +403,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   return broken;
 }
 
-/// Stops at the first `count` grasps.
+/// Returns options by which the planner stops at the first `count` grasps.
 inline PlannerOptions collecting(Acceptance acceptance, int count, int max_attempts) {
   PlannerOptions options;
   options.search = SearchRule::First;

@@ -14,12 +14,13 @@
 
 namespace graspfit::testing {
 
-/// Angle between two vectors [rad]; by atan2, so that it is exact to rounding near 0 and π too.
+/// Returns the angle between two vectors [rad], by atan2, so that it is exact to rounding near 0
+/// and π too.
 inline double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Empty if an error message names the field and the value; the message if it does not.
+/// Returns nothing if an error message names the field and the value, otherwise the message.
 inline std::string unsaid(const std::string& message, const std::string& field,
                           const std::string& value) {
   const bool says_field = message.find(field) != std::string::npos;
@@ -27,18 +28,18 @@ inline std::string unsaid(const std::string& message, const std::string& field,
   return says_field && says_value ? "" : message;
 }
 
-/// Slack for comparing an angle, a length relative to 1 m or a ratio that two programs compute from
-/// the same doubles: a few hundred rounding errors.
+/// The slack for comparing an angle, a length relative to 1 m or a ratio that two programs compute
+/// from the same doubles: a few hundred rounding errors.
 inline constexpr double kRounding = 1e-12;
 
-/// Whether `distance` lies in `range`.
+/// Returns whether `distance` lies in `range`.
 inline bool is_in_range(double distance, const hands::DistanceRange& range) {
   return distance >= range.smallest - kRounding && distance <= range.largest + kRounding;
 }
 
-/// Whether the targets can be given to the fingers, the first to the first, so that every two are
-/// within their fingers' own range, and the palm, if it has a target, within all fingers': by all
-/// permutations.
+/// Returns whether the targets can be given to the fingers, the first to the first, so that every
+/// two are within their fingers' own range, and the palm, if it has a target, within all fingers'.
+/// It tries all permutations.
 inline bool is_in_reach_of_hand(const grasp::PartDistances& distances,
                                 const grasp::RequestedParts& parts,
                                 const grasp::TargetContacts& targets) {
@@ -60,8 +61,8 @@ inline bool is_in_reach_of_hand(const grasp::PartDistances& distances,
   return false;
 }
 
-/// Every requirement of section 6 on a set of target contacts, evaluated from scratch: one line for
-/// each that is broken.
+/// Evaluates every requirement of section 6 on a set of target contacts from scratch. Returns one
+/// line for each that is broken.
 inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& object,
                                                     const grasp::PartDistances& distances,
                                                     const grasp::RequestedParts& parts,
@@ -79,7 +80,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
     return broken;
   }
   if (!is_in_reach_of_hand(distances, parts, targets)) report("no fingers reach all targets");
-  // Of the fingers alone; the palm's comes last.
+  // These are the targets of the fingers alone; the palm's comes last.
   std::vector<grasp::TargetContact> contacts = targets.contacts;
   if (parts.palm) {
     const grasp::TargetContact palm = contacts.back();
@@ -146,7 +147,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
           report("targets ", i, " and ", j, ": angles ", at_i, " ", at_j);
         }
       }
-      if (j == 2) {  // with more targets not all edges can agree
+      if (j == 2) {  // With more targets not all edges can agree.
         const double error = std::abs(length - first_edge) / first_edge;
         if (error > options.edge_tolerance_rel * relaxed + kRounding) {
           report("targets ", i, " and ", j, ": edge error ", error, " relaxed by ", relaxed);

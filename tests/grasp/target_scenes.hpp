@@ -23,7 +23,7 @@ using grasp::RequestedParts;
 using grasp::TargetOptions;
 using grasp::TargetSelection;
 
-/// Fingers whose every pair reaches the same distances.
+/// Returns fingers whose every pair reaches the same distances.
 inline PartDistances equal_reach(int num_fingers, double smallest, double largest) {
   PartDistances distances;
   distances.tip_to_tip.assign(num_fingers, std::vector<hands::DistanceRange>(num_fingers));
@@ -41,8 +41,8 @@ inline void set_range(PartDistances& distances, int a, int b, hands::DistanceRan
 }
 
 inline grasp::ObjectModel object_of(const geometry::TriangleMesh& mesh) {
-  // The selection looks at the object alone: no room for a hand around it, so that building is
-  // fast.
+  // The selection sees the object alone: there is no margin for a hand around it, so that building
+  // is fast.
   grasp::ObjectModelOptions options;
   options.margin = 0.0;
   return grasp::build_object_model(mesh, options);
@@ -56,9 +56,9 @@ struct Place {
   bool has_normal = true;
 };
 
-/// An object whose patches are exactly `places`: what is selected from it can be worked out by
-/// hand. Its mesh, a box that holds the places, plays no part. Center of mass at the origin,
-/// radius 1.
+/// Returns an object whose patches are exactly `places`, so that what is selected from it can be
+/// worked out by hand. Its mesh, a box that holds the places, is not used. The center of mass is at
+/// the origin, the radius is 1.
 inline grasp::ObjectModel object_of(const std::vector<Place>& places) {
   grasp::ObjectModel object = object_of(geometry::box(Vector3d(4, 4, 4)));
   object.mass.center_of_mass = Vector3d::Zero();
@@ -83,7 +83,7 @@ inline grasp::ObjectModel object_of(const std::vector<Place>& places) {
   return object;
 }
 
-/// Places on the unit circle at the given angles [deg], normals radial.
+/// Returns places on the unit circle at the given angles [deg], with radial normals.
 inline std::vector<Place> on_unit_circle(const std::vector<double>& angles_deg) {
   std::vector<Place> places;
   for (const double angle_deg : angles_deg) {
@@ -110,8 +110,8 @@ inline std::vector<int> patches_of(const TargetSelection& selection) {
   return selection.targets ? patches_of(*selection.targets) : std::vector<int>{};
 }
 
-/// Selects with many seeds and checks every set, including that its points lie on the surface.
-/// Returns the number of sets.
+/// Selects with many seeds and checks every set, and that its points lie on the surface. Returns
+/// the number of sets.
 inline int check_selections(const grasp::ObjectModel& object, const PartDistances& distances,
                             const RequestedParts& parts, const TargetOptions& options,
                             int num_seeds) {
@@ -126,7 +126,7 @@ inline int check_selections(const grasp::ObjectModel& object, const PartDistance
     CHECK(broken_requirements(object, distances, parts, options, *selection.targets) ==
           std::vector<std::string>{});
     for (const auto& target : selection.targets->contacts) {
-      // Rounding of a projected point, more on the slivers of a cylinder.
+      // This is the rounding of a projected point, which is larger on the slivers of a cylinder.
       const double limit = 1e-12 * geometry::longest_extent(object.mesh());
       CHECK(std::sqrt(object.query.closest_point(target.point_O).squared_distance) <= limit);
     }

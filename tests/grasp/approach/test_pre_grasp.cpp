@@ -41,12 +41,14 @@ TriangleMesh box_at(const Vector3d& size, const Vector3d& center) {
   return mesh;
 }
 
-/// The parallel gripper around a box of 40 x 20 x 30 mm at the origin, its pads `gap` beside it.
+/// The parallel gripper around a box of 40 x 20 x 30 mm at the origin, with its pads `gap` beside
+/// it.
 struct Pinch {
   explicit Pinch(double gap) : hand(hands::find_hand("parallel_gripper")), collision(hand) {
     grasp = hands::open_configuration(hand);
     grasp.q.setConstant(0.02 + gap);
-    grasp.X_OH.translation().z() = -0.062;  // the pads' middle at the origin
+    // The middle between the pads is at the origin.
+    grasp.X_OH.translation().z() = -0.062;
   }
   std::optional<PreGrasp> find(const PreGraspOptions& options, Surroundings around = {}) const {
     const SurroundingsCollision surroundings(hand, std::move(around));
@@ -70,7 +72,7 @@ HandConfiguration random_configuration(const HandModel& hand, Random& random) {
   return configuration;
 }
 
-/// What a hand may touch, asked by exact tests.
+/// What a hand may touch; exact tests decide.
 struct Scene {
   HandModel hand;
   hands::HandCollision collision;
@@ -101,8 +103,8 @@ struct Scene {
   }
 };
 
-/// The hand closed around what it holds: every finger's closing joints together, in turn, as far as
-/// exact tests let them, to within 1e-5 of their range.
+/// Returns the hand closed around what it holds: every finger's closing joints move together, one
+/// finger after the other, as far as exact tests let them, to within 1e-5 of their range.
 HandConfiguration closed_onto(const Scene& scene, HandConfiguration at) {
   const HandConfiguration start = at;
   for (const hands::Finger& finger : scene.hand.fingers) {
@@ -125,7 +127,8 @@ HandConfiguration closed_onto(const Scene& scene, HandConfiguration at) {
       (scene.is_clear(closed(middle)) ? low : high) = middle;
     }
     at =
-        closed(std::max(0.0, low - 0.002));  // not so near that no proof could tell it from a touch
+        // The hand is not so near that no proof could tell it from a touch.
+        closed(std::max(0.0, low - 0.002));
   }
   return at;
 }
@@ -149,7 +152,7 @@ TEST_CASE("Poses between two are linear in place and joints and turn along the s
   CHECK(interpolated(from, to, 0.0).X_OH.matrix() == from.X_OH.matrix());
   CHECK(interpolated(from, to, 1.0).X_OH.matrix() == to.X_OH.matrix());
   CHECK(interpolated(from, to, 1.0).q == to.q);
-  // 350 degrees one way are 10 the other.
+  // A turn by 350 degrees one way is one by 10 the other.
   to.X_OH.linear() =
       AngleAxisd(350.0 / 180.0 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix();
   CHECK(interpolated(from, to, 0.5)
@@ -183,11 +186,12 @@ TEST_CASE("No point of a link moves faster than the bound of its way", "[grasp][
           const int b = static_cast<int>(random.index(hand.links.size()));
           const auto ib = static_cast<std::size_t>(b);
           double in_O = 0.0;
-          double in_B = 0.0;  // how far points of A move, seen from B, bounds from below
+          // This is how far points of A move, seen from B, bounded from below.
+          double in_B = 0.0;
           for (const Vector3d& p : hand.links[ia].mesh_L.vertices) {
             in_O = std::max(in_O, (now[ia] * p - before[ia] * p).norm());
           }
-          // The distance of a point of A and a point of B changes by no more than both go.
+          // The distance of a point of A and a point of B changes by no more than both move.
           const auto& points_a = hand.links[ia].mesh_L.vertices;
           const auto& points_b = hand.links[ib].mesh_L.vertices;
           for (int i = 0; i < 20 && !points_a.empty() && !points_b.empty(); ++i) {
@@ -205,11 +209,11 @@ TEST_CASE("No point of a link moves faster than the bound of its way", "[grasp][
       CHECK(way.relative_speed(0, 0) == 0.0);
     }
   }
-  CHECK(tightest > 0.8);  // no bound so wide that nothing could break it
+  CHECK(tightest > 0.8);  // No bound is so wide that nothing could break it.
 }
 
 TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp][pre_grasp]") {
-  // Distances of a body that moves with speed 1, as functions of the share x.
+  // These are distances of a body that moves with speed 1, as functions of the share x.
   int num_asked = 0;
   const auto proven = [&](double tolerance, const auto& distance) {
     num_asked = 0;
@@ -218,15 +222,15 @@ TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp]
       return std::min(distance(share), enough);
     });
   };
-  // Past a thin wall that stands 1 mm, 2 um and no distance beside the way at 0.3712.
+  // It passes a thin wall that stands 1 mm, 2 um and no distance beside the way at 0.3712.
   const auto passing = [](double gap) {
     return [gap](double x) { return std::max(gap, std::hypot(x - 0.3712, gap) - 1e-12); };
   };
   CHECK(proven(1e-5, passing(1e-3)));
   CHECK(proven(1e-5, passing(2e-6)));
   CHECK_FALSE(proven(1e-5, passing(0.0)));
-  // Toward a touch of gap g at half the speed: to the end if g is there, up to the tolerance if
-  // not.
+  // It moves toward a touch of gap g at half the speed: to the end if g is there, up to the
+  // tolerance if not.
   const auto closing = [](double gap) {
     return [gap](double x) { return std::max(0.0, gap + 0.5 * (1.0 - x)); };
   };
@@ -234,16 +238,16 @@ TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp]
   CHECK(num_asked < 60);
   CHECK(proven(1e-5, closing(1e-6)));
   CHECK(proven(1e-5, closing(0.0)));
-  CHECK_FALSE(proven(1e-5, closing(-1e-4)));                    // cut before the end
-  CHECK(proven(1e-3, closing(-1e-4)));                          // as deep as the tolerance allows
-  CHECK_FALSE(proven(1e-5, [](double x) { return 0.5 * x; }));  // starts in touch
-  // A slide at 0.1 um is not free, nor endless work.
+  CHECK_FALSE(proven(1e-5, closing(-1e-4)));  // It is cut before the end.
+  CHECK(proven(1e-3, closing(-1e-4)));        // It is as deep as the tolerance allows.
+  CHECK_FALSE(proven(1e-5, [](double x) { return 0.5 * x; }));  // It starts in touch.
+  // A slide at 0.1 um is not free, but it is no endless work either.
   CHECK_FALSE(proven(1e-5, [](double) { return 1e-7; }));
   CHECK(num_asked <= 500);
   CHECK(proven(1e-5, [](double) { return 0.01; }));
   // A body that does not move stays where it is.
   CHECK(are_apart_on_way(0.0, 1e-5, [](double, double) { return 0.0; }));
-  // Without a tolerance it has to be apart there; rounding is no motion.
+  // Without a tolerance it has to be apart there, and rounding is no motion.
   for (const double speed : {0.0, 1e-17}) {
     CHECK_FALSE(are_apart_on_way(speed, 0.0, [](double, double) { return 0.0; }));
     CHECK(are_apart_on_way(speed, 0.0, [](double, double enough) { return enough; }));
@@ -253,8 +257,8 @@ TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp]
 TEST_CASE("Jaws open as little as the clearance asks, by the step", "[grasp][pre_grasp]") {
   const double gap = 2e-5;
   const Pinch scene(gap);
-  const double left = 0.0425 - 0.02 - gap;  // to the limit
-  // Without a retreat: 5 mm take 3 of 10 steps of 2.248 mm each.
+  const double left = 0.0425 - 0.02 - gap;  // This is the way to the limit.
+  // Without a retreat 5 mm take 3 of 10 steps of 2.248 mm each.
   const auto opened = scene.find({.largest_retreat = 0.0});
   REQUIRE(opened);
   CHECK(opened->opening == Approx(0.3));
@@ -263,13 +267,13 @@ TEST_CASE("Jaws open as little as the clearance asks, by the step", "[grasp][pre
   CHECK(opened->configuration.q[0] == Approx(0.02 + gap + 0.3 * left));
   CHECK(opened->configuration.q[1] == opened->configuration.q[0]);
   CHECK(opened->configuration.X_OH.matrix() == scene.grasp.X_OH.matrix());
-  // Finer steps come nearer to 5 mm, and never below.
+  // Finer steps come nearer to 5 mm, and never stay below.
   const auto fine = scene.find({.largest_retreat = 0.0, .opening_steps = 1000});
   REQUIRE(fine);
   CHECK(fine->clearance >= 0.005);
   CHECK(fine->clearance < 0.005 + left / 1000);
-  // With one, the first step already: the jaws are drawn off the box, whose upper side is 15 mm
-  // over the pads' middle, and their lower side far enough below it.
+  // With a retreat the first step is enough: the jaws are drawn off the box, whose upper side is 15
+  // mm over the middle between the pads, and their lower side far enough below it.
   const auto drawn = scene.find({});
   REQUIRE(drawn);
   CHECK(drawn->opening == Approx(0.1));
@@ -283,13 +287,13 @@ TEST_CASE("A grasp that touches has a way in, one that cuts the object has none"
   const PreGraspOptions options{.largest_retreat = 0.0};
   CHECK(Pinch(1e-6).find(options));
   CHECK(Pinch(0.0).find(options));
-  CHECK(Pinch(-5e-6).find(options));  // less than the tolerance
+  CHECK(Pinch(-5e-6).find(options));  // It is less than the tolerance.
   CHECK_FALSE(Pinch(-1e-4).find(options));
 }
 
 TEST_CASE("What stands beside the open jaws is not touched", "[grasp][pre_grasp]") {
   const Pinch scene(2e-5);
-  // Walls 4 mm behind the fingers' backs leave no opening with 5 mm to both sides...
+  // Walls 4 mm behind the fingers' backs leave no opening with 5 mm to both sides.
   double back = 0.0;
   for (const Vector3d& vertex : scene.collision.link_solid(1)->mesh().vertices) {
     if (std::abs(vertex.z()) < 0.03) back = std::max(back, vertex.x());
@@ -300,18 +304,19 @@ TEST_CASE("What stands beside the open jaws is not touched", "[grasp][pre_grasp]
   };
   const Surroundings walls{{}, {wall(1.0), wall(-1.0)}};
   CHECK_FALSE(scene.find({.largest_retreat = 0.0}, walls));
-  // ... but with a retreat out from between them,
+  // A retreat takes the gripper out from between them.
   const PreGraspOptions far{.largest_retreat = 0.3};
   const auto drawn = scene.find(far, walls);
   REQUIRE(drawn);
   CHECK(drawn->retreat > 0.0);
-  // unless a sheet thinner than any step of a search by samples stands behind the gripper.
+  // There is no way if a sheet thinner than any step of a search by samples stands behind the
+  // gripper.
   const double behind =
       scene.grasp.X_OH.translation().z() + scene.collision.link_solid(0)->box().min().z() - 0.01;
   Surroundings closed = walls;
   closed.obstacles.emplace_back(box_at({0.5, 0.5, 1e-5}, {0.0, 0.0, behind}));
   CHECK_FALSE(scene.find(far, closed));
-  // Beyond the sheet the gripper would be clear of everything: only the way there is not.
+  // Beyond the sheet the gripper would be clear of everything: only the way there is not free.
   HandConfiguration beyond = scene.grasp;
   beyond.X_OH.translation().z() -= 0.3;
   const Scene all{scene.hand, scene.collision, scene.object,
@@ -325,12 +330,12 @@ TEST_CASE("A palm in touch is drawn back", "[grasp][pre_grasp]") {
   scene.object = MeshQuery(box_at({0.04, 0.02, 0.1}, {0.0, 0.0, -0.012 + 1e-5}));
   const auto found = scene.find({.opening_steps = 1});
   REQUIRE(found);
-  CHECK(found->retreat == Approx(0.01));  // the first that clears the palm by 5 mm
+  CHECK(found->retreat == Approx(0.01));  // It is the first that clears the palm by 5 mm.
   CHECK_FALSE(scene.find({.largest_retreat = 0.0}));
 }
 
 TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]") {
-  // Two blocks on slides along x that change places as they open.
+  // Two blocks on slides along x change places as they open.
   HandModel hand;
   hand.name = "crossing";
   hand.links.resize(3);
@@ -359,19 +364,19 @@ TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]
   };
   const PreGraspOptions at_once{.largest_retreat = 0.0, .opening_steps = 1};
   CHECK_FALSE(find(at_once));
-  // A fifth of the way is as far as they can go: not yet past each other.
+  // A fifth of the way is as far as they can go, and they are not yet past each other.
   const auto part = find({.largest_retreat = 0.0, .opening_steps = 5});
   REQUIRE(part);
   CHECK(part->opening == Approx(0.2));
-  // Excluded pairs may.
+  // Excluded pairs may pass each other.
   hand.exclusions = {{1, 2}};
   CHECK(find(at_once));
 }
 
 TEST_CASE("Neutral joints open along where that is allowed and nothing else is free",
           "[grasp][pre_grasp]") {
-  // Two blocks on slides along x that change places as they open; one of them stands on a slide
-  // along y that neither opens nor closes, 30 mm aside when it is at rest.
+  // Two blocks on slides along x change places as they open; one of them stands on a slide along y
+  // that neither opens nor closes, 30 mm aside when it is at rest.
   HandModel hand;
   hand.name = "passing";
   hand.links.resize(4);
@@ -409,7 +414,7 @@ TEST_CASE("Neutral joints open along where that is allowed and nothing else is f
   REQUIRE(passing);
   CHECK((passing->configuration.q - Vector3d(-0.05, 0.0, -0.05)).norm() < 1e-15);
   CHECK(passing->opening == 1.0);
-  // Where closing joints do alone, the neutral one stays.
+  // Where closing joints are enough, the neutral one stays.
   HandConfiguration apart = grasp;
   apart.q[1] = -0.01;
   const auto found = find(apart, with_neutral);
@@ -429,7 +434,7 @@ TEST_CASE(
       Scene scene{hand, hands::HandCollision(hand), MeshQuery(geometry::ball(0.03, 2)),
                   SurroundingsCollision(hand, {-0.034, {}})};
       HandConfiguration start = hands::open_configuration(hand);
-      // The palm above the ball, which lies on the table, and looking down, a little askew.
+      // The palm is above the ball, which lies on the table, and looks down, a little askew.
       start.X_OH.linear() =
           (AngleAxisd(std::numbers::pi, Vector3d::UnitX()) *
            AngleAxisd(random.uniform(0.0, 0.3), testing::random_direction(random)))
@@ -442,7 +447,7 @@ TEST_CASE(
           .largest_retreat = 0.06, .retreat_step = 0.03, .opening_steps = 3};
       const auto found =
           find_pre_grasp(hand, scene.collision, scene.object, scene.surroundings, grasp, options);
-      // What the contract calls free, by exact tests at many poses.
+      // This is what the contract calls free, by exact tests at many poses.
       const auto looks_free = [&](const HandConfiguration& from) {
         for (int i = 0; i < 30; ++i) {
           if (!scene.is_clear(interpolated(from, grasp, i / 30.0))) return false;

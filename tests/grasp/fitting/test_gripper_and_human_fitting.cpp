@@ -43,8 +43,8 @@ struct Scene : testing::Scene {
 TEST_CASE(
     "A gripper whose targets are off the object's middle moves over and touches on both sides",
     "[grasp][hand_fitting]") {
-  // Targets whose middle is `off` beside the middle of a box 40 mm wide: one jaw meets the box 2
-  // `off` before the other, and the hand has to give way by `off`.
+  // The middle of the targets is `off` beside the middle of a box 40 mm wide: one jaw meets the box
+  // 2 `off` before the other, and the hand has to give way by `off`.
   const Scene scene(geometry::box({0.04, 0.08, 0.03}), "parallel_gripper", 2);
   for (const double off : {0.0, 0.004, -0.004, 0.012}) {
     CAPTURE(off);
@@ -54,7 +54,8 @@ TEST_CASE(
     const FittingResult result = scene.fit(targets, placement);
     CHECK(result.stop == FittingStop::Contact);
     CHECK(result.initial.X_OH.translation().x() == Approx(off).margin(1e-9));
-    // Both jaws rest on the box within the tolerance of closing, so the gripper is in its middle.
+    // Both jaws rest on the box within the tolerance of closing, so that the gripper is in its
+    // middle.
     const double settled = grasp::FittingOptions{}.closing_tolerance;
     CHECK(result.configuration.X_OH.translation().x() == Approx(0.0).margin(2 * settled));
     CHECK(result.configuration.q[0] == Approx(0.02).margin(2 * settled));
@@ -84,8 +85,8 @@ TEST_CASE("A gripper that meets nothing closes to its limit and says what it mis
 
 TEST_CASE("A human hand brings its fingertips near their targets on a ball",
           "[grasp][hand_fitting]") {
-  // Two to five fingers, the thumb against the others: within one voxel and a pad's half width
-  // (8 mm) of the targets, where the loop that closed proximal joints alone ended 25 mm away.
+  // Two to five fingers, the thumb against the others, come within one voxel and a pad's half width
+  // (8 mm) of the targets. By proximal joints alone they would end 25 mm away.
   const double radius = 0.035;
   for (const int number : {2, 3, 4, 5}) {
     const Scene scene(geometry::ball(radius), "human_hand", number);
@@ -115,8 +116,8 @@ TEST_CASE("A human hand brings its fingertips near their targets on a ball",
 }
 
 TEST_CASE("The human hand closes before its fingers, which do not cross", "[grasp][hand_fitting]") {
-  // Its palm lies beside its fingertips: with the palm center before the targets, as the paper
-  // places it, they would be behind the bases of index and middle finger, which then cross.
+  // The palm of this hand is beside its fingertips. With the palm center before the targets, as the
+  // paper places it, they would be behind the bases of index and middle finger, which then cross.
   const double radius = 0.035;
   const Scene scene(geometry::ball(radius), "human_hand", 3);
   const PalmPlacement placement{-Vector3d::UnitZ()};
@@ -142,7 +143,7 @@ TEST_CASE("The human hand closes before its fingers, which do not cross", "[gras
 TEST_CASE("The fingertips that pinch are points of the skin, not of the bone behind it",
           "[grasp][hand_fitting]") {
   // Where both tips rest on the ball, their contact points are at its surface or, where a pad
-  // leans, a little above it; the frames of the pads lie 3 mm behind.
+  // leans, a little above it; the frames of the pads are 3 mm behind.
   const double radius = 0.02;
   const Scene scene(geometry::ball(radius, 5), "human_hand", 2);
   const PalmPlacement placement{-Vector3d::UnitZ()};
@@ -156,7 +157,8 @@ TEST_CASE("The fingertips that pinch are points of the skin, not of the bone beh
     const Vector3d point = hands::pad_contact_point(scene.hand, pad, X_OL);
     const Vector3d origin = hands::pad_pose(scene.hand, pad, X_OL).translation();
     CHECK((point - origin).norm() == Approx(hands::pad_height(scene.hand.pads[pad])).epsilon(0.1));
-    CHECK(point.norm() > radius - 0.2e-3);  // the skin's facets run a little below the pad's
+    // The skin's facets are a little below the pad's.
+    CHECK(point.norm() > radius - 0.2e-3);
     CHECK(origin.norm() > point.norm() + 1e-3);
   }
 }

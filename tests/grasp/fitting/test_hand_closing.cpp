@@ -21,7 +21,7 @@ using grasp::RetreatRule;
 using testing::Scene;
 using testing::unsaid;
 
-/// Barrett hand above a ball, palm down, its center `height` over the ball's.
+/// Returns the Barrett hand above a ball, palm down, its center `height` over the ball's.
 hands::HandConfiguration above(const Scene& scene, double height) {
   const hands::HandModel& hand = scene.hand;
   hands::HandConfiguration start = hands::open_configuration(hand);
@@ -44,7 +44,7 @@ FittingResult closed(const Scene& scene, const hands::HandConfiguration& start,
                            retreat, options_at(guard));
 }
 
-/// d_min over all links at a configuration, from all their samples.
+/// Returns d_min over all links at a configuration, from all their samples.
 float least_distance(const Scene& scene, const hands::HandConfiguration& configuration) {
   const auto X_OL = hands::forward_kinematics(scene.hand, configuration);
   float least = 1e9F;
@@ -67,7 +67,7 @@ TEST_CASE("A hand over a ball closes on it with all fingers and its palm stays",
     CHECK(result.configuration.X_OH.matrix() == start.X_OH.matrix());
     CHECK(least_distance(scene, result.configuration) >= 0.0F);
     CHECK(scene.contacts(result).size() >= 3);
-    // The hand is symmetric and so is its posture: fingers 1 and 2 mirror each other.
+    // The hand is symmetric, and so is its posture: fingers 1 and 2 mirror each other.
     const auto closing = [&](const char* finger) {
       return result.configuration.q[scene.hand.fingers[scene.hand.finger_index(finger)].joints[1]];
     };
@@ -101,7 +101,7 @@ TEST_CASE("A colliding hand backs off to the first clear place along its directi
 TEST_CASE("A hand that has backed off may go back until its palm touches",
           "[grasp][hand_closing]") {
   const Scene scene(geometry::ball(0.045));
-  const hands::HandConfiguration start = above(scene, 0.043);  // the palm at the pole
+  const hands::HandConfiguration start = above(scene, 0.043);  // The palm is at the pole.
   const double step = 2.0 * scene.voxel_size();
   const auto has_palm = [&](const FittingResult& result) {
     const std::vector<contact::Contact> contacts = scene.contacts(result);
@@ -113,11 +113,11 @@ TEST_CASE("A hand that has backed off may go back until its palm touches",
   const FittingResult touching = closed(scene, start, {.step = step, .palm_may_touch = true});
   CHECK(has_palm(touching));
   CHECK(touching.smallest_distance >= 0.0);
-  // Between where it was clear and where it started.
+  // It is between where the hand was clear and where it started.
   const double height = touching.configuration.X_OH.translation().z();
   CHECK(height < away.configuration.X_OH.translation().z());
   CHECK(height >= start.X_OH.translation().z() - 1e-12);
-  // From a start that is clear it does not go on.
+  // From a start that is clear the hand does not go on.
   const FittingResult clear = closed(scene, above(scene, 0.075), {.palm_may_touch = true});
   CHECK(clear.configuration.X_OH.matrix() == above(scene, 0.075).X_OH.matrix());
 }
@@ -143,7 +143,7 @@ TEST_CASE("Of a bounded retreat the rule says whether a hand in collision closes
 
 TEST_CASE("With the guard on voxels no link ends deeper in the object than a voxel's edge",
           "[grasp][hand_closing]") {
-  // Edges of a turned box: where d_min alone is looked at, links stop up to a diagonal deep.
+  // Edges of a turned box are the hard case: by d_min alone links stop up to a diagonal deep.
   for (int i = 0; i < 12; ++i) {
     const geometry::RigidTransform X_OB(Eigen::AngleAxisd(0.5 * i, Vector3d(1, 2, 3).normalized()));
     const Scene scene(geometry::transformed(geometry::box(Vector3d(0.08, 0.06, 0.07)), X_OB));
@@ -171,7 +171,7 @@ TEST_CASE("A palm that is requested moves on to the surface", "[grasp][hand_clos
   options.style = grasp::GraspStyle::Power;
   const Scene scene(geometry::ball(0.045), "barrett", options);
   REQUIRE(scene.parts.palm);
-  // One to three voxels of 3 mm over the ball.
+  // The start is one to three voxels of 3 mm over the ball.
   const hands::HandConfiguration start = above(scene, 0.045 + 0.008);
   const FittingResult result =
       grasp::close_hand(scene.grasp_scene(), grasp::GraspStyle::Power, scene.parts, start, {},

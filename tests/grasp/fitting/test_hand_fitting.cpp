@@ -54,8 +54,8 @@ FittingOptions with_guard(grasp::PenetrationGuard guard) {
   return options;
 }
 
-/// How far inside the full voxels a point lies: its distance from the nearest voxel that is not
-/// full [voxels]; 0 for a point in such a voxel. Depths beyond a voxel are reported as one.
+/// Returns how far inside the full voxels a point lies: its distance from the nearest voxel that is
+/// not full [voxels]; 0 for a point in such a voxel. Depths beyond a voxel are reported as one.
 double depth_in_full_voxels(const geometry::VoxelGrid& grid, const Vector3d& point) {
   const geometry::VoxelLattice& lattice = grid.lattice;
   const Eigen::Vector3i voxel = lattice.voxel_at(point);
@@ -76,8 +76,8 @@ double depth_in_full_voxels(const geometry::VoxelGrid& grid, const Vector3d& poi
   return nearest / lattice.voxel_size;
 }
 
-/// The deepest of points a quarter of a voxel apart on all links [voxels]: an independent look at
-/// what d_min ≥ 0 promises.
+/// Returns the depth of the deepest of points a quarter of a voxel apart on all links [voxels]: an
+/// independent check of what d_min ≥ 0 promises.
 double deepest_in_full_voxels(const Scene& scene, const std::vector<RigidTransform>& X_OL) {
   double deepest = 0.0;
   for (std::size_t link = 0; link < scene.hand.links.size(); ++link) {
@@ -89,7 +89,7 @@ double deepest_in_full_voxels(const Scene& scene, const std::vector<RigidTransfo
   return deepest;
 }
 
-/// The same over the points that the fitting itself uses.
+/// Returns d_min over the points that the fitting itself uses.
 float sampled_distance(const Scene& scene, const std::vector<RigidTransform>& X_OL) {
   float smallest = std::numeric_limits<float>::infinity();
   for (std::size_t link = 0; link < scene.hand.links.size(); ++link) {
@@ -101,7 +101,7 @@ float sampled_distance(const Scene& scene, const std::vector<RigidTransform>& X_
   return smallest;
 }
 
-/// Distance of a point from a pad's clip volume [m].
+/// Returns the distance of a point from a pad's clip volume [m].
 double distance_to_clip_volume(const hands::ContactPad& pad, double thickness,
                                const Vector3d& point_C) {
   const double height = std::clamp(point_C.z(), 0.0, thickness);
@@ -120,7 +120,7 @@ double distance_to_clip_volume(const hands::ContactPad& pad, double thickness,
   return std::hypot(flat_distance, point_C.z() - height);
 }
 
-/// All that has to hold of a fit however it ended, one line for each thing that does not.
+/// Returns all that has to hold of a fit however it ended and does not, one line for each.
 std::vector<std::string> broken_guarantees(const Scene& scene, const TargetContacts& targets,
                                            const PalmPlacement& placement,
                                            const FittingOptions& options,
@@ -182,14 +182,14 @@ std::vector<std::string> broken_guarantees(const Scene& scene, const TargetConta
            " voxel edges into the object");
   }
   if (options.guard == grasp::PenetrationGuard::Meshes) {
-    // Nothing of the hand is in the object, so nothing is in a full voxel.
+    // No link is in the object, and so none is in a full voxel.
     if (penetration.intersects) {
       report(hand.links[*penetration.link_a].name, " cuts ", penetration.depth,
              " m into the object");
     }
     if (deepest > 0.0) report("a link reaches ", deepest, " voxels into full ones");
   } else if (deepest > options.sample_spacing) {
-    // No sampled point is in a full voxel, and the next one is no farther than the spacing.
+    // No sampled point is in a full voxel, and the next sample is no farther than the spacing.
     report("between its samples a link reaches ", deepest, " voxels into full ones");
   }
 
@@ -238,13 +238,14 @@ TEST_CASE("The Barrett hand forms a grasp on ideal targets around a ball",
       const FittingResult result = scene.fit(targets, placement, options);
       CHECK(result.stop == FittingStop::Contact);
       CHECK(broken_guarantees(scene, targets, placement, options, result) == kNothing);
-      CHECK(result.smallest_distance == 0.0);  // touching parts share voxels with the surface
+      // Touching parts share voxels with the surface.
+      CHECK(result.smallest_distance == 0.0);
       for (const contact::Contact& contact : scene.contacts(result)) {
-        // The faces of an icosphere lie below the sphere by 1 − cos of half an edge's angle.
+        // The faces of an icosphere are below the sphere by 1 − cos of half an edge's angle.
         CHECK(contact.point_O.norm() == Approx(0.05).epsilon(0.01));
       }
 
-      // Sections 7.4 and 8.3: the thumb is turned to the seed.
+      // The thumb is turned to the seed (sections 7.4 and 8.3 of the paper).
       const auto X_OL = hands::forward_kinematics(scene.hand, result.configuration);
       const Vector3d center = result.configuration.X_OH * scene.hand.palm.center_H;
       const int thumb_pad = *scene.hand.fingers[scene.hand.thumb()].tip_pad;
@@ -254,7 +255,7 @@ TEST_CASE("The Barrett hand forms a grasp on ideal targets around a ball",
       to_seed.z() = 0.0;
       CHECK(angle_between(to_thumb, to_seed) < 15.0 * kPi / 180.0);
 
-      // A fit to perfect targets is a usable grasp: it escapes none of M's zero cases.
+      // A fit to perfect targets is a usable grasp: none of the cases applies in which M is zero.
       contact::QualityContext context;
       context.center_of_mass_O = scene.object.mass.center_of_mass;
       context.normalizing_radius = scene.object.normalizing_radius;
@@ -280,7 +281,7 @@ TEST_CASE("Closed fingers rest on the true surface", "[grasp][hand_fitting]") {
         const geometry::MeshQuery mesh(scene.hand.links[link].mesh_L);
         gap = std::min(gap, geometry::distance(scene.object.query, mesh, X_OL[link]).distance);
       }
-      // One more motion of the tolerance would penetrate, so some link is no farther away than
+      // One more motion of the tolerance would penetrate, so that some link is no farther away than
       // that.
       INFO(finger.name << ", seed at " << turn << " rad");
       CHECK(gap > 0.0);
@@ -291,13 +292,13 @@ TEST_CASE("Closed fingers rest on the true surface", "[grasp][hand_fitting]") {
 
 TEST_CASE("A palm that goes on after the first contact brings fingers nearer to their targets",
           "[grasp][hand_fitting]") {
-  // A ball beside which the hand starts: one finger meets it before the palm is over it.
+  // The hand starts beside a ball: one finger meets the ball before the palm is over it.
   const Scene scene(geometry::ball(0.05));
   double frozen_sum = 0.0, recentred_sum = 0.0;
   for (const double turn : {0.0, 0.5, 1.0, 1.5, 2.0, 2.5}) {
     INFO("seed at " << turn << " rad");
     const PalmPlacement placement{Vector3d(0, 0, -1)};
-    // Targets below the equator on one side, above it on the other.
+    // The targets are below the equator on one side and above it on the other.
     RigidTransform X_OT = RigidTransform::Identity();
     X_OT.linear() = Eigen::AngleAxisd(0.3, Vector3d(std::cos(2 * turn), std::sin(2 * turn), 0))
                         .toRotationMatrix();
@@ -344,11 +345,11 @@ TEST_CASE("The hand starts open, over the middle of the targets, clear of the ob
       }
       const Vector3d center = result.initial.X_OH * scene.hand.palm.center_H;
       const Vector3d from_targets = center - targets.centroid();
-      // Where the fingertips reach their targets best; the thumb's base is nearer to the palm
-      // center than the others' by 25 mm, so not quite over the middle.
+      // The palm is where the fingertips reach their targets best. The thumb's base is nearer to
+      // the palm center than the others' by 25 mm, so that this is not quite over the middle.
       CHECK(from_targets.head<2>().norm() < 0.025);
-      // Beyond the ball's pole by the clearance at least; the icosphere's pole may be lower
-      // than the sphere's by 1 − cos of half an edge.
+      // The palm is beyond the ball's pole by the clearance at least; the icosphere's pole may be
+      // lower than the sphere's by 1 − cos of half an edge.
       CHECK(-side * from_targets.z() > 0.05 * 0.99 + clearance - 1e-9);
       CHECK_FALSE(scene.collision
                       .against_object(scene.object.query,
@@ -376,7 +377,7 @@ TEST_CASE("The guarantees of fitting hold on every shape, however the fit ends",
     grasp::TargetOptions target_options;
     target_options.min_separation = 0.023;
     for (int seed = 1; seed <= 6; ++seed) {
-      // The paper's guard on every third set.
+      // Every third set has the paper's guard.
       FittingOptions options = with_guard(seed % 3 == 0 ? grasp::PenetrationGuard::Voxels
                                                         : grasp::PenetrationGuard::Meshes);
       if (seed % 2 == 0) options.palm_after_contact = grasp::PalmAfterContact::Frozen;
@@ -414,7 +415,7 @@ TEST_CASE("A fit is a function of its input", "[grasp][hand_fitting]") {
 
 TEST_CASE("Fingers that close on nothing miss their contacts", "[grasp][hand_fitting]") {
   const Scene scene(geometry::ball(0.05));
-  // Targets in free air, farther from the ball than any finger reaches.
+  // The targets are in free air, farther from the ball than any finger reaches.
   RigidTransform X_OT = RigidTransform::Identity();
   X_OT.translation() = Vector3d(0.5, 0, 0);
   const TargetContacts targets = equilateral_targets(0.05, 0.0, X_OT);
@@ -429,7 +430,7 @@ TEST_CASE("A fit stops when its iterations are used up", "[grasp][hand_fitting]"
   const Scene scene(geometry::ball(0.05));
   const TargetContacts targets = on_surface(scene.object, equilateral_targets(0.05, 0.0));
   FittingOptions options;
-  // Opened tips are more than ten voxels from the ball; a step moves them at most eight.
+  // Opened tips are more than ten voxels from the ball, and a step moves them at most eight.
   options.max_iterations = 1;
   const FittingResult result =
       scene.fit(scene.assigned(targets, {Vector3d(0, 0, -1)}), {Vector3d(0, 0, -1)}, options);

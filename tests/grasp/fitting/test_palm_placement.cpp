@@ -57,7 +57,7 @@ TEST_CASE("A target triangle has two palm directions, opposite and along its nor
       }
     }
 
-    // An approach leaves the nearer one alone.
+    // With an approach only the nearer one is left.
     const Vector3d approach =
         3.0 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const auto approached = grasp::palm_placements(scene.object, targets, approach, kPi / 2.0);
@@ -69,8 +69,8 @@ TEST_CASE("A target triangle has two palm directions, opposite and along its nor
 }
 
 TEST_CASE("The palm direction with more room comes first", "[grasp][hand_fitting]") {
-  // A tall box with targets around its upper end: the palm has 5 cm of object to clear above them,
-  // 25 cm below.
+  // The box is tall and has targets around its upper end: the palm has 5 cm of object to clear
+  // above them, 25 cm below.
   const Scene scene(geometry::box(Vector3d(0.06, 0.06, 0.30)));
   for (const double end : {1.0, -1.0}) {
     const double z = end * 0.10;
@@ -90,7 +90,8 @@ TEST_CASE("Two targets have sixteen palm directions around their axis", "[grasp]
   const Scene scene(geometry::ball(0.05));
   base::Random random(9);
   for (int trial = 0; trial < 10; ++trial) {
-    // Trial 0: along z, 1 and 2: along the others, where a helper axis could be parallel.
+    // Trial 0 is along z, trials 1 and 2 along the other axes, where a helper axis could be
+    // parallel.
     Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     if (trial < 3) axis = Vector3d::Unit((trial + 2) % 3);
     axis.normalize();
@@ -109,7 +110,7 @@ TEST_CASE("Two targets have sixteen palm directions around their axis", "[grasp]
       CHECK(angles[i + 1] - angles[i] == Approx(2.0 * kPi / 16.0).epsilon(1e-9));
     }
 
-    // With an approach, those nearest to it first.
+    // With an approach, those nearest to it come first.
     const Vector3d approach(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const auto approached = grasp::palm_placements(scene.object, targets, approach, kPi / 2.0);
     REQUIRE_FALSE(approached.empty());
@@ -145,12 +146,11 @@ TEST_CASE("More than three targets have the normals of their least-squares plane
   }
 }
 
-// ---------------------------------------------------------------------------------------------
-// Assignment
+// The following tests are about the assignment of targets to fingers.
 
-/// The permutation of the further targets to the further fingers with the least squared angular
-/// error around the palm axis, the thumb's pad turned to the seed and the shared spread free. Brute
-/// force over the spread. Returns the fingers in the order of the targets.
+/// Returns the fingers in the order of the targets: by the permutation of the further targets to
+/// the further fingers with the least squared angular error around the palm axis, where the thumb's
+/// pad is turned to the seed and the shared spread is free. It is brute force over the spread.
 std::vector<int> best_assignment(const hands::HandModel& hand, const TargetContacts& targets,
                                  const std::vector<int>& fingers, const Vector3d& direction) {
   const Vector3d center = targets.centroid();
@@ -234,7 +234,7 @@ TEST_CASE("The seed gets the first finger and the others the fingers on their si
           fingers_of(grasp::assign_fingers(hand, swapped, parts, placement));
       CHECK(after_swap == std::vector<int>{result[0], result[2], result[1]});
 
-      // From the other side of the triangle, left and right are exchanged.
+      // Seen from the other side of the triangle, left and right are exchanged.
       const PalmPlacement opposite{-placement.direction_O};
       const std::vector<int> from_behind =
           fingers_of(grasp::assign_fingers(hand, targets, parts, opposite));

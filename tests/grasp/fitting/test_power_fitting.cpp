@@ -37,7 +37,7 @@ FittingOptions paper_loop() {
   return options;
 }
 
-/// Three targets around the z axis at `radius` and one for the palm on top, at `height`.
+/// Returns three targets around the z axis at `radius` and one for the palm on top, at `height`.
 TargetContacts power_targets(double radius, double height) {
   std::vector<Vector3d> points, normals;
   for (int i = 0; i < 3; ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("A power grasp has the palm on the object, looking against its target'
     const Scene scene(shape.mesh, "barrett", power_options());
     const TargetContacts open_targets = power_targets(shape.radius, shape.height);
     const auto placements = grasp::palm_placements(scene.object, open_targets, std::nullopt, pi);
-    REQUIRE(placements.size() == 1);  // the seed is off the palm's axis
+    REQUIRE(placements.size() == 1);  // The seed is off the palm's axis.
     CHECK(placements[0].direction_O == Vector3d(0, 0, -1));
     CHECK_FALSE(placements[0].palm_distance);
     const TargetContacts targets = scene.assigned(open_targets, placements[0]);
@@ -90,7 +90,7 @@ TEST_CASE("A power grasp has the palm on the object, looking against its target'
     const auto palm = std::find_if(contacts.begin(), contacts.end(), is_palm);
     CHECK(palm->is_target);
     CHECK(angle_between(palm->inward_normal_O, Vector3d(0, 0, -1)) < 0.2);
-    // Something else holds it against the palm.
+    // Something else holds the object against the palm.
     CHECK(scene.contacts(result).size() > 1);
   }
 }
@@ -134,12 +134,12 @@ TEST_CASE("Fingers that are kept from each other end apart, others have closed t
           .intersects;
     };
     FittingOptions options;
-    options.give_up_distance = 1.0;  // all fingers close as far as they can
+    options.give_up_distance = 1.0;  // All fingers close as far as they can.
     const FittingResult through = scene.fit(targets, placement, options, GraspStyle::Power);
     options.guard_self = true;
     const FittingResult guarded = scene.fit(targets, placement, options, GraspStyle::Power);
     INFO("radius " << radius);
-    if (meets_itself(guarded.initial)) continue;  // nothing to be kept
+    if (meets_itself(guarded.initial)) continue;  // There is nothing to be kept.
     ++num_guarded;
     CHECK_FALSE(meets_itself(guarded.configuration));
     num_crossed += meets_itself(through.configuration) ? 1 : 0;
@@ -151,7 +151,8 @@ TEST_CASE("Fingers that are kept from each other end apart, others have closed t
 TEST_CASE("No configuration of a fit touches the table", "[grasp][power_fitting]") {
   const Scene scene(geometry::ball(0.05));
   FittingOptions options = paper_loop();
-  options.palm_after_contact = grasp::PalmAfterContact::Frozen;  // no finger was lower than it ends
+  // With the palm frozen, no finger was lower than where it ends.
+  options.palm_after_contact = grasp::PalmAfterContact::Frozen;
   const TargetContacts open_targets = testing::equilateral_targets(0.05, 0.2);
   const PalmPlacement from_above{Vector3d(0, 0, -1)}, from_below{Vector3d(0, 0, 1)};
   const TargetContacts targets = scene.assigned(open_targets, from_above);
@@ -216,8 +217,8 @@ TEST_CASE("A seed on the palm's axis leaves eight turns open", "[grasp][power_fi
 }
 
 TEST_CASE("An approach cone keeps the directions inside it", "[grasp][power_fitting]") {
-  // Sixteen directions, 22.5° apart: those within an angle of one of them are 1 + 2 floor(a
-  // / 22.5°).
+  // There are sixteen directions, 22.5° apart: those within an angle of one of them are 1 + 2
+  // floor(a / 22.5°).
   const Scene scene(geometry::ball(0.05));
   const TargetContacts targets = targets_at({{0.05, 0, 0}, {-0.05, 0, 0}}, {{1, 0, 0}, {-1, 0, 0}});
   const Vector3d approach =
@@ -233,7 +234,7 @@ TEST_CASE("An approach cone keeps the directions inside it", "[grasp][power_fitt
 
 TEST_CASE("Pads that must lean tell by how much", "[grasp][power_fitting]") {
   // A gripper's pads face each other whatever it does. Target normals that both lean by `lean`
-  // toward the palm leave exactly that; what they miss, were the box too wide, counts besides.
+  // toward the palm leave exactly that; what the pads miss, were the box too wide, counts besides.
   grasp::PlannerOptions options;
   options.num_contacts = 2;
   const Scene scene(geometry::box({0.04, 0.08, 0.03}), "parallel_gripper", options);

@@ -19,7 +19,7 @@
 
 namespace test_grasp_file_meshes {
 
-// The meshes that a grasp file names, and those written beside it.
+// These tests are about the meshes that a grasp file names, and those written beside it.
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,7 +76,7 @@ TEST_CASE("A hand with package:// and file:// meshes, two on one link, is record
       urdf.replace(at, from.size(), to);
     }
   };
-  // The palm's mesh twice: two closed parts that happen to coincide.
+  // The palm's mesh is there twice, as two closed parts that happen to coincide.
   const std::string palm = "<mesh filename=\"meshes/palm.obj\"/>";
   const std::string again = "</geometry></collision><collision><geometry>";
   REQUIRE(urdf.find(palm) != std::string::npos);
@@ -99,7 +99,7 @@ TEST_CASE("A hand with package:// and file:// meshes, two on one link, is record
   grasp::write_grasps(folder.path() / "grasps.json",
                       grasp::make_grasp_file(object.record, hand, options, model, {}));
   const grasp::GraspFile read = grasp::read_grasps(folder.path() / "grasps.json");
-  CHECK(read.statistics.usable() == 0);  // nothing was planned: no outcome is named
+  CHECK(read.statistics.usable() == 0);  // Nothing was planned, so that no outcome is named.
   const std::string bytes = base::read_file(palm_file);
   CHECK(read.link_mesh_sha256[0] == base::sha256_hex(bytes + bytes));
 
@@ -142,7 +142,7 @@ TEST_CASE("A grasp file names shipped hands alike on every machine, and finds ot
   CHECK(grasp::read_grasps(folder.path() / "grasps.json").hand.description_file ==
         file.hand.description_file);
 
-  // A copy of the hand that moves with the grasp file.
+  // A copy of the hand moves with the grasp file.
   const fs::path before = folder.path() / "before";
   fs::copy(hands::shipped_hand_file("barrett").parent_path(), before, fs::copy_options::recursive);
   std::ofstream(before / "barrett.urdf", std::ios::app) << "<!-- not the shipped one -->\n";

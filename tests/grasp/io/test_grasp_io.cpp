@@ -26,7 +26,7 @@ using testing::sample_file;
 using testing::TemporaryFolder;
 using testing::unusual_options;
 
-/// The message of the IoError that `read_grasps` throws for a text.
+/// Returns the message of the IoError that `read_grasps` throws for a text.
 std::string refusal(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
   try {
@@ -37,7 +37,7 @@ std::string refusal(const fs::path& path, const std::string& text) {
   return "accepted";
 }
 
-/// `text` with the first `from` behind the first `anchor` replaced.
+/// Returns `text` with the first `from` behind the first `anchor` replaced.
 std::string replaced(std::string text, const std::string& from, const std::string& to,
                      const std::string& anchor = "") {
   const std::size_t at = text.find(from, text.find(anchor));
@@ -226,7 +226,8 @@ TEST_CASE("Link poses survive the way through a quaternion to 1e-15", "[grasp][g
     const auto a = hands::forward_kinematics(written.hand, written.grasps[i].configuration);
     const auto b = hands::forward_kinematics(read.hand, read.grasps[i].configuration);
     for (std::size_t link = 0; link < a.size(); ++link) {
-      // Some roundings of 1.1e-16 in rotations, times lengths below 0.4 m for translations.
+      // Rotations differ by some roundings of 1.1e-16, translations by that times lengths below 0.4
+      // m.
       CHECK((a[link].linear() - b[link].linear()).cwiseAbs().maxCoeff() < 2e-15);
       CHECK((a[link].translation() - b[link].translation()).cwiseAbs().maxCoeff() < 1e-15);
     }
@@ -244,7 +245,7 @@ TEST_CASE("M computed again from a grasp file and the object is that of the file
   const grasp::RecordedScene scene(file, mesh, surroundings);
   for (const grasp::Grasp& stored : file.grasps) {
     const grasp::Grasp again = scene.measure(stored.configuration);
-    // The poses moved by about 1e-16 m; contact areas and points follow continuously.
+    // The poses move by about 1e-16 m, and contact areas and points follow continuously.
     CHECK(again.quality.m == Approx(stored.quality.m).margin(1e-12));
     CHECK(again.quality.m1 == Approx(stored.quality.m1).margin(1e-12));
     CHECK(again.contacts.size() == stored.contacts.size());
@@ -362,7 +363,7 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
 
   CHECK_THAT(refusal(path, ""), Contains("bad.json: is not JSON"));
   CHECK_THAT(refusal(path, good.substr(0, good.size() / 2)), Contains("is not JSON"));
-  // In a member that nobody reads, too: the whole file becomes a tree.
+  // The nesting is refused in a member that nobody reads, too, as the whole file becomes a tree.
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   CHECK_THAT(refusal(path, "{\"unread\": " + deep + good.substr(1).insert(0, ",")),
              Contains("bad.json: line 1, column 75: nests deeper than 64 levels"));
@@ -391,7 +392,7 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(
       refusal(path, replaced(good, "\"fingers\": [", "\"fingers\": [\"pinky\", ", "\"used\"")),
       Contains("/planner/used/fingers/0: the hand has nothing named \"pinky\""));
-  // Only options and raw scores may be infinite, only a target may lack its finger.
+  // Only options and raw scores may be infinite, and only a target may lack its finger.
   CHECK_THAT(refusal(path, replaced(good, "\"area_m2\": ", "\"area_m2\": \"infinity\", \"was\": ",
                                     "\"results\"")),
              Contains("/contacts/0/area_m2: is \"infinity\", must be a number"));

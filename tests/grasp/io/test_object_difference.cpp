@@ -22,7 +22,7 @@ grasp::ObjectRecord record_of(std::vector<geometry::RepairStep> steps) {
 
 TEST_CASE("A solid that differs from its file is said with its steps and shares",
           "[grasp][object_difference]") {
-  // 4.2e-6 of 2e-4 m3 are 2.1 %; 0.0032 of 0.1 m are 3.2 %.
+  // Here 4.2e-6 of 2e-4 m3 are 2.1 %, and 0.0032 of 0.1 m are 3.2 %.
   CHECK(difference_from_file(record_of({{"filled holes", 5, 4.2e-6, 0.0032}})) ==
         "cup.off: the solid differs from the file: filled 5 holes (volume +2.1 %, surface up to "
         "3.2 % of the extent)");

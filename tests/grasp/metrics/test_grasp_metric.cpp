@@ -113,7 +113,7 @@ TEST_CASE("A metric is in the convention that was asked for, and says so",
       own.convention ==
       "graspfit: torques about (0, 0, 0) m over 1 m, friction 0.5, 8 inscribed edges from normal x "
       "e_x, L1, unit normal force, outside 0");
-  // Half the longest extent of the ball is its radius: only the forces are shorter.
+  // Half the longest extent of the ball is its radius, so that only the forces are shorter.
   const GraspMetricValue simox = evaluate(epsilon, input_of(on_cube(), mu, WrenchTool::Simox));
   CHECK(*simox.value == Approx(*own.value / std::hypot(1.0, mu)).epsilon(kRounding));
   CHECK_THAT(simox.convention, testing::StartsWith("Simox: "));
@@ -126,7 +126,7 @@ TEST_CASE("A metric is in the convention that was asked for, and says so",
 }
 
 TEST_CASE("Metrics have no value where what they need is not there", "[grasp][grasp_metric]") {
-  // Of a grasp as measured, nothing is known here.
+  // Metrics of a measured grasp are not known of contacts alone.
   const GraspMetricInput contacts_only = input_of(on_cube(), 0.5);
   for (const char* const name : {"m", "m1", "m2", "m3", "penetration", "penetrates"}) {
     CHECK_FALSE(value_of(name, contacts_only).has_value());
@@ -164,7 +164,7 @@ TEST_CASE("Pads that do not touch bear no force, but count in M", "[grasp][grasp
   CHECK(*value_of("epsilon", some) != *value_of("epsilon", input_of(contacts, 0.5)));
   CHECK(*value_of("num_contacts", some) == 4.0);
   CHECK(*value_of("num_touching", some) == 3.0);
-  CHECK(*value_of("num_touching", input_of(contacts, 0.5)) == 4.0);  // no gap is too large
+  CHECK(*value_of("num_touching", input_of(contacts, 0.5)) == 4.0);  // No gap is too large.
 }
 
 TEST_CASE("Areas and gaps are those of the contacts", "[grasp][grasp_metric]") {
@@ -191,7 +191,7 @@ TEST_CASE(
   const GraspMetricInput cube = input_of(on_cube(), mu);
   // The known min-weight of case F is 1/48 for its 48 edges.
   CHECK(*value_of("min_weight", cube) == Approx(1.0).epsilon(1e-9));
-  // Six contacts on a ball: three singular values are the root of 6, three are 2.
+  // Of six contacts on a ball three singular values are the root of 6, three are 2.
   CHECK(*value_of("sigma_min", cube) == Approx(2.0).epsilon(kRounding));
   CHECK(*value_of("sigma_product", cube) ==
         Approx(std::pow(2.0 * std::sqrt(6.0), 3)).epsilon(kRounding));
@@ -258,7 +258,7 @@ TEST_CASE("Metrics of one's own are added, chosen by name and refused where they
   GraspMetric of_contacts = sum_of_heights();
   of_contacts.name = "of_contacts";
   of_contacts.group = "contacts";
-  metrics.add(of_contacts);  // after the last of its group
+  metrics.add(of_contacts);  // It goes after the last of its group.
   const auto all = metrics.all();
   for (std::size_t i = 1; i < all.size(); ++i) {
     if (all[i].name == "of_contacts") CHECK(all[i - 1].group == "contacts");

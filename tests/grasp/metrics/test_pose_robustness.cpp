@@ -18,7 +18,7 @@ using testing::Contacts;
 
 namespace {
 
-/// A unit ball that contacts hold at its surface.
+/// Returns the query of a unit ball that contacts hold at its surface.
 const geometry::MeshQuery& ball() {
   static const geometry::MeshQuery query(geometry::ball(1.0, 5));
   return query;
@@ -48,7 +48,7 @@ TEST_CASE("Without noise every pose is the grasp itself", "[grasp][pose_robustne
   // The ball's faces are up to 1.5 degrees off its normals.
   CHECK(still.mean_epsilon == Approx(0.5 * std::sqrt(2.0 / 3.0)).epsilon(0.1));
 
-  // Two contacts are closed only as their normals are rounded; three beside each other never.
+  // Two contacts are closed only as their normals are rounded; three beside each other never are.
   const Contacts beside = testing::on_sphere({{1, 0.3, 0}, {1, -0.3, 0.2}, {1, 0, -0.4}});
   const PoseRobustness open = *pose_robustness(on_ball(beside, 0.2), {.num_samples = 3});
   CHECK(open.closed_share == 0.0);
@@ -82,7 +82,7 @@ TEST_CASE("A pad meets a face as often as Gaussian noise leaves it over that fac
                                                         .reach = 0.025});
   const double expected = share_within(0.02, deviation) * share_within(0.03, deviation) *
                           share_within(0.025, deviation);
-  // Four standard errors.
+  // The margin is four standard errors.
   CHECK(found.mean_num_contacts ==
         Approx(expected).margin(4.0 * std::sqrt(expected * (1.0 - expected) / kSamples)));
   CHECK(found.closed_share == 0.0);
@@ -93,7 +93,7 @@ TEST_CASE("Poses are usable where the paper's measure of what is met is positive
   const hands::HandModel hand = hands::find_hand("barrett");
   Contacts contacts = testing::on_cube();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    contacts[i].finger = static_cast<int>(i % 2);  // opposite contacts are of different fingers
+    contacts[i].finger = static_cast<int>(i % 2);  // Opposite contacts are of different fingers.
     contacts[i].pad = *hand.fingers[i % 2].tip_pad;
     contacts[i].area = 1e-4;
     contacts[i].pad_boundary_distance = 0.004;
@@ -109,7 +109,7 @@ TEST_CASE("Poses are usable where the paper's measure of what is met is positive
     return found->usable_share.value();
   };
   CHECK(share(0.0) == 1.0);
-  CHECK(share(50.0) == 0.0);  // nothing is met
+  CHECK(share(50.0) == 0.0);  // Nothing meets the ball.
   // In between some poses lose their stable pairs: half a radius aside, normals are 30 degrees off.
   const double some = share(0.5);
   CHECK(some > 0.0);

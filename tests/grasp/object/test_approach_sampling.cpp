@@ -21,14 +21,14 @@ using testing::at_voxel_level;
 using testing::chi_square;
 using testing::Guided;
 
-// Chi squares exceed these with probability 0.001.
+// Chi squares exceed these values with probability 0.001.
 constexpr double kChiSquare3 = 16.27;
 constexpr double kChiSquare5 = 20.52;
 constexpr double kChiSquare9 = 27.88;
 
 const Vector3d kSizes(0.11, 0.07, 0.09);
 
-/// 0 to 5: which side of a box a direction leaves.
+/// Returns 0 to 5: the side of a box through which a direction leaves.
 int side_of(const Vector3d& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -61,8 +61,8 @@ TEST_CASE("Surface samples fall on the sides of a box in proportion to area",
 
 TEST_CASE("Rays from a box around a box hit it where they are aimed",
           "[grasp][approach_sampling]") {
-  // A face of the surrounding box has places every 2 cm from its middle: along its 13, 9 and 11 cm
-  // 7, 5 and 5 of them, of which 5, 3 and 5 meet the box of 11, 7 and 9 cm.
+  // A face of the surrounding box has a ray every 2 cm from its middle: 7, 5 and 5 of them along
+  // its 13, 9 and 11 cm, of which 5, 3 and 5 meet the box of 11, 7 and 9 cm.
   const grasp::ObjectModel object = model_of(geometry::box(kSizes));
   const auto hits = grasp::approach_samples(object, {.source = ApproachSource::BoxRays}, 5);
   std::array<int, 6> counts{};
@@ -82,8 +82,8 @@ TEST_CASE("Rays from a box around a box hit it where they are aimed",
 
 TEST_CASE("Rays from a box see little of a hole's wall, surface samples all of it",
           "[grasp][approach_sampling]") {
-  // Of a torus, where the normal looks to the axis within 11.5 degrees: 4 % of the area; of its
-  // picture along the axis, the only one that it is in, 0.8 %.
+  // The part of a torus where the normal looks to the axis within 11.5 degrees is 4 % of the area,
+  // but 0.8 % of the torus' picture along the axis, the only one that it is in.
   const grasp::ObjectModel ring = model_of(geometry::torus(0.05, 0.018));
   const auto share_of_inner = [](const std::vector<geometry::SurfaceSample>& samples) {
     double count = 0.0;
@@ -99,7 +99,7 @@ TEST_CASE("Rays from a box see little of a hole's wall, surface samples all of i
 }
 
 TEST_CASE("Attempts of GS take samples, turns and spreads evenly", "[grasp][approach_sampling]") {
-  // Seen from outside: where the palm looks, how it is turned and how the fingers are spread where
+  // The test observes where the palm looks, how it is turned and how the fingers are spread where
   // each attempt starts. The hand may have backed off, but only along its direction.
   constexpr int kAttempts = 600;
   const Guided guided(geometry::box(kSizes), at_voxel_level("gs"));
@@ -116,19 +116,20 @@ TEST_CASE("Attempts of GS take samples, turns and spreads evenly", "[grasp][appr
     const Vector3d direction = at.X_OH.linear() * hand.palm.direction_H;
     const int side = side_of(-direction);
     ++sides[side];
-    // Turned by what, against a direction fixed to the side.
+    // The turn is measured against a direction fixed to the side.
     const Vector3d u = Vector3d::Unit((side / 2 + 1) % 3);
     const Vector3d x = at.X_OH.linear().col(0);
     const double turn = std::atan2(u.cross(x).dot(direction), u.dot(x)) / (2.0 * std::numbers::pi);
     ++turns[std::min(9, static_cast<int>(10.0 * (turn - std::floor(turn))))];
-    const double share = at.q[spread] / (std::numbers::pi / 3.0);  // 0, 1, 1.5 or 3
+    // The share is 0, 1, 1.5 or 3.
+    const double share = at.q[spread] / (std::numbers::pi / 3.0);
     CHECK(std::abs(2.0 * share - std::round(2.0 * share)) < 1e-9);
     ++spreads[share < 0.5 ? 0 : share < 1.25 ? 1 : share < 2.0 ? 2 : 3];
   }
   std::array<double, 6> expected = share_of_sides();
   for (double& count : expected) count *= kAttempts;
-  // The 1000 samples themselves are drawn, too: the variance of counts is 1 + 600 / 1000 times
-  // that of a direct draw.
+  // The 1000 samples themselves are drawn, too, so that the variance of counts is 1 + 600 / 1000
+  // times that of a direct draw.
   CHECK(chi_square(sides, expected) < 1.6 * kChiSquare5);
   CHECK(chi_square(turns, std::array<double, 10>{60, 60, 60, 60, 60, 60, 60, 60, 60, 60}) <
         kChiSquare9);
@@ -146,7 +147,7 @@ TEST_CASE("Attempts of GS keep to the cone of approach", "[grasp][approach_sampl
     const Vector3d direction = at.X_OH.linear() * guided.scene.hand.palm.direction_H;
     CHECK(testing::angle_between(direction, Vector3d(0, 0, -1)) < 0.3 + 1e-12);
   }
-  options.approach_angle = 1e-6;  // between the normals of the ball's facets
+  options.approach_angle = 1e-6;  // The direction is between the normals of the ball's facets.
   const Guided none(geometry::ball(0.04), options);
   CHECK(none.guidance->starts(0).starts.empty());
   CHECK(none.guidance->starts(0).failure == "no sample");

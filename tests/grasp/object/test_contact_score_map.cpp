@@ -26,15 +26,15 @@ using testing::Contains;
 
 namespace {
 
-// Sums of at most a hundred numbers near one.
+// Sums are of at most a hundred numbers near one.
 constexpr double kRounding = 1e-12;
 
-/// A lattice of voxels of half a meter: all its planes are doubles without rounding.
+/// Returns a lattice of voxels of half a meter, all of whose planes are doubles without rounding.
 VoxelLattice half_meter_lattice(int count) {
   return {.origin = Vector3d::Zero(), .voxel_size = 0.5, .counts = Vector3i::Constant(count)};
 }
 
-/// A patch with its centroid at `offset` voxels from the low corner of its voxel.
+/// Returns a patch with its centroid at `offset` voxels from the low corner of its voxel.
 SurfacePatch patch(const VoxelLattice& lattice, const Vector3i& voxel, const Vector3d& offset,
                    const Vector3d& normal) {
   SurfacePatch result;
@@ -65,10 +65,10 @@ geometry::TriangleMesh ellipsoid(const Vector3d& half_axes) {
   return mesh;
 }
 
-/// A ball with four round legs of diameter 2.4 below it, 30 high in all, with about the surface of
-/// an independent experiment's shape (1488). Seen from its center the surface is a graph over
-/// directions, so there is nothing inside the ball: along a direction phi off a leg's axis, the
-/// leg's wall is at 1.2 / sin(phi) and its end at 22.2 / cos(phi).
+/// The shape is a ball with four round legs of diameter 2.4 below it, 30 high in all, with about
+/// the surface area of an independent implementation's shape (1488). Seen from its center the
+/// surface is a graph over directions, so that nothing is inside the ball: along a direction phi
+/// off a leg's axis, the leg's wall is at 1.2 / sin(phi) and its end at 22.2 / cos(phi).
 constexpr double kBallRadius = 9.63;
 constexpr double kLegRadius = 1.2;
 constexpr double kLegEnd = 22.2;
@@ -82,14 +82,15 @@ std::array<Vector3d, 4> leg_axes() {
 }
 
 geometry::TriangleMesh ball_with_legs() {
-  // Directions drawn toward the nearest leg's axis, so that the legs' thin walls get enough
+  // Directions are drawn toward the nearest leg's axis, so that the legs' thin walls get enough
   // triangles.
   geometry::TriangleMesh mesh = geometry::ball(1.0, 6);
   for (Vector3d& vertex : mesh.vertices) {
     Vector3d direction = vertex.normalized();
     for (const Vector3d& axis : leg_axes()) {
       const double phi = std::acos(std::clamp(axis.dot(direction), -1.0, 1.0));
-      constexpr double kReach = 0.3;  // [rad] less than half the angle between two legs
+      // The reach is in radians and less than half the angle between two legs.
+      constexpr double kReach = 0.3;
       if (phi >= kReach || phi == 0.0) continue;
       const double drawn = kReach * std::pow(phi / kReach, 2.0);
       const Vector3d across = (direction - std::cos(phi) * axis).normalized();
@@ -122,8 +123,8 @@ double share_above(const std::vector<double>& scores, double threshold) {
 }  // namespace
 
 TEST_CASE("Two patches have the score of their distance and angle", "[grasp][contact_score_map]") {
-  // A faces z, B faces x. From A's plane B's centroid is 0.3 voxels away, from B's plane A's is 1;
-  // the angle is 90 degrees for both. Score 1 / (C_d / 5 + 90 / 180).
+  // A faces z, B faces x. B's centroid is 0.3 voxels from A's plane, A's is 1 from B's plane; the
+  // angle is 90 degrees for both. The score is 1 / (C_d / 5 + 90 / 180).
   const VoxelLattice lattice = half_meter_lattice(4);
   const std::vector<SurfacePatch> patches = {
       patch(lattice, {1, 1, 1}, {0.5, 0.5, 0.5}, Vector3d::UnitZ()),
@@ -170,9 +171,9 @@ TEST_CASE("Two patches have the score of their distance and angle", "[grasp][con
 
 TEST_CASE("A plane is perfectly smooth: infinite raw, 0.8 by floor-median, 1 by max",
           "[grasp][contact_score_map]") {
-  // All raw scores are equal, and so is their median: 1 / 1.25.
+  // All raw scores are equal, and so is their median, so that scores are 1 / 1.25.
   const VoxelLattice lattice = half_meter_lattice(8);
-  // An oblique unit normal with components that are not doubles, the same in all patches.
+  // The oblique unit normal has components that are not doubles, the same in all patches.
   const Vector3d normal = Vector3d(0.1, -0.2, 1).normalized();
   std::vector<SurfacePatch> patches;
   for (int x = 0; x < 8; ++x) {
@@ -189,7 +190,7 @@ TEST_CASE("A plane is perfectly smooth: infinite raw, 0.8 by floor-median, 1 by 
        contact_score_map(patches, lattice, {.normalization = ScoreNormalization::Max}).scores) {
     CHECK(score == Approx(1.0).epsilon(kRounding));
   }
-  // Equal normals are at 0 degrees, not at the 1e-8 rad that a cosine would leave.
+  // Equal normals are at 0 degrees, and not at the 1e-8 rad that a cosine would leave.
   for (SurfacePatch& tilted : patches) tilted.outward_normal = normal;
   const ContactScoreMap tilted = contact_score_map(patches, lattice, kUnfilteredRaw);
   for (const double angle : tilted.mean_normal_angle_deg) CHECK(angle == 0.0);
@@ -229,7 +230,7 @@ TEST_CASE("Neighbors are the other patches with a normal in the 5 x 5 x 5 window
     const ContactScoreMap alone = contact_score_map({seed, other}, lattice, kUnfilteredRaw);
     CHECK(with.scores[0] == alone.scores[0]);
     CHECK(with.scores[2] == 0.0);
-    // The mean filter counts it as a 0 but does not lift it.
+    // The mean filter counts it as a 0, but does not lift it.
     ScoreOptions filtered = kUnfilteredRaw;
     filtered.mean_filter_passes = 1;
     const ContactScoreMap smooth = contact_score_map({seed, other, without}, lattice, filtered);
@@ -245,7 +246,7 @@ TEST_CASE("Neighbors are the other patches with a normal in the 5 x 5 x 5 window
 
 TEST_CASE("Signed distances cancel on uneven ground, unsigned ones do not",
           "[grasp][contact_score_map]") {
-  // One neighbor 0.4 voxels above the plane, one 0.4 below.
+  // One neighbor is 0.4 voxels above the plane, one 0.4 below.
   const VoxelLattice lattice = half_meter_lattice(5);
   const std::vector<SurfacePatch> patches = {
       patch(lattice, {2, 2, 2}, {0.5, 0.5, 0.5}, Vector3d::UnitZ()),
@@ -256,10 +257,10 @@ TEST_CASE("Signed distances cancel on uneven ground, unsigned ones do not",
   CHECK(contact_score_map(patches, lattice, options).mean_plane_distance[0] ==
         Approx(0.4).epsilon(kRounding));
   options.plane_distance = PlaneDistance::SignedMean;
-  // 0.4 - 0.4 up to the rounding of coordinates near one.
+  // This is 0.4 - 0.4 up to the rounding of coordinates near one.
   CHECK(contact_score_map(patches, lattice, options).mean_plane_distance[0] < 1e-15);
   CHECK(contact_score_map(patches, lattice, options).mean_plane_distance[1] ==
-        Approx(0.6).epsilon(kRounding));  // (0.4 + 0.8) / 2, both below
+        Approx(0.6).epsilon(kRounding));  // It is (0.4 + 0.8) / 2, both below.
 }
 
 TEST_CASE("Turning the lattice by 90 degrees permutes the scores", "[grasp][contact_score_map]") {
@@ -278,7 +279,7 @@ TEST_CASE("Turning the lattice by 90 degrees permutes the scores", "[grasp][cont
                                          random.uniform(-1.0, 1.0))
                                     .normalized();
         patches.push_back(patch(lattice, {x, y, z}, offset, normal));
-        // A quarter turn about the middle of the lattice: (x, y, z) -> (count - y, x, z).
+        // A quarter turn about the middle of the lattice takes (x, y, z) to (count - y, x, z).
         turned.push_back(patch(lattice, {kCount - 1 - y, x, z},
                                {1 - offset.y(), offset.x(), offset.z()},
                                {-normal.y(), normal.x(), normal.z()}));
@@ -294,7 +295,7 @@ TEST_CASE("Turning the lattice by 90 degrees permutes the scores", "[grasp][cont
   for (std::size_t i = 0; i < scores.size(); ++i) {
     CHECK(scores_turned[i] == Approx(scores[i]).epsilon(kRounding));
   }
-  // Nor does the order of patches matter.
+  // The order of patches does not matter either.
   std::reverse(patches.begin(), patches.end());
   std::vector<double> reversed = contact_score_map(patches, lattice, options).scores;
   std::reverse(reversed.begin(), reversed.end());
@@ -304,8 +305,8 @@ TEST_CASE("Turning the lattice by 90 degrees permutes the scores", "[grasp][cont
 }
 
 TEST_CASE("Turning an object by 90 degrees turns its scores", "[grasp][contact_score_map]") {
-  // Half-meter voxels again, so that the turned planes are the same doubles; the object's vertices
-  // avoid them, so that the tie rule has no say.
+  // Voxels are half a meter wide again, so that the turned planes are the same doubles; the
+  // object's vertices avoid them, so that no tie rule decides.
   geometry::TriangleMesh mesh = ellipsoid({5.03, 3.02, 2.51});
   geometry::TriangleMesh mesh_turned = mesh;
   for (Vector3d& v : mesh_turned.vertices) v = Vector3d(-v.y(), v.x(), v.z());
@@ -331,7 +332,7 @@ TEST_CASE("Turning an object by 90 degrees turns its scores", "[grasp][contact_s
 }
 
 TEST_CASE("Flat faces score at least as high as curved surface", "[grasp][contact_score_map]") {
-  // A cylinder as thick as long: interiors of the caps against the wall.
+  // The cylinder is as thick as long, and interiors of the caps are compared with the wall.
   const double half_height = 0.05;
   const VoxelizedObject object(geometry::cylinder(0.05, 2 * half_height));
   const auto normalization =
@@ -343,7 +344,7 @@ TEST_CASE("Flat faces score at least as high as curved surface", "[grasp][contac
   double highest_curved = 0.0;
   for (std::size_t i = 0; i < object.patches.size(); ++i) {
     const Vector3d& c = object.patches[i].centroid;
-    // Interior: no neighbor of a neighbor in the mean filter sees the rim.
+    // In the interior no neighbor of a neighbor in the mean filter sees the rim.
     if (c.head<2>().norm() < 0.05 - 4 * std::sqrt(2.0) * h) {
       lowest_flat = std::min(lowest_flat, map.scores[i]);
     } else if (std::abs(c.z()) < half_height - 4 * h) {
@@ -356,9 +357,9 @@ TEST_CASE("Flat faces score at least as high as curved surface", "[grasp][contac
 
 TEST_CASE("Scores of round shapes agree with an independent experiment",
           "[grasp][contact_score_map]") {
-  // An independent experiment, an independent implementation; values depend on placement and are
-  // good to about 10 %. Raw percentiles without the mean filter; share of voxels above 0.6 by
-  // floor-median with it.
+  // The values are of an independent implementation. They depend on where the shape lies in the
+  // grid and are good to about 10 %. They are raw percentiles without the mean filter, and the
+  // share of voxels above 0.6 with it, normalized by the median.
   struct Row {
     std::string name;
     geometry::TriangleMesh mesh;
@@ -387,8 +388,8 @@ TEST_CASE("Scores of round shapes agree with an independent experiment",
 TEST_CASE(
     "Shares above the threshold agree with an independent experiment on flat and mixed shapes",
     "[grasp][contact_score_map]") {
-  // An independent experiment, column floor-median: edges and rims are rejected, faces and walls
-  // are not.
+  // The shares are of an independent implementation, normalized by the median: edges and rims are
+  // rejected, faces and walls are not.
   std::vector<Eigen::Vector2d> half_disk = {{0.0, 1.0}};
   for (int i = 1; i < 48; ++i) {
     const double angle = std::numbers::pi / 2 * i / 48;
@@ -433,7 +434,8 @@ TEST_CASE("Thin legs score lowest and are rejected by the threshold",
   CHECK(highest_leg < 0.6);
   CHECK(highest_leg < *std::min_element(upper_half.begin(), upper_half.end()));
   CHECK(share_above(upper_half, 0.6) == 1.0);
-  // The independent experiment's shape has 63 %; how far its legs stick out is not said.
+  // The independent implementation found 63 % for its shape; how far its legs stick out is not
+  // known.
   CHECK(share_above(map.scores, 0.6) == Approx(0.63).margin(0.1));
 }
 

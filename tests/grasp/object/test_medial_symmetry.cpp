@@ -43,7 +43,7 @@ std::vector<MedialCandidate> candidates_of(const std::vector<MedialCandidate>& a
   return own;
 }
 
-/// `count` × `count` centers in a square of the x-y plane with a corner at the origin.
+/// Returns `count` × `count` centers in a square of the x-y plane with a corner at the origin.
 std::vector<Vector3d> square_of_centers(int count, double spacing) {
   std::vector<Vector3d> centers;
   for (int i = 0; i < count; ++i) {
@@ -65,7 +65,7 @@ TEST_CASE("Centers on a line are an axis with eight candidates", "[grasp][medial
     CHECK(symmetries[i].kind == SymmetryKind::Axis);
     CHECK(symmetries[i].ratio < 1e-12);
     CHECK(std::abs(symmetries[i].first_axis_O.dot(along)) > 1.0 - 1e-12);
-    // Four directions a right angle apart, each with both orientations along the line.
+    // There are four directions a right angle apart, each with both orientations along the line.
     const auto own = candidates_of(candidates, i);
     REQUIRE(own.size() == 8);
     for (std::size_t k = 0; k < 8; ++k) {
@@ -91,8 +91,9 @@ TEST_CASE("Centers on a line are an axis with eight candidates", "[grasp][medial
 
 TEST_CASE("The border of a plane of centers is a rim, its inside nothing",
           "[grasp][medial_symmetry]") {
-  // Second moments of a half disk of radius 1: 1/4 along its straight side, 1/4 − (4/3π)² across,
-  // ratio 0.279; of a disk 1. The ratio is that of a fine grid of centers to some percent.
+  // The second moments of a half disk of radius 1 are 1/4 along its straight side and 1/4 − (4/3π)²
+  // across, so that the ratio is 0.279; that of a disk is 1. The ratio is that of a fine grid of
+  // centers to some percent.
   const int n = 61;
   const double spacing = 0.001;
   const auto centers = square_of_centers(n, spacing);
@@ -151,20 +152,21 @@ TEST_CASE("Random directions at one point are evenly spread and repeatable",
     CHECK(d.norm() == Approx(1.0).epsilon(1e-12));
     CHECK(std::abs(candidate.axis_O.dot(d)) < 1e-12);
     ++octants[(d.x() > 0) + 2 * (d.y() > 0) + 4 * (d.z() > 0)];
-    ++heights[std::min(9, static_cast<int>(5.0 * (d.z() + 1.0)))];  // even, by Archimedes
+    // Heights are even, by Archimedes.
+    ++heights[std::min(9, static_cast<int>(5.0 * (d.z() + 1.0)))];
   }
   std::array<double, 8> eighths;
   eighths.fill(400.0);
   std::array<double, 10> tenths;
   tenths.fill(320.0);
-  CHECK(chi_square(octants, eighths) < 24.3);  // 7 degrees of freedom, 0.001
-  CHECK(chi_square(heights, tenths) < 27.9);   // 9
+  CHECK(chi_square(octants, eighths) < 24.3);  // This has 7 degrees of freedom, 0.001.
+  CHECK(chi_square(heights, tenths) < 27.9);   // This has 9.
   const auto again = grasp::medial_candidates(symmetries, 7);
   CHECK(again[1234].outward_O == candidates[1234].outward_O);
   CHECK(grasp::medial_candidates(symmetries, 8)[1234].outward_O != candidates[1234].outward_O);
 }
 
-/// Candidates of a ball.
+/// Returns the number of candidates of a ball.
 std::size_t count_of(const std::vector<MedialCandidate>& candidates, std::size_t i) {
   return candidates_of(candidates, i).size();
 }
@@ -200,9 +202,9 @@ TEST_CASE("A plate has candidates along its rim only", "[grasp][medial_symmetry]
       grasp::build_object_model(geometry::box(Vector3d(2.0 * half)), {});
   const auto symmetries = grasp::medial_symmetries(object, {.samples = 4000}, 3);
   const auto candidates = grasp::medial_candidates(symmetries, 3);
-  const double r_s = grasp::search_radius(object.mesh(), {});  // 10 mm
+  const double r_s = grasp::search_radius(object.mesh(), {});  // It is 10 mm.
   CHECK(r_s == Approx(0.01));
-  // The middle plane reaches to half a thickness from the sides.
+  // The middle plane ends half a thickness from the sides.
   int inside = 0, wrong_inside = 0, rim = 0, wrong_rim = 0;
   for (std::size_t i = 0; i < symmetries.size(); ++i) {
     const MedialSymmetry& symmetry = symmetries[i];
@@ -211,7 +213,7 @@ TEST_CASE("A plate has candidates along its rim only", "[grasp][medial_symmetry]
     const double to_y = half.y() - half.z() - std::abs(c.y());
     if (std::min(to_x, to_y) > r_s) {
       ++inside;
-      // Some 40 centers in a disk: by chance, a few look longer than wide.
+      // There are some 40 centers in a disk, and by chance a few look longer than wide.
       if (count_of(candidates, i) != 0) ++wrong_inside;
     } else if (std::abs(to_x) < 0.1 * r_s && to_y > r_s) {
       ++rim;
@@ -225,7 +227,7 @@ TEST_CASE("A plate has candidates along its rim only", "[grasp][medial_symmetry]
   CHECK(inside > 2000);
   CHECK(wrong_inside < inside / 10);
   CHECK(rim > 20);
-  CHECK(wrong_rim < rim / 3);  // some 20 centers in half a disk
+  CHECK(wrong_rim < rim / 3);  // There are some 20 centers in half a disk.
 }
 
 TEST_CASE("A ball is tried from random directions, and the planner says so",
@@ -248,7 +250,8 @@ TEST_CASE("The Barrett hand closes about the line through its spreading fingers'
   const hands::Finger& second = hand.fingers[hand.finger_index("finger_2")];
   const Vector3d line = hand.joints[first.joints[0]].X_PJ.translation() -
                         hand.joints[second.joints[0]].X_PJ.translation();
-  CHECK(std::abs(axis.dot(line.normalized())) > 1.0 - 1e-4);  // the thumb stands 0.8 mm aside
+  // The thumb stands 0.8 mm aside.
+  CHECK(std::abs(axis.dot(line.normalized())) > 1.0 - 1e-4);
   const Vector3d center = hands::grasp_center_H(hand);
   const double before = (center - hand.palm.center_H).dot(hand.palm.direction_H);
   // A manufacturer's model puts its grasp frame 40 mm before the palm.

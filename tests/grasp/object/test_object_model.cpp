@@ -34,10 +34,10 @@ TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
   CHECK(object.mesh() == mesh);
   CHECK((object.mass.center_of_mass - center).norm() < 1e-14);
   CHECK(object.mass.volume == Approx(0.06 * 0.08 * 0.10).epsilon(1e-12));
-  // Half of sqrt(6² + 8² + 10²) cm.
+  // The radius is half of sqrt(6² + 8² + 10²) cm.
   CHECK(object.normalizing_radius == Approx(std::sqrt(0.02) / 2).epsilon(1e-12));
 
-  // 20 voxels of 5 mm along z, and 12 mm of room are 3 voxels on each side.
+  // There are 20 voxels of 5 mm along z, and the margin of 12 mm is 3 voxels on each side.
   const geometry::VoxelLattice& lattice = object.grid.lattice;
   CHECK(lattice.voxel_size == Approx(0.005).epsilon(1e-12));
   CHECK(lattice.counts.z() == 26);
@@ -68,14 +68,14 @@ TEST_CASE("A model has room of its own around the object, for any hand", "[grasp
   const ObjectModel object = build_object_model(geometry::box({0.1, 0.05, 0.05}), {});
   const geometry::VoxelLattice& lattice = object.grid.lattice;
   CHECK(lattice.counts == Eigen::Vector3i(30 + 16, 15 + 16, 15 + 16));
-  // A link 1 m away is as far as it is: straight before a face to the voxel.
+  // The distance of a link 1 m away is the true one: straight before a face to the voxel.
   const double h = lattice.voxel_size;
   CHECK(object.distance.at(Vector3d(0.05 + 300.5 * h, 0, 0)) == 300.0F);
 }
 
 TEST_CASE("A patch is weak if at least half of its area is on weak faces",
           "[grasp][object_model][weak]") {
-  // A block with a fin 3 mm thick; long faces, so that patches at the fin's foot have both kinds.
+  // A block has a fin 3 mm thick and long faces, so that patches at the fin's foot have both kinds.
   geometry::TriangleMesh fin = geometry::box({0.03, 0.003, 0.04});
   for (Vector3d& vertex : fin.vertices) vertex.z() += 0.03;
   const geometry::TriangleMesh mesh =
@@ -99,7 +99,8 @@ TEST_CASE("A patch is weak if at least half of its area is on weak faces",
   int num_weak = 0;
   for (std::size_t i = 0; i < object.patches.size(); ++i) {
     const auto& [weak, all] = weak_and_all.at(object.patches[i].voxel);
-    if (std::abs(2 * weak - all) < 1e-9 * all) continue;  // half, but for rounding
+    // It is half, but for rounding.
+    if (std::abs(2 * weak - all) < 1e-9 * all) continue;
     CHECK(object.is_weak_patch[i] == (2 * weak > all));
     num_mixed += weak > 0.0 && weak < all;
     num_weak += object.is_weak_patch[i];
@@ -153,7 +154,7 @@ TEST_CASE("A model from the cache is the built one bit for bit, and damaged entr
   const geometry::TriangleMesh mesh = geometry::torus(0.05, 0.02, 40, 20);
   const ObjectModelOptions options{.resolution = 14};
   const ObjectModel built = build_object_model(mesh, options);
-  CHECK(std::filesystem::is_empty(folder.path()));  // building alone keeps nothing
+  CHECK(std::filesystem::is_empty(folder.path()));  // Building alone keeps nothing.
   check_equal(cached_object_model(mesh, options, cache), built);
   const auto entries = [&] {
     std::vector<std::filesystem::path> files;
@@ -167,9 +168,10 @@ TEST_CASE("A model from the cache is the built one bit for bit, and damaged entr
   const std::string text = base::read_file(file);
   ObjectModelTimings timings;
   check_equal(cached_object_model(mesh, options, cache, &timings), built);
-  CHECK(timings.patches_s == 0.0);  // nothing was built
+  CHECK(timings.patches_s == 0.0);  // Nothing was built.
 
-  // Damaged; and sealed as if it were whole, but cut short or with a wild number inside.
+  // An entry may be damaged, or sealed as if it were whole but cut short or with a wild number
+  // inside.
   const std::string content = text.substr(0, text.rfind("sha256 "));
   const auto sealed = [](const std::string& bytes) {
     return bytes + "sha256 " + base::sha256_hex(bytes) + '\n';
@@ -261,15 +263,15 @@ TEST_CASE("The score at a point is that of the patch there", "[grasp][object_mod
   const geometry::VoxelLattice& lattice = object.grid.lattice;
   for (std::size_t i = 0; i < object.patches.size(); ++i) {
     const Vector3d& centroid = object.patches[i].centroid;
-    // Rounding may put a centroid on a plane between voxels into either.
+    // By rounding a centroid on a plane between voxels may be in either.
     const bool is_inside = lattice.index(lattice.voxel_at(centroid)) == object.patches[i].voxel;
     if (is_inside) CHECK(contact_score_at(object, centroid) == object.scores.scores[i]);
   }
   const auto [lowest, highest] =
       std::minmax_element(object.scores.scores.begin(), object.scores.scores.end());
-  REQUIRE(*lowest < *highest);  // edges and faces differ
+  REQUIRE(*lowest < *highest);  // Edges and faces differ.
 
-  // The face lies in a plane between voxels: on one of its sides is a voxel without surface, which
+  // The face lies in a plane between voxels. On one of its sides is a voxel without surface, which
   // has the score of its neighbor.
   const double h = lattice.voxel_size;
   const Vector3d on_face(0.03, 0.4 * h, 0.4 * h);
@@ -277,8 +279,8 @@ TEST_CASE("The score at a point is that of the patch there", "[grasp][object_mod
   REQUIRE(at_face);
   CHECK(contact_score_at(object, on_face + Vector3d(0.5 * h, 0, 0)) == at_face);
   CHECK_FALSE(contact_score_at(object, on_face + Vector3d(3.5 * h, 0, 0)));
-  CHECK_FALSE(contact_score_at(object, Vector3d(10, 0, 0)));  // beyond the lattice
-  CHECK_FALSE(contact_score_at(object, Vector3d::Zero()));    // far inside
+  CHECK_FALSE(contact_score_at(object, Vector3d(10, 0, 0)));  // It is beyond the lattice.
+  CHECK_FALSE(contact_score_at(object, Vector3d::Zero()));    // It is far inside.
 }
 
 }  // namespace test_object_model

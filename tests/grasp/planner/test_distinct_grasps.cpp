@@ -45,17 +45,18 @@ TEST_CASE("Grasps are as far apart as their palm centers, palms and joints are",
   hand.palm.center_H = {0.0, 0.0, 0.05};
   const HandConfiguration a = hands::open_configuration(hand);
   HandConfiguration b = a;
-  // About x through the frame's origin: the palm center goes along the chord 2 r sin(angle / 2).
+  // The turn is about x through the frame's origin: the palm center moves along the chord 2 r
+  // sin(angle / 2).
   b.X_OH.linear() = AngleAxisd(0.3, Vector3d::UnitX()).toRotationMatrix();
   b.q[hand.joint_index("thumb_proximal")] += 0.25;
   b.q[hand.joint_index("finger_1_spread")] += 0.15;
-  b.q[hand.joint_index("thumb_distal")] += 0.4;  // coupled: does not count
+  b.q[hand.joint_index("thumb_distal")] += 0.4;  // This joint is coupled and does not count.
   const ConfigurationDistance found = configuration_distance(hand, a, b, 0.1);
   CHECK(found.translation == Approx(0.1 * std::sin(0.15)).epsilon(1e-12));
   CHECK(found.rotation == Approx(0.3).epsilon(1e-12));
   CHECK(found.joints == Approx(0.25).epsilon(1e-12));
 
-  // Tiny turns keep their digits, half a turn is the most.
+  // Tiny turns keep their digits, and half a turn is the most.
   b.X_OH.linear() = AngleAxisd(1e-9, Vector3d::UnitY()).toRotationMatrix();
   CHECK(configuration_distance(hand, a, b, 0.1).rotation == Approx(1e-9).epsilon(1e-6));
   b.X_OH.linear() = AngleAxisd(1.5 * std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix();
@@ -117,7 +118,7 @@ TEST_CASE("A distinct subset keeps the best and leaves out only what is like a b
           "[grasp][distinct_grasps]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const HandConfiguration start = hands::open_configuration(hand);
-  // 6 mm apart at 10 mm: neighbors are alike, the next but one is not.
+  // They are 6 mm apart at a limit of 10 mm: neighbors are alike, the next but one is not.
   std::vector<HandConfiguration> chain;
   for (int i = 0; i < 6; ++i) chain.push_back(moved_along_x(start, 0.006 * i));
   CHECK(distinct_subset(hand, chain) == std::vector<std::size_t>{0, 2, 4});

@@ -35,7 +35,7 @@ HandConfiguration at(const Vector3d& place) {
 }  // namespace
 
 TEST_CASE("Grasps linked by chains of like ones are one cluster", "[grasp][grasp_diversity]") {
-  // Steps of 6 mm, where up to 10 mm counts as alike; then a gap of 20 mm.
+  // The steps are 6 mm, where up to 10 mm counts as alike; then there is a gap of 20 mm.
   Configurations grasps;
   for (const double x : {0.0, 0.006, 0.012, 0.018, 0.038, 0.044}) {
     grasps.push_back(at({x, 0.0, 0.0}));
@@ -43,7 +43,8 @@ TEST_CASE("Grasps linked by chains of like ones are one cluster", "[grasp][grasp
   const GraspDiversity diversity = grasp_diversity(barrett(), grasps);
   CHECK(diversity.num_grasps == 6);
   CHECK(diversity.num_clusters == 2);
-  CHECK(*diversity.first_axis_share == Approx(1.0).epsilon(1e-12));  // all on a line
+  // All are on a line.
+  CHECK(*diversity.first_axis_share == Approx(1.0).epsilon(1e-12));
   CHECK(grasp_diversity(barrett(), grasps, {.translation = 0.005}).num_clusters == 6);
   CHECK(grasp_diversity(barrett(), grasps, {.translation = 0.02}).num_clusters == 1);
 
@@ -55,7 +56,7 @@ TEST_CASE("Grasps linked by chains of like ones are one cluster", "[grasp][grasp
 }
 
 TEST_CASE("The share of the first axis is that of the variances", "[grasp][grasp_diversity]") {
-  // Places at ±e_i: the same variance three ways. Twice as far in x: 4 of 6 parts.
+  // Positions at ±e_i have the same variance three ways; twice as far in x it has 4 of 6 parts.
   for (const double stretch : {1.0, 2.0}) {
     Configurations grasps;
     for (int axis = 0; axis < 3; ++axis) {
@@ -67,7 +68,7 @@ TEST_CASE("The share of the first axis is that of the variances", "[grasp][grasp
     CHECK(*grasp_diversity(barrett(), grasps).first_axis_share ==
           Approx(part / (part + 2.0)).epsilon(1e-12));
   }
-  // A joint and a place, each as far as what tells grasps apart: half and half.
+  // A joint and a position are each as far apart as what tells grasps apart: half and half.
   Configurations grasps = {at({0.01, 0, 0}), at({-0.01, 0, 0}), at({0, 0, 0}), at({0, 0, 0})};
   grasps[2].q[barrett().joint_index("thumb_proximal")] += 0.2;
   grasps[3].q[barrett().joint_index("thumb_proximal")] -= 0.2;

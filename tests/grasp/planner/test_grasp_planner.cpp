@@ -35,8 +35,7 @@ std::vector<NamedMesh> shapes() {
           {"capsule", geometry::capsule(0.03, 0.08)}};
 }
 
-// ---------------------------------------------------------------------------------------------
-// What is returned
+// The following tests are about what is returned.
 
 TEST_CASE("Valid grasps keep every promise on every shape", "[grasp][grasp_planner]") {
   for (const NamedMesh& shape : shapes()) {
@@ -81,7 +80,8 @@ TEST_CASE("Grasps that miss their targets or their quality are rejected, and cou
   }
   std::nth_element(deviations.begin(), deviations.begin() + deviations.size() / 2,
                    deviations.end());
-  options.largest_deviation = deviations[deviations.size() / 2];  // half of them deviate more
+  // Half of the grasps deviate more.
+  options.largest_deviation = deviations[deviations.size() / 2];
   for (const auto rejection : {grasp::Rejection::Deviation, grasp::Rejection::Quality}) {
     options.rejection = rejection;
     INFO(grasp::name_of(rejection));
@@ -99,7 +99,8 @@ TEST_CASE("Without a length of its own a deviation is too large from a pad's wid
           "[grasp][grasp_planner]") {
   PlannerOptions options;
   const hands::HandModel barrett = hands::find_hand("barrett");
-  CHECK(grasp::largest_deviation(options, barrett) == Approx(0.023));  // the outline of its pads
+  // It is the width of the outline of its pads.
+  CHECK(grasp::largest_deviation(options, barrett) == Approx(0.023));
   options.largest_deviation = 0.01;
   CHECK(grasp::largest_deviation(options, barrett) == 0.01);
 }
@@ -172,12 +173,12 @@ TEST_CASE("Attempts that prefer balance end in more squeezes that balance, and l
   }
   CHECK(num_preferring > num_any);
   INFO(num_grasps_preferring << " grasps that prefer balance, " << num_grasps_any << " others");
-  CHECK(num_grasps_preferring + 6 >= num_grasps_any);  // of 36 attempts
+  CHECK(num_grasps_preferring + 6 >= num_grasps_any);  // There are 36 attempts.
 }
 
 TEST_CASE("Attempts that keep the strongest grasp keep the one that trying all sides would show",
           "[grasp][grasp_planner]") {
-  // Oracle: epsilon within the squeeze's cones, from the contacts that the grasps report.
+  // The oracle is epsilon within the squeeze's cones, from the contacts that the grasps report.
   const auto strength = [](const Run& run, const Grasp& grasp) {
     std::vector<contact::Contact> touching;
     for (const contact::Contact& contact : grasp.contacts) {
@@ -207,7 +208,8 @@ TEST_CASE("Attempts that keep the strongest grasp keep the one that trying all s
       std::map<std::int64_t, std::pair<bool, double>> found;
       for (const Grasp& grasp : result.grasps) found[grasp.attempt] = strength(run, grasp);
       for (const auto& [attempt, least] : fewer) {
-        // More of the same sides, in the same order: never weaker, and none is lost.
+        // More of the same sides are tried in the same order: the result is never weaker, and none
+        // is lost.
         REQUIRE(found.count(attempt) == 1);
         CHECK(found[attempt] >= least);
         num_stronger += found[attempt] > least;
@@ -244,8 +246,7 @@ TEST_CASE("Outcomes have names of their own", "[grasp][grasp_planner]") {
   CHECK_FALSE(names.contains(""));
 }
 
-// ---------------------------------------------------------------------------------------------
-// Reproducibility
+// The following tests are about reproducibility.
 
 TEST_CASE("The same seed gives the same bytes, another seed another result",
           "[grasp][grasp_planner]") {
@@ -254,7 +255,8 @@ TEST_CASE("The same seed gives the same bytes, another seed another result",
   const Run run(mesh, options);
   const std::string once = all_fields(run.plan());
   CHECK(once == all_fields(run.plan()));
-  CHECK(once == all_fields(Run(mesh, options).plan()));  // everything prepared anew
+  // Everything is prepared anew.
+  CHECK(once == all_fields(Run(mesh, options).plan()));
   for (const int num_threads : {1, 2, 5}) CHECK(once == all_fields(run.plan(num_threads)));
   options.seed = 2;
   const Run other(mesh, options);
@@ -262,7 +264,7 @@ TEST_CASE("The same seed gives the same bytes, another seed another result",
 }
 
 TEST_CASE("An attempt's grasp depends on the seed and its number alone", "[grasp][grasp_planner]") {
-  // Asking for fewer grasps, or accepting fewer, changes which are returned and not what they are.
+  // To ask for fewer grasps, or to accept fewer, changes which are returned and not what they are.
   const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
   const PlannerResult all = Run(mesh, collecting(Acceptance::Usable, 1000, 8)).plan();
   for (const PlannerOptions& fewer :
@@ -345,10 +347,12 @@ TEST_CASE("Contacts keep to surface with a high score where that is asked for",
     return lowest;
   };
   PlannerOptions options = collecting(Acceptance::Usable, 1000, 30);
-  options.max_placements = 1;  // else another side is tried where the first is turned down
+  // Otherwise another side would be tried where the first is turned down.
+  options.max_placements = 1;
   const Run free(mesh, options);
   const PlannerResult all = free.plan();
-  // Where nothing forbids it, edges are touched: a threshold that half of the grasps exceed.
+  // Where nothing forbids it, edges are touched: the threshold is one that half of the grasps
+  // exceed.
   std::vector<double> scores;
   for (const Grasp& grasp : all.grasps) scores.push_back(lowest_score(free, grasp));
   std::sort(scores.begin(), scores.end());
@@ -399,26 +403,27 @@ TEST_CASE("A turned object is grasped as often", "[grasp][grasp_planner]") {
   constexpr int kAttempts = 20;
   const geometry::TriangleMesh mesh = geometry::box(Vector3d(0.10, 0.06, 0.08));
   geometry::RigidTransform X_WO = geometry::RigidTransform::Identity();
-  X_WO.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // 90° about z, exactly
+  // It is 90° about z, exactly.
+  X_WO.linear() << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   const auto usable_of = [&](const geometry::TriangleMesh& turned) {
     return static_cast<double>(
         Run(turned, collecting(Acceptance::Usable, 1000, kAttempts)).plan().statistics.usable());
   };
   const double plain = usable_of(mesh), turned = usable_of(geometry::transformed(mesh, X_WO));
-  // Both are counts out of 20 with the same chance, so their difference has a standard deviation of
-  // at most sqrt(2 · 20 / 4) = 3.2; four of them.
+  // Both are counts out of 20 with the same chance, so that their difference has a standard
+  // deviation of at most sqrt(2 · 20 / 4) = 3.2; the bound is four of them.
   INFO(plain << " and " << turned << " of " << kAttempts);
   CHECK(std::abs(plain - turned) <= 13.0);
   CHECK(plain > 0.0);
   CHECK(turned > 0.0);
 }
 
-// ---------------------------------------------------------------------------------------------
-// Failures
+// The following tests are about failures.
 
 TEST_CASE("A threshold that no voxel exceeds is reported as no seed", "[grasp][grasp_planner]") {
   PlannerOptions options = collecting(Acceptance::Valid, 1, 5);
-  options.targets.score_threshold = 0.999999;  // a ball's scores are near 0.8 everywhere
+  // A ball's scores are near 0.8 everywhere.
+  options.targets.score_threshold = 0.999999;
   const Run run(geometry::ball(0.05), options);
   const PlannerResult result = run.plan();
   CHECK(broken_promises(run, result) == kNothing);
@@ -433,7 +438,7 @@ TEST_CASE("Objects of impossible size are refused with their extents and advice"
   const hands::HandModel hand = hands::find_hand("barrett");
   struct Case {
     double radius;
-    const char* extent;  // the diameter in meters as its digits begin
+    const char* extent;  // This is the diameter in meters as its digits begin.
   };
   for (const Case& impossible : {Case{0.0005, "0.001"}, Case{5.0, "10"}}) {
     const geometry::TriangleMesh mesh = geometry::ball(impossible.radius);

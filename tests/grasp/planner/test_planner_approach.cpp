@@ -60,7 +60,7 @@ TEST_CASE("Jaws always look at each other, so that nothing adds to how far they 
     const auto assigned = grasp::assign_fingers(hand, targets, parts, placement);
     const grasp::internal::TargetPosture posture =
         grasp::internal::posture_for(hand, assigned, placement);
-    // Pads of a gripper look at each other: no pair's angle is left.
+    // Pads of a gripper look at each other, so that no pair's angle is left.
     CHECK(grasp::internal::reach_misfit(hand, assigned, posture) ==
           Approx(posture.largest_tilt + posture.largest_miss / 0.015).margin(1e-6));
   }

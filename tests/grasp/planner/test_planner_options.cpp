@@ -20,8 +20,7 @@ using namespace graspfit;
 using namespace graspfit::testing;
 using testing::Contains;
 
-// ---------------------------------------------------------------------------------------------
-// Options
+// The following tests are about options.
 
 std::string message_of(const PlannerOptions& options) {
   try {
@@ -58,7 +57,7 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
         "");
   CHECK(unsaid(message_after([](auto& o) { o.self_overlap = -0.125; }), "self_overlap", "-0.125") ==
         "");
-  // Refined grasps touch with every part.
+  // Refined grasps touch with every part, so that this needs grasps without refinement.
   const auto measured = [](auto& o) { o.missing_contact = grasp::MissingContact::Measured; };
   CHECK(unsaid(message_after(measured), "missing_contact", "refine") == "");
   CHECK(message_after([&](auto& o) {
@@ -67,7 +66,7 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
         }) == "nothing thrown");
   CHECK(unsaid(message_after([](auto& o) { o.contact_score_threshold = 1.0; }),
                "contact_score_threshold", "1") == "");
-  // Options inside options.
+  // These are options inside options.
   CHECK(unsaid(message_after([](auto& o) { o.sampling.count = 0; }), "count", "0") == "");
   CHECK(unsaid(message_after([](auto& o) { o.sampling.box_spacing = 0.0; }), "box_spacing", "0") ==
         "");
@@ -103,7 +102,7 @@ TEST_CASE("Planning checks its options before it works", "[grasp][grasp_planner]
   run.options.num_contacts = 4;
   CHECK_THROWS_AS(run.plan(), base::InvalidInput);
   run.options = {};
-  run.options.fingers = {"thumb"};  // N ≥ 2
+  run.options.fingers = {"thumb"};  // At least 2 are needed.
   CHECK_THROWS_AS(run.plan(), base::InvalidInput);
   run.options = {};
   run.options.planner = "none";
@@ -179,8 +178,7 @@ TEST_CASE("The object is prepared with the resolution asked for alike for every 
   }
 }
 
-// ---------------------------------------------------------------------------------------------
-// Measuring a configuration
+// The following tests are about measuring a configuration.
 
 TEST_CASE("A hand far from the object has no contact, no measure and no penetration",
           "[grasp][grasp_planner]") {
@@ -201,7 +199,7 @@ TEST_CASE("A hand far from the object has no contact, no measure and no penetrat
   CHECK(away.penetration.object_depth == 0.0);
   CHECK_FALSE(away.is_valid());
 
-  // The ball's center in the palm's surface: half the ball is in the palm's side of it.
+  // The ball's center is in the palm's surface, so that half the ball is on the palm's side of it.
   const Grasp inside = measure_at(Vector3d(0, 0, 0));
   CHECK(inside.penetration.object_intersects);
   CHECK(inside.penetration.object_depth > 0.01);

@@ -29,11 +29,12 @@ TEST_CASE("Methods without targets say which readings they use", "[grasp][planne
     for (const char* const number : {"A1", "A2", "A3", "A4", "A5", "A17", "A28", "A48"}) {
       CHECK(plain.at(number) == unused);
     }
-    // The angle of M2 is theirs too.
+    // The angle of M2 is used by these methods, too.
     CHECK(plain.at("A47").find("of the measure alone") == 0);
     CHECK(plain.at("A13") == fitting.at("A13"));
 
-    options.contact_score_threshold = 0.5;  // of real contacts: needs the score map
+    // The threshold is of real contacts and needs the score map.
+    options.contact_score_threshold = 0.5;
     const auto scored = readings_of(options);
     for (const char* const number : {"A1", "A2", "A3", "A4", "A5"}) {
       CHECK(scored.at(number) == fitting.at(number));

@@ -52,7 +52,8 @@ TEST_CASE("Methods have names and titles of their own", "[grasp][planning_method
 TEST_CASE("Valid grasps of every method keep every promise", "[grasp][planning_methods]") {
   PlannerOptions options = collecting(Acceptance::Valid, 2, 150);
   options.planner = some_method();
-  options.counted_pads = contact::CountedPads::All;  // MA wraps fingers around a capsule
+  // MA wraps fingers around a capsule, so that all pads count.
+  options.counted_pads = contact::CountedPads::All;
   INFO(options.planner);
   const Run run(geometry::capsule(0.03, 0.08), options);
   const PlannerResult result = run.plan();
@@ -67,7 +68,8 @@ TEST_CASE("Usable grasps of every method that starts clear keep every promise",
   options.max_attempts = 60;
   options.count = 1000;
   options.distinct = {0.0, 0.0, 0.0};
-  options.counted_pads = contact::CountedPads::All;  // MA wraps fingers around a capsule
+  // MA wraps fingers around a capsule, so that all pads count.
+  options.counted_pads = contact::CountedPads::All;
   INFO(options.planner);
   const Run run(geometry::capsule(0.03, 0.08), options);
   const PlannerResult result = run.plan();
@@ -110,7 +112,8 @@ TEST_CASE("Same seed, same bytes, for every method and any number of threads",
 TEST_CASE("Candidates of MA are tried once each, and then there is nothing left",
           "[grasp][planning_methods]") {
   PlannerOptions options = at_voxel_level("ma");
-  options.medial_symmetry.samples = 6;  // on a bar whose axis all balls share
+  // They are on a bar whose axis all balls share.
+  options.medial_symmetry.samples = 6;
   options.medial_symmetry.search_radius = 0.2;
   options.max_attempts = 1000;
   options.count = 1000;
@@ -124,7 +127,8 @@ TEST_CASE("Candidates of MA are tried once each, and then there is nothing left"
 TEST_CASE("An object on which MA has no candidate ends without an attempt, and says why",
           "[grasp][planning_methods]") {
   PlannerOptions options = at_voxel_level("ma");
-  options.medial_symmetry.samples = 1;  // a ball that is alone
+  // There is one ball, which is alone.
+  options.medial_symmetry.samples = 1;
   const Run run(geometry::capsule(0.02, 0.1), options);
   const PlannerResult result = run.plan();
   CHECK(result.stop == PlannerStop::Exhausted);
@@ -136,7 +140,8 @@ TEST_CASE("GS without a sample in the cone of approach ends at once, and says wh
           "[grasp][planning_methods]") {
   PlannerOptions options = at_voxel_level("gs");
   options.approach_O = Vector3d::UnitZ();
-  options.approach_angle = 1e-6;  // between the normals of the facets
+  // The direction is between the normals of the facets.
+  options.approach_angle = 1e-6;
   options.max_attempts = 1000;
   const Run run(geometry::ball(0.04), options);
   const PlannerResult result = run.plan();
@@ -163,7 +168,7 @@ TEST_CASE("Attempts with a missing contact count where they are asked to",
     if (!grasp.has_all_contacts) ++incomplete;
   }
   CHECK(incomplete > 0);
-  // Nothing but those that miss a contact is new.
+  // Only those that miss a contact are new.
   CHECK(static_cast<std::int64_t>(all.grasps.size()) - incomplete ==
         static_cast<std::int64_t>(complete.grasps.size()));
   for (const Grasp& grasp : complete.grasps) {

@@ -59,8 +59,9 @@ struct Scene {
     return false;
   }
 
-  /// The palm center `height` before the origin of O, looking along `direction`, the fingers closed
-  /// until just before the first link enters the object: some pads are millimeters away.
+  /// Returns the hand with the palm center `height` before the origin of O, looking along
+  /// `direction`, and the fingers closed until just before the first link enters the object: some
+  /// pads are millimeters away.
   HandConfiguration nearly_closed(const Vector3d& direction, double height) const {
     HandConfiguration last = hands::open_configuration(hand);
     last.X_OH.linear() =
@@ -83,8 +84,8 @@ struct Scene {
   contact::ContactEstimationOptions contact_options;
 };
 
-/// Smallest distance of densely laid points of a pad's surface from the object: an upper bound of
-/// the gap that asks no search for nearest points of two meshes.
+/// Returns the smallest distance of densely laid points of a pad's surface from the object: an
+/// upper bound of the gap that needs no search for nearest points of two meshes.
 double sampled_gap(const Scene& scene, int pad, const HandConfiguration& configuration) {
   const auto X_OL = hands::forward_kinematics(scene.hand, configuration);
   const RigidTransform& X = X_OL[scene.hand.pads[pad].link];
@@ -104,7 +105,7 @@ double sampled_gap(const Scene& scene, int pad, const HandConfiguration& configu
   return std::sqrt(smallest);
 }
 
-/// What every result promises, whatever its stop.
+/// Checks what every result promises, whatever its stop.
 void check_promises(const Scene& scene, const HandConfiguration& start,
                     const std::vector<int>& pads, const RefinementOptions& options,
                     const RefinementResult& result) {
@@ -132,9 +133,10 @@ void check_promises(const Scene& scene, const HandConfiguration& start,
     const auto contact = std::find_if(contacts.begin(), contacts.end(),
                                       [&](const contact::Contact& c) { return c.pad == pad; });
     REQUIRE(contact != contacts.end());
-    CHECK(contact->gap <= result.largest_gap + 1e-12);  // searched with a seed and without
-    // A point at most 0.3 mm along the pad from the nearest one, and edges of the coarse objects
-    // here whose faces turn away by less than a tenth.
+    // The gap was searched for with a seed and without.
+    CHECK(contact->gap <= result.largest_gap + 1e-12);
+    // The nearest sample is at most 0.3 mm along the pad from the nearest point, and the coarse
+    // objects here have edges whose faces turn away by less than a tenth.
     const double sampled = sampled_gap(scene, pad, end);
     CHECK(sampled >= contact->gap - 1e-9);
     CHECK(sampled <= contact->gap + 3e-5);
@@ -146,7 +148,8 @@ bool same_bytes(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
          std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
-/// The gripper around a box 3 cm wide along the jaws' way, `aside` from the middle between them.
+/// Returns the gripper around a box 3 cm wide along the jaws' way, `aside` from the middle between
+/// them.
 HandConfiguration around_box(const hands::HandModel& hand, double aside, double opening) {
   HandConfiguration start = hands::open_configuration(hand);
   const auto X_HL = hands::forward_kinematics(hand, start);
@@ -175,10 +178,10 @@ TEST_CASE("A gripper beside the middle of a box moves its palm until both pads t
     const RefinementResult result = scene.refine(start, pads);
     REQUIRE(result.stop == RefinementStop::Contact);
     check_promises(scene, start, pads, {}, result);
-    // One joint drives both jaws, so their middle must come to that of the box.
+    // One joint drives both jaws, so that their middle must come to that of the box.
     const Vector3d shift = result.configuration.X_OH.translation() - start.X_OH.translation();
     CHECK(shift.norm() == Approx(std::abs(aside)).margin(2e-4));
-    // What is refined stays.
+    // A second refinement changes nothing.
     const RefinementResult again = scene.refine(result.configuration, pads);
     CHECK(again.iterations == 0);
     CHECK(same_bytes(again.configuration.q, result.configuration.q));
@@ -197,7 +200,7 @@ TEST_CASE("A gripper whose palm must stay leaves the gap that its one joint cann
   const RefinementResult result = scene.refine(start, scene.tip_pads(), options);
   CHECK(result.stop == RefinementStop::GapLeft);
   check_promises(scene, start, scene.tip_pads(), options, result);
-  // Two lengths aside, and what is kept before the nearer jaw (at most 0.3 mm).
+  // The gap is twice `aside`, and what is kept before the nearer jaw (at most 0.3 mm).
   CHECK(result.largest_gap >= 2 * aside);
   CHECK(result.largest_gap <= 2 * aside + 4e-4);
 }
@@ -247,11 +250,11 @@ TEST_CASE("A three-fingered hand comes to touch a ball with every fingertip pad"
     const RefinementResult result = scene.refine(start, scene.tip_pads());
     CHECK(result.stop == RefinementStop::Contact);
     check_promises(scene, start, scene.tip_pads(), {}, result);
-    // Once more, the same bytes.
+    // A second run gives the same bytes.
     const RefinementResult again = scene.refine(start, scene.tip_pads());
     CHECK(same_bytes(again.configuration.q, result.configuration.q));
     CHECK(same_bytes(again.configuration.X_OH.matrix(), result.configuration.X_OH.matrix()));
-    // From a start that cuts the ball.
+    // This start cuts the ball.
     HandConfiguration cutting = start;
     for (std::size_t j = 0; j < scene.hand.joints.size(); ++j) {
       cutting.q[static_cast<Eigen::Index>(j)] += 0.05 * scene.hand.joints[j].closing_sign;
@@ -297,7 +300,7 @@ TEST_CASE("A table under the object is not touched", "[grasp][contact_refinement
     }
     return z;
   };
-  // A table into which the hand alone at the ball would reach by 1 mm.
+  // The hand alone at the ball would reach into this table by 1 mm.
   const double table_z = lowest(unhindered.configuration) + 0.001;
   const Scene scene(free.hand, geometry::ball(0.04, 3), {.table_z_O = table_z, .obstacles = {}});
   const RefinementResult result = scene.refine(start, scene.tip_pads());
@@ -319,7 +322,7 @@ TEST_CASE("What cannot be refined says why", "[grasp][contact_refinement]") {
   inside.X_OH.translation() = -scene.hand.palm.center_H;
   CHECK(scene.refine(inside, scene.tip_pads()).stop == RefinementStop::Intersecting);
 
-  // Two fingers without joints that share space.
+  // Two fingers without joints share space.
   hands::HandModel stiff = testing::pad_hand(2);
   for (int link = 1; link <= 2; ++link)
     stiff.links[link].mesh_L = geometry::box({0.01, 0.01, 0.01});

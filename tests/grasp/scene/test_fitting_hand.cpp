@@ -23,8 +23,8 @@ using testing::Contains;
 using testing::dense_points;
 using testing::Scene;
 
-/// Walks the tree of balls from `ball` down: how far any point is outside a ball that should hold
-/// it [m], counting for each point the leaves that hold it.
+/// Walks the tree of balls from `ball` down. Returns how far any point is outside a ball that
+/// should hold it [m], and counts for each point the leaves that hold it.
 double farthest_outside(const grasp::FittingHand::LinkSamples& samples, std::int32_t ball,
                         std::vector<std::int32_t> ancestors, std::vector<int>& times_held) {
   ancestors.push_back(ball);
@@ -117,7 +117,7 @@ TEST_CASE("The smallest distance is that of a search over all points, up to what
                                        random.uniform(-1, 1), random.uniform(-1, 1))
                         .normalized()
                         .toRotationMatrix();
-    // Some far outside the lattice.
+    // Some poses are far outside the lattice.
     const double away = trial % 10 == 0 ? 2.0 : 0.12;
     X_OL.translation() =
         away * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));

@@ -46,7 +46,7 @@ RigidTransform random_pose(Random& random, double largest_shift) {
   return X;
 }
 
-/// A hand of one link: a box of 20 x 40 x 60 mm around the origin.
+/// Returns a hand of one link, a box of 20 x 40 x 60 mm around the origin.
 hands::HandModel block_hand() {
   hands::HandModel hand;
   hand.name = "block";
@@ -69,8 +69,8 @@ double lowest_vertex(const hands::Link& link, const RigidTransform& X_OL) {
 TEST_CASE("A link touches the table exactly from its lowest vertex on", "[grasp][surroundings]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const hands::HandCollision collision(hand);
-  // Moved without a turn the order of heights survives rounding, so that the answer may be asked at
-  // the very height and one digit below it.
+  // The link is moved without a turn, so that the order of heights survives rounding and the answer
+  // may be tested at the very height and one digit below it.
   RigidTransform X = RigidTransform::Identity();
   X.translation() = Vector3d(0.3, -0.2, 0.1234567);
   for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
@@ -124,24 +124,24 @@ TEST_CASE("Obstacles are as far as their surfaces and touched where solids meet"
   const auto distance = [&](const Surroundings& around, double enough) {
     return SurroundingsCollision(hand, around).distance(collision, 0, X, enough);
   };
-  // A block at x from 0.013 on: 3 mm beside the link, which is to its left.
+  // A block at x from 0.013 on is 3 mm beside the link, which is to its left.
   const MeshQuery beside(at(geometry::box({0.1, 0.1, 0.1}), {0.063, 0.0, 0.0}));
   const SurroundingsDistance found = distance({{}, {beside}}, 0.01);
   CHECK(found.distance == Approx(0.003).epsilon(1e-12));
   CHECK(found.normal_O.isApprox(-Vector3d::UnitX(), 1e-12));
   CHECK(found.point_on_link_O.x() == Approx(0.01));
   CHECK(distance({{}, {beside}}, 0.0029).distance == kInfinity);
-  // The nearest of all counts; the table 2 mm below, then 3 mm.
+  // The nearest of all counts: a table 2 mm below does, one 4 mm below does not.
   const MeshQuery above(at(geometry::box({0.1, 0.1, 0.1}), {0.0, 0.0, 0.081}));
   CHECK(distance({{}, {beside, above}}, 0.01).normal_O.isApprox(-Vector3d::UnitZ(), 1e-12));
   CHECK(distance({{}, {above, beside}}, 0.01).distance == Approx(0.001).epsilon(1e-9));
   CHECK(distance({-0.032, {beside}}, 0.01).normal_O == Vector3d::UnitZ());
   CHECK(distance({-0.034, {beside}}, 0.01).distance == Approx(0.003).epsilon(1e-12));
-  // Inside an obstacle without a common surface point is inside all the same.
+  // A link inside an obstacle counts as inside, although they share no surface point.
   const MeshQuery around(geometry::box({1.0, 1.0, 1.0}));
   CHECK(distance({{}, {around}}, 0.01).distance == 0.0);
   CHECK(SurroundingsCollision(hand, {{}, {around}}).touches(collision, 0, X));
-  // Face on face touches.
+  // Faces that lie on each other touch.
   const MeshQuery flush(at(geometry::box({0.02, 0.1, 0.1}), {0.02, 0.0, 0.0}));
   CHECK(SurroundingsCollision(hand, {{}, {flush}}).touches(collision, 0, X));
   CHECK_FALSE(SurroundingsCollision(hand, {{}, {beside, above}}).touches(collision, 0, X));
@@ -167,7 +167,7 @@ TEST_CASE("Distance from obstacles is that of the meshes, zero where they inters
     num_touching += expected == 0.0;
     if (expected <= 0.0 || expected > enough) continue;
     ++num_between;
-    // From the point on the link back along the normal lies the obstacle's surface.
+    // The obstacle's surface lies back along the normal from the point on the link.
     const Vector3d foot = found.point_on_link_O - found.distance * found.normal_O;
     CHECK(std::abs(obstacle.signed_distance(foot)) < 1e-12);
   }

@@ -18,7 +18,7 @@ using namespace graspfit;
 using namespace graspfit::testing;
 using grasp::TargetFailure;
 
-/// Two fingers whose tips are anywhere, and a palm pad of radius 0.2.
+/// Returns two fingers whose tips are anywhere, and a palm pad of radius 0.2.
 PartDistances reach_with_palm(double smallest, double largest) {
   PartDistances distances = equal_reach(2, 0.1, 3.0);
   distances.palm_to_tip.assign(2, {smallest, largest});
@@ -26,8 +26,8 @@ PartDistances reach_with_palm(double smallest, double largest) {
   return distances;
 }
 
-/// Two opposite places on the unit circle, and one for the palm, with its normal, that is too steep
-/// for a pair with either.
+/// Returns two opposite places on the unit circle, and one for the palm, with its normal, that is
+/// too steep for a pair with either.
 std::vector<Place> pair_and(const Vector3d& point, const Vector3d& normal) {
   std::vector<Place> places = on_unit_circle({0, 180});
   places.push_back({point, normal});
@@ -48,7 +48,7 @@ bool has_palm_target(const std::vector<Place>& places, const PartDistances& dist
     CHECK(selection.targets->contacts.back().is_palm);
     CHECK(!selection.targets->contacts.front().is_palm);
     CHECK(!selection.targets->contacts.front().finger);
-    // The fingers' own center, without the palm's target.
+    // The fingers have their own center, without the palm's target.
     CHECK(selection.targets->centroid().norm() < 1e-15);
     return true;
   }
@@ -58,13 +58,13 @@ bool has_palm_target(const std::vector<Place>& places, const PartDistances& dist
 TEST_CASE("The palm's target lies behind the fingers', seen along the palm, and within their reach",
           "[grasp][target_contacts][palm_targets]") {
   const Vector3d up = Vector3d::UnitZ();
-  // The palm at height 0.5 over the line between the fingers' targets, sqrt(1.25) = 1.118 from
+  // The palm is at height 0.5 over the line between the fingers' targets, sqrt(1.25) = 1.118 from
   // both.
   const std::vector<Place> above = pair_and(0.5 * up, up);
   CHECK(has_palm_target(above, reach_with_palm(0.1, 1.119)));
   CHECK_FALSE(has_palm_target(above, reach_with_palm(0.1, 1.117)));
   CHECK_FALSE(has_palm_target(above, reach_with_palm(1.119, 3.0)));
-  // Looking away from the fingers' targets, and level with them.
+  // The palm looks away from the fingers' targets, or is level with them.
   CHECK_FALSE(has_palm_target(pair_and(0.5 * up, -up), reach_with_palm(0.1, 3.0)));
   CHECK_FALSE(has_palm_target(pair_and(Vector3d::Zero(), up), reach_with_palm(0.1, 3.0)));
 }
@@ -72,7 +72,8 @@ TEST_CASE("The palm's target lies behind the fingers', seen along the palm, and 
 TEST_CASE("Nothing stands in the way of the palm's pad", "[grasp][target_contacts][palm_targets]") {
   const Vector3d up = Vector3d::UnitZ();
   const PartDistances distances = reach_with_palm(0.1, 3.0);
-  const double voxel = 4.0 / 30.0;  // of these objects: a box of 4 m at 30 voxels
+  // These objects are a box of 4 m at 30 voxels.
+  const double voxel = 4.0 / 30.0;
   const auto with_obstacle = [&](double beside, double height) {
     std::vector<Place> places = pair_and(0.5 * up, up);
     places.push_back({Vector3d(0.0, beside, 0.5 + height), Vector3d::UnitY(), 0.1});
@@ -86,9 +87,9 @@ TEST_CASE("Nothing stands in the way of the palm's pad", "[grasp][target_contact
 
 TEST_CASE("Tips' reach decides with the hand turned about the palm's direction",
           "[grasp][target_contacts][palm_targets]") {
-  // Tips of the first finger at ahead of the palm and to +x of it, of the second to −x: whatever
-  // the azimuth of the pair of targets, the hand can be turned to it; two targets on one side
-  // cannot be reached, nor such as are farther ahead.
+  // The tip of the first finger is at `ahead` of the palm and to +x of it, that of the second to
+  // −x. Whatever the azimuth of the pair of targets, the hand can be turned to it; two targets on
+  // one side cannot be reached, nor such as are farther ahead.
   PartDistances distances = reach_with_palm(0.1, 3.0);
   const double ahead = 0.5;
   const Vector3d x = Vector3d::UnitX();
@@ -98,7 +99,7 @@ TEST_CASE("Tips' reach decides with the hand turned about the palm's direction",
                           hands::TipReach({{opposite, x}}, 0.02)};
   const RequestedParts parts{{0, 1}, true};
   TargetOptions options;
-  // Half a turn of 5 degrees at 1 m, and a cell's diagonal.
+  // The tolerance is half a turn of 5 degrees at 1 m, and a cell's diagonal.
   options.palm_reach_tolerance = 0.044 + 0.035;
   const auto is_found = [&](double azimuth_deg, double height, double offset) {
     std::vector<Place> places = on_unit_circle({azimuth_deg, azimuth_deg + 180.0});
@@ -126,7 +127,7 @@ TEST_CASE("Every requirement holds for power grasps of shipped hands, and sets c
   };
   const std::vector<HandCase> hand_cases = {{"barrett", {"thumb", "finger_1", "finger_2"}, 0.023},
                                             {"human_hand", {"thumb", "index", "middle"}, 0.016}};
-  // The human hand does not come around the ball.
+  // The human hand does not reach around the ball.
   const NamedMesh ball{"ball of 15 cm", geometry::ball(0.075, 3)};
   const NamedMesh can{"can", geometry::cylinder(0.035, 0.15)};
   for (const HandCase& c : hand_cases) {

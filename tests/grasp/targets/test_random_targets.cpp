@@ -22,11 +22,10 @@ using namespace graspfit::testing;
 using grasp::PairRule;
 using grasp::TargetFailure;
 
-// ---------------------------------------------------------------------------------------------
-// Chance
+// The following tests are about chance.
 
-/// The relative errors of a third contact's two edges and its centroid distance: what it is ranked
-/// by.
+/// Returns the relative errors of a third contact's two edges and its centroid distance, by which
+/// it is ranked.
 std::array<double, 3> errors_of_third(const grasp::ObjectModel& object,
                                       const grasp::TargetContacts& targets) {
   const Vector3d &v1 = targets.contacts[0].point_O, &v2 = targets.contacts[1].point_O,
@@ -72,7 +71,7 @@ TEST_CASE("A pool of one takes a third contact that no other beats in every resp
 
 TEST_CASE("A pool of five takes each of three third contacts some time",
           "[grasp][target_contacts]") {
-  // For the first two at 90° and 210°, the place at 330° completes an equilateral triangle around
+  // With the first two at 90° and 210°, the place at 330° completes an equilateral triangle around
   // the center of mass; those beside it are worse but feasible.
   const grasp::ObjectModel object = object_of(on_unit_circle({90, 210, 330, 342, 318}));
   TargetOptions options;
@@ -96,7 +95,7 @@ TEST_CASE("Every feasible seed is chosen some time", "[grasp][target_contacts]")
   for (int seed = 1; seed <= kDraws; ++seed) {
     ++count[patches_of(select(object, equal_reach(2, 0.01, 3.0), {{0, 1}}, {}, seed)).at(0)];
   }
-  // Uniform: 100 each with standard deviation 9.6; five of them.
+  // The counts are uniform: 100 each with standard deviation 9.6; the bound is five of them.
   for (const int times : count) CHECK(std::abs(times - 100) < 48);
 }
 
@@ -111,20 +110,21 @@ TEST_CASE("The same seed gives the same targets, other seeds give others",
     const TargetSelection b = grasp::TargetSelector(object, distances, {{0, 1, 2}}, {}).select(two);
     CHECK(patches_of(a) == patches_of(b));
     CHECK(a.seeds_tried == b.seeds_tried);
-    CHECK(one.next() == two.next());  // as many numbers drawn
+    // Both have drawn as many numbers.
+    CHECK(one.next() == two.next());
     different.insert(patches_of(a));
   }
   CHECK(different.size() >= 25);
 }
-// ---------------------------------------------------------------------------------------------
-// Failures
+// The following tests are about failures.
 
 TEST_CASE("No voxel above the threshold: no seed", "[grasp][target_contacts]") {
   const grasp::ObjectModel object = object_of(geometry::ball(0.05));
   const auto& scores = object.scores.scores;
   TargetOptions options;
   options.score_threshold = *std::max_element(scores.begin(), scores.end());
-  REQUIRE(options.score_threshold < 1.0);  // on a ball nothing reaches 1.25 times the median
+  // On a ball nothing reaches 1.25 times the median.
+  REQUIRE(options.score_threshold < 1.0);
   const TargetSelection selection = select(object, equal_reach(3, 0, 1), {{0, 1, 2}}, options, 1);
   CHECK_FALSE(selection.targets);
   CHECK(selection.failure == TargetFailure::NoSeed);
@@ -133,7 +133,7 @@ TEST_CASE("No voxel above the threshold: no seed", "[grasp][target_contacts]") {
 TEST_CASE("An object wider than the fingers open: no second contact", "[grasp][target_contacts]") {
   // On a sphere a stable pair is more than 90° apart, so farther than sqrt(2) · 5 cm = 7.07 cm.
   // Normals of this icosphere's patches leave the radial direction by its faces' half width, 2.2°,
-  // at most: 2 · 5 cm · sin(45° − 2.2°) = 6.8 cm.
+  // at most, which gives 2 · 5 cm · sin(45° − 2.2°) = 6.8 cm.
   const grasp::ObjectModel object = object_of(geometry::ball(0.05));
   for (const RequestedParts& fingers : {RequestedParts{{0, 1}}, RequestedParts{{0, 1, 2}}}) {
     const TargetSelection selection = select(object, equal_reach(3, 0.0, 0.067), fingers, {}, 1);
@@ -236,7 +236,7 @@ TEST_CASE("The centroid of targets is the midpoint, the triangle's centroid, the
   CHECK((targets.centroid() - Vector3d(2, 2, 3)).norm() < 1e-15);
 }
 
-/// Where the first targets of attempts 0 to 19 are, of the paper's method.
+/// Returns where the first targets of attempts 0 to 19 are with the paper's method.
 std::vector<Vector3d> first_seeds(const grasp::PlannerOptions& options) {
   const Guided guided(geometry::torus(0.05, 0.02), options);
   std::vector<Vector3d> seeds;
@@ -256,11 +256,11 @@ TEST_CASE("The ideal M that sets are preferred by is that of the planner's measu
   options.targets.ideal_m_bias = 8.0;
   const std::vector<Vector3d> by_m = first_seeds(options);
   REQUIRE(by_m.size() >= 10);
-  // A bias so small prefers none.
+  // A bias as small as this one prefers no set.
   options.targets.ideal_m_bias = 1e-300;
   const std::vector<Vector3d> by_chance = first_seeds(options);
   CHECK(by_m != by_chance);
-  // Nor does a measure that is 1 for every set: M1^0 M2^0 M3^0.
+  // A measure that is 1 for every set, M1^0 M2^0 M3^0, prefers none either.
   options.targets.ideal_m_bias = 8.0;
   options.quality.w1 = options.quality.w2 = options.quality.w3 = 0.0;
   CHECK(first_seeds(options) == by_chance);

@@ -29,7 +29,8 @@ using grasp::TargetFailure;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Places on an ellipsoid with normals somewhat off it: no two sets of them rank alike.
+/// Returns places on an ellipsoid with normals somewhat off it, so that no two sets of them rank
+/// alike.
 std::vector<Place> scattered(int count, std::uint64_t seed) {
   base::Random random(seed);
   const auto direction = [&] {
@@ -56,7 +57,8 @@ struct OrderedSet {
   }
 };
 
-/// Sum of numbers in ascending order: the same for every order in which they are found.
+/// Returns the sum of numbers in ascending order, which is the same for every order in which they
+/// are found.
 double sum_of(std::vector<double> numbers) {
   std::sort(numbers.begin(), numbers.end());
   return std::accumulate(numbers.begin(), numbers.end(), 0.0);
@@ -65,7 +67,7 @@ double mean_of(const std::vector<double>& numbers) {
   return numbers.empty() ? 0.0 : sum_of(numbers) / static_cast<double>(numbers.size());
 }
 
-/// The rank as the header defines it, for this order.
+/// Returns the rank as the header defines it, for this order.
 double rank_of(const grasp::ObjectModel& object, const RequestedParts& parts,
                const TargetOptions& options, const TargetContacts& targets) {
   const auto& contacts = targets.contacts;
@@ -91,8 +93,8 @@ double rank_of(const grasp::ObjectModel& object, const RequestedParts& parts,
          options.angle_weight * mean_of(angles) / options.theta_max;
 }
 
-/// Sets whose ranks agree but for rounding by ascending patches: with all pairs, say, a seed and a
-/// second target that change places.
+/// Orders sets whose ranks agree but for rounding by ascending patches: with all pairs, for
+/// example, a seed and a second target that change places.
 std::vector<OrderedSet> with_ties_by_patch(std::vector<OrderedSet> sets) {
   for (auto from = sets.begin(); from != sets.end();) {
     auto to = from + 1;
@@ -103,11 +105,12 @@ std::vector<OrderedSet> with_ties_by_patch(std::vector<OrderedSet> sets) {
   return sets;
 }
 
-/// All feasible sets by trying every sequence of places.
+/// Finds all feasible sets by trying every sequence of places.
 std::vector<OrderedSet> by_brute_force(const grasp::ObjectModel& object,
                                        const PartDistances& distances, const RequestedParts& parts,
                                        const TargetOptions& options) {
-  using Key = std::tuple<int, std::set<int>, int>;  // seed, further fingers, palm
+  // The key has the seed, the further fingers and the palm.
+  using Key = std::tuple<int, std::set<int>, int>;
   std::map<Key, OrderedSet> best;
   const int num_places = static_cast<int>(object.patches.size());
   TargetContacts targets;
@@ -179,7 +182,8 @@ std::vector<Case> cases() {
           {"three and the palm", 14, {{0, 1, 2}, true}, loose}};
 }
 
-/// Five fingers with different ranges, some of which leave one way only to give targets to fingers.
+/// Returns five fingers with different ranges, some of which leave one way only to give targets to
+/// fingers.
 PartDistances uneven_reach() {
   PartDistances distances = equal_reach(5, 0.2, 2.2);
   set_range(distances, 0, 1, {1.0, 1.7});
@@ -237,7 +241,7 @@ TEST_CASE("More sets than are kept at a time come in order and without a gap",
     ++count;
   }
   CHECK(sets.size() == count);
-  // Counted on its own: for every seed the pairs of places that it can be completed by.
+  // The sets are counted apart: for every seed the pairs of places by which it can be completed.
   std::size_t expected = 0;
   TargetContacts targets;
   const auto add = [&](int place) {
@@ -272,7 +276,8 @@ TEST_CASE("More sets than are kept at a time come in order and without a gap",
     }
   }
   CHECK(count == expected);
-  CHECK(count > 5000);  // several times what is kept
+  // The search keeps a fraction of these at a time.
+  CHECK(count > 5000);
 }
 
 TEST_CASE("No random set within the unrelaxed limits ranks before the first ranked one",
@@ -320,8 +325,9 @@ TEST_CASE("Where no set exists the ranked search says at which stage",
     distances = equal_reach(3, 0.1, 0.99);
   }
   SECTION("a cone steeper than the friction cone") {
-    // Of half angle a: the two inward normals of a pair differ by a horizontal vector of length at
-    // most 2 cos(a), and by more than 2 cos(theta_max) along the line between stable places.
+    // The cone has half angle a: the two inward normals of a pair differ by a horizontal vector of
+    // length at most 2 cos(a), and by more than 2 cos(theta_max) along the line between stable
+    // places.
     places.clear();
     const double half_angle = 0.6;
     options.theta_max = 0.59;
@@ -360,7 +366,7 @@ TEST_CASE("Where no set exists the ranked search says at which stage",
 
 TEST_CASE("A thinned pool keeps the best place of each cell and side",
           "[grasp][target_contacts][ranked_targets]") {
-  // A thin plate with four places in one cell on either side: the better of each is left.
+  // A thin plate has four places in one cell on either side, of which the better of each is left.
   std::vector<Place> places;
   for (const double z : {0.01, 0.02}) {
     for (int i = 0; i < 4; ++i) {

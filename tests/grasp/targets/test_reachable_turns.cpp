@@ -33,7 +33,7 @@ TEST_CASE("Turns left out are those at which no visited cell is near, by looking
     for (const auto& tip : {reaches.front(), reaches.back()}) {
       const grasp::internal::ReachableTurns turns(axes, *tip, kTolerance);
       for (int sample = 0; sample < 60; ++sample) {
-        // Near a place that the tip gets to, turned away by some angle.
+        // The point is near one that the tip gets to, and turned away by some angle.
         const Vector3d place = tip->visited_H()[random.index(tip->visited_H().size())] +
                                0.02 * Vector3d(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
                                                random.uniform(-1.0, 1.0));
@@ -54,7 +54,7 @@ TEST_CASE("Turns left out are those at which no visited cell is near, by looking
       }
     }
     CHECK(num_reached > 500);
-    // Otherwise it would be of no use.
+    // Otherwise the table would be of no use.
     CHECK(num_kept < 4 * num_reached);
   }
 }

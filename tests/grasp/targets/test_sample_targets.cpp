@@ -1,4 +1,5 @@
-// The baseline gs-targets: targets drawn at random from surface samples.
+// These tests are about the baseline gs-targets, which draws targets at random from surface
+// samples.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,9 +20,10 @@ using testing::Guided;
 
 namespace {
 
-constexpr double kChiSquare7 = 24.3;  // seven degrees of freedom, one in a thousand is above
+// With seven degrees of freedom one in a thousand is above.
+constexpr double kChiSquare7 = 24.3;
 
-/// Targets of the attempt, of the side tried first.
+/// Returns the targets of the attempt, of the side tried first.
 grasp::TargetContacts targets_of(const Guided& guided, int attempt) {
   const grasp::GuidedStarts starts = guided.guidance->starts(attempt);
   REQUIRE_FALSE(starts.starts.empty());
@@ -66,7 +68,7 @@ TEST_CASE("Random targets are samples of the surface that the fingers can have",
 }
 
 TEST_CASE("Seeds of random targets fall evenly on a ball", "[grasp][sample_targets]") {
-  // Every place of a ball can be a seed alike, so its octants are.
+  // Every point of a ball can be a seed with the same chance, and so can its octants.
   constexpr int kAttempts = 400;
   const Guided guided(geometry::ball(0.05), at_voxel_level("gs-targets"));
   std::array<int, 8> octants{};
@@ -76,8 +78,8 @@ TEST_CASE("Seeds of random targets fall evenly on a ball", "[grasp][sample_targe
   }
   std::array<double, 8> expected{};
   expected.fill(kAttempts / 8.0);
-  // The 1000 samples themselves are drawn, too: the variance of counts is 1 + 400 / 1000 times that
-  // of a direct draw.
+  // The 1000 samples themselves are drawn, too, so that the variance of counts is 1 + 400 / 1000
+  // times that of a direct draw.
   CHECK(chi_square(octants, expected) < 1.4 * kChiSquare7);
 }
 

@@ -24,8 +24,7 @@ using grasp::TargetFailure;
 
 constexpr double kPi = std::numbers::pi;
 
-// ---------------------------------------------------------------------------------------------
-// Requirements of section 6 on real shapes
+// The following tests check the requirements of section 6 of the paper on real shapes.
 
 TEST_CASE("Every target set of three meets every requirement of section 6 on every shape",
           "[grasp][target_contacts]") {
@@ -38,8 +37,8 @@ TEST_CASE("Every target set of three meets every requirement of section 6 on eve
       TargetOptions options;
       options.pair_rule = rule;
       options.min_separation = 0.023;
-      // The faces of a box hold no three points that are pairwise in each other's cones: two would
-      // be on one face. Little is found, after all seeds.
+      // The faces of a box hold no three points that are pairwise in each other's cones, as two
+      // would be on one face. Little is found, after all seeds.
       const bool is_hopeless = shape.name == "box" && rule == PairRule::AllPairs;
       const int num_sets =
           check_selections(object, distances, fingers, options, is_hopeless ? 2 : 40);
@@ -102,7 +101,7 @@ TEST_CASE("Targets of the Barrett hand on the bunny meet every requirement",
 
 TEST_CASE("Distances are those of the fingers served, not of all fingers",
           "[grasp][target_contacts]") {
-  // Finger 3 could reach anything; it is not among the fingers served. Of the others, one target
+  // Finger 3 could reach anything; it is not among the fingers asked for. Of the others, one target
   // has to be 4–6 cm from the seed's and one 7–9.5 cm, across a box of 5.7 cm, whatever their
   // order.
   PartDistances distances = equal_reach(4, 0.001, 1.0);
@@ -116,11 +115,10 @@ TEST_CASE("Distances are those of the fingers served, not of all fingers",
   CHECK(num_sets >= 20);
   CHECK(check_selections(object, distances, {{0, 2}}, options, 30) >= 20);
 }
-// ---------------------------------------------------------------------------------------------
-// Limits, one at a time, on objects of a few places (boundary band)
+// The following tests are about limits, one at a time, on objects of a few places.
 
 TEST_CASE("Only places whose score exceeds the threshold are targets", "[grasp][target_contacts]") {
-  // Two opposite pairs; those of the second pair are at the threshold or have no normal.
+  // There are two opposite pairs; the places of the second are at the threshold or have no normal.
   std::vector<Place> places = on_unit_circle({0, 180, 90, 270});
   const PartDistances distances = equal_reach(2, 0.1, 3.0);
   SECTION("at the threshold") {
@@ -165,7 +163,8 @@ TEST_CASE("A partner must lie in both friction cones, each strictly within theta
 }
 
 TEST_CASE("Normals that face each other across a gap form no pair", "[grasp][target_contacts]") {
-  // The walls of a hole: lines along the normals, but fingers inside would push outward.
+  // These are the walls of a hole: lines are along the normals, but fingers inside would push
+  // outward.
   std::vector<Place> places = on_unit_circle({0, 180});
   for (Place& place : places) place.outward_normal = -place.outward_normal;
   const TargetSelection selection =
@@ -175,7 +174,8 @@ TEST_CASE("Normals that face each other across a gap form no pair", "[grasp][tar
 }
 
 TEST_CASE("A partner must be in tip distance", "[grasp][target_contacts]") {
-  const grasp::ObjectModel object = object_of(on_unit_circle({0, 180}));  // 2 m apart
+  // They are 2 m apart.
+  const grasp::ObjectModel object = object_of(on_unit_circle({0, 180}));
   CHECK(select(object, equal_reach(2, 0.1, 2.0 + 1e-9), {{0, 1}}, {}, 1).targets);
   CHECK(select(object, equal_reach(2, 2.0 - 1e-9, 3.0), {{0, 1}}, {}, 1).targets);
   for (const auto& distances : {equal_reach(2, 0.1, 2.0 - 1e-9), equal_reach(2, 2.0 + 1e-9, 3.0)}) {
@@ -198,7 +198,7 @@ TEST_CASE("Targets keep their least separation", "[grasp][target_contacts]") {
     CHECK(selection.failure == TargetFailure::NoSecond);
   }
   SECTION("the second and the third, which need not be a stable pair") {
-    // Seed at 0°, the others 2 · 20° apart on the far side: 2 sin 20° between them.
+    // The seed is at 0°, the others are 2 · 20° apart on the far side, with 2 sin 20° between them.
     const grasp::ObjectModel object = object_of(on_unit_circle({0, 160, 200}));
     options.edge_tolerance_rel = 1.0;
     const double between = 2.0 * std::sin(20.0 * kPi / 180.0);
@@ -211,9 +211,9 @@ TEST_CASE("Targets keep their least separation", "[grasp][target_contacts]") {
   }
 }
 
-/// An isosceles triangle on the unit circle whose base is `ratio` < 1 of its legs. Its best order
-/// has a leg as |V1V2| and edge error 1 − ratio; with the base as |V1V2| the error 1/ratio − 1 is
-/// larger.
+/// Returns an isosceles triangle on the unit circle whose base is `ratio` < 1 of its legs. Its best
+/// order has a leg as |V1V2| and edge error 1 − ratio; with the base as |V1V2| the error 1/ratio −
+/// 1 is larger.
 std::vector<Place> isosceles(double ratio) {
   const double half_apex_deg = std::asin(0.5 * ratio) * 180.0 / kPi;
   return on_unit_circle({0.0, 180.0 - 2.0 * half_apex_deg, 180.0 + 2.0 * half_apex_deg});
@@ -247,7 +247,8 @@ TEST_CASE(
 TEST_CASE("The target triangle's centroid is near the center of mass, relaxed after 50 seeds",
           "[grasp][target_contacts]") {
   const PartDistances distances = equal_reach(3, 0.01, 3.0);
-  grasp::ObjectModel object = object_of(on_unit_circle({0, 120, 240}));  // centroid at the origin
+  // The centroid is at the origin.
+  grasp::ObjectModel object = object_of(on_unit_circle({0, 120, 240}));
   object.normalizing_radius = 1.25;
   const auto select_at = [&](double scaled_distance, std::uint64_t seed) {
     object.mass.center_of_mass = Vector3d(0, 0, scaled_distance * object.normalizing_radius);
@@ -256,11 +257,11 @@ TEST_CASE("The target triangle's centroid is near the center of mass, relaxed af
   for (int seed = 1; seed <= 10; ++seed) {
     const TargetSelection within = select_at(0.6 - 1e-9, seed);
     REQUIRE(within.targets);
-    CHECK(within.seeds_tried == 1);  // any seed will do
+    CHECK(within.seeds_tried == 1);  // Any seed will do.
     for (const double distance : {0.6 + 1e-9, 0.9 - 1e-9}) {
       const TargetSelection relaxed = select_at(distance, seed);
       REQUIRE(relaxed.targets);
-      CHECK(relaxed.seeds_tried == 51);  // the first seed after fifty failed ones
+      CHECK(relaxed.seeds_tried == 51);  // It is the first seed after fifty failed ones.
     }
     const TargetSelection beyond = select_at(0.9 + 1e-9, seed);
     CHECK_FALSE(beyond.targets);
@@ -270,8 +271,8 @@ TEST_CASE("The target triangle's centroid is near the center of mass, relaxed af
 
 TEST_CASE("A third contact pairs with the seed, or with both where all pairs are asked for",
           "[grasp][target_contacts]") {
-  // On a circle two places form a stable pair if more than 90° apart. Here the two far ones are 80°
-  // apart: pairs with the seed exist, all pairs do not.
+  // On a circle two places form a stable pair if they are more than 90° apart. Here the two far
+  // ones are 80° apart: pairs with the seed exist, all pairs do not.
   const PartDistances distances = equal_reach(3, 0.01, 3.0);
   const grasp::ObjectModel object = object_of(on_unit_circle({0, 140, 220}));
   TargetOptions options;
@@ -281,7 +282,7 @@ TEST_CASE("A third contact pairs with the seed, or with both where all pairs are
     const std::vector<int> patches =
         patches_of(select(object, distances, {{0, 1, 2}}, options, seed));
     REQUIRE(patches.size() == 3);
-    CHECK(patches[0] == 0);  // no other place has two partners
+    CHECK(patches[0] == 0);  // No other place has two partners.
     options.pair_rule = PairRule::AllPairs;
     const TargetSelection all = select(object, distances, {{0, 1, 2}}, options, seed);
     CHECK_FALSE(all.targets);
