@@ -18,7 +18,7 @@ using geometry::Face;
 using geometry::TriangleMesh;
 using Index = std::int32_t;
 
-// Faces of `block`, two a side, outward.
+// These are the faces of `block`, two a side, outward.
 //      6-----7        z
 //     /|    /|        | y
 //    4-----5 |        |/
@@ -81,15 +81,15 @@ TriangleMesh with_vertices(TriangleMesh mesh, const std::vector<Vector3d>& more)
   return mesh;
 }
 
-// The side replaced by other faces.
+// Returns the mesh with a side replaced by other faces.
 TriangleMesh with_side(const TriangleMesh& mesh, Side side, const std::vector<Face>& faces) {
   return with_faces(without_side(mesh, side), faces);
 }
 
-// The first `num_sides` sides of a box [0, size]³ as tiles of one by one, each a fan around its
-// middle, which is raised. An edge has a vertex in its middle on the first of its two tiles only,
-// so that tiles share no edges but only their corners: every edge is a hole of three sides, without
-// area.
+// Returns the first `num_sides` sides of a box [0, size]³ as tiles of one by one, each a fan around
+// its middle, which is raised. An edge has a vertex in its middle on the first of its two tiles
+// only, so that tiles share no edges but only their corners: every edge is a hole of three sides,
+// without area.
 TriangleMesh tiled_box(int size, double raised, int num_sides) {
   TriangleMesh mesh;
   using Place = std::array<int, 3>;
@@ -138,7 +138,7 @@ TriangleMesh tiled_box(int size, double raised, int num_sides) {
   return mesh;
 }
 
-// n³ unit cubes side by side that share vertices, and so have their inner walls twice.
+// Returns n³ unit cubes side by side that share vertices, and so have their inner walls twice.
 TriangleMesh cube_grid(int n) {
   TriangleMesh mesh;
   const auto vertex = [n](int i, int j, int k) {
@@ -164,8 +164,8 @@ TriangleMesh cube_grid(int n) {
   return mesh;
 }
 
-// The eight octants of a unit ball, each of n² triangles with vertices of its own, drawn apart by
-// `gap` along each axis.
+// Returns the eight octants of a unit ball, each of n² triangles with vertices of its own, moved
+// apart by `gap` along each axis.
 TriangleMesh ball_octants(int n, double gap) {
   TriangleMesh mesh;
   for (int octant = 0; octant < 8; ++octant) {
@@ -193,7 +193,7 @@ TriangleMesh ball_octants(int n, double gap) {
   return mesh;
 }
 
-// Every face with three vertices of its own; `place` may move the copy.
+// Returns every face with three vertices of its own; `place` may move the copy.
 TriangleMesh soup(const TriangleMesh& mesh,
                   const std::function<Vector3d(const Vector3d&, int)>& place) {
   TriangleMesh apart;
@@ -211,7 +211,7 @@ TriangleMesh soup(const TriangleMesh& mesh) {
   return soup(mesh, [](const Vector3d& p, int) { return p; });
 }
 
-// One mesh whose faces share vertices: those of `b` are named by indices of the result.
+// Returns one mesh whose faces share vertices: those of `b` are named by indices of the result.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b,
                     const std::map<Index, Index>& vertex_of_a) {
   TriangleMesh mesh = a;
@@ -228,8 +228,8 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b,
   return mesh;
 }
 
-// Straight prism from z = 0 to z = 1 over a polygon, which may cross itself; the caps are fans
-// from its first corner. Outward for a polygon that is counter-clockwise on balance.
+// Returns a straight prism from z = 0 to z = 1 over a polygon, which may cross itself; the caps are
+// fans from its first corner. It is outward for a polygon that is counter-clockwise on balance.
 TriangleMesh prism(const std::vector<Vector2d>& polygon) {
   const auto n = static_cast<Index>(polygon.size());
   TriangleMesh mesh;
@@ -248,7 +248,8 @@ TriangleMesh prism(const std::vector<Vector2d>& polygon) {
   return mesh;
 }
 
-// Surface of revolution of (radius, z), z ascending, outward. Radius 0 is a pole, open elsewhere.
+// Returns the surface of revolution of (radius, z), z ascending, outward. Where the radius is 0 it
+// has a pole, elsewhere it is open.
 TriangleMesh revolved(const std::vector<Vector2d>& profile, int segments) {
   TriangleMesh mesh;
   std::vector<std::vector<Index>> rings;
@@ -273,8 +274,8 @@ TriangleMesh revolved(const std::vector<Vector2d>& profile, int segments) {
   return mesh;
 }
 
-// Unit ball of 8 rows and 32 columns from the south pole to the ring of radius `radius` above the
-// equator, where it is open: the hole is `radius` of the ball's extent.
+// Returns a unit ball of 8 rows and 32 columns from the south pole to the ring of radius `radius`
+// above the equator, where it is open: the hole is `radius` of the ball's extent.
 TriangleMesh ball_without_cap(double radius) {
   constexpr double kPi = std::numbers::pi;
   std::vector<Vector2d> profile{{0.0, -1.0}};
@@ -285,8 +286,8 @@ TriangleMesh ball_without_cap(double radius) {
   return revolved(profile, 32);
 }
 
-// Unit ball of 24 columns whose first meridian is cut from pole to pole: its eleven vertices are
-// there twice, the second time 1e-6 to and fro along the equator.
+// Returns a unit ball of 24 columns whose first meridian is cut from pole to pole: its eleven
+// vertices are there twice, the second time 1e-6 to and fro along the equator.
 TriangleMesh ball_with_zigzag_seam() {
   constexpr int kColumns = 24;
   std::vector<Vector2d> profile{{0.0, -1.0}};
@@ -296,8 +297,8 @@ TriangleMesh ball_with_zigzag_seam() {
   }
   profile.emplace_back(0.0, 1.0);
   TriangleMesh mesh = revolved(profile, kColumns);
-  // Vertex 0 is the south pole; ring k starts at 1 + (k - 1) columns, its last column is next to
-  // the seam from the other side.
+  // Vertex 0 is the south pole; ring k starts at 1 + (k - 1) columns, and its last column is next
+  // to the seam from the other side.
   std::map<Index, Index> copies;
   for (Index k = 0; k < 11; ++k) {
     const Index original = 1 + k * kColumns;
@@ -314,8 +315,9 @@ TriangleMesh ball_with_zigzag_seam() {
   return mesh;
 }
 
-// Square tube, 0.5 wide, around a closed path in the xy plane of axis-parallel legs, mitered at the
-// corners (straight joints allowed). `open_at`: no tube from that corner to the next.
+// Returns a square tube, 0.5 wide, around a closed path in the xy plane of axis-parallel legs,
+// mitered at the corners (straight joints allowed). From the corner `open_at` to the next there is
+// no tube.
 TriangleMesh tube(const std::vector<Vector2d>& path, int open_at = -1) {
   const auto n = static_cast<int>(path.size());
   TriangleMesh mesh;
@@ -327,7 +329,7 @@ TriangleMesh tube(const std::vector<Vector2d>& path, int open_at = -1) {
     const Vector2d a = left((i + n - 1) % n);
     const Vector2d b = left(i);
     const Vector2d miter = 0.25 * (a == b ? a : Vector2d(a + b));
-    // Around the path's direction: right low, left low, left high, right high.
+    // The order around the path's direction is right low, left low, left high, right high.
     for (const auto& [side, z] : {std::pair{-1, -0.25}, {1, -0.25}, {1, 0.25}, {-1, 0.25}}) {
       mesh.vertices.emplace_back(path[i][0] + side * miter[0], path[i][1] + side * miter[1], z);
     }
@@ -339,7 +341,7 @@ TriangleMesh tube(const std::vector<Vector2d>& path, int open_at = -1) {
       const Index b = 4 * i + (k + 1) % 4;
       const Index c = 4 * ((i + 1) % n) + (k + 1) % 4;
       const Index d = 4 * ((i + 1) % n) + k;
-      // Seen along the path the ring runs clockwise (left is +y, up is +z for a path along +x).
+      // Seen along the path the ring runs clockwise (for a path along +x left is +y and up is +z).
       mesh.faces.push_back({a, b, c});
       mesh.faces.push_back({a, c, d});
     }
@@ -368,7 +370,7 @@ TriangleMesh moebius_strip(int n) {
   return mesh;
 }
 
-// Immersed as a figure eight turned by half a turn on its way around.
+// Returns a Klein bottle, immersed as a figure eight turned by half a turn on its way around.
 TriangleMesh klein_bottle(int n, int m) {
   TriangleMesh mesh;
   for (int i = 0; i < n; ++i) {
@@ -381,7 +383,7 @@ TriangleMesh klein_bottle(int n, int m) {
     }
   }
   const auto at = [&](int i, int j) -> Index {
-    return i < n ? i * m + j % m : (m - j % m) % m;  // after a turn, mirrored
+    return i < n ? i * m + j % m : (m - j % m) % m;  // After a turn it is mirrored.
   };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < m; ++j) {
@@ -392,8 +394,8 @@ TriangleMesh klein_bottle(int n, int m) {
   return mesh;
 }
 
-// The cube with n × n squares a side, shared vertices, less the squares that `is_hole` names by
-// their center.
+// Returns the cube with n × n squares a side and shared vertices, without the squares that
+// `is_hole` names by their center.
 TriangleMesh grid_cube(int n, const std::function<bool(const Vector3d&)>& is_hole) {
   TriangleMesh mesh;
   std::map<std::array<int, 3>, Index> known;
@@ -451,7 +453,7 @@ TriangleMesh tetrahedron(const std::array<Vector3d, 4>& p) {
   return {{p.begin(), p.end()}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }
 
-// Cube whose top is a dent down to `depth`.
+// Returns a cube whose top is a dent down to `depth`.
 TriangleMesh dented_cube(double depth) {
   return with_side(with_vertices(cube(), {{0.5, 0.5, depth}}), kTop,
                    {{4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}});
@@ -465,14 +467,15 @@ TriangleMesh many_cubes() {
   return geometry::concatenated(cubes);
 }
 
-// Tall box with a ring of vertices at z = 2 and a wall there.
+// Returns a tall box with a ring of vertices at z = 2 and a wall there.
 TriangleMesh box_with_wall() {
   const TriangleMesh low = without_side(block({0, 0, 0}, {1, 1, 2}), kTop);
   const TriangleMesh high = without_side(block({0, 0, 2}, {1, 1, 4}), kBottom);
   return with_faces(joined(low, high, {{0, 4}, {1, 5}, {2, 6}, {3, 7}}), {{4, 5, 7}, {4, 7, 6}});
 }
 
-// What a bad scan brings at once: soup, open end, a face turned, a face twice, a stray vertex.
+// Returns what a bad scan brings at once: a soup, an open end, a face turned, a face twice, a stray
+// vertex.
 TriangleMesh everything() {
   TriangleMesh mesh = without_side(tall(), kTop);
   mesh.faces[3] = reversed(mesh.faces[3]);
@@ -518,7 +521,7 @@ std::vector<BrokenMesh> broken_meshes() {
                                      Vector3d(2, 1, 0)};
 
   return {
-      // Nothing, and sheets.
+      // These hold no face, or sheets only.
       {"empty", "no vertices, no faces", {}},
       {"vertices_only", "three vertices, no faces", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}}},
       {"one_triangle", "a single face", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}},
@@ -527,7 +530,7 @@ std::vector<BrokenMesh> broken_meshes() {
        with_faces(square_sheet(), {{0, 2, 1}, {0, 3, 2}})},
       {"moebius_strip", "one-sided and open", moebius_strip(40)},
       {"klein_bottle", "one-sided and closed", klein_bottle(40, 15)},
-      // Holes.
+      // These have holes.
       {"tall_without_top", "a hole of a quarter of the extent", without_side(tall_box, kTop)},
       {"cube_without_top", "a hole of the whole extent", without_side(cube(), kTop)},
       {"box_without_half", "a hole of exactly half the extent",
@@ -544,7 +547,7 @@ std::vector<BrokenMesh> broken_meshes() {
        both(tall_box, {{{3, 0, 0}, {3.5, 0, 0}, {3, 0.5, 0}}, {{0, 1, 2}}})},
       {"tall_with_stray_two_sided", "a small face drawn on both sides, far from the solid",
        both(tall_box, {{{3, 0, 0}, {3.5, 0, 0}, {3, 0.5, 0}}, {{0, 1, 2}, {0, 2, 1}}})},
-      // Which side is out.
+      // These are about which side is out.
       {"one_face_turned", "one face against its neighbors", one_turned},
       {"mostly_inside_out", "seven of twelve faces turned", mostly_inside_out},
       {"inside_out", "all faces turned", inside_out(cube())},
@@ -561,7 +564,7 @@ std::vector<BrokenMesh> broken_meshes() {
        inside_out(both(cube(0, 3), cube(1, 2)))},
       {"cavity_with_island", "a solid in a cavity (good)",
        geometry::concatenated({cube(0, 5), inside_out(cube(1, 4)), cube(2, 3)})},
-      // Solids that touch or overlap.
+      // These are solids that touch or overlap.
       {"overlapping", "two boxes overlap", both(cube(0, 2), cube(1, 3))},
       {"touching_edge", "two boxes share an edge",
        joined(cube(), moved(cube(), {1, 1, 0}), {{0, 3}, {4, 7}})},
@@ -581,7 +584,7 @@ std::vector<BrokenMesh> broken_meshes() {
        with_faces(with_vertices(tall_box, {{1.5, 0.5, 4}}), {{5, 8, 7}})},
       {"large_fin", "a third face on an edge, two thirds of the extent",
        with_faces(with_vertices(cube(), {{1.5, 0.5, 1}}), {{5, 8, 7}})},
-      // Vertices.
+      // These are about vertices.
       {"short_t_junction", "an edge of one face meets two edges of the next, a quarter long",
        with_side(with_vertices(tall_box, top_middle(4)), kTop, top_with_middle)},
       {"long_t_junction", "an edge of one face meets two edges of the next, as long as the mesh",
@@ -608,7 +611,7 @@ std::vector<BrokenMesh> broken_meshes() {
        with_vertices(cube(), {{9, 9, 9}, {0.5, 0.5, 0.5}})},
       {"denormal_corner", "a coordinate of 5e-324 (good)", denormal_corner},
       {"high_valence", "two vertices with 3000 faces each (good)", bipyramid(3000)},
-      // Patches that hang together by vertices.
+      // These are patches that hang together by vertices.
       {"six_tiles", "a cube whose sides meet in corners: each edge is halved on one of its sides",
        tiled_box(1, 0.0, 6)},
       {"tiles", "a box of 24 such tiles with raised middles", tiled_box(2, 0.125, 6)},
@@ -619,7 +622,7 @@ std::vector<BrokenMesh> broken_meshes() {
                   {{8, 9, 10}, {8, 10, 11}, {8, 10, 9}, {8, 11, 10}})},
       {"octants", "a ball's eight octants, 2^-9 apart, that share no vertex",
        ball_octants(6, 0x1p-9)},
-      // Faces.
+      // These are about faces.
       {"face_twice", "a face is there twice", with_faces(cube(), {kBlockFaces[0]})},
       {"face_on_both_sides", "a face is there a second time, reversed",
        with_faces(tall_box, {reversed(kBlockFaces[2])})},
@@ -642,7 +645,7 @@ std::vector<BrokenMesh> broken_meshes() {
       {"flat_part", "a tetrahedron without height beside a good part",
        both(cube(), tetrahedron(flat))},
       {"flat_alone", "a tetrahedron without height", tetrahedron(flat)},
-      // Surfaces that cross themselves.
+      // These are surfaces that cross themselves.
       {"self_crossing_tube", "a closed tube that crosses itself once",
        tube({{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, -2}, {0, -2}})},
       {"bow_tie", "a prism over a bow tie of equal halves",
@@ -652,7 +655,7 @@ std::vector<BrokenMesh> broken_meshes() {
       {"star_prism", "a prism over a pentagram", prism(star)},
       {"spike_through_wall", "a dent that comes out of the opposite side", dented_cube(-1)},
       {"long_spike", "the same, more of it outside than the box holds", dented_cube(-4)},
-      // Size and place.
+      // These are about size and position.
       {"far_off", "1e6 m away from the origin (good)", cube(1e6, 1e6 + 1)},
       {"small_with_hole", "micrometers, with a hole", without_side(tall(1e-6), kTop)},
       {"huge_with_hole", "thousands of kilometers, with a hole", without_side(tall(1e6), kTop)},
@@ -660,7 +663,7 @@ std::vector<BrokenMesh> broken_meshes() {
       {"size_1e+70", "products of four coordinates above 1e270 (good)", cube(0, 1e70)},
       {"denormal_size", "all coordinates denormal", cube(0, 1e-310)},
       {"many_parts", "512 parts (good)", many_cubes()},
-      // All at once.
+      // This one has all at once.
       {"everything", "soup, open, a face turned, one twice, a stray vertex", everything()},
   };
 }

@@ -14,7 +14,7 @@ struct BrokenMesh {
   geometry::TriangleMesh mesh;
 };
 
-/// All of them, built in code. What becomes of each is written in
+/// Returns all of them, built in code. What becomes of each is written in
 /// `assets/broken_mesh_outcomes.csv`, from the contract of `repair_mesh` and not from its answers.
 ///
 /// *Cube* is [0, 1]³ and *tall* is [0, 1] × [0, 1] × [0, 4], both of 12 faces, in meters.

@@ -110,7 +110,8 @@ bool is_zero(const ExactVector3& a) {
   return a[0].sign() == 0 && a[1].sign() == 0 && a[2].sign() == 0;
 }
 
-// Corners with height ≤ 0, and where edges cross height 0 [Sutherland & Hodgman 1974].
+// Returns the corners with height ≤ 0, and those where edges cross height 0 [Sutherland & Hodgman
+// 1974].
 template <typename Height>
 Polygon cut(const Polygon& polygon, const Height& height) {
   std::vector<ExactRational> heights;
@@ -127,7 +128,7 @@ Polygon cut(const Polygon& polygon, const Height& height) {
   return kept;
 }
 
-// No value if the polygon has no area.
+// Returns no value if the polygon has no area.
 std::optional<ExactPiece> measured(Polygon polygon) {
   ExactVector3 doubled;
   for (std::size_t i = 2; i < polygon.size(); ++i) {
@@ -135,7 +136,8 @@ std::optional<ExactPiece> measured(Polygon polygon) {
         plus(doubled, cross(minus(polygon[i - 1], polygon[0]), minus(polygon[i], polygon[0])));
   }
   if (is_zero(doubled)) return std::nullopt;
-  // All triangles of the fan have vector areas along the same line: weights along it are rational.
+  // All triangles of the fan have vector areas along the same line, so that weights along it are
+  // rational.
   const ExactRational whole = dot(doubled, doubled);
   ExactVector3 centroid;
   for (std::size_t i = 2; i < polygon.size(); ++i) {
@@ -160,8 +162,8 @@ struct Range {
   int last = -1;
 };
 
-// Voxels along an axis in whose closed slab between planes [first, last + 1] the polygon has
-// points, by comparing with every plane.
+// Returns the voxels along an axis in whose closed slab between planes [first, last + 1] the
+// polygon has points, by comparing with every plane.
 Range cells(const Polygon& polygon, const VoxelLattice& lattice, int axis) {
   const auto [low, high] = std::minmax_element(
       polygon.begin(), polygon.end(),

@@ -28,7 +28,7 @@ class ExactRational {
  public:
   ExactRational();              ///< Zero.
   ExactRational(double value);  ///< Exactly `value`. @throws InvalidInput if it is not finite.
-  // Copied where others are moved: no number is ever left without its value.
+  // A number is copied where others are moved, so that none is ever left without its value.
   ExactRational(const ExactRational&) = default;
   ExactRational& operator=(const ExactRational&) = default;
 
@@ -54,13 +54,13 @@ class ExactRational {
  private:
   struct Number;
   explicit ExactRational(std::shared_ptr<const Number> number) : number_(std::move(number)) {}
-  std::shared_ptr<const Number> number_;  // Never null, never changed.
+  std::shared_ptr<const Number> number_;  // It is never null and never changed.
 };
 
 /// A point or vector with exact coordinates [m], [m²] or [m³].
 using ExactVector3 = std::array<ExactRational, 3>;
 
-/// The nearest doubles, or nearly (see `ExactRational::to_double`).
+/// Returns the nearest doubles, or nearly (see `ExactRational::to_double`).
 Eigen::Vector3d to_double(const ExactVector3& exact);
 
 /// A piece of a triangle, without rounding.
@@ -70,8 +70,8 @@ struct ExactPiece {
   ExactVector3 centroid;              ///< Area centroid [m].
 };
 
-/// The part of a triangle inside `volume`, with the outcomes of `clip`: none without area,
-/// half-spaces closed. Exact. @throws InvalidInput if a corner or a half-space is not finite.
+/// Returns the part of a triangle inside `volume`, with the outcomes of `clip`: none without area,
+/// half-spaces closed. It is exact. @throws InvalidInput if a corner or a half-space is not finite.
 std::optional<ExactPiece> exact_clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                      const ConvexVolume& volume);
 
@@ -81,8 +81,9 @@ struct ExactVoxelPiece {
   ExactPiece piece;
 };
 
-/// The pieces of a triangle in all voxels of a lattice, ascending by voxel, by the tie rule of
-/// `SurfacePatch`. Exact. @throws InvalidInput if the lattice is empty or the triangle leaves it.
+/// Returns the pieces of a triangle in all voxels of a lattice, ascending by voxel, by the tie rule
+/// of `SurfacePatch`. They are exact. @throws InvalidInput if the lattice is empty or the triangle
+/// leaves it.
 std::vector<ExactVoxelPiece> exact_clip_by_voxels(const std::array<Eigen::Vector3d, 3>& triangle,
                                                   const VoxelLattice& lattice);
 

@@ -17,7 +17,7 @@
 
 /// \file
 /// The oracles of clipping, in rational arithmetic: a polygon clipped straight from the definition,
-/// and the exact place of a corner whose origin is known.
+/// and the exact position of a corner whose origin is known.
 
 namespace graspfit::testing {
 
@@ -41,7 +41,7 @@ inline RationalPoint cross(const RationalPoint& a, const RationalPoint& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Twice the vector area of a plane polygon.
+/// Returns twice the vector area of a plane polygon.
 inline RationalPoint doubled_vector_area(const std::vector<RationalPoint>& polygon) {
   RationalPoint sum = {0, 0, 0};
   for (std::size_t i = 2; i < polygon.size(); ++i) {
@@ -52,7 +52,7 @@ inline RationalPoint doubled_vector_area(const std::vector<RationalPoint>& polyg
   return sum;
 }
 
-/// Length of the difference between a rounded point and an exact one, rounded.
+/// Returns the length of the difference between a rounded point and an exact one, rounded.
 inline double distance(const Eigen::Vector3d& rounded, const RationalPoint& exact) {
   Eigen::Vector3d off;
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,9 +61,9 @@ inline double distance(const Eigen::Vector3d& rounded, const RationalPoint& exac
   return off.norm();
 }
 
-/// A triangle clipped by closed half-spaces in rational arithmetic, straight from the definition:
-/// the oracle of the filtered clipper, with which it shares no code and no idea (points in space
-/// here, lines in barycentric coordinates there).
+/// A triangle clipped by closed half-spaces in rational arithmetic, straight from the definition.
+/// It is the oracle of the filtered clipper, with which it shares no code and no idea (points in
+/// space here, lines in barycentric coordinates there).
 class RationalPolygon {
  public:
   explicit RationalPolygon(const Triangle& triangle) {
@@ -107,7 +107,7 @@ class RationalPolygon {
     return area[0] != 0 || area[1] != 0 || area[2] != 0;
   }
 
-  /// Exact part of the triangle's area; the vector areas are parallel.
+  /// Returns the exact part of the triangle's area; the vector areas are parallel.
   Rational fraction() const {
     const RationalPoint area = doubled_vector_area(corners_);
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +116,7 @@ class RationalPolygon {
     return 0;
   }
 
-  /// Whether all of it lies in p[axis] = coordinate.
+  /// Returns whether all of it lies in p[axis] = coordinate.
   bool is_in_plane(int axis, double coordinate) const {
     for (const RationalPoint& p : corners_) {
       if (p[axis] != Rational(coordinate)) return false;
@@ -131,8 +131,8 @@ class RationalPolygon {
   RationalPoint whole_;  // Twice the triangle's vector area.
 };
 
-/// Exact part of each triangle in each voxel by the tie rule, from the definition: every voxel for
-/// itself.
+/// Returns the exact part of each triangle in each voxel by the tie rule, from the definition:
+/// every voxel by itself.
 inline std::map<std::pair<std::int64_t, std::int32_t>, Rational> voxel_fractions(
     const geometry::TriangleMesh& mesh, const geometry::VoxelLattice& lattice) {
   std::map<std::pair<std::int64_t, std::int32_t>, Rational> result;
@@ -174,7 +174,7 @@ struct CuttingPlane {
   int index = -1;  ///< Of the lattice's plane, or of the half-space in its volume.
 };
 
-/// Where a corner of a piece comes from: all that is needed to compute its exact place.
+/// Where a corner of a piece comes from: all that is needed to compute its exact position.
 struct CornerOrigin {
   enum class Kind {
     Vertex,        ///< The triangle's corner `vertex`.
@@ -187,7 +187,7 @@ struct CornerOrigin {
   std::array<CuttingPlane, 2> planes;  ///< In the order in which they cut.
 };
 
-/// Planes by the names that origins use.
+/// A function that returns planes by the names that origins use.
 using PlaneOf = std::function<RationalPlane(const CuttingPlane&)>;
 
 inline PlaneOf planes_of(const geometry::VoxelLattice& lattice) {
@@ -204,8 +204,8 @@ inline PlaneOf planes_of(const geometry::ConvexVolume& volume) {
   };
 }
 
-/// The exact place of a corner: on the segment where an edge meets a plane, or by Cramer's rule
-/// where the triangle's plane meets two.
+/// Returns the exact position of a corner: on the segment where an edge meets a plane, or by
+/// Cramer's rule where the triangle's plane meets two.
 inline RationalPoint exact_place(const CornerOrigin& origin, const Triangle& triangle,
                                  const PlaneOf& plane_of) {
   using Kind = CornerOrigin::Kind;
@@ -237,7 +237,7 @@ inline RationalPoint exact_place(const CornerOrigin& origin, const Triangle& tri
   return place;
 }
 
-/// Exact places of a piece's corners.
+/// Returns the exact positions of a piece's corners.
 inline std::vector<RationalPoint> exact_places(const std::vector<CornerOrigin>& origins,
                                                const Triangle& triangle, const PlaneOf& plane_of) {
   std::vector<RationalPoint> places;
@@ -245,7 +245,7 @@ inline std::vector<RationalPoint> exact_places(const std::vector<CornerOrigin>& 
   return places;
 }
 
-/// The bound that `clip` states for a corner.
+/// Returns the bound that `clip` states for a corner.
 inline double corner_bound(const Triangle& triangle) {
   double edge = 0.0;
   double size = 0.0;

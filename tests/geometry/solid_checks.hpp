@@ -8,7 +8,7 @@
 
 namespace graspfit::testing {
 
-/// A closed, outward surface in one part, free of crossings, of this genus.
+/// Checks for a closed, outward surface in one part, free of crossings, of this genus.
 inline void check_solid(const geometry::TriangleMesh& mesh, int genus) {
   const geometry::MeshAnalysis analysis =
       geometry::analyze(mesh, {.count_self_intersections = true});
@@ -19,12 +19,13 @@ inline void check_solid(const geometry::TriangleMesh& mesh, int genus) {
   CHECK(analysis.num_unused_vertices == 0);
   CHECK(analysis.num_degenerate_faces == 0);
   CHECK(analysis.num_self_intersections == 0u);
-  // Every edge has two faces: V − 3/2 F + F = 2 − 2 genus.
+  // Every edge has two faces, so that V − 3/2 F + F = 2 − 2 genus.
   CHECK(2 * static_cast<long>(mesh.vertices.size()) - static_cast<long>(mesh.faces.size()) ==
         4 - 4 * genus);
 }
 
-/// The limit of volumes whose error falls with the square of the edge length: Richardson.
+/// Returns the limit of volumes whose error falls with the square of the edge length, by
+/// Richardson's extrapolation.
 inline double volume_limit(const std::function<geometry::TriangleMesh(int)>& build, int segments) {
   const double coarse = geometry::signed_volume(build(segments));
   return geometry::signed_volume(build(2 * segments)) * 4 / 3 - coarse / 3;

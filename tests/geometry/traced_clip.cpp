@@ -49,7 +49,7 @@ std::map<std::int64_t, TracedPolygon> ClipTracer::clip_by_voxels(
   return std::move(pieces_);
 }
 
-// False if the corners are collinear.
+// Returns false if the corners are collinear.
 bool ClipTracer::begin(const Triangle& triangle) {
   planes_.clear();
   const auto& [a, b, c] = triangle;
@@ -58,7 +58,7 @@ bool ClipTracer::begin(const Triangle& triangle) {
   return true;
 }
 
-// Slab by slab, without the product's short cuts past planes that a polygon cannot reach.
+// Cuts slab by slab, without the product's short cuts past planes that a polygon cannot reach.
 void ClipTracer::cut_along(int axis, CutPolygon rest) {
   for (int i = first_[axis]; i <= last_[axis] && !rest.empty(); ++i) {
     CutPolygon piece;

@@ -12,8 +12,8 @@
 #include "voxel/triangle_clip.hpp"
 
 /// \file
-/// The shipped cutter, asked where each corner of its polygons comes from. Its polygons are those
-/// of `clip` and `clip_by_voxels`, which its users check bit for bit.
+/// Asks the shipped cutter where each corner of its polygons comes from. Its polygons are those of
+/// `clip` and `clip_by_voxels`, which its users check bit for bit.
 
 namespace graspfit::testing {
 
@@ -32,11 +32,11 @@ class ClipTracer {
  public:
   TracedPolygon clip(const Triangle& triangle, const geometry::ConvexVolume& volume);
 
-  /// By the index of the voxel. Precondition: the triangle lies in the lattice.
+  /// Returns polygons by the index of the voxel. Precondition: the triangle lies in the lattice.
   std::map<std::int64_t, TracedPolygon> clip_by_voxels(const Triangle& triangle,
                                                        const geometry::VoxelLattice& lattice);
 
-  /// Of all that was cut so far.
+  /// Returns the statistics of all that was cut so far.
   const geometry::internal::ClipStatistics& statistics() const { return cutter_.statistics(); }
 
  private:
@@ -46,10 +46,10 @@ class ClipTracer {
   void cut_along(int axis, geometry::internal::CutPolygon rest);
 
   geometry::internal::TriangleCutter cutter_;
-  std::vector<CuttingPlane> planes_;  // By the names of their lines, which begin at 3.
+  std::vector<CuttingPlane> planes_;  // These are by the names of their lines, which begin at 3.
 
-  // Of `clip_by_voxels`: cells of the triangle, the line of the plane above the first of them, the
-  // cell at hand and what has been cut.
+  // These are of `clip_by_voxels`: cells of the triangle, the line of the plane above the first of
+  // them, the cell at hand and what has been cut.
   std::array<int, 3> first_;
   std::array<int, 3> last_;
   std::array<std::uint32_t, 3> first_line_;

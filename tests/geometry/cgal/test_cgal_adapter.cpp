@@ -34,7 +34,7 @@ using SurfaceMesh = CGAL::Surface_mesh<typename K::Point_3>;
 
 namespace {
 
-/// The faces, each from its lowest corner on.
+/// Returns the faces, each from its lowest corner on.
 std::vector<Face> from_lowest(std::vector<Face> faces) {
   for (Face& face : faces) {
     std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
@@ -145,7 +145,7 @@ TEST_CASE("What is no triangle mesh is refused by its first fault", "[geometry][
   CHECK(refusal([&] { adapter::triangle_mesh(quad); }) == "vertex 4 is not finite");
 
   TriangleMesh fan{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, {}};
-  fan.faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};  // three faces at an edge
+  fan.faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};  // These are three faces at an edge.
   CHECK_THAT(refusal([&] { adapter::face_graph(fan); }),
              Contains("face 2 (0, 1, 4) makes an edge or a vertex non-manifold"));
   fan.faces = {{0, 1, 2}, {0, 1, 3}};  // both run from 0 to 1
@@ -206,12 +206,12 @@ TEST_CASE("Boxes and planes of CGAL clip as the half-spaces that they are", "[ge
     }
     return area;
   };
-  // A corner of the cube: three squares of 0.5.
+  // The box holds a corner of the cube with three squares of 0.5 edge length.
   const auto box =
       adapter::volume(Epeck::Iso_cuboid_3(Epeck::Point_3(0.5, 0.5, 0.5), Epeck::Point_3(2, 2, 2)));
   CHECK(area_in(box) == Approx(0.75).epsilon(1e-12));
-  // x + y <= 1 and z >= 1, as planes with their negative sides: the upper square of 4 without its
-  // corner where x + y > 1, a triangle of 1/2.
+  // The planes of x + y <= 1 and z >= 1 are given with their negative sides. They leave the upper
+  // square of area 4 but for the corner triangle of 1/2 where x + y > 1.
   const std::vector<Epick::Plane_3> planes = {Epick::Plane_3(1, 1, 0, -1),
                                               Epick::Plane_3(0, 0, -1, 1)};
   CHECK(area_in(adapter::volume_of_planes(planes)) == Approx(3.5).epsilon(1e-12));
@@ -221,9 +221,7 @@ TEST_CASE("CGAL's tree and MeshQuery find the same nearest points", "[geometry][
   const TriangleMesh mesh = geometry::torus(0.05, 0.02, 48, 24);
   const geometry::MeshQuery query(mesh);
   adapter::FaceTree first(mesh);
-  first.tree().closest_point(adapter::point({0, 0, 0}));
-  // Its triangles stay where they are, and so does the tree that CGAL made for the question.
-  const adapter::FaceTree tree = std::move(first);
+  const adapter::FaceTree tree = std::move(first);  // Its triangles stay where they are.
   base::Random random(7);
   for (int i = 0; i < 200; ++i) {
     const Vector3d p(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),

@@ -49,10 +49,10 @@ TriangleMesh l_shape() {
       concatenated({box({0.09, 0.03, 0.03}), moved(box({0.03, 0.03, 0.06}), {-0.03, 0.0, 0.03})}));
 }
 
-/// A hollow ball: 40 mm, with a cavity of 30 mm.
+/// Returns a ball of 40 mm with a cavity of 30 mm.
 TriangleMesh hollow_ball() { return concatenated({ball(0.04, 3), inside_out(ball(0.03, 3))}); }
 
-/// A slot of 30 mm, open at the top, in a block of 90 × 60 × 60 mm: three boxes.
+/// Returns a slot of 30 mm, open at the top, in a block of 90 × 60 × 60 mm: three boxes.
 TriangleMesh slotted_block() {
   return solid_boundary(
       concatenated({box({0.09, 0.06, 0.03}), moved(box({0.03, 0.06, 0.06}), {-0.03, 0.0, 0.015}),
@@ -77,13 +77,13 @@ struct Union {
       return piece.containment(point) != Containment::Outside;
     });
   }
-  /// Zero inside [m].
+  /// Returns the distance from the pieces, zero inside [m].
   double distance(const Vector3d& point) const {
     return holds(point) ? 0.0 : std::sqrt(surface.closest_point(point).squared_distance);
   }
 };
 
-/// What must be true of any result, against independent queries.
+/// Checks what must be true of any result, by independent queries.
 void check(const TriangleMesh& mesh, const ConvexDecomposition& result) {
   const MeshQuery solid(mesh);
   const Union pieces(result);
@@ -93,7 +93,8 @@ void check(const TriangleMesh& mesh, const ConvexDecomposition& result) {
     CHECK(analysis.is_outward);
     CHECK(analysis.is_manifold);
     CHECK(analysis.num_parts == 1);
-    CHECK(pieces.pieces[i].vertices().size() == piece.vertices.size());  // all extreme: convex
+    // All vertices are extreme, so that the piece is convex.
+    CHECK(pieces.pieces[i].vertices().size() == piece.vertices.size());
     CHECK(mass_properties(piece).volume == Approx(pieces.pieces[i].volume()).epsilon(1e-9));
   }
   const Eigen::AlignedBox3d box = solid.box();
@@ -119,7 +120,7 @@ void check(const TriangleMesh& mesh, const ConvexDecomposition& result) {
     const auto p = corners(mesh, i);
     inward = std::max(inward, pieces.distance((p[0] + p[1] + p[2]) / 3.0));
   }
-  const double rounding = 1e-12;  // [m], of coordinates below 1 m
+  const double rounding = 1e-12;  // The unit is m, of coordinates below 1 m.
   CHECK(num_in_union > 0);
   CHECK(outward <= result.outward_deviation + rounding);
   CHECK(inward <= result.inward_deviation + rounding);
@@ -198,11 +199,12 @@ TEST_CASE("The volume error is that of the closed form", "[geometry][convex_deco
   const TriangleMesh block = slotted_block();
   const ConvexDecomposition one = convex_decomposition(block, {.max_pieces = 1});
   REQUIRE(one.pieces.size() == 1);
-  // The hull is the block of 90 × 60 × 60 mm, the solid that without the slot of 30 × 60 × 30 mm,
-  // where the farthest point is 15 mm from both walls and from the floor or more.
+  // The hull is the block of 90 × 60 × 60 mm, the solid is the block without the slot of 30 × 60 ×
+  // 30 mm, in which the farthest point is 15 mm from both walls and from the floor or more.
   const double hull = 0.09 * 0.06 * 0.06;
   const double slot = 0.03 * 0.06 * 0.03;
-  CHECK(one.volume_error == Approx(slot / (hull - slot)).epsilon(0.02));  // 128 lines
+  // It is integrated along 128 lines.
+  CHECK(one.volume_error == Approx(slot / (hull - slot)).epsilon(0.02));
   CHECK(one.outward_deviation >= 0.015);
   CHECK(one.outward_deviation <= 1.05 * 0.015 + 1e-12);
   CHECK_FALSE(one.is_within_deviation);
@@ -210,8 +212,9 @@ TEST_CASE("The volume error is that of the closed form", "[geometry][convex_deco
 
 TEST_CASE("Slivers of a turned bottle do not keep the cutting from its end",
           "[geometry][convex_decomposition]") {
-  // Its planes of faces shave layers of micrometers off parts that stay as deep as they are: these
-  // once went on for ever. Corners are moved by up to 0.1 mm, as in scanned or converted files.
+  // The planes of the faces shave layers of micrometers off parts that stay as deep as they are,
+  // which must not go on for ever. Corners are moved by up to 0.1 mm, as in scanned or converted
+  // files.
   TriangleMesh mesh = scaled(bottle(), 0.32 / longest_extent(bottle()));
   Random random(3);
   for (Vector3d& vertex : mesh.vertices) {
@@ -231,7 +234,8 @@ TEST_CASE("A hole stays open and a hollow stays empty", "[geometry][convex_decom
   const ConvexDecomposition walls = convex_decomposition(hollow, few);
   CHECK_FALSE(Union(walls).holds(Vector3d::Zero()));
   check(hollow, walls);
-  const TriangleMesh solid = concatenated({box({0.1, 0.1, 0.1}), inner});  // united, not hollow
+  // The boxes are united, not hollow.
+  const TriangleMesh solid = concatenated({box({0.1, 0.1, 0.1}), inner});
   CHECK(convex_decomposition(solid, few).pieces.size() == 1);
 }
 
@@ -251,7 +255,7 @@ TEST_CASE("A decomposition repeated is the same, and found again in the cache, t
   const TriangleMesh mesh = torus(0.04, 0.015, 24, 12);
   const ConvexDecompositionOptions options{.max_pieces = 8};
   const ConvexDecomposition found = convex_decomposition(mesh, options);
-  CHECK(cached_convex_decomposition(mesh, options, cache) == found);  // computed anew
+  CHECK(cached_convex_decomposition(mesh, options, cache) == found);  // It is computed anew.
   CHECK(cached_convex_decomposition(mesh, options, cache) == found);
   CHECK(cache.read(kConvexDecompositionKind, convex_decomposition_key(mesh, options)));
   CHECK(convex_decomposition_key(mesh, {}) != convex_decomposition_key(mesh, options));
@@ -266,7 +270,7 @@ TEST_CASE("Whoever finds a decomposition being made waits for it and takes it",
   const TriangleMesh mesh = torus(0.04, 0.015, 32, 16);
   const ConvexDecompositionOptions options{.max_pieces = 8};
   const std::string key = convex_decomposition_key(mesh, options);
-  // What the other one will have found: anything that nobody would compute from this mesh.
+  // The other one finds something that nobody would compute from this mesh.
   const TriangleMesh other = box({0.1, 0.05, 0.02});
   const ConvexDecomposition expected = cached_convex_decomposition(other, {}, cache);
   const auto text = cache.read(kConvexDecompositionKind, convex_decomposition_key(other, {}));

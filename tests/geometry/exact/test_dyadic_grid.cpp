@@ -25,7 +25,7 @@ TEST_CASE("Sums on a grid are exact in either order", "[geometry][dyadic_grid]")
 
 TEST_CASE("The power above a number is the least", "[geometry][dyadic_grid]") {
   CHECK(power_above(0.75) == 0);
-  CHECK(power_above(1.0) == 1);  // above, not at
+  CHECK(power_above(1.0) == 1);  // It is above, not at.
   CHECK(power_above(-5.0) == 3);
   CHECK(power_above(0.0) == 0);
 }

@@ -16,7 +16,7 @@ using namespace graspfit::geometry;
 
 namespace {
 
-// What is true of every ball, whatever the body.
+// Checks what is true of every ball, whatever the body.
 void check_balls(const MeshQuery& object, const std::vector<MedialBall>& balls, double tolerance) {
   REQUIRE_FALSE(balls.empty());
   for (const MedialBall& ball : balls) {
@@ -38,7 +38,7 @@ void check_balls(const MeshQuery& object, const std::vector<MedialBall>& balls, 
   }
 }
 
-// The middle of every face as a sample.
+// Returns the middle of every face as a sample.
 std::vector<SurfaceSample> face_centers(const TriangleMesh& mesh) {
   std::vector<SurfaceSample> samples;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -49,8 +49,8 @@ std::vector<SurfaceSample> face_centers(const TriangleMesh& mesh) {
   return samples;
 }
 
-// A closed body that looks the same from nowhere: bumps, dents and noise on a ball. Each point of
-// it is seen from the origin, so its faces do not cross.
+// Returns a closed body that looks the same from nowhere: bumps, dents and noise on a ball. Each
+// point of it is seen from the origin, so that its faces do not cross.
 TriangleMesh dented_ball() {
   TriangleMesh mesh = ball(0.05, 3);
   Random random(8);
@@ -67,8 +67,8 @@ Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& a, const Eigen::Vector
   return a + std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0) * (b - a);
 }
 
-// Without the tree that the balls are found with: the foot of the perpendicular if it is in the
-// triangle, else the nearest point of the edges.
+// Finds the nearest point without the tree that the balls are found with: the foot of the
+// perpendicular if it is in the triangle, else the nearest point of the edges.
 Eigen::Vector3d nearest_on_face(const TriangleMesh& mesh, std::size_t face,
                                 const Eigen::Vector3d& x) {
   const auto c = corners(mesh, face);
@@ -86,7 +86,8 @@ Eigen::Vector3d nearest_on_face(const TriangleMesh& mesh, std::size_t face,
   return is_within ? foot : nearest;
 }
 
-// Of the ball that touches at the sample from inside and goes through q; infinite beyond.
+// Returns the radius of the ball that touches at the sample from inside and goes through q;
+// infinite if there is none.
 double tangent_radius(const SurfaceSample& sample, const Eigen::Vector3d& q) {
   const Eigen::Vector3d to_sample = sample.point - q;
   const double rise = sample.normal.dot(to_sample);
@@ -94,10 +95,10 @@ double tangent_radius(const SurfaceSample& sample, const Eigen::Vector3d& q) {
                     : std::numeric_limits<double>::infinity();
 }
 
-// Balls that touch at the sample lie one in the other, so one face after the other cuts the largest
-// one down: bisection to where it only touches the face.
+// Balls that touch at the sample lie one in the other, so that one face after the other cuts the
+// largest one down, by bisection to where it only touches the face.
 double largest_empty_radius(const TriangleMesh& mesh, const SurfaceSample& sample) {
-  double radius = 0.2;  // more than the body's diagonal has
+  double radius = 0.2;  // No ball is larger than the body's diagonal.
   const auto meets = [&](std::size_t face, double r) {
     const Eigen::Vector3d center = sample.point - r * sample.normal;
     return (nearest_on_face(mesh, face, center) - center).norm() < r * (1.0 - 1e-12);
@@ -113,7 +114,7 @@ double largest_empty_radius(const TriangleMesh& mesh, const SurfaceSample& sampl
   return radius;
 }
 
-// The same among points, by the formula; the points on the sample's own face are no bound.
+// Returns the same among points, by the formula; the points on the sample's own face are no bound.
 double largest_radius_among(const std::vector<Eigen::Vector3d>& points,
                             const SurfaceSample& sample) {
   double radius = std::numeric_limits<double>::infinity();
@@ -133,7 +134,7 @@ TEST_CASE("Balls of a long cylinder are centered on its axis", "[geometry][media
   check_balls(bar, balls, 0.05);
   CHECK(balls.size() > 700);
   for (const MedialBall& ball : balls) {
-    // Half a facet, 3.3 % of the radius, lies between a sample and the middle of its facet.
+    // Half a facet, 3.3 % of the radius, is between a sample and the middle of its facet.
     CHECK(std::hypot(ball.center[0], ball.center[1]) < 0.07 * radius);
     CHECK(ball.radius == Approx(radius).epsilon(0.05));
     CHECK(ball.object_angle_deg > 150.0);
@@ -189,8 +190,8 @@ TEST_CASE("A flat box has its middle plane, and nothing near its rim", "[geometr
   check_balls(plate, balls, 0.05);
   std::size_t expected = 0;
   for (const SurfaceSample& sample : samples) {
-    // On a large side, a radius or more away from the small ones; nearer, the small side stops the
-    // ball at 90°. Within the tolerance either may come first.
+    // The sample is on a large side, a radius or more away from the small ones; nearer, the small
+    // side stops the ball at 90°. Within the tolerance either may come first.
     const double inside =
         std::min(5.0 - std::abs(sample.point[0]), 4.0 - std::abs(sample.point[1]));
     if (std::abs(sample.normal[2]) > 0.5 && inside > 0.5) ++expected;
@@ -221,7 +222,7 @@ TEST_CASE("On an irregular body each ball is the largest empty one, by search ov
   const TriangleMesh mesh = dented_ball();
   const MeshQuery body(mesh);
   const auto samples = sample_surface(mesh, {.count = 250, .seed = 4});
-  // Strictly empty balls, whatever their angle.
+  // The balls are strictly empty, whatever their angle.
   const auto balls =
       medial_balls(body, samples, {.min_object_angle_deg = 0.0, .emptiness_tolerance = 1e-9});
   REQUIRE(balls.size() > samples.size() * 85 / 100);
@@ -235,15 +236,15 @@ TEST_CASE("On an irregular body each ball is the largest empty one, by search ov
   for (const MedialBall& ball : balls) {
     while (samples.at(next).point != ball.contacts[0]) ++next;
     const SurfaceSample& sample = samples[next];
-    // A ball at rest touches at the sample too; where rounding takes that for an intrusion, the
+    // A ball at rest touches at the sample, too; where rounding takes that for an intrusion, the
     // ball shrinks to nothing.
     if (ball.radius < 1e-12) {
       ++num_vanished;
       continue;
     }
     REQUIRE((ball.center - (sample.point - ball.radius * sample.normal)).norm() < 1e-15);
-    // How deep a face is in a ball grows with the radius at the rate 1 − cos(angle): that much
-    // larger is the radius's error than the tolerance.
+    // How deep a face is in a ball grows with the radius at the rate 1 − cos(angle): by so much the
+    // radius's error is larger than the tolerance.
     const double angle = ball.object_angle_deg * std::acos(-1.0) / 180.0;
     const double slack = 1e-9 + 3e-9 / (1.0 - std::cos(angle));
     REQUIRE(ball.radius == Approx(largest_empty_radius(mesh, sample)).epsilon(slack));
@@ -251,8 +252,9 @@ TEST_CASE("On an irregular body each ball is the largest empty one, by search ov
     if (ball.object_angle_deg > 120.0) ++num_far;
   }
   CHECK(num_vanished < 5);
-  CHECK(num_far > 10);  // not all are stopped beside the sample
-  CHECK(num_far < static_cast<int>(balls.size()) * 9 / 10);  // nor all by the other side
+  CHECK(num_far > 10);  // Not all are stopped beside the sample.
+  // Not all are stopped by the other side either.
+  CHECK(num_far < static_cast<int>(balls.size()) * 9 / 10);
 }
 
 TEST_CASE("With a tolerance no ball is smaller than the empty one, nor deeper than said",
@@ -284,7 +286,7 @@ TEST_CASE("With a tolerance no ball is smaller than the empty one, nor deeper th
     // What intrudes by rounding may be beside the sample.
     REQUIRE(deepest <= tolerance * radius_there * (1.0 + 1e-9) + 1e-15);
   }
-  CHECK(num_larger > 10);  // the tolerance does let balls pass facets beside the sample
+  CHECK(num_larger > 10);  // The tolerance does let balls pass facets beside the sample.
 }
 
 TEST_CASE("Samples beside the mesh and bad options of balls are refused",

@@ -18,14 +18,15 @@ using std::numbers::pi;
 
 namespace {
 
-// What the recipe gives for a body whose ray length at angle `theta` from the inward normal and
-// `phi` around it is known (negative: it meets a face that is turned less than 90° from its own): a
-// dense uniform cone, then the mean within one standard deviation of the median.
+// Returns what the recipe gives for a body whose ray length at angle `theta` from the inward normal
+// and `phi` around it is known (negative: it meets a face that is turned less than 90° from its
+// own): over a dense uniform cone, the mean within one standard deviation of the median.
 double expected_thickness(const std::function<double(double theta, double phi)>& length) {
   std::vector<double> lengths;
   constexpr int kSteps = 400;
   for (int i = 0; i < kSteps; ++i) {
-    const double theta = std::acos(1.0 - 0.5 * (i + 0.5) / kSteps);  // Uniform cosines in [½, 1].
+    // The cosines are uniform in [½, 1].
+    const double theta = std::acos(1.0 - 0.5 * (i + 0.5) / kSteps);
     for (int j = 0; j < kSteps; ++j) {
       const double l = length(theta, 2 * pi * (j + 0.5) / kSteps);
       if (l >= 0.0) lengths.push_back(l);
@@ -51,7 +52,7 @@ double expected_thickness(const std::function<double(double theta, double phi)>&
   return sum / count;
 }
 
-// Sixty rays stand for the cone to about this share.
+// Sixty rays stand for the cone up to about this share.
 constexpr double kFewRays = 0.02;
 
 double largest(const std::vector<double>& values) {
@@ -64,8 +65,9 @@ double smallest(const std::vector<double>& values) {
 }  // namespace
 
 TEST_CASE("A slab is as thick as the cone's oblique rays make it", "[geometry][shape_diameter]") {
-  // Lengths t / c with c uniform in [½, 1]: median 4/3, deviation √(2 − (2 ln 2)²) = 0.2796, so c
-  // in [0.6200, 0.9490] stays, where the mean of 1/c is ln(0.9490 / 0.6200) / 0.3290 = 1.2940.
+  // The lengths are t / c with c uniform in [½, 1]. The median is 4/3, the deviation √(2 − (2 ln
+  // 2)²) = 0.2796, so that c in [0.6200, 0.9490] stays, where the mean of 1/c is ln(0.9490 /
+  // 0.6200) / 0.3290 = 1.2940.
   CHECK(expected_thickness([](double theta, double) { return 1.0 / std::cos(theta); }) ==
         Approx(1.2940).epsilon(1e-3));
   for (const double thickness : {1e-6, 0.01}) {
@@ -81,8 +83,9 @@ TEST_CASE("A slab is as thick as the cone's oblique rays make it", "[geometry][s
 
 TEST_CASE("A ball, a long cylinder and a thin torus are as thick as their chords",
           "[geometry][shape_diameter]") {
-  // Chord of a ball: d cos θ, and the normal where it ends is turned by 180° − 2θ: rays beyond 45°
-  // do not count. The mean of cos θ, uniform in [cos 45°, 1], within one deviation of its median.
+  // The chord of a ball is d cos θ, and the normal where it ends is turned by 180° − 2θ, so that
+  // rays beyond 45° do not count. The result is the mean of cos θ, uniform in [cos 45°, 1], within
+  // one deviation of its median.
   const double in_ball = expected_thickness(
       [](double theta, double) { return theta < pi / 4 ? std::cos(theta) : -1; });
   CHECK(in_ball == Approx(0.5 * (1.0 + std::sqrt(0.5))).epsilon(1e-3));
@@ -90,8 +93,9 @@ TEST_CASE("A ball, a long cylinder and a thin torus are as thick as their chords
   CHECK(smallest(sphere.thickness) > in_ball * (1.0 - kFewRays));
   CHECK(largest(sphere.thickness) < in_ball * (1.0 + kFewRays));
 
-  // A ray at (θ, φ) runs sin θ cos φ along the axis: d cos θ / (1 − (sin θ cos φ)²). Across, it is
-  // turned by the angle with the tangent tan θ sin φ, which may be 45° as in the ball.
+  // A ray at (θ, φ) runs sin θ cos φ along the axis, with the length d cos θ / (1 − (sin θ cos
+  // φ)²). Across, it is turned by the angle with the tangent tan θ sin φ, which may be 45° as in
+  // the ball.
   const double in_cylinder = expected_thickness([](double theta, double phi) {
     if (std::abs(std::tan(theta) * std::sin(phi)) > 1.0) return -1.0;
     const double along = std::sin(theta) * std::cos(phi);
@@ -107,7 +111,8 @@ TEST_CASE("A ball, a long cylinder and a thin torus are as thick as their chords
   }
   CHECK(sides == 2 * 96);
 
-  // Tube bent to a circle 20 times as wide: rays along it leave it a little earlier or later.
+  // The tube is bent to a circle 20 times as wide, and rays along it leave it a little earlier or
+  // later.
   const ShapeDiameter tube = shape_diameter(MeshQuery(torus(10.0, 0.5, 192, 48)));
   CHECK(smallest(tube.thickness) > 0.93 * in_cylinder);
   CHECK(largest(tube.thickness) < 1.07 * in_cylinder);
@@ -124,8 +129,8 @@ TEST_CASE("One straight ray measures the thickness itself", "[geometry][shape_di
 
 TEST_CASE("A straight ray along the edges of a grid meets the wall behind it",
           "[geometry][shape_diameter]") {
-  // Small faces over a wall of unit squares, each above an edge between two of them: that is where
-  // boxes of the tree end.
+  // There are small faces over a wall of unit squares, each above an edge between two of them,
+  // which is where boxes of the tree end.
   TriangleMesh mesh;
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 17; ++i) mesh.vertices.emplace_back(i, j, 0.0);
@@ -159,7 +164,7 @@ TEST_CASE("Faces without an opposite wall are infinitely thick", "[geometry][sha
                    {9, -9, -1}, {0, 9, -1}, {2, 0, 0}};
   mesh.faces = {{0, 1, 2}};
   CHECK(shape_diameter(MeshQuery(mesh)).thickness[0] == infinity);
-  // A wall below that looks the same way is none; turned around it is one.
+  // A wall below that looks the same way does not count; turned around it does.
   mesh.faces = {{0, 1, 2}, {3, 4, 5}};
   const ShapeDiameter same_way = shape_diameter(MeshQuery(mesh));
   CHECK(same_way.thickness == std::vector<double>{infinity, infinity});

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A drum 40 mm wide and high on whose top (z = 20 mm) a stem stands.
+// Returns a drum 40 mm wide and high on whose top (z = 20 mm) a stem stands.
 TriangleMesh drum_with_stem(double diameter, double length) {
   const double top = 0.02 + length;
   return solid_of_revolution({{0, -0.02},
@@ -46,7 +46,7 @@ std::size_t num_weak(const WeakRegions& found) {
   return static_cast<std::size_t>(std::count(found.is_weak.begin(), found.is_weak.end(), true));
 }
 
-// Share by area of the weak faces among those whose middle is in the box.
+// Returns the share by area of the weak faces among those whose middle is in the box.
 double weak_share(const TriangleMesh& mesh, const WeakRegions& found,
                   const Eigen::AlignedBox3d& box) {
   double all = 0.0;
@@ -89,10 +89,10 @@ TEST_CASE("Of stems on a drum the thin and long one is weak", "[geometry][weak_r
   REQUIRE(stub.regions.size() == 1);
   CHECK(stub.regions[0].verdict == WeakVerdict::Short);
   CHECK(num_weak(stub) == 0);
-  // The same stub is long enough if nothing is asked for.
+  // The same stub is long enough if no length is asked for.
   CHECK(num_weak(find_weak_regions(MeshQuery(drum_with_stem(0.004, 0.006)),
                                    {.min_length_ratio = 0.5})) > 0);
-  // Thickness is absolute: a thicker stem is not weak, but is at a higher threshold.
+  // Thickness is absolute: a thicker stem is not weak, but it is at a higher threshold.
   const MeshQuery thick(drum_with_stem(0.008, 0.03));
   CHECK(find_weak_regions(thick).regions.empty());
   CHECK(num_weak(find_weak_regions(thick, {.weak_thickness = 0.012})) > 0);
@@ -122,7 +122,8 @@ TEST_CASE("A knob at the end of a thin stem goes with it, but is not weak itself
 }
 
 TEST_CASE("Walls, floors and handles are thin but not weak", "[geometry][weak_regions]") {
-  // A cup with a wall of 3 mm on a base of 15 mm; the same with a floor of 3 mm in a thick ring.
+  // The first is a cup with a wall of 3 mm on a base of 15 mm, the second has a floor of 3 mm in a
+  // thick ring.
   const WeakRegions cup = find_weak_regions(MeshQuery(solid_of_revolution(
       {{0, 0}, {0.03, 0}, {0.03, 0.08}, {0.027, 0.08}, {0.027, 0.015}, {0, 0.015}}, 64)));
   REQUIRE(cup.regions.size() == 1);
@@ -142,7 +143,7 @@ TEST_CASE("Walls, floors and handles are thin but not weak", "[geometry][weak_re
   CHECK(dish.regions[0].verdict == WeakVerdict::HeldAllAround);
   CHECK(num_weak(dish) == 0);
 
-  // Half a ring of 4 mm out of a block (overlapping parts are one solid).
+  // Half a ring of 4 mm stands out of a block (overlapping parts are one solid).
   TriangleMesh upright = torus(0.02, 0.002, 96, 24);
   for (auto& v : upright.vertices) v = Eigen::Vector3d(v[0], -v[2], v[1] + 0.02);
   const WeakRegions held =
@@ -151,7 +152,7 @@ TEST_CASE("Walls, floors and handles are thin but not weak", "[geometry][weak_re
   CHECK(held.regions[0].verdict == WeakVerdict::SeveralNecks);
   CHECK(held.regions[0].num_necks == 2);
   CHECK(num_weak(held) == 0);
-  // A fin of 3 mm in its place hangs on one neck.
+  // A fin of 3 mm hangs on one neck.
   const WeakRegions fin = find_weak_regions(MeshQuery(
       concatenated({box({0.06, 0.04, 0.04}), moved(box({0.03, 0.003, 0.04}), {0, 0, 0.03})})));
   REQUIRE(fin.regions.size() == 1);
@@ -161,7 +162,8 @@ TEST_CASE("Walls, floors and handles are thin but not weak", "[geometry][weak_re
 
 TEST_CASE("Arms are weak also where a thin rim joins their roots, but not where it is wide",
           "[geometry][weak_regions]") {
-  // Four bars of 4 mm around a drum of radius 20 mm, 50 mm long; a rim 3 mm thick around it.
+  // Four bars of 4 mm, 50 mm long, are around a drum of radius 20 mm, and a rim 3 mm thick is
+  // around it.
   const auto star = [](double rim_radius) {
     std::vector<TriangleMesh> parts = {cylinder(0.02, 0.04)};
     for (const double sign : {-1.0, 1.0}) {
@@ -173,8 +175,8 @@ TEST_CASE("Arms are weak also where a thin rim joins their roots, but not where 
   };
   struct Row {
     double rim_radius;
-    std::size_t num_weak;  // Arms.
-    std::size_t num_held;  // The rim.
+    std::size_t num_weak;  // Number of arms.
+    std::size_t num_held;  // Number of rims.
   };
   // The rim of 40 mm goes on beyond the 6 mm up to which it may be a shared root.
   for (const Row& row : {Row{0.0, 4, 0}, {0.025, 4, 1}, {0.04, 0, 1}}) {
@@ -190,7 +192,8 @@ TEST_CASE("Arms are weak also where a thin rim joins their roots, but not where 
         continue;
       }
       CHECK(region.num_necks == 1);
-      CHECK(region.length == Approx(0.05).margin(0.003));  // 2 voxels and 5 % of paths
+      // The margin is 2 voxels and 5 % of paths.
+      CHECK(region.length == Approx(0.05).margin(0.003));
     }
     std::sort(faces.begin(), faces.end());
     CHECK(std::adjacent_find(faces.begin(), faces.end()) == faces.end());
@@ -212,7 +215,7 @@ TEST_CASE("Where the opening leaves nothing, nothing is weak and the result says
     CHECK(found.regions.empty());
     CHECK(found.is_weak == std::vector<bool>(tool.faces.size(), false));
   }
-  // However thick "thin" is: more voxels of the object's than an int can count.
+  // However thick "thin" is, it may be more voxels of the object's than an int can count.
   CHECK(find_weak_regions(MeshQuery(ball(0.02, 3)), {.weak_thickness = 1e30}).outcome ==
         WeakOutcome::NothingLeft);
   // A part of its own beside a body has no neck.
@@ -305,7 +308,7 @@ TEST_CASE("A second search is read from the cache, damaged files are found again
   CHECK(cached_weak_regions(drum, {}, cache) == found);
   const std::string text = read_file(file);
 
-  // A sealed file with another length in it shows that it is the file that is read.
+  // A sealed file with another length in it shows that the file is what is read.
   const auto sealed = [](std::string content) {
     return content + "sha256 " + sha256_hex(content) + '\n';
   };
@@ -339,7 +342,7 @@ TEST_CASE("A cache that is off, or that cannot be written, is no error",
   const WeakRegions found = find_weak_regions(drum);
   CHECK(cached_weak_regions(drum, {}, {.is_on = false, .folder = folder.path()}) == found);
   CHECK(fs::is_empty(folder.path()));
-  // A file where the folder should be, a folder where the file should be: nobody can write there.
+  // Nobody can write where a file is in the place of the folder, or a folder in that of the file.
   write_file_atomically(folder.path() / "file", "");
   CHECK(cached_weak_regions(drum, {}, {.folder = folder.path() / "file"}) == found);
   CHECK(cached_weak_regions(drum, {}, {.folder = folder.path() / "file/below"}) == found);
@@ -357,7 +360,7 @@ struct Feature {
   const char* name;
   Eigen::Vector3d low;  ///< Box around it in the scaled mesh [m], chosen from pictures.
   Eigen::Vector3d high;
-  double least;  ///< Of its area, this much is weak.
+  double least;  ///< So much of its area is weak.
   double most = 1.0;
 };
 
@@ -435,8 +438,8 @@ TEST_CASE("Arms of an octopus are weak although they join in a ring",
     return std::count_if(found.regions.begin(), found.regions.end(),
                          [&](const WeakRegion& region) { return region.verdict == verdict; });
   };
-  // Eight arms, two of which part only beyond 6 mm from the body and count as one feature; and the
-  // ring of their roots.
+  // There are eight arms, two of which part only beyond 6 mm from the body and count as one
+  // feature, and the ring of their roots.
   CHECK(count(WeakVerdict::Weak) == 7);
   CHECK(count(WeakVerdict::HeldAllAround) == 1);
   CHECK(found.regions.size() == 8);

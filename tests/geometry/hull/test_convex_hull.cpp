@@ -18,7 +18,7 @@ using Indices = std::vector<std::size_t>;
 TEST_CASE("The hull of a cube has its corners, volume and center", "[geometry][convex_hull]") {
   Points points;
   for (int i = 0; i < 8; ++i) points.emplace_back(i & 1 ? 2 : 0, i & 2 ? 2 : 0, i & 4 ? 2 : 0);
-  // Not extreme: the center, middles of faces and edges.
+  // These are not extreme: the center, and middles of faces and edges.
   points.insert(points.end(), {{1, 1, 1}, {1, 1, 0}, {1, 0, 0}, {2, 1, 1}});
   const ConvexHull3 hull = convex_hull(points);
   CHECK(hull.rank == 3);
@@ -64,14 +64,14 @@ TEST_CASE("Points of lower dimension have the hull of their rank", "[geometry][c
   CHECK(segment.measure == Approx(3.0 * std::sqrt(3.0)));
   CHECK((segment.centroid - Eigen::Vector3d::Constant(1.5)).norm() < 1e-14);
 
-  // A square in the plane x + y + z = 3 · 0 shifted, with its center and a middle of an edge.
+  // The points are a rectangle in the plane x + y + z = 0, with its center and a point on an edge.
   const ConvexHull3 polygon = convex_hull(
       Points{{1, -1, 0}, {0, 0, 0}, {1, 0, -1}, {-1, 1, 0}, {-1, 0, 1}, {1, -0.5, -0.5}});
   CHECK(polygon.rank == 2);
   CHECK(polygon.facets.size() == 1);
   CHECK(std::set<std::size_t>(polygon.vertices.begin(), polygon.vertices.end()) ==
         std::set<std::size_t>{0, 2, 3, 4});
-  // Sides (0, 1, −1) of length sqrt 2 and (2, −1, −1) of length sqrt 6, at right angles.
+  // The sides are (0, 1, −1) of length sqrt 2 and (2, −1, −1) of length sqrt 6, at right angles.
   CHECK(polygon.measure == Approx(std::sqrt(12.0)));
   CHECK(polygon.centroid.norm() < 1e-14);
 }
@@ -91,7 +91,7 @@ TEST_CASE("An ulp off the plane is a solid, unless a threshold says flat",
 
 TEST_CASE("A nearly flat polygon is measured in its plane, whatever the order of its points",
           "[geometry][convex_hull]") {
-  // Corners of a unit square by turns 2 cm above and below the plane that fits them best.
+  // The corners of a unit square are by turns 2 cm above and below the plane that fits them best.
   Points points = {{0, 0, 0.02}, {1, 0, -0.02}, {1, 1, 0.02}, {0, 1, -0.02}};
   for (std::size_t first = 0; first < points.size(); ++first) {
     const ConvexHull3 square = convex_hull(points, {.planar_rel = 0.1});
@@ -104,14 +104,15 @@ TEST_CASE("A nearly flat polygon is measured in its plane, whatever the order of
 
 TEST_CASE("A flattened needle is a segment, and a hull without measure has a centroid",
           "[geometry][convex_hull]") {
-  // Thickness along both short axes is far below an ulp of the long one, so that the projected
+  // The thickness along both short axes is far below an ulp of the long one, so that the projected
   // points are collinear.
   const ConvexHull3 needle = convex_hull(
       Points{{1, 1, 1}, {2, 2, 2}, {3, 3, 3 + 0x1p-51}, {2, 2 + 0x1p-51, 2}}, {.planar_rel = 1e-6});
   CHECK(needle.rank >= 1);
   CHECK(needle.centroid.allFinite());
   CHECK((needle.centroid - Eigen::Vector3d::Constant(2.0)).norm() < 1.0);
-  // The area, 5e-401 m², is less than a double can hold: its rounded form is the least there is.
+  // The area, 5e-401 m², is less than a double can hold: its rounded form is the least that there
+  // is.
   const ConvexHull3 speck = convex_hull(Points{{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-201, 0}});
   CHECK(speck.rank == 2);
   CHECK(speck.measure >= 0.0);
@@ -135,7 +136,7 @@ TEST_CASE("Every point is inside all facets of its hull, and facets close up",
     }
     const ConvexHull3 hull = convex_hull(points);
     REQUIRE(hull.rank == 3);
-    // Euler: a triangulated sphere has 2 V − 4 faces.
+    // By Euler a triangulated sphere has 2 V − 4 faces.
     CHECK(hull.facets.size() == 2 * hull.vertices.size() - 4);
     Eigen::Vector3d total = Eigen::Vector3d::Zero();
     for (const HullFacet& facet : hull.facets) {

@@ -52,7 +52,7 @@ MatrixXd cross_polytope(int d) {
   return points;
 }
 
-/// The origin and the unit vectors.
+/// Returns the origin and the unit vectors.
 MatrixXd corner_simplex(int d) {
   MatrixXd points(d, d + 1);
   points << VectorXd::Zero(d), MatrixXd::Identity(d, d);
@@ -65,7 +65,7 @@ MatrixXd random_points(Random& random, int d, int count) {
   return points;
 }
 
-/// Integer coordinates in 0 … size − 1: many coplanar, collinear and equal points.
+/// Returns integer coordinates in 0 … size − 1, with many coplanar, collinear and equal points.
 MatrixXd lattice_points(Random& random, int d, int count, int size) {
   MatrixXd points(d, count);
   for (double& x : points.reshaped()) {
@@ -74,7 +74,7 @@ MatrixXd lattice_points(Random& random, int d, int count, int size) {
   return points;
 }
 
-/// Sign of det(p_1 − p_0, …, p_d − p_0) in rationals: the oracle of every side.
+/// Returns the sign of det(p_1 − p_0, …, p_d − p_0) in rationals, the oracle of every side.
 int exact_orientation(const MatrixXd& corners) {
   const auto d = static_cast<int>(corners.rows());
   std::vector<std::vector<CGAL::Gmpq>> m(static_cast<std::size_t>(d));
@@ -101,8 +101,9 @@ int exact_orientation(const MatrixXd& corners) {
   return sign;
 }
 
-/// Number of hyperplanes in which facets lie, exactly: facets of one plane have the same vertices
-/// on it. Precondition: the first `rank` coordinates tell all points of the span apart.
+/// Returns the number of hyperplanes in which facets lie, exactly: facets of one plane have the
+/// same vertices on it. Precondition: the first `rank` coordinates tell all points of the span
+/// apart.
 int num_facet_planes(const ConvexPolytope& polytope) {
   const int rank = polytope.rank();
   std::set<Indices> planes;
@@ -124,7 +125,8 @@ int num_facet_planes(const ConvexPolytope& polytope) {
   return static_cast<int>(planes.size());
 }
 
-/// Exactly: every facet is a simplex with all points on it or beneath it, and each ridge has two.
+/// Checks exactly that every facet is a simplex with all points on it or beneath it, and that each
+/// ridge has two.
 void check_boundary(const ConvexPolytope& polytope) {
   const int d = polytope.dimension();
   REQUIRE(polytope.rank() == d);
@@ -172,8 +174,8 @@ TEST_CASE("Cube, simplex and cross-polytope have their facets, volume and inradi
     double volume;
     double inradius;
   };
-  // The inscribed ball of the corner simplex touches the planes x_j = 0 and Σ x_j = 1:
-  // r = (1 − d r) / √d.
+  // The inscribed ball of the corner simplex touches the planes x_j = 0 and Σ x_j = 1, so that r =
+  // (1 − d r) / √d.
   const double r = 1.0 / (d + std::sqrt(d));
   for (const Row& row :
        {Row{cube(d), VectorXd::Zero(d), 2 * d, std::exp2(d), 1.0},
@@ -203,7 +205,7 @@ TEST_CASE("Hulls of random points are those of Qhull", "[geometry][convex_polyto
     CHECK(ours.vertices() == other.vertices);
     CHECK(ours.volume() == Approx(other.volume).epsilon(1e-12));
     REQUIRE(num_facet_planes(ours) == other.planes.cols());
-    // The same planes, if in another order. Random normals are farther apart than 1e-9.
+    // The planes are the same, if in another order. Random normals are farther apart than 1e-9.
     int num_found = 0;
     for (Index f = 0; f < ours.num_facets(); ++f) {
       VectorXd plane(d + 1);
@@ -251,7 +253,7 @@ TEST_CASE("Boundaries are right in rationals, however degenerate the points",
       stretched.row(0) /= offset;
       CHECK(polytope.volume() / offset == Approx(ConvexPolytope(stretched).volume()).epsilon(1e-9));
     }
-    // All nearly in a plane that no axis follows: a third is always rounded.
+    // All points are nearly in a plane that no axis follows, as a third is always rounded.
     MatrixXd points = random_points(random, d, 16);
     points.row(0) = points.bottomRows(d - 1).colwise().sum() / 3.0;
     check_boundary(ConvexPolytope(points));
@@ -265,7 +267,7 @@ TEST_CASE("A hull does not depend on the order of its points, nor on equal ones"
   const bool is_degenerate = GENERATE(false, true);
   const MatrixXd points =
       is_degenerate ? lattice_points(random, d, 30, 3) : random_points(random, d, 20);
-  // A facet as its corners' coordinates, and all of them in order.
+  // A boundary is the set of all facets, a facet the set of its corners' coordinates.
   const auto boundary = [](const ConvexPolytope& polytope) {
     std::set<std::set<std::vector<double>>> facets;
     for (Index f = 0; f < polytope.num_facets(); ++f) {
@@ -297,7 +299,7 @@ TEST_CASE("A hull does not depend on the order of its points, nor on equal ones"
 TEST_CASE("An affine map takes a hull to the hull", "[geometry][convex_polytope]") {
   Random random(64);
   const int d = GENERATE(range(2, 7));
-  // Integers, so that the map rounds nothing and coplanar points stay coplanar.
+  // The points are integers, so that the map rounds nothing and coplanar points stay coplanar.
   const MatrixXd points = lattice_points(random, d, 25, 4);
   MatrixXd map = MatrixXd::Identity(d, d);
   for (int i = 0; i < 3 * d; ++i) {
@@ -309,7 +311,7 @@ TEST_CASE("An affine map takes a hull to the hull", "[geometry][convex_polytope]
   const ConvexPolytope after(image);
   CHECK(after.vertices() == before.vertices());
   CHECK(num_facet_planes(after) == num_facet_planes(before));
-  CHECK(after.volume() == Approx(before.volume()).epsilon(1e-12));  // the determinant is 1
+  CHECK(after.volume() == Approx(before.volume()).epsilon(1e-12));  // The determinant is 1.
 }
 
 TEST_CASE("Points of lower rank have a hull in their span, without volume or inside",
@@ -317,12 +319,13 @@ TEST_CASE("Points of lower rank have a hull in their span, without volume or ins
   const int d = GENERATE(range(2, 7));
   for (int rank = 0; rank < d; ++rank) {
     CAPTURE(d, rank);
-    // A cube of that rank with its center, on axes of integers at right angles.
+    // The points are a cube of that rank with its center, on axes of integers at right angles.
     const VectorXd shift = VectorXd::LinSpaced(d, 1.0, d);
     const MatrixXd corners = rank > 0 ? cube(rank) : MatrixXd::Zero(1, 1);
     MatrixXd axes = MatrixXd::Zero(d, rank);
     for (int k = 0; k < rank; ++k) axes(k, k) = 1.0;
-    if (rank == 1) axes = VectorXd::Constant(d, 1.0);  // collinear, not along an axis
+    // They are collinear, but not along an axis.
+    if (rank == 1) axes = VectorXd::Constant(d, 1.0);
     MatrixXd points(d, corners.cols() + 1);
     points << (rank > 0 ? MatrixXd((axes * corners).colwise() + shift) : MatrixXd(shift)), shift;
     const ConvexPolytope polytope(points);
@@ -338,7 +341,7 @@ TEST_CASE("Points of lower rank have a hull in their span, without volume or ins
     off[d - 1] += 0x1p-45;
     CHECK(polytope.containment(off) == Containment::Outside);
     CHECK(polytope.inradius(off) < 0.0);
-    CHECK(polytope.inradius(off) >= -0x1p-45 - 2e-15);  // coordinates are up to 7
+    CHECK(polytope.inradius(off) >= -0x1p-45 - 2e-15);  // Coordinates are up to 7.
     if (rank > 0) {
       const VectorXd beyond = shift + 1.5 * axes.col(0);
       CHECK(polytope.containment(beyond) == Containment::Outside);
@@ -365,7 +368,7 @@ TEST_CASE("Few points, equal points and none have documented hulls",
   CHECK(equal.inradius(VectorXd::Constant(3, 0.1)) == 0.0);
   CHECK(equal.inradius(VectorXd::Constant(3, 1.1)) == Approx(-std::sqrt(3.0)));
 
-  MatrixXd zeros(2, 3);  // both zeros are one
+  MatrixXd zeros(2, 3);  // Both zeros are one.
   zeros << 0.0, -0.0, 1.0, -0.0, 0.0, 1.0;
   CHECK(ConvexPolytope(zeros).vertices() == Indices{0, 2});
 }
@@ -374,7 +377,7 @@ TEST_CASE("Containment is exact on facets and an ulp beside them", "[geometry][c
   Random random(65);
   const int d = GENERATE(range(2, 7));
   CAPTURE(d);
-  // Corners are multiples of 1/8, so means of 2^k of them are exact, as is 2^-52 next to them.
+  // Corners are multiples of 1/8, so that means of 2^k of them are exact, as is 2^-52 next to them.
   MatrixXd points = lattice_points(random, d, 14, 40) / 8.0;
   points.array() -= 2.5;
   const ConvexPolytope polytope(points);
@@ -386,7 +389,7 @@ TEST_CASE("Containment is exact on facets and an ulp beside them", "[geometry][c
         0.5 * (points.col(polytope.facets()(0, f)) + points.col(polytope.facets()(1, f)));
     CHECK(polytope.containment(middle) == Containment::OnSurface);
     CHECK(polytope.inradius(middle) == 0.0);
-    // A little along each axis: compared with every facet in rationals.
+    // A point a little along each axis is compared with every facet in rationals.
     for (int j = 0; j < d; ++j) {
       VectorXd near = middle;
       near[j] += j % 2 != 0 ? 0x1p-50 : -0x1p-50;
@@ -411,7 +414,7 @@ TEST_CASE("Containment is exact on facets and an ulp beside them", "[geometry][c
 TEST_CASE("Inradii far below the rounding of coordinates keep sign and size",
           "[geometry][convex_polytope]") {
   const int d = GENERATE(range(2, 7));
-  // Half a cross-polytope: a cone whose base passes the origin at `gap`.
+  // Half a cross-polytope is a cone whose base passes the origin at `gap`.
   for (const double gap : {0x1p-60, -0x1p-60, 0x1p-300, -0x1p-300, 0.0}) {
     MatrixXd points = cross_polytope(d);
     points.row(0).setConstant(gap);
@@ -449,7 +452,7 @@ TEST_CASE("Coordinates from 1e-80 to 1e80 and far from the origin are no matter"
   const ConvexPolytope moved(points.array() + 0x1p40);
   CHECK(moved.facets() == plain.facets());
   CHECK(moved.volume() == Approx(plain.volume()).epsilon(1e-13));
-  // Out of the range of the filter on one axis: everything is decided in integers.
+  // One axis is out of the range of the filter, so that everything is decided in integers.
   MatrixXd wide = points;
   wide.row(2) *= 0x1p1000;
   wide(2, 0) = 0x1p-1000;

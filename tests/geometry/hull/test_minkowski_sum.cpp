@@ -26,7 +26,8 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// Pyramids over polygons in three dimensions of the space, seen from the origin as from a contact.
+/// Returns pyramids over polygons in three dimensions of the space, as seen from the origin as from
+/// a contact.
 Summands random_cones(Random& random, int count, int num_edges, int dimension = 6) {
   Summands cones;
   for (int k = 0; k < count; ++k) {
@@ -56,7 +57,7 @@ MatrixXd with_origin(const MatrixXd& summand) {
   return points;
 }
 
-/// All sums of a column of each, the origin being a column too.
+/// Returns all sums of a column of each; the origin is a column, too.
 MatrixXd all_sums(const Summands& summands) {
   MatrixXd sums = MatrixXd::Zero(summands[0].rows(), 1);
   for (const MatrixXd& summand : summands) {
@@ -71,9 +72,10 @@ MatrixXd all_sums(const Summands& summands) {
   return sums;
 }
 
-/// By enumeration, for pyramids with the origin as apex: a facet of the sum is spanned by edges of
-/// the summands, so its normal is orthogonal to as many of them as the dimension less one. The
-/// least support value over all such directions is the inradius. Knows nothing of hulls.
+/// Computes the inradius by enumeration, for pyramids with the origin as apex. A facet of the sum
+/// is spanned by edges of the summands, so that its normal is orthogonal to as many of them as the
+/// dimension less one. The least support value over all such directions is the inradius. No hull is
+/// needed.
 double enumerated_inradius(const Summands& cones) {
   std::vector<VectorXd> edges;
   for (const MatrixXd& cone : cones) {
@@ -110,7 +112,7 @@ double enumerated_inradius(const Summands& cones) {
 
 TEST_CASE("The largest ball in a sum of boxes, segments and balls' polytopes is the known one",
           "[geometry][minkowski_sum]") {
-  // Two cubes with half edges 1 and 1/4: a cube with half edge 5/4.
+  // Two cubes with half edges 1 and 1/4 add up to a cube with half edge 5/4.
   MatrixXd cube(3, 8);
   for (int i = 0; i < 8; ++i) cube.col(i) << (i & 1) * 2 - 1, (i & 2) - 1, (i & 4) / 2 - 1;
   const Summands cubes = {cube, 0.25 * cube};
@@ -136,7 +138,8 @@ TEST_CASE("The largest ball in a sum of boxes, segments and balls' polytopes is 
 }
 
 TEST_CASE("Case C, L-infinity: a disk between two contacts", "[geometry][minkowski_sum]") {
-  // Wrenches in the plane (two forces, a torque over the radius) of contacts at (±1, 0).
+  // The wrenches are those in the plane (two forces, a torque over the radius) of contacts at (±1,
+  // 0).
   for (const double mu : {0.2, 0.5, 1.0}) {
     CAPTURE(mu);
     MatrixXd left(3, 2);
@@ -222,7 +225,7 @@ TEST_CASE("Sums that do not hold the origin inside have no ball", "[geometry][mi
   CHECK(bounds.lower == 0.0);
   CHECK(bounds.upper == 0.0);
   CHECK(minkowski_sum_inradius(Summands{MatrixXd::Zero(6, 2)}).upper == 0.0);
-  // Flat ones, too.
+  // Flat summands have no ball either.
   MatrixXd flat = MatrixXd::Zero(3, 4);
   flat.topRows(2) << 1, -1, 0, 0, 0, 0, 1, -1;
   CHECK(minkowski_sum_inradius(Summands{flat}).upper == 0.0);

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Height of the center over the plane that touches the solid from below when `up` is up. Its local
-/// minima over all directions are the rest poses: the definition, without a hull.
+/// Returns the height of the center over the plane that touches the solid from below when `up` is
+/// up. By definition its local minima over all directions are the rest poses; no hull is needed.
 double height_of_center(const TriangleMesh& mesh, const Vector3d& center, const Vector3d& up) {
   double height = -std::numeric_limits<double>::infinity();
   for (const Vector3d& vertex : mesh.vertices) height = std::max(height, up.dot(center - vertex));
@@ -37,7 +37,7 @@ Vector3d random_unit(Random& random) {
   }
 }
 
-/// A convex solid with corners on an ellipsoid.
+/// Returns a convex solid with corners on an ellipsoid.
 TriangleMesh random_solid(Random& random) {
   TriangleMesh mesh;
   for (int i = 0; i < 40; ++i) {
@@ -50,8 +50,8 @@ TriangleMesh random_solid(Random& random) {
   return mesh;
 }
 
-/// A prism over the triangle (0, 0), (0.1, 0), (0, 0.1), leaning by `lean` along x over its height
-/// of 0.1.
+/// Returns a prism over the triangle (0, 0), (0.1, 0), (0, 0.1), leaning by `lean` along x over its
+/// height of 0.1.
 TriangleMesh leaning_prism(double lean) {
   TriangleMesh mesh;
   for (const double z : {0.0, 0.1}) {
@@ -69,7 +69,7 @@ TEST_CASE("A box rests on each of its six faces, the largest first", "[geometry]
   const std::vector<RestPose> poses =
       rest_poses(box({0.2, 0.1, 0.06}), Vector3d::Zero(), {.same_up = 1e-6});
   REQUIRE(poses.size() == 6);
-  // Height: half the edge that stands. Margin: half the shorter of the two others.
+  // The height is half the edge that stands, the margin half the shorter of the two others.
   const double heights[] = {0.03, 0.03, 0.05, 0.05, 0.1, 0.1};
   const double margins[] = {0.05, 0.05, 0.03, 0.03, 0.03, 0.03};
   const int axes[] = {2, 2, 1, 1, 0, 0};
@@ -89,12 +89,12 @@ TEST_CASE("A leaning prism does not stand once its center is beyond its base",
     return std::any_of(poses.begin(), poses.end(),
                        [](const RestPose& pose) { return pose.up_O.z() > 0.999; });
   };
-  // Center of mass at x = 1/30 + lean/2, y = 1/30; the base's border there is at x = 2/30.
+  // The center of mass is at x = 1/30 + lean/2, y = 1/30; the base's border there is at x = 2/30.
   CHECK(stands(0.0));
   CHECK(stands(0.063));
   CHECK_FALSE(stands(0.07));
-  // Nearer to the border than the margin asked for, 1 mm, it counts as falling: the border
-  // x + y = 0.1 is (1/30 - lean/2) / √2 away, 1.08 mm and 0.94 mm here.
+  // Nearer to the border than the wanted margin, 1 mm, it counts as falling: the border x + y = 0.1
+  // is (1/30 - lean/2) / √2 away, 1.08 mm and 0.94 mm here.
   CHECK(stands(0.0636));
   CHECK_FALSE(stands(0.0640));
 }
@@ -131,7 +131,7 @@ TEST_CASE("Rest poses are the local minima of the center's height", "[geometry][
                                 mesh.vertices[static_cast<std::size_t>(mesh.faces[f][2])]},
                                {{0, 1, 2}}};
       const Vector3d nearest = MeshQuery(facet).closest_point(plumb).point;
-      // A tilt by k toward it, at a distance d, lowers the center by k d: here d² / 1000.
+      // A tilt by k toward it, at a distance d, lowers the center by k d, here by d² / 1000.
       const Vector3d toward = nearest - plumb;
       const double fall = std::max(0.5e-3 * toward.squaredNorm(), 1e-15);
       const Vector3d tilted = (up + 1e-3 * toward).normalized();

@@ -13,7 +13,7 @@ using namespace graspfit::geometry;
 
 namespace {
 
-// Areas 1 : 2 : 4 : 8, a face without area in between, and one that is far away.
+// Returns faces of areas 1 : 2 : 4 : 8, a face without area in between, and one that is far away.
 TriangleMesh unequal_faces() {
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 2, 0}, {0, 4, 0}, {0, 8, 0}, {5, 0, 9}};
@@ -48,7 +48,7 @@ TEST_CASE("Faces get samples in proportion to their area", "[geometry][surface_s
     const double expected = kCount * share / 15.0;
     chi_squared += (seen[face] - expected) * (seen[face] - expected) / expected;
   }
-  CHECK(chi_squared < 16.3);  // 99.9 % quantile for 3 degrees of freedom.
+  CHECK(chi_squared < 16.3);  // This is the 99.9 % quantile for 3 degrees of freedom.
 }
 
 TEST_CASE("Within a face all places are equally likely", "[geometry][surface_sampling]") {
@@ -71,8 +71,8 @@ TEST_CASE("Within a face all places are equally likely", "[geometry][surface_sam
   for (const double count : seen) {
     chi_squared += (count - kCount / 4.0) * (count - kCount / 4.0) / (kCount / 4.0);
   }
-  CHECK(chi_squared < 16.3);  // As above.
-  // Each weight has variance 1/18; five standard errors of the mean.
+  CHECK(chi_squared < 16.3);  // This is the same quantile.
+  // Each weight has variance 1/18; the bound is five standard errors of the mean.
   CHECK((mean.array() - 1.0 / 3.0).abs().maxCoeff() < 5.0 * std::sqrt(1.0 / 18.0 / kCount));
 }
 

@@ -10,7 +10,7 @@
 
 namespace graspfit::testing {
 
-/// What `read_mesh` says of a file after the file's name and `start`: one line.
+/// Returns what `read_mesh` says of a file after the file's name and `start`, in one line.
 inline std::string error_of(const std::filesystem::path& file, const std::string& start = "") {
   try {
     geometry::read_mesh(file);

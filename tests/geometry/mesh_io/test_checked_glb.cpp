@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A triangle: 36 bytes of positions (0 0 0), (1 0 0), (0 1 0), then indices 0 1 2 as bytes, in a
-// buffer of 40 bytes; a sparse accessor puts its point 1 to (0 0 0).
+// The file has a triangle: 36 bytes of positions (0 0 0), (1 0 0), (0 1 0), then indices 0 1 2 as
+// bytes, in a buffer of 40 bytes; a sparse accessor puts its point 1 to (0 0 0).
 const char* const kTriangle = R"({"asset":{"version":"2.0"},
 "scene":0,
 "scenes":[{"nodes":[0]}],
@@ -102,7 +102,7 @@ TEST_CASE("A glTF file and the GLB of the same bytes are the same mesh", "[geome
                                  std::string(1, '\0') + bytes);
   CHECK(read_mesh(folder.write("a.glb", binary)).mesh == mesh);
 
-  // In a file beside it, its name in percent signs, and below it.
+  // The buffer may be in a file beside the mesh, its name in percent signs, and below it.
   folder.write("my bytes.bin", bytes + "more");
   const auto with_uri = [&](const std::string& name) {
     return replaced(json, "\"byteLength\":40", "\"byteLength\":40,\"uri\":\"" + name + "\"");
@@ -174,7 +174,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
   const std::string view0 = R"({"buffer":0,"byteOffset":0,"byteLength":36})";
   const std::string points = R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)";
   const std::vector<Case> cases = {
-      // Ranges of bytes.
+      // These have wrong ranges of bytes.
       {view0, R"({"buffer":0,"byteOffset":18446744073709551615,"byteLength":36})",
        "bufferView 0: 36 bytes from 18446744073709551615 are not within the 40 of its buffer"},
       {view0, R"({"buffer":0,"byteOffset":5,"byteLength":36})", "bufferView 0: 36 bytes from 5"},
@@ -196,7 +196,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
        "accessor 0: 44 bytes from 0 are not within the 36 of its bufferView"},
       {"\"byteLength\":40", "\"byteLength\":4000000000", "buffer 0 states 4000000000 bytes"},
       {"\"byteLength\":40", "\"byteLength\":\"40\"", "byteLength is not a whole number from 0"},
-      // Accessors.
+      // These have wrong accessors.
       {points, replaced(points, "\"count\":3", "\"count\":4"),
        "accessor 0: 48 bytes from 0 are not within the 36 of its bufferView"},
       {points, replaced(points, "\"count\":3", "\"count\":1537228672809129302"),
@@ -217,7 +217,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
       {"\"values\":{\"bufferView\":0,\"byteOffset\":0}",
        "\"values\":{\"bufferView\":0,\"byteOffset\":30}", "sparse values: 12 bytes from 30"},
       {"AAECAA==", "AAkCAA==", "sparse indices: element 9 of 3"},
-      // Indices of things.
+      // These have wrong indices.
       {"\"POSITION\":0", "\"POSITION\":3", "mesh 0, primitive 0: POSITION 3 of 3"},
       {"\"indices\":1", "\"indices\":9", "mesh 0, primitive 0: indices 9 of 3"},
       {"\"indices\":1", "\"indices\":0", "its indices are no unsigned integers"},
@@ -233,7 +233,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
       {"[0,0,5]", "[0,0,\"5\"]", "node 1: translation is not 3 numbers"},
       {"\"nodes\":[{\"children\":[1]},{\"mesh\":0,\"translation\":[0,0,5]}],", chain_of_nodes(101),
        "its nodes are nested more than 100 deep"},
-      // The document.
+      // These are wrong as documents.
       {"\"version\":\"2.0\"", "\"version\":\"1.0\"", "glTF version '1.0', only 2 is read"},
       {"\"asset\":{\"version\":\"2.0\"},", "", "it has no asset"},
       {"\"meshes\":[", "\"meshes\":7,\"x\":[", "meshes is not an array of objects"},
@@ -254,7 +254,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
     const fs::path file = folder.write("x.gltf", replaced(kTriangle, row.from, row.to));
     CHECK_THAT(error_of(file), Contains(row.says));
   }
-  // Just within its limits.
+  // This is just within the limits.
   CHECK(
       read_mesh(folder.write(
                     "deep.gltf",
@@ -267,7 +267,7 @@ TEST_CASE("Every bad number of a glTF file is refused by its place", "[geometry]
 TEST_CASE("A scene that shows few bytes many times is refused before it is built",
           "[geometry][gltf]") {
   // Seven million nodes would show 21 million vertices; 4,000 nodes with 6,000 vertices each take
-  // less text: a view without data of its own does not exist, so the points are 72,000 bytes.
+  // less text. A view without data of its own does not exist, so that the points are 72,000 bytes.
   const int num_points = 6000;
   const int num_nodes = 4000;
   std::string nodes = "\"nodes\":[";
@@ -319,7 +319,7 @@ TEST_CASE("A GLB is refused at once where its container lies", "[geometry][gltf]
     CHECK_THAT(error_of(folder.write("x.glb", row.bytes)), Contains(row.says));
   }
   CHECK(read_mesh(folder.write("good.glb", good)).mesh.faces.size() == 1);
-  // Any byte of it changed is read or refused, in one line.
+  // With any byte of it changed the file is read, or refused in one line.
   for (std::size_t i = 0; i < good.size(); i += 3) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));

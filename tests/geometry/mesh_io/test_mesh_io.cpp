@@ -58,7 +58,7 @@ TEST_CASE("Every format of one tetrahedron has its volume", "[geometry][mesh_io]
   const TemporaryFolder folder;
   std::vector<fs::path> files;
   files.push_back(folder.write("a.off", kTetrahedronOff));
-  // Windows line ends, counts beside the header, colors after the corners.
+  // The file has Windows line ends, counts beside the header, and colors after the corners.
   files.push_back(
       folder.write("b.off",
                    "COFF 4 4 0\r\n0 0 0 255 0 0 255\r\n1 0 0 0 0 0 0\r\n0 1 0 0 0 0 0\r\n"
@@ -103,8 +103,8 @@ TEST_CASE("Big-endian PLY with unknown elements is read", "[geometry][mesh_io]")
     ply.append(x8, 8).append(y4, 4).append(z2, 2);
   };
   vertex("\0\0\0\0\0\0\0\0", "\0\0\0\0", "\0\0");
-  vertex("\x3f\xf0\0\0\0\0\0\0", "\0\0\0\0", "\0\0");    // x = 1
-  vertex("\0\0\0\0\0\0\0\0", "\x40\0\0\0", "\xff\xfe");  // y = 2, z = −2
+  vertex("\x3f\xf0\0\0\0\0\0\0", "\0\0\0\0", "\0\0");    // Here x = 1.
+  vertex("\0\0\0\0\0\0\0\0", "\x40\0\0\0", "\xff\xfe");  // Here y = 2 and z = −2.
   ply += std::string("\x01\0\0\0\x03\0\0\0\0\0\0\0\x01\0\0\0\x02", 17);
   const TemporaryFolder folder;
   const TriangleMesh mesh = read_mesh(folder.write("x.ply", ply)).mesh;
@@ -133,8 +133,8 @@ TEST_CASE("A byte order mark before the text of a mesh is skipped", "[geometry][
 }
 
 TEST_CASE("Triangle strips of PLY run alternately and end with -1", "[geometry][mesh_io]") {
-  // The four faces of a tetrahedron as one strip 0 2 1 3 0 2: (0 2 1), (1 2 3), (1 3 0), (0 3 2),
-  // then one strip of a single triangle that only leads on, as its corners repeat.
+  // The four faces of a tetrahedron are one strip 0 2 1 3 0 2: (0 2 1), (1 2 3), (1 3 0), (0 3 2);
+  // then comes one strip of a single triangle that only leads on, as its corners repeat.
   const std::string header =
       "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
@@ -177,7 +177,8 @@ TEST_CASE("Pipes and devices are no mesh files, and nobody waits for them", "[ge
 }
 
 TEST_CASE("glTF is read with its node's placement", "[geometry][mesh_io]") {
-  // Three vertices (0,0,0), (1,0,0), (0,1,0) as floats and no indices, moved by (0, 0, 5).
+  // The file has three vertices (0,0,0), (1,0,0), (0,1,0) as floats and no indices, moved by (0, 0,
+  // 5).
   const std::string gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"mesh":0,"translation":[0,0,5]}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":4}]}],
@@ -216,7 +217,7 @@ TEST_CASE("Vertices at the same place become one, the first keeping its order",
 TEST_CASE("Polygons become triangles of the same vector area, without turned ones",
           "[geometry][mesh_io]") {
   const TemporaryFolder folder;
-  // An L: concave at (1, 1). Area 3. Every triangle must face up.
+  // The polygon is an L, concave at (1, 1), with area 3. Every triangle must face up.
   const MeshFile read = read_mesh(folder.write(
       "l.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 4 5 6 1 2 3\n"));
   CHECK(read.mesh.faces.size() == 4);
@@ -339,7 +340,8 @@ TEST_CASE("Bad PLY and STL files get one clear line", "[geometry][mesh_io]") {
   // Some programs begin binary files like text.
   CHECK(error_of(folder.write("solid.stl", "solid" + stl.substr(5, stl.size() - 60))) ==
         "the file ends after 10 of 12 triangles");
-  stl.replace(84 + 12, 4, std::string("\0\0\xc0\x7f", 4));  // A NaN as the first coordinate.
+  // The first coordinate is a NaN.
+  stl.replace(84 + 12, 4, std::string("\0\0\xc0\x7f", 4));
   CHECK(error_of(folder.write("nan.stl", stl)) == "vertex 0 has a coordinate that is not finite");
   CHECK(error_of(folder.write("none.stl", std::string(84, '\0'))) == "no vertices and no faces");
   CHECK(error_of(folder.write("a.stl",

@@ -19,7 +19,8 @@
 
 namespace test_shared_meshes {
 
-// Real meshes that do not belong to the repository; skipped where they are not there.
+// These are real meshes that do not belong to the repository; the tests are skipped where they are
+// not there.
 
 using namespace graspfit::base;
 using namespace graspfit::geometry;
@@ -53,7 +54,7 @@ std::vector<Expected> read_table() {
   return table;
 }
 
-// A solid's voxels, patches and queries have to agree with each other.
+// Checks that a solid's voxels, patches and queries agree with each other.
 void check_solid(const TriangleMesh& mesh) {
   const MeshQuery query(mesh);
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 30});
@@ -103,7 +104,7 @@ void check_row(const Expected& expected, const TriangleMesh& mesh) {
   CHECK(std::to_string(repaired.after.num_parts) == expected.parts);
   CHECK(repaired.after.is_outward);
   CHECK(repaired.after.is_manifold);
-  // Sums of 1e5 faces, in any order of evaluation.
+  // These are sums of 1e5 faces, in any order of evaluation.
   CHECK(mass_properties(repaired.mesh).volume == Approx(std::stod(expected.volume)).epsilon(1e-9));
   check_solid(repaired.mesh);
 }

@@ -45,7 +45,7 @@ TEST_CASE("Boxes touch, overlap and miss exactly", "[geometry][mesh_intersection
   const MeshQuery cube(box({2, 2, 2}));
   CHECK(do_intersect(cube, cube, RigidTransform::Identity()));
   CHECK(do_intersect(cube, cube, shift(1.5, 0.5, 0.25)));
-  // Face on face, edge on edge, corner on corner; then apart by one ulp of 2.
+  // They touch face on face, edge on edge, corner on corner; then they are apart by one ulp of 2.
   for (const auto& [x, y, z] : {std::array{2.0, 0.0, 0.0}, {2.0, 2.0, 0.0}, {2.0, 2.0, 2.0}}) {
     CHECK(do_intersect(cube, cube, shift(x, y, z)));
     CHECK_FALSE(do_intersect(cube, cube, shift(std::nextafter(x, 3.0) + 0x1p-52, y, z)));
@@ -71,7 +71,7 @@ TEST_CASE("Whether balls intersect is told by their distance", "[geometry][mesh_
   for (int i = 0; i < 100; ++i) {
     const RigidTransform X = drawn_pose(random, 1.3);
     const double apart = X.translation().norm();
-    // The polyhedra lie up to 1 % inside their balls.
+    // The polyhedra are up to 1 % inside their balls.
     if (apart > 1.485 && apart < 1.5) continue;
     const bool expected = apart < 1.5;
     CHECK(do_intersect(a, b, X) == expected);
@@ -83,8 +83,8 @@ TEST_CASE("Whether balls intersect is told by their distance", "[geometry][mesh_
 
 TEST_CASE("Intersection agrees with a test of all pairs of vertices and faces",
           "[geometry][mesh_intersection]") {
-  // Convex bodies: they intersect iff a vertex of one is inside the other or an edge of one meets a
-  // face of the other; rays of the query decide the latter.
+  // Convex bodies intersect if and only if a vertex of one is inside the other or an edge of one
+  // meets a face of the other; rays of the query decide the latter.
   const TriangleMesh mesh_a = box({1, 2, 3});
   const TriangleMesh mesh_b = ball(0.8, 0);
   const MeshQuery a(mesh_a);
@@ -116,8 +116,8 @@ TEST_CASE("Intersection agrees with a test of all pairs of vertices and faces",
 
 TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh moved there",
           "[geometry][mesh_intersection]") {
-  // What is moved there needs no turned boxes and no inverse. Also with poses whose rotation is one
-  // to the digits of a file only, and far from the origin.
+  // The reference is the moved body itself, which needs no turned boxes and no inverse. Some poses
+  // have a rotation that is one to the digits of a file only, or are far from the origin.
   const std::vector<std::pair<TriangleMesh, TriangleMesh>> solids = {
       {ball(1.0, 2), box({0.7, 1.1, 0.4})},
       {torus(1.0, 0.3, 24, 12), torus(0.8, 0.2, 16, 8)},
@@ -141,7 +141,7 @@ TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh
             do_intersect(a, MeshQuery(transformed(mesh_b, X)), RigidTransform::Identity()));
       return found;
     };
-    // Through the middle of a ring, the start is free too; then there is no touch to look for.
+    // Through the middle of a ring, the start is free, too; then there is no touch to look for.
     if (!intersects(inside)) continue;
     REQUIRE_FALSE(intersects(outside));
     for (double middle = 5.0; inside < middle && middle < outside;
@@ -150,7 +150,7 @@ TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh
     }
     ++touches;
   }
-  CHECK(touches >= 60);  // all balls and boxes
+  CHECK(touches >= 60);  // These are all balls and boxes.
 }
 
 TEST_CASE("Whether triangles intersect does not depend on their scale, down to 1e-108 m",
@@ -185,7 +185,8 @@ TEST_CASE("Whether triangles intersect does not depend on their scale, down to 1
 
 TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
           "[geometry][mesh_intersection]") {
-  const double flatness = 0.0013;  // Middles of the faces of ball(·, 4) lie 0.13 % inside.
+  // The middles of the faces of ball(·, 4) are 0.13 % inside.
+  const double flatness = 0.0013;
   const MeshQuery a(ball(0.10, 4));
   const MeshQuery b(ball(0.03, 4));
   for (const double apart : {0.129, 0.125, 0.12, 0.11, 0.08}) {
@@ -193,10 +194,10 @@ TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
     CHECK(p.intersects);
     CHECK(p.depth <= p.depth_bound);
     CHECK(p.depth_bound - p.depth <= 1.1e-5);
-    // The deepest point of b is its pole towards a's center, that of a likewise; both are
-    // ra + rb − apart deep as long as they are not past the other's center.
+    // The deepest point of b is its pole towards a's center, and that of a likewise; both are ra +
+    // rb − apart deep as long as they are not past the other's center.
     CHECK(p.depth == Approx(0.13 - apart).margin(1.1e-5 + 0.13 * flatness));
-    // Stopped early, it has found enough if there is as much, and its bound holds.
+    // If the search is stopped early, it has found enough if there is as much, and its bound holds.
     for (const double enough : {0.0, 0.5 * p.depth, 2.0 * p.depth}) {
       const Penetration early =
           penetration(a, b, shift(0.6 * apart, 0.8 * apart, 0.0), {.enough = enough});
@@ -208,9 +209,9 @@ TEST_CASE("Two balls penetrate by the sum of their radii less their distance",
 
 TEST_CASE("A ball deep inside a ball penetrates by its farthest point",
           "[geometry][mesh_intersection]") {
-  // Small ball at distance 0.02 from the center of radius 0.1: its surface is deepest at the point
-  // nearest to the center, 0.02 − 0.03 < 0 past it: the center itself is not on the surface, the
-  // least distance of the surface from the center is 0.01.
+  // A small ball is at distance 0.02 from the center of a ball of radius 0.1. Its surface is
+  // deepest at the point nearest to the center, 0.02 − 0.03 < 0 past it: the center itself is not
+  // on the surface, and the least distance of the surface from the center is 0.01.
   const Penetration p =
       penetration(MeshQuery(ball(0.10, 4)), MeshQuery(ball(0.03, 4)), shift(0, 0, 0.02));
   CHECK(p.depth == Approx(0.09).margin(3e-4));
@@ -218,7 +219,7 @@ TEST_CASE("A ball deep inside a ball penetrates by its farthest point",
 
 TEST_CASE("Boxes pressed face on face penetrate by their overlap",
           "[geometry][mesh_intersection]") {
-  // The small face lies 0.002 inside the large box; it is the hard case, deep all over.
+  // The small face is 0.002 inside the large box, which is the hard case, as it is deep all over.
   const MeshQuery table(box({0.2, 0.2, 0.1}));
   const MeshQuery block(box({0.05, 0.05, 0.05}));
   const Penetration p = penetration(table, block, shift(0.01, 0.02, 0.05 + 0.025 - 0.002));
@@ -230,7 +231,7 @@ TEST_CASE("Boxes pressed face on face penetrate by their overlap",
 
 TEST_CASE("Penetration does not depend on how finely a mesh is cut",
           "[geometry][mesh_intersection]") {
-  // A corner of a box of twelve faces in a ball, where only vertices of the ball are near.
+  // A corner of a box of twelve faces is in a ball, where only vertices of the ball are near.
   const MeshQuery coarse(box({0.1, 0.1, 0.1}));
   const MeshQuery sphere(ball(0.05, 3));
   const RigidTransform X = shift(0.05, 0.05, 0.05);
@@ -272,7 +273,7 @@ TEST_CASE("Above a floor the bounds of a depth are those of the whole search",
   CHECK(num_overlapping > 40);
   CHECK(num_deeper > 40);
   CHECK(num_deeper < 3 * num_overlapping);
-  // Inside, without a crossing of the surfaces: its farthest point is 0.09 deep.
+  // It is inside, without a crossing of the surfaces, and its farthest point is 0.09 deep.
   const MeshQuery large(ball(0.10, 4)), small(ball(0.03, 4));
   CHECK(depth_above(large, small, shift(0, 0, 0.02), 0.05).at_least == Approx(0.09).margin(3e-4));
   CHECK(depth_above(small, large, shift(0, 0, 0.02), 0.05).at_least == Approx(0.09).margin(3e-4));
@@ -284,8 +285,10 @@ TEST_CASE("The distance of two boxes is that of their nearest features",
           "[geometry][mesh_intersection]") {
   const MeshQuery cube(box({2, 2, 2}));
   CHECK(distance(cube, cube, shift(5, 0, 0)).distance == Approx(3.0));
-  CHECK(distance(cube, cube, shift(5, 6, 0)).distance == Approx(5.0));  // Edges: 3, 4.
-  CHECK(distance(cube, cube, shift(4, 4, 3)).distance == Approx(3.0));  // Corners: 2, 2, 1.
+  // Edges are apart by 3 and 4.
+  CHECK(distance(cube, cube, shift(5, 6, 0)).distance == Approx(5.0));
+  // Corners are apart by 2, 2 and 1.
+  CHECK(distance(cube, cube, shift(4, 4, 3)).distance == Approx(3.0));
   const MeshDistance d = distance(cube, cube, shift(4, 4, 3));
   CHECK((d.point_on_a_A - Eigen::Vector3d(1, 1, 1)).norm() < 1e-12);
   CHECK((d.point_on_b_A - Eigen::Vector3d(3, 3, 2)).norm() < 1e-12);
@@ -324,8 +327,8 @@ TEST_CASE("A tolerance that is not positive, or less than nothing as enough, is 
 
 namespace {
 
-// Depth of `inner`'s surface in `outer` over a grid of `steps` per edge on each face: never more
-// than the true depth, and less by at most the grid's spacing.
+// The depth of `inner`'s surface in `outer` over a grid of `steps` per edge on each face: never
+// more than the true depth, and less by at most the grid's spacing.
 struct SampledDepth {
   double depth = 0.0;
   double spacing = 0.0;
@@ -377,8 +380,8 @@ TEST_CASE("Penetration brackets what a dense grid on both surfaces finds",
 
 TEST_CASE("Penetration of coinciding faces is tight however they are cut",
           "[geometry][mesh_intersection]") {
-  // Flush stacks, the second turned or finer, touching or overlapping by `deep`; small bodies on a
-  // large table and the same body in its own place.
+  // The bodies are flush stacks, the second turned or finer, touching or overlapping by `deep`;
+  // small bodies on a large table; and the same body in its own place.
   const MeshQuery table(box({0.6, 0.4, 0.05}));
   for (const double deep : {0.0, 1e-3}) {
     for (const double angle : {0.0, 0.3}) {

@@ -30,7 +30,8 @@ TriangleMesh turned_inward(TriangleMesh mesh) {
   return mesh;
 }
 
-// Least distance to a triangle by ternary search in its two coordinates: slow, but another way.
+// Finds the least distance to a triangle by ternary search in its two coordinates, which is slow,
+// but another way.
 double distance_to_triangle(const Eigen::Vector3d& point, const std::array<Eigen::Vector3d, 3>& t) {
   const auto along = [&](double u) {
     const Eigen::Vector3d p = t[0] + u * (t[1] - t[0]);
@@ -91,7 +92,7 @@ TEST_CASE("Containment in a ball and a torus agrees with their equations",
   Random random(32);
   for (int i = 0; i < 3000; ++i) {
     const Eigen::Vector3d p = drawn(random, 1.5);
-    // The polyhedra lie inside the smooth bodies by at most 0.5 %.
+    // The polyhedra are inside the smooth bodies by at most 0.5 %.
     const double r = p.norm();
     if (r < 0.995 || r > 1.0) {
       CHECK((sphere.containment(p) == Containment::Inside) == (r < 1.0));
@@ -106,7 +107,8 @@ TEST_CASE("Containment in a ball and a torus agrees with their equations",
 TEST_CASE("Vertices, edges and faces are on the surface, an ulp beside is not",
           "[geometry][mesh_query]") {
   const MeshQuery cube(box({2, 2, 2}));
-  // All points of the lattice {−2, −1, …, 2}/1: rays along x run through edges, vertices and faces.
+  // The points are those of the lattice −2, −1.5, …, 2: rays along x run through edges, vertices
+  // and faces.
   for (int x = -4; x <= 4; ++x) {
     for (int y = -4; y <= 4; ++y) {
       for (int z = -4; z <= 4; ++z) {
@@ -193,7 +195,7 @@ TEST_CASE("A ray hits a box where it should", "[geometry][mesh_query]") {
   CHECK(from_inside->distance == Approx(1.25));
   CHECK_FALSE(query.first_hit({-5, 0, 0}, {-1, 0, 0}));
   CHECK_FALSE(query.first_hit({-5, 1.5, 0}, {1, 0, 0}));
-  CHECK(query.first_hit({1, 0.25, 0.5}, {1, 0, 0})->distance == 0.0);  // Starts on the face.
+  CHECK(query.first_hit({1, 0.25, 0.5}, {1, 0, 0})->distance == 0.0);  // It starts on the face.
 }
 
 TEST_CASE("No ray leaves a closed surface unnoticed", "[geometry][mesh_query]") {
@@ -201,7 +203,7 @@ TEST_CASE("No ray leaves a closed surface unnoticed", "[geometry][mesh_query]") 
   const MeshQuery query(mesh);
   Random random(34);
   const Eigen::Vector3d origin = drawn(random, 0.3);
-  // Straight at vertices and at the middles of edges, where two or six faces meet.
+  // The rays go straight at vertices and at the middles of edges, where two or six faces meet.
   for (const Face& f : mesh.faces) {
     const Eigen::Vector3d& a = mesh.vertices[f[0]];
     const Eigen::Vector3d& b = mesh.vertices[f[1]];
@@ -237,7 +239,7 @@ TEST_CASE("One face, equal faces and degenerate faces can be asked", "[geometry]
   mesh.faces.assign(100, {0, 1, 2});
   CHECK(MeshQuery(mesh).closest_point({0.25, 0.25, 3}).face == 0);
   CHECK(MeshQuery(mesh).closest_point({0.25, 0.25, 3}).squared_distance == Approx(9.0));
-  mesh.faces = {{0, 1, 3}};  // Collinear: the segment from 0 to 2.
+  mesh.faces = {{0, 1, 3}};  // These are collinear: the segment from 0 to 2.
   const MeshQuery segment(mesh);
   CHECK((segment.closest_point({1.5, 1, 0}).point - Eigen::Vector3d(1.5, 0, 0)).norm() < 1e-15);
   CHECK(segment.containment({1.5, 0, 0}) == Containment::OnSurface);
@@ -262,7 +264,7 @@ TEST_CASE("Copies of a query share the tree", "[geometry][mesh_query]") {
 
 namespace {
 
-// A triangle soup with whole coordinates in [−3, 3], some of it degenerate.
+// Returns a triangle soup with whole coordinates in [−3, 3], some of it degenerate.
 TriangleMesh whole_soup(Random& random, int num_faces) {
   TriangleMesh mesh;
   for (int i = 0; i < 3 * num_faces; ++i) {
@@ -274,9 +276,9 @@ TriangleMesh whole_soup(Random& random, int num_faces) {
   return mesh;
 }
 
-// Where the line through `origin` along ±`axis` meets a closed triangle, in whole numbers, which
-// doubles hold without rounding: the sides of its edges in the plane across, then the height as a
-// quotient. Empty for triangles seen edge-on.
+// Returns where the line through `origin` along ±`axis` meets a closed triangle, in whole numbers,
+// which doubles hold without rounding: by the sides of its edges in the plane across, then the
+// height as a quotient. It is empty for triangles seen edge-on.
 std::optional<double> exact_height(const std::array<Eigen::Vector3d, 3>& t,
                                    const Eigen::Vector3d& origin, int axis) {
   const int u = (axis + 1) % 3;
@@ -366,7 +368,7 @@ TEST_CASE("All hits of random lines are those of a loop over all faces", "[geome
     const Eigen::Vector3d direction = drawn(random, 1.0);
     std::vector<std::int32_t> expected;
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-      // Cramer's rule: origin + s·direction = a + u·(b − a) + v·(c − a).
+      // By Cramer's rule origin + s·direction = a + u·(b − a) + v·(c − a).
       const auto [a, b, c] = corners(mesh, face);
       Eigen::Matrix3d m;
       m << b - a, c - a, -direction;
@@ -388,7 +390,7 @@ TEST_CASE("All hits of random lines are those of a loop over all faces", "[geome
 }
 
 TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][mesh_query]") {
-  // Whole coordinates: rays run along edges, in faces and through vertices of all three bodies.
+  // With whole coordinates rays run along edges, in faces and through vertices of all three bodies.
   TriangleMesh octahedron;
   octahedron.vertices = {{3, 0, 0}, {-3, 0, 0}, {0, 3, 0}, {0, -3, 0}, {0, 0, 3}, {0, 0, -3}};
   octahedron.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
@@ -422,7 +424,7 @@ TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][m
       }
     }
   }
-  // Through the middle of a cube: both triangles of a side are met on their common edge, one
+  // Through the middle of a cube both triangles of a side are met on their common edge, and one
   // counts.
   const auto hits = MeshQuery(cube).all_hits({-5, 0, 0}, {1, 0, 0});
   CHECK(hits.size() == 4);

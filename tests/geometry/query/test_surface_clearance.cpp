@@ -43,17 +43,17 @@ TEST_CASE("Surface clearance bounds the distance from below, as near as asked",
 
 TEST_CASE("Surface clearance is zero where edges pass through faces far from corners",
           "[geometry][surface_clearance]") {
-  // A long thin bar through the middle of a large plate: no corner, no two edges are near.
+  // A long thin bar goes through the middle of a large plate: no corner and no two edges are near.
   const MeshQuery plate(box({1.0, 1.0, 0.01}));
   const MeshQuery bar(box({0.01, 0.01, 1.0}));
   RigidTransform X = RigidTransform::Identity();
   X.translation() = Vector3d(0.11, -0.2, 0.0);
   CHECK(surface_clearance(plate, bar, X, 1.0, 1.0).at_least == 0.0);
   CHECK(surface_clearance(bar, plate, X.inverse(), 1.0, 1.0).at_least == 0.0);
-  // Beside it the bar is as far as its side is: 0.1 m less half its width.
+  // Beside the plate the bar is as far as its side is: 0.1 m less half its width.
   X.translation() = Vector3d(0.6, 0.0, 0.0);
   CHECK(surface_clearance(plate, bar, X, 1.0, 1.0).at_least == Approx(0.095).epsilon(1e-12));
-  // What lies inside without a crossing is as far from the surface as it is.
+  // What is inside without a crossing is as far from the surface as it is.
   const MeshQuery inner(box({0.1, 0.1, 0.1}));
   const MeshQuery outer(box({1.0, 1.0, 1.0}));
   CHECK(surface_clearance(outer, inner, RigidTransform::Identity(), 1.0, 1.0).at_least ==

@@ -15,7 +15,7 @@ using graspfit::testing::moved;
 
 namespace {
 
-/// Every face in four, the surface unchanged.
+/// Returns every face cut in four, with the surface unchanged.
 TriangleMesh finer(const TriangleMesh& mesh) {
   TriangleMesh result;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -46,11 +46,11 @@ TEST_CASE("Surfaces of known distance have it between the bounds, either way aro
       // A side moves by as much as the box.
       {cube, moved(cube, {0.25, 0, 0}), 0.25},
       {cube, finer(moved(cube, {0.25, 0, 0})), 0.25},
-      // From corner to corner.
+      // The distance is from corner to corner.
       {cube, box({2, 2, 2}), 0.5 * std::sqrt(3.0)},
-      // From the far side of one to the near side of the other.
+      // The distance is from the far side of one to the near side of the other.
       {cube, moved(cube, {5, 0, 0}), 5.0},
-      // A vertex on twice the sphere is nearest to the vertex below it, which lies farthest out.
+      // A vertex on twice the sphere is nearest to the vertex below it, which is the farthest out.
       {ball(1, 2), ball(2, 2), 1.0},
       {ball(1, 3), ball(2, 2), 1.0}};
   for (const auto& [a, b, exact] : cases) {

@@ -39,11 +39,13 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
     REQUIRE(nearest);
     if (do_intersect(a, b, X_AB)) {
       ++num_crossing;
-      CHECK(nearest->distance == 0.0);  // neither is small enough to lie inside the other
+      // Neither is small enough to be inside the other.
+      CHECK(nearest->distance == 0.0);
       continue;
     }
     ++num_apart;
-    // Two constructions of the same length; coordinates of about 2 are rounded some ten times.
+    // These are two constructions of the same length; coordinates of about 2 are rounded some ten
+    // times.
     CHECK(nearest->distance == Approx(distance(a, b, X_AB).distance).margin(1e-14));
     CHECK((nearest->point_on_a_A - nearest->point_on_b_A).norm() ==
           Approx(nearest->distance).margin(1e-15));
@@ -53,7 +55,8 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
     const auto seeded = nearest_points(a, b, X_AB, kNoLimit, {i % 100, i % 12});
     REQUIRE(seeded);
     CHECK(seeded->distance == Approx(nearest->distance).margin(1e-15));
-    // Any pair within a limit will do, but there must be one just where there is a nearer one.
+    // Any pair within a limit is allowed, but there must be one exactly where there is a nearer
+    // one.
     const auto any = nearest_points(a, b, X_AB, kNoLimit, {}, 1.5 * nearest->distance);
     REQUIRE(any);
     CHECK(any->distance <= 1.5 * nearest->distance);
@@ -99,7 +102,7 @@ TEST_CASE("A surface inside another has a distance from it", "[geometry][surface
   X.translation() = Eigen::Vector3d(0.25, 0, 0);
   const auto nearest = nearest_points(outer, inner, X, kNoLimit);
   REQUIRE(nearest);
-  CHECK(nearest->distance == Approx(0.25).margin(1e-15));  // 1 − (0.5 + 0.25)
+  CHECK(nearest->distance == Approx(0.25).margin(1e-15));  // It is 1 − (0.5 + 0.25).
 }
 
 TEST_CASE("An open surface pierced in its middle is at distance zero",

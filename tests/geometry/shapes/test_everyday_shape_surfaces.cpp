@@ -16,7 +16,7 @@ using graspfit::testing::check_solid;
 using graspfit::testing::volume_limit;
 using std::numbers::pi;
 
-// Where the vertices of everyday shapes lie, surface by surface.
+// These tests check where the vertices of everyday shapes lie, surface by surface.
 namespace {
 
 // Vertices are rounded to 1e-12 of the longest extent; a test's own arithmetic adds a few ulps.
@@ -38,7 +38,7 @@ double to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   return (p - (1 - t) * a - t * b).norm();
 }
 
-// Distance to the outline of a rounded rectangle in the plane, piece by piece.
+// Returns the distance to the outline of a rounded rectangle in the plane, piece by piece.
 double to_rounded_rectangle(const Vector2d& p, double a, double b, double corner) {
   const auto segment = [&](Vector2d s, Vector2d e) {
     return to_segment({p[0], p[1], 0}, {s[0], s[1], 0}, {e[0], e[1], 0});
@@ -94,7 +94,8 @@ TEST_CASE("Vertices of a bottle lie on its cylinders, cone and arcs",
 TEST_CASE("A bowling pin has the regulation diameters, and is widest and narrowest where they say",
           "[geometry][everyday_shapes]") {
   const TriangleMesh mesh = bowling_pin({.height = 15.0}, 768);
-  std::vector<Vector2d> side;  // (z, radius) along the meridian y = 0, x > 0
+  // These are (z, radius) along the meridian y = 0, x > 0.
+  std::vector<Vector2d> side;
   for (const Vector3d& p : mesh.vertices) {
     if (p[1] == 0.0 && p[0] > 0.0) side.emplace_back(p[2], p[0]);
   }
@@ -113,7 +114,7 @@ TEST_CASE("A bowling pin has the regulation diameters, and is widest and narrowe
                              {10, 1.797},    {10.875, 1.87}, {11.75, 2.094}, {12.625, 2.406},
                              {13.5, 2.547}};
   for (const auto& [z, expected] : table) CHECK(diameter(z) == Approx(expected).margin(sag));
-  // Up to the belly wider, to the neck narrower, to the head wider, to the top narrower.
+  // Up to the belly it becomes wider, to the neck narrower, to the head wider, to the top narrower.
   for (std::size_t i = 1; i < side.size(); ++i) {
     const double z = 0.5 * (side[i - 1][0] + side[i][0]);
     if (z <= 0.0) continue;
@@ -174,21 +175,22 @@ TEST_CASE("Vertices of a mug lie on its wall and, away from the fillets, on its 
   CHECK(num_on_handle > 1000);
   CHECK(num_inside > 5000);
 
-  // Wall: area of half the cross-section times the way of its centroid [Pappus], from floor, arc,
-  // wall and rim; all pieces are w thick around their middle line.
+  // The volume of the wall is the area of half the cross-section times the way of its centroid
+  // [Pappus], of floor, arc, wall and rim; all pieces are w thick around their middle line.
   const double w = d.wall_thickness;
   const double middle = outer - half_wall;
   const double corner = d.base_radius - half_wall;
   const double straight = d.height - half_wall - d.base_radius;
   const double floor_volume = pi * std::pow(middle - corner, 2) * w;
-  // ∫∫ (middle − corner + r sin) r dr dangle over the quarter ring.
+  // This is ∫∫ (middle − corner + r sin) r dr dangle over the quarter ring.
   const double quarter = 2 * pi *
                          ((middle - corner) * pi / 4 *
                               (std::pow(corner + half_wall, 2) - std::pow(corner - half_wall, 2)) +
                           (std::pow(corner + half_wall, 3) - std::pow(corner - half_wall, 3)) / 3);
   const double wall = floor_volume + quarter + 2 * pi * middle * w * straight +
                       2 * pi * middle * pi / 2 * half_wall * half_wall;
-  // Handle: two straight pieces from the wall, two quarters of a circle, one straight piece.
+  // The handle has two straight pieces from the wall, two quarters of a circle, and one straight
+  // piece.
   const double a = outer + d.handle_clearance + 0.5 * d.handle_thickness - outer;
   const double length = 2 * (a - d.handle_radius) + pi * d.handle_radius +
                         (d.handle_height - d.handle_thickness - 2 * d.handle_radius);
@@ -243,8 +245,8 @@ TEST_CASE("Vertices of a bowling ball lie on its sphere and in its holes, rounde
   // The round ends are met by edges of 3 mm on a ball of 12.5 mm, which sag by 0.1 mm.
   for (const double depth : deepest) CHECK(depth == Approx(0).margin(2e-4));
 
-  // Sphere less holes: over the disc of each hole, from its round end to the sphere (midpoint rule
-  // in r and angle).
+  // The volume is that of the sphere less the holes: over the disc of each hole, from its round end
+  // to the sphere (midpoint rule in r and angle).
   const auto hole = [&](double offset, double depth, double r) {
     constexpr int n = 400;
     double sum = 0.0;
@@ -306,7 +308,7 @@ TEST_CASE("Arms of an octopus have the stated radius around their arc",
     if (mantle < d.fillet || along < 0.09) continue;
     ++num_on_arms;
     ++per_arm[k];
-    // The nearest point of the arc, by golden-section search over the heading.
+    // This finds the nearest point of the arc, by golden-section search over the heading.
     const auto distance = [&](double h) {
       return Vector3d(along - center_s - arc * std::sin(h), p[2] - center_z + arc * std::cos(h),
                       across)
@@ -328,8 +330,8 @@ TEST_CASE("Arms of an octopus have the stated radius around their arc",
   }
   CHECK(num_on_arms > 5000);
   for (const int count : per_arm) CHECK(count > 500);
-  // Eight-fold symmetry: the center of mass is on the axis, and the inertia is the same about x
-  // and y, up to the lattice.
+  // By the eight-fold symmetry the center of mass is on the axis, and the inertia is the same about
+  // x and y, up to the lattice.
   const MassProperties mass = mass_properties(mesh);
   CHECK(mass.center_of_mass.head<2>().norm() < 1e-5 * d.arm_reach);
   CHECK(mass.inertia(0, 0) == Approx(mass.inertia(1, 1)).epsilon(1e-4));

@@ -112,10 +112,11 @@ TEST_CASE("Everyday shapes are closed, outward, free of crossings and of their g
     CHECK(mesh.faces.size() < static_cast<std::size_t>(shape.most_faces));
     CHECK(smallest_angle_deg(mesh) > shape.min_angle_deg);
     const Eigen::AlignedBox3d box = bounding_box(mesh);
-    constexpr double kUlps = 2e-16;  // a few of lengths below 0.4 m, for the numbers above
+    // These are a few ulps of lengths below 0.4 m, by which the numbers above may be off.
+    constexpr double kUlps = 2e-16;
     CHECK((box.min() - shape.low).cwiseAbs().maxCoeff() <= kUlps);
     CHECK((box.max() - shape.high).cwiseAbs().maxCoeff() <= kUlps);
-    CHECK(named_shape(shape.name) == mesh);  // built again: the same bytes
+    CHECK(named_shape(shape.name) == mesh);  // It is built again with the same bytes.
   }
   check_solid(table(), 0);
   CHECK(named_shape("table") == table());
@@ -151,7 +152,7 @@ TEST_CASE("Fine shapes are as sound as coarse ones", "[geometry][everyday_shapes
 }
 
 TEST_CASE("A shape twice as large is the same shape, bit for bit", "[geometry][everyday_shapes]") {
-  // Powers of two change no rounding, so nothing may depend on an absolute length.
+  // Powers of two change no rounding, so that nothing may depend on an absolute length.
   for (const ShapeDescription& description : shape_descriptions()) {
     INFO(description.name);
     std::vector<ShapeDimension> doubled = description.dimensions;
@@ -166,7 +167,7 @@ TEST_CASE("A shape twice as large is the same shape, bit for bit", "[geometry][e
 
 TEST_CASE("Volumes of turned shapes are those of their cones", "[geometry][everyday_shapes]") {
   // With roundings of 1 um the solid is cylinders and cones. A rounding changes the area of the
-  // profile by less than its square, so the volume by less than 1e-11 of 1e-3 m³ here.
+  // profile by less than its square, and so the volume by less than 1e-11 of 1e-3 m³ here.
   BottleDimensions b;
   b.shoulder_radius = b.base_radius = b.lip_radius = 1e-6;
   CHECK(volume_limit([&](int n) { return bottle(b, n); }, 768) ==
@@ -194,13 +195,14 @@ TEST_CASE("A table is its top and its legs", "[geometry][everyday_shapes]") {
 }
 
 TEST_CASE("Everyday shapes refuse what does not fit and name it", "[geometry][everyday_shapes]") {
-  // Every length of every shape: not a number, zero, negative, infinite.
+  // Every length of every shape is tried as not a number, zero, negative and infinite.
   for (const ShapeDescription& shape : shape_descriptions()) {
     for (const ShapeDimension& dimension : shape.dimensions) {
       const std::string field =
           shape.name == "box" ? std::string("size") : dimension.name;  // one vector for x, y, z
       for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-        if (dimension.name == "subdivisions" && bad == 0.0) continue;  // an icosahedron
+        // A ball without subdivisions is an icosahedron.
+        if (dimension.name == "subdivisions" && bad == 0.0) continue;
         INFO(shape.name << ' ' << dimension.name << ' ' << bad);
         CHECK_THROWS_WITH(
             named_shape(shape.name, {{dimension.name, bad}}),

@@ -50,7 +50,7 @@ TEST_CASE("Box, cylinder and capsule have their extents", "[geometry][shapes]") 
   check_is_closed_and_outward(box({1, 2, 3}));
   check_is_closed_and_outward(cylinder(1, 3, 5));
   check_is_closed_and_outward(capsule(1, 3, 7));
-  // Inscribed prism: pi r² h times sin(x)/x of the segment's angle x.
+  // The inscribed prism has pi r² h times sin(x)/x of the segment's angle x.
   const double angle = 2 * std::numbers::pi / 96;
   CHECK(signed_volume(cylinder(1, 3, 96)) ==
         Approx(3 * std::numbers::pi * std::sin(angle) / angle));

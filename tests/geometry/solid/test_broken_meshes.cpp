@@ -23,18 +23,17 @@
 
 namespace test_broken_meshes {
 
-// The broken meshes against assets/broken_mesh_outcomes.csv, whose rows were written from the
-// contract before the code ran on them. Columns:
+// These tests compare what becomes of the broken meshes with assets/broken_mesh_outcomes.csv, whose
+// rows follow the contract of `repair_mesh` and not its answers. The columns are:
 //
 //   name     as in broken_meshes.cpp
-//   options  of repair_mesh: strict, report, resolve, wrap=alpha_rel, hole=, weld=; none: the
-//   defaults before   analysis of the mesh as built: parts, and every count that is not zero; "?":
-//   whatever;
+//   options  of repair_mesh: strict, report, resolve, wrap=alpha_rel, hole=, weld=; none: defaults
+//   before   analysis of the mesh as built: parts, and every count that is not zero; "?": any;
 //            "pinched": a vertex is; "overlaps", "nested": pairs of parts, parts; "crossing",
 //            "no-crossing": faces do or do not cross
 //   strict   outcome of RepairMode::Strict, on the first row of each mesh
-//   outcome  unchanged, repaired, InvalidInput, DegenerateGeometry, or closed: either of the first
-//            two
+//   outcome  unchanged, repaired, InvalidInput, DegenerateGeometry, or closed: unchanged or
+//            repaired
 //   steps    what:count; "+": any count; "*": any further steps
 //   parts    after
 //   volume   signed sum, relative tolerance 1e-9 unless "~tolerance", or a range "a..b"
@@ -156,7 +155,7 @@ void check_message(const std::string& message, const std::string& words) {
   }
 }
 
-// "a:1 | *" against the steps from `i` on.
+// Returns whether "a:1 | *" fits the steps from `i` on.
 bool fits(const std::vector<std::string>& expected, std::size_t k,
           const std::vector<RepairStep>& steps, std::size_t i) {
   if (k == expected.size()) return i == steps.size();
@@ -215,8 +214,8 @@ void check_before(const TriangleMesh& mesh, const std::string& expected) {
   CHECK(found.is_outward == (is_closed && !has("inward")));
 }
 
-// Largest distance from a corner, edge midpoint or centroid of `from` to the surface of `to`: a
-// lower bound of the one-sided Hausdorff distance.
+// Returns the largest distance from a corner, edge midpoint or centroid of `from` to the surface of
+// `to`: a lower bound of the one-sided Hausdorff distance.
 double sampled_distance(const TriangleMesh& from, const MeshQuery& to) {
   double largest = 0.0;
   for (std::size_t face = 0; face < from.faces.size(); ++face) {
@@ -260,7 +259,8 @@ void check_steps(const TriangleMesh& mesh, const RepairedMesh& repaired) {
         Approx(volume_change).margin(1e-9 * whole));
 }
 
-// Winding number by solid angles [van Oosterom & Strackee 1983]: another way than rays.
+// Computes the winding number by solid angles [van Oosterom & Strackee 1983], another way than by
+// rays.
 double winding_number(const TriangleMesh& mesh, const Eigen::Vector3d& point, double scale) {
   double sum = 0.0;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -275,7 +275,7 @@ double winding_number(const TriangleMesh& mesh, const Eigen::Vector3d& point, do
   return sum / (4 * std::numbers::pi);
 }
 
-// What can be asked of any mesh, however broken.
+// Checks what can be asked of any mesh, however broken.
 void check_queries(const MeshQuery& query) {
   const TriangleMesh& mesh = query.mesh();
   const double extent = longest_extent(mesh);
@@ -311,8 +311,8 @@ void check_pieces(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   CHECK(area == Approx(surface_area(mesh)).epsilon(1e-9).margin(smallest));
 }
 
-// A closed mesh: voxels, patches and queries have to agree, with each other and with `solid`, the
-// volume of the union where it is known.
+// Checks that voxels, patches and queries of a closed mesh agree, with each other and with `solid`,
+// the volume of the union where it is known.
 void check_solid(const TriangleMesh& mesh, std::optional<double> solid) {
   const MeshQuery query(mesh);
   check_queries(query);
@@ -383,7 +383,7 @@ void check_volume(const TriangleMesh& mesh, const std::string& expected) {
   }
 }
 
-// Volume of the solid, where the row gives a number for it.
+// Returns the volume of the solid, where the row gives a number for it.
 std::optional<double> solid_of(const Row& row) {
   const std::string& text = row.at("union").empty() ? row.at("volume") : row.at("union");
   if (text.empty() || text.find_first_of("~") != std::string::npos ||
@@ -523,7 +523,8 @@ TEST_CASE("As-is mode leaves any mesh alone and every query survives it",
     }
     const VoxelLattice lattice = lattice_around(box, {.resolution = 20});
     CHECK_NOTHROW(check_pieces(mesh, lattice));
-    // Open meshes have no inside, so classes are any; that there are any is all that is asked.
+    // Open meshes have no inside, so that classes may be any; the test only asks that there are
+    // some.
     const MeshQuery query(mesh);
     const auto patches = surface_patches(mesh, lattice);
     CHECK(voxelize(query, lattice, patches).classes.size() ==

@@ -18,7 +18,7 @@ TEST_CASE("A box has the mass properties of its formulas wherever it is",
   const MassProperties mass = mass_properties(mesh);
   CHECK(mass.volume == Approx(6.0));
   CHECK((mass.center_of_mass - center).norm() < 1e-13);
-  // m/12 (b² + c²) and so on, m = 6.
+  // The moments are m/12 (b² + c²) and so on, with m = 6.
   const Eigen::Matrix3d expected = Eigen::Vector3d(6.5, 5.0, 2.5).asDiagonal();
   CHECK((mass.inertia - expected).norm() < 1e-12);
 }
@@ -29,7 +29,7 @@ TEST_CASE("A fine ball and torus come near their formulas", "[geometry][mass_pro
   CHECK(sphere.volume == Approx(4.0 / 3.0 * pi).epsilon(1e-3));
   CHECK((sphere.inertia - 8.0 / 15.0 * pi * Eigen::Matrix3d::Identity()).norm() < 5e-3);
   CHECK(sphere.center_of_mass.norm() < 1e-14);
-  // 2 pi² R r²; about its axis m (R² + 3/4 r²).
+  // The volume is 2 pi² R r², the moment about its axis m (R² + 3/4 r²).
   const MassProperties ring = mass_properties(torus(1.0, 0.3, 200, 100));
   CHECK(ring.volume == Approx(2 * pi * pi * 0.09).epsilon(1e-3));
   CHECK(ring.inertia(2, 2) == Approx(ring.volume * (1 + 0.75 * 0.09)).epsilon(1e-3));
@@ -55,7 +55,7 @@ TEST_CASE("Parts that overlap count once, and the method says so", "[geometry][m
   const TriangleMesh cube = box({2, 2, 2});
   TriangleMesh beside = cube;
   for (auto& vertex : beside.vertices) vertex += Eigen::Vector3d(1, 0, 0);
-  // A bar of 3 x 2 x 2.
+  // The two cubes overlap and form a bar of 3 x 2 x 2.
   const MassProperties bar = mass_properties(concatenated({cube, beside}));
   CHECK(bar.method == MassMethod::SolidBoundary);
   CHECK(bar.volume == Approx(12.0));

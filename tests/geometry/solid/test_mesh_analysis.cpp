@@ -88,7 +88,7 @@ TEST_CASE("An inward part is right as a cavity and wrong elsewhere", "[geometry]
 
 TEST_CASE("Two boxes with a common vertex are pinched there", "[geometry][mesh_analysis]") {
   TriangleMesh both = concatenated({box({1, 1, 1}), moved(box({1, 1, 1}), {1, 1, 1})});
-  CHECK(analyze(both).is_manifold);  // Two vertices at one place are two.
+  CHECK(analyze(both).is_manifold);  // Two vertices at one position are two.
   for (Face& f : both.faces) {
     for (std::int32_t& vertex : f) vertex = vertex == 8 ? 7 : vertex;
   }
@@ -109,7 +109,8 @@ TEST_CASE("Crossing parts are counted as self-intersections only when asked",
 }
 
 TEST_CASE("Faces that share corners cross only beyond them", "[geometry][mesh_analysis]") {
-  // Against the triangle (0,0,0) (4,0,0) (0,4,0): the other's corners, and whether they cross.
+  // A case has the corners of a triangle, and whether it crosses the triangle (0,0,0) (4,0,0)
+  // (0,4,0).
   const std::vector<std::pair<std::vector<Eigen::Vector3d>, bool>> cases = {
       {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, true},      // the same
       {{{0, 0, 0}, {4, 0, 0}, {0, -4, 0}}, false},    // beyond the common edge, in the plane

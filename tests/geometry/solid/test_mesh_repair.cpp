@@ -46,7 +46,7 @@ void check_is_good(const RepairedMesh& repaired, double volume) {
   CHECK(again.mesh == repaired.mesh);
 }
 
-/// Every face with three vertices of its own.
+/// Returns every face with three vertices of its own.
 TriangleMesh soup(const TriangleMesh& mesh) {
   TriangleMesh result;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -57,7 +57,8 @@ TriangleMesh soup(const TriangleMesh& mesh) {
   return result;
 }
 
-/// The steps' volumes add up, and their bounds hold against the surfaces themselves.
+/// Checks that the steps' volumes add up, and that their bounds hold against the surfaces
+/// themselves.
 void check_report(const TriangleMesh& given, const RepairedMesh& repaired) {
   double volume = internal::coned_volume(given);
   double bound = 0.0;
@@ -87,7 +88,7 @@ TEST_CASE("A good mesh is left as it is", "[geometry][mesh_repair]") {
 
 TEST_CASE("A hole of a box is filled and the volume restored", "[geometry][mesh_repair]") {
   TriangleMesh mesh = box({1, 1, 4});
-  // Without its bottom plate: a square hole of extent 1 against 4.
+  // Without its bottom plate the mesh has a square hole of extent 1 against 4.
   mesh.faces.erase(mesh.faces.begin(), mesh.faces.begin() + 2);
   const RepairedMesh repaired = repair_mesh(mesh);
   CHECK(steps_of(repaired) == "filled holes 1");
@@ -167,9 +168,9 @@ TEST_CASE("Solids that touch along an edge or at a vertex come apart", "[geometr
 
 TEST_CASE("Solids with a common side cut along other diagonals come apart",
           "[geometry][mesh_repair]") {
-  // The second box stands on the top of the first and shares its four corners there, 4 to 7; turned
-  // by a quarter its bottom has the other diagonal. Around their common edges two faces stand in
-  // one place.
+  // The second box stands on the top of the first and shares its four corners there, 4 to 7. Since
+  // it is turned by a quarter, its bottom has the other diagonal. Around their common edges two
+  // faces stand in one place.
   TriangleMesh upper = box({1, 1, 1});
   for (Eigen::Vector3d& v : upper.vertices) v = Eigen::Vector3d(-v[1], v[0], v[2] + 1.0);
   const TriangleMesh lower = box({1, 1, 1});
@@ -189,14 +190,14 @@ TEST_CASE("Solids with a common side cut along other diagonals come apart",
 }
 
 TEST_CASE("A slit without area is filled with faces without area", "[geometry][mesh_repair]") {
-  // Two or three vertices on an edge of the neighbor.
+  // There are one to three vertices on an edge of the neighbor.
   for (const int num_extra : {1, 2, 3}) {
     TriangleMesh mesh = box({1, 1, 4});
     const Face face = mesh.faces[5];
     mesh.faces.erase(mesh.faces.begin() + 5);
     std::int32_t last = face[0];
     for (int i = 1; i <= num_extra; ++i) {
-      const double t = i / 4.0;  // Exact: the box's coordinates are powers of two.
+      const double t = i / 4.0;  // This is exact, as the box's coordinates are powers of two.
       mesh.vertices.push_back((1.0 - t) * mesh.vertices[face[0]] + t * mesh.vertices[face[1]]);
       const auto next = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
       mesh.faces.push_back({last, next, face[2]});
@@ -290,11 +291,11 @@ TEST_CASE("Vertices are welded up to the distance given and move no farther",
           "[geometry][mesh_repair]") {
   TriangleMesh mesh = soup(ball(1, 1));
   Random random(3);
-  // Up to 0.8e-3 apart; the extent is 2, so that 0.0005 welds what is 1e-3 apart.
+  // Vertices are up to 0.8e-3 apart; the extent is 2, so that 0.0005 welds what is 1e-3 apart.
   for (Eigen::Vector3d& v : mesh.vertices) {
     for (double& x : v) x += random.uniform(-2e-4, 2e-4);
   }
-  // Apart, every face is a sheet that what fills it cancels.
+  // Without a weld every face is a sheet that what fills it cancels.
   CHECK_THROWS_AS(repair_mesh(mesh), DegenerateGeometry);
   const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 5e-4});
   CHECK(steps_of(repaired) == "welded vertices 198");
@@ -306,7 +307,8 @@ TEST_CASE("Vertices are welded up to the distance given and move no farther",
 }
 
 TEST_CASE("A chain of close vertices does not collapse into one", "[geometry][mesh_repair]") {
-  // A fine ring of a cylinder: neighbors are 0.0157 apart, the weld reaches to every other one.
+  // Neighbors on a fine ring of a cylinder are 0.0157 apart, and the weld reaches to every other
+  // one.
   TriangleMesh mesh = cylinder(1, 2.5, 400);
   mesh.vertices.push_back({0, 0, 0});
   const RepairedMesh repaired = repair_mesh(mesh, {.weld_distance_rel = 0.009});
@@ -334,7 +336,7 @@ TEST_CASE("The bound of a step is the distance where that is known", "[geometry]
   CHECK(trimmed.steps[1].hausdorff_bound == 0.0);
   check_report(flap, trimmed);
 
-  // A face collapsed to a diagonal through the box, one to an edge, one to a point.
+  // One face is collapsed to a diagonal through the box, one to an edge, one to a point.
   for (const auto& [face, bound] :
        {std::pair{Face{0, 0, 7}, 0.5}, std::pair{Face{0, 1, 1}, 0.0}, {Face{3, 3, 3}, 0.0}}) {
     TriangleMesh mesh = box({1, 1, 1});
@@ -383,7 +385,8 @@ TEST_CASE("Crossings are reported as asked and refused by strict", "[geometry][m
 
 TEST_CASE("Resolving crossings keeps the solid and leaves none", "[geometry][mesh_repair]") {
   const TriangleMesh cube = box({2, 2, 2});
-  TriangleMesh dented = ball(1, 2);  // One vertex pushed through the opposite side.
+  // One vertex is pushed through the opposite side.
+  TriangleMesh dented = ball(1, 2);
   dented.vertices[5] *= -1.3;
   const RigidTransform X(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
   const MeshRepairOptions resolve{.self_intersections = SelfIntersections::Resolve};
@@ -436,7 +439,7 @@ TEST_CASE("A wrap closes what nothing else does, around all of it", "[geometry][
       }
     }
   }
-  // Not the first resort.
+  // Wrapping is not the first resort.
   TriangleMesh turned = box({1, 1, 1});
   turn(turned, 2);
   CHECK(steps_of(repair_mesh(turned, {.wrap = wrap})) == "turned faces 1");
@@ -474,8 +477,8 @@ TEST_CASE("What a filling misses is the volume between it and the surface's own 
   REQUIRE(lid.size() == 2);
   CHECK(internal::misfilled_share(block, lid) == 0.0);
   CHECK(internal::misfilled_share(block, {}) == 0.0);
-  // A pit of square section under a square hole. From within it the hole covers less than half of
-  // all directions, so that all of the pit is inside what the surface means.
+  // A pit of square section is under a square hole. From within it the hole covers less than half
+  // of all directions, so that all of the pit is inside what the surface means.
   for (const double depth : {0.25, 0.5, 0.75}) {
     constexpr double kHalf = 0.375;
     TriangleMesh pitted;
@@ -527,7 +530,7 @@ TEST_CASE("A wrap scales with its mesh by powers of two, to the bit, and ends at
   for (const int exponent : {-60, 60}) {
     CHECK(repair_mesh(scaled(open, exponent), options).mesh == scaled(wrapped, exponent));
   }
-  // Volumes are no doubles any more.
+  // Volumes are beyond the range of doubles.
   for (const int exponent : {-1000, 1000}) {
     CHECK_THROWS_AS(repair_mesh(scaled(open, exponent), options), InvalidInput);
   }

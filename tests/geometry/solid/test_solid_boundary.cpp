@@ -20,7 +20,8 @@ using graspfit::testing::moved;
 
 namespace {
 
-/// How often every edge is run through upward more than downward; only what is not zero.
+/// Returns how often every edge is run through upward more than downward; only what is not zero
+/// counts.
 std::size_t num_open_edges(const TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, int> balance;
   for (const Face& f : mesh.faces) {
@@ -33,7 +34,8 @@ std::size_t num_open_edges(const TriangleMesh& mesh) {
       std::count_if(balance.begin(), balance.end(), [](const auto& e) { return e.second != 0; }));
 }
 
-/// The boundary is closed and winds once around what the mesh winds around, and nowhere else.
+/// Checks that the boundary is closed and winds once around what the mesh winds around, and nowhere
+/// else. Returns the boundary.
 TriangleMesh checked_boundary(const TriangleMesh& mesh) {
   const TriangleMesh boundary = solid_boundary(mesh);
   CHECK(num_open_edges(boundary) == 0);
@@ -55,8 +57,8 @@ TriangleMesh checked_boundary(const TriangleMesh& mesh) {
 
 TEST_CASE("A face whose area is of the size of rounding is no gap in the boundary",
           "[geometry][solid_boundary]") {
-  // Two boxes that cross; vertex 8 lies an ulp beside the diagonal of the first one's top, so that
-  // the bounds of that sliver's normal hold zero.
+  // Two boxes cross, and vertex 8 is an ulp beside the diagonal of the first one's top, so that the
+  // bounds of that sliver's normal hold zero.
   TriangleMesh mesh;
   mesh.vertices = {
       {0.1, 0.2, 0.0},   {0.95, 0.13, 0.0}, {0.9, 0.85, 0.0},
@@ -85,15 +87,18 @@ TEST_CASE("Boxes in every position to each other are united", "[geometry][solid_
       {{cube}, 8, 24},
       {{cube, cube}, 8, 24},
       {{cube, moved(cube, {5, 0, 0})}, 16, 48},
-      // Overlap 1 x 1.5 x 1.75, nothing in one plane; the area of an overlap goes with the volume.
+      // The overlap is 1 x 1.5 x 1.75, with nothing in one plane; the area of an overlap goes with
+      // the volume.
       {{cube, moved(cube, {1, 0.5, 0.25})}, 16 - 2.625, 48 - 2 * (1.5 + 1.75 + 2.625)},
-      // Four pairs of sides in common planes; glued side to side; corner to corner; half a side.
+      // Four pairs of sides are in common planes; they are glued side to side, corner to corner,
+      // half a side.
       {{cube, moved(cube, {1, 0, 0})}, 12, 32},
       {{cube, moved(cube, {2, 0, 0})}, 16, 40},
       {{cube, moved(cube, {2, 2, 2})}, 16, 48},
       {{cube, moved(cube, {2, 1, 0})}, 16, 44},
       {{cube, moved(cube, {2, 1, 0.5})}, 16, 48 - 2 * 1.5},
-      // Nested: nothing new; a cavity; an island in a cavity; a cavity that touches the side.
+      // These are nested: they add nothing; a cavity; an island in a cavity; a cavity that touches
+      // the side.
       {{cube, box({1, 1, 1})}, 8, 24},
       {{cube, inward(box({1, 1, 1}))}, 7, 30},
       {{box({4, 4, 4}), inward(cube), box({1, 1, 1})}, 57, 126},
@@ -130,7 +135,7 @@ TEST_CASE("Turned boxes and balls all through each other keep their solid",
   }
   const TriangleMesh mesh = concatenated(parts);
   const TriangleMesh boundary = checked_boundary(mesh);
-  // The order of the faces is not to matter, nor a turn that moves every plane.
+  // The order of the faces does not matter, nor does a turn that moves every plane.
   TriangleMesh reversed = mesh;
   std::reverse(reversed.faces.begin(), reversed.faces.end());
   CHECK(signed_volume(solid_boundary(reversed)) == Approx(signed_volume(boundary)).epsilon(1e-12));
@@ -140,7 +145,7 @@ TEST_CASE("Turned boxes and balls all through each other keep their solid",
 }
 
 TEST_CASE("Two balls have the volume of their union", "[geometry][solid_boundary]") {
-  // Each loses the cap of height h = 1 - d/2: pi h² (3 - h) / 3, d = 1.
+  // Each loses the cap of height h = 1 - d/2, pi h² (3 - h) / 3, with d = 1.
   using std::numbers::pi;
   const double cap = pi * 0.25 * 2.5 / 3.0;
   const TriangleMesh two = concatenated({ball(1, 4), moved(ball(1, 4), {0.6, 0, 0.8})});
@@ -150,11 +155,11 @@ TEST_CASE("Two balls have the volume of their union", "[geometry][solid_boundary
 
 TEST_CASE("A surface that crosses itself is reduced to what bounds its solid",
           "[geometry][solid_boundary]") {
-  // A pyramid's tip pushed through its base: the part below counts though it winds backward.
+  // A pyramid's tip is pushed through its base: the part below counts though it winds backward.
   TriangleMesh spike = box({2, 2, 2});
   spike.vertices[7] = {-0.2, -0.3, -3.0};
   checked_boundary(spike);
-  // A doubly wound bar: a torus that runs around twice and overlaps itself all along.
+  // A doubly wound bar is a torus that runs around twice and overlaps itself all along.
   TriangleMesh twice = torus(2, 0.5, 24, 8);
   for (Eigen::Vector3d& v : twice.vertices) {
     const double angle = 2.0 * std::atan2(v[1], v[0]);

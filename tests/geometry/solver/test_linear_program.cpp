@@ -19,8 +19,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The best basic solution: an optimum, where there is one, is reached at a vertex, where all but
-/// as many unknowns as there are constraints are zero. Empty: no vertex, so nothing is feasible.
+/// Returns the best basic solution. An optimum, where there is one, is reached at a vertex, where
+/// all but as many unknowns as there are constraints are zero. If it is empty, there is no vertex,
+/// and so nothing is feasible.
 std::optional<double> best_vertex(const VectorXd& objective, const MatrixXd& a, const VectorXd& b) {
   std::optional<double> best;
   std::vector<Index> chosen(static_cast<std::size_t>(a.rows()));
@@ -61,7 +62,7 @@ TEST_CASE("A linear program's optimum is that of all vertices", "[geometry][line
     const Index columns = rows + 1 + i % 5;
     MatrixXd a(rows, columns);
     for (double& x : a.reshaped()) x = random.uniform(-1.0, 1.0);
-    a.row(0).setConstant(1.0);  // bounded: the unknowns sum up to 1
+    a.row(0).setConstant(1.0);  // The unknowns sum up to 1, so that it is bounded.
     VectorXd b(rows);
     for (double& x : b) x = random.uniform(-0.3, 0.3);
     b[0] = 1.0;
@@ -87,7 +88,7 @@ TEST_CASE("A linear program's optimum is that of all vertices", "[geometry][line
 }
 
 TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
-  // x + (1 + 2^-52) y = 1: y − x is largest where x = 0.
+  // The constraint is x + (1 + 2^-52) y = 1, and y − x is largest where x = 0.
   MatrixXd a(1, 2);
   a << 1.0, 1.0 + 0x1p-52;
   VectorXd objective(2);
@@ -97,7 +98,7 @@ TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
   CHECK(solution.value == 1.0 / (1.0 + 0x1p-52));
   CHECK(solution.x == Eigen::Vector2d(0.0, 1.0 / (1.0 + 0x1p-52)));
 
-  // Two nearly parallel constraints: infeasible by 2^-1000, feasible when equal.
+  // Two nearly parallel constraints are infeasible by 2^-1000, and feasible when equal.
   MatrixXd twice(2, 1);
   twice << 1.0, 1.0;
   VectorXd right(2);
@@ -109,7 +110,7 @@ TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
   CHECK(solution.outcome == LinearProgramOutcome::Optimal);
   CHECK(solution.value == 0.0);
 
-  // x − y = 0 lets both grow.
+  // The constraint x − y = 0 lets both grow.
   a << 1.0, -1.0;
   solution = maximize_linear(VectorXd::Ones(2), a, VectorXd::Zero(1));
   CHECK(solution.outcome == LinearProgramOutcome::Unbounded);
@@ -117,9 +118,10 @@ TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
 }
 
 TEST_CASE("Degenerate programs come to an end", "[geometry][linear_program]") {
-  // Wrenches of a grasp of three contacts, in 1/4096, one forgotten: the largest share that all of
-  // them can have in a resultant of zero. Choosing the unknown of the steepest descent goes round
-  // in circles here; all right sides but one are zero.
+  // The wrenches are those of a grasp of three contacts, in 1/4096, with one left out. The
+  // objective is the largest share that all of them can have in a resultant of zero. Choosing the
+  // unknown of the steepest descent goes round in circles here, as all right sides but one are
+  // zero.
   Eigen::Matrix<double, 23, 6> wrenches;
   wrenches << 711, 1148, 4200, 1892, -232, -257, -430, 647, 4343, 1735, 238, 136, -902, -513, 4288,
       1240, 432, 313, -430, -1653, 4067, 697, 234, 169, 711, -2106, 3811, 424, -238, -211, 1852,
@@ -142,7 +144,7 @@ TEST_CASE("Degenerate programs come to an end", "[geometry][linear_program]") {
   const LinearProgramSolution solution =
       maximize_linear(objective, constraints, VectorXd::Unit(7, 6));
   REQUIRE(solution.outcome == LinearProgramOutcome::Optimal);
-  // By HiGHS, dual simplex and interior points alike (scipy.optimize.linprog).
+  // The value is that of HiGHS, by dual simplex and interior points alike (scipy.optimize.linprog).
   CHECK(solution.value == Approx(-0.07044609300396587).epsilon(1e-12));
 }
 

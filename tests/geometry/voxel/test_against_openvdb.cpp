@@ -13,7 +13,8 @@
 
 namespace test_against_openvdb {
 
-// Voxel classes, distance map and signed distance against an independent library.
+// These tests compare voxel classes, distance map and signed distance with those of an independent
+// library.
 
 using namespace graspfit::geometry;
 using graspfit::testing::OpenVdbMesh;
@@ -25,12 +26,12 @@ namespace {
 // below 4 voxels, their squares and their roots add a few times 2^-23.
 constexpr double kSinglePrecision = 1.8 * 0x1p-18 + 8 * 0x1p-23;  // [voxels]
 
-// From the center of a voxel to its corner. The nearest point of the surface lies in a (closed)
-// partial voxel, and each partial voxel holds some of the surface: so the distance between centers
-// and the distance to the surface differ by at most this much, either way.
+// This is the distance from the center of a voxel to its corner. The nearest point of the surface
+// lies in a (closed) partial voxel, and each partial voxel holds some of the surface, so that the
+// distance between centers and the distance to the surface differ by at most this much, either way.
 const double kHalfDiagonal = std::sqrt(3.0) / 2;  // [voxels]
 
-// OpenVDB sees single precision, so both get it.
+// OpenVDB uses single precision, so both get it.
 TriangleMesh in_single_precision(TriangleMesh mesh) {
   for (Eigen::Vector3d& v : mesh.vertices) v = v.cast<float>().cast<double>();
   return mesh;
@@ -61,7 +62,7 @@ void compare(const TriangleMesh& mesh, int resolution) {
       num_wrong_sides += (grid.classes[i] == VoxelClass::Full) != (field.at(voxel) < 0.0);
     }
     const double theirs = std::abs(distances.at(voxel));
-    if (theirs > 3.0 - kSinglePrecision) continue;  // Beyond their band.
+    if (theirs > 3.0 - kSinglePrecision) continue;  // It is beyond their band.
     const double ours = query.signed_distance(lattice.center(voxel)) / lattice.voxel_size;
     if (std::abs(ours) <= kExactBand) {
       ++num_exact;

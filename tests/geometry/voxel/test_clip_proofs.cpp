@@ -1,5 +1,5 @@
-// Proofs of the shipped fast path: its cutter knows the origin of every corner, and what follows
-// from the origins is checked in rational numbers.
+// These tests prove the shipped fast path: its cutter knows the origin of every corner, and what
+// follows from the origins is checked in rational numbers.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -39,7 +39,7 @@ void add(RationalPoint& sum, const RationalPoint& part) {
 
 double length(const RationalPoint& v) { return std::sqrt(CGAL::to_double(dot(v, v))); }
 
-// Corners, area and centroid of a piece against its exact corners, by the bounds of `clip`.
+// Checks corners, area and centroid of a piece against its exact corners, by the bounds of `clip`.
 void check_bounds(const ClippedPiece& piece, const Triangle& triangle,
                   const std::vector<RationalPoint>& places, const RationalPoint& exact_centroid) {
   REQUIRE(piece.polygon.size() == places.size());
@@ -140,7 +140,7 @@ internal::ClipStatistics prove_pieces(const TriangleMesh& mesh, const VoxelLatti
   return traced.statistics;
 }
 
-// Loose triangles with corners drawn by `coordinate`.
+// Returns loose triangles with corners drawn by `coordinate`.
 template <typename Coordinate>
 TriangleMesh loose_triangles(int count, const Coordinate& coordinate) {
   TriangleMesh mesh;
@@ -160,7 +160,7 @@ VoxelLattice unit_lattice(const Eigen::Vector3i& counts) {
   return {Eigen::Vector3d::Zero(), 1.0, counts};
 }
 
-// One or two ulps beside a whole number.
+// Returns a number one or two ulps beside a whole number.
 double beside_a_plane(Random& random, std::uint64_t planes) {
   double x = static_cast<double>(1 + random.index(planes));
   for (std::uint64_t ulps = random.index(3); ulps > 0; --ulps) {
@@ -174,7 +174,7 @@ TriangleMesh halves(int count) {
   return loose_triangles(count, [&] { return 0.5 * static_cast<double>(1 + random.index(6)); });
 }
 
-// Height 1e-12 over the longest edge.
+// Returns slivers of height 1e-12 over the longest edge.
 TriangleMesh slivers(int count) {
   Random random(4);
   TriangleMesh mesh = loose_triangles(count, [&] { return random.uniform(0.5, 3.5); });
@@ -186,8 +186,8 @@ TriangleMesh slivers(int count) {
   return mesh;
 }
 
-// Corners at whole coordinates, a hair off the line from (1, 1, 1) to (3, 3, 3) through voxel
-// corners.
+// Returns slivers with corners at whole coordinates, a hair off the line from (1, 1, 1) to (3, 3,
+// 3) through voxel corners.
 TriangleMesh slivers_through_voxel_corners(int count) {
   Random random(5);
   TriangleMesh mesh;
@@ -201,7 +201,7 @@ TriangleMesh slivers_through_voxel_corners(int count) {
   return mesh;
 }
 
-// Every face three times, once the other way around.
+// Returns every face three times, once the other way around.
 TriangleMesh tripled(const TriangleMesh& mesh) {
   TriangleMesh result = mesh;
   for (const Face& f : mesh.faces) {
@@ -248,7 +248,7 @@ std::vector<Adversarial> adversarial_meshes() {
   return meshes;
 }
 
-// Every `step`-th face of a real mesh, on the lattice of the whole one.
+// Proves every `step`-th face of a real mesh, on the lattice of the whole one.
 internal::ClipStatistics prove_packaged_mesh(const std::string& file, std::size_t step) {
   TriangleMesh mesh = read_mesh(*packaged_mesh(file)).mesh;
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 30});
@@ -286,7 +286,7 @@ TEST_CASE("Pieces of adversarial triangles are exact by their origins",
   for (const Adversarial& adversarial : adversarial_meshes()) {
     CAPTURE(adversarial.name);
     const internal::ClipStatistics statistics = prove_pieces(adversarial.mesh, adversarial.lattice);
-    // The fast path alone would not do.
+    // The fast path alone would not be enough.
     CHECK(statistics.signs_in_rationals + statistics.corners_in_rationals +
               statistics.areas_in_rationals >
           0);
@@ -325,7 +325,8 @@ TEST_CASE("Duplicated faces have the same pieces, bit for bit",
   const auto num_faces = static_cast<std::int32_t>(mesh.faces.size());
   std::size_t i = 0;
   for (const auto& [voxel, piece] : triple) {
-    if (piece.face >= num_faces && (piece.face - num_faces) % 2 == 1) continue;  // The other way.
+    // This is the face that is the other way around.
+    if (piece.face >= num_faces && (piece.face - num_faces) % 2 == 1) continue;
     const std::int32_t face = piece.face < num_faces ? piece.face : (piece.face - num_faces) / 2;
     const auto same =
         std::find_if(single.begin(), single.end(), [face, &place = voxel](const VoxelPiece& p) {
@@ -343,7 +344,8 @@ TEST_CASE("Traced polygons are the pieces of clip and clip_by_voxels, bit for bi
           "[geometry][convex_clip][surface_patch][clip_proofs]") {
   const TriangleMesh mesh = torus(1.0, 0.4, 24, 12);
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 12});
-  const TracedPieces voxels = traced_pieces(mesh, lattice);  // Which compares the polygons.
+  // This compares the polygons.
+  const TracedPieces voxels = traced_pieces(mesh, lattice);
   int num_cut = 0;
   for (std::size_t i = 0; i < voxels.pieces.size(); ++i) {
     const ClippedPiece& piece = voxels.pieces[i].piece;
@@ -379,9 +381,9 @@ TEST_CASE("The inside and the outside of a convex volume sum exactly to the tria
   Random random(15);
   ClipTracer tracer;
   const auto smooth = [&] { return random.uniform(-1.0, 1.0); };
-  // Planes through corners and along edges of the triangles.
+  // These planes go through corners and along edges of the triangles.
   const auto whole = [&] { return static_cast<double>(random.index(5)) - 2.0; };
-  // Planes that are nearly the same.
+  // These planes are nearly the same.
   const auto near = [&] {
     return static_cast<double>(random.index(3)) - 1.0 +
            0x1p-52 * static_cast<double>(random.index(3));
@@ -416,7 +418,7 @@ TEST_CASE("The inside and the outside of a convex volume sum exactly to the tria
       add(sum, doubled_vector_area(places));
     };
     take(volume);
-    // Outside: within the first planes and beyond the next, for each next.
+    // The shell is what is outside: within the first planes and beyond the next, for each next.
     ConvexVolume shell;
     for (const HalfSpace& h : volume) {
       shell.push_back({-h.normal, -h.offset});
@@ -462,7 +464,7 @@ TEST_CASE("The order of a triangle's corners changes no exact place",
       const Triangle triangle = corners(mesh, static_cast<std::size_t>(a.piece.face));
       const double whole =
           0.5 * (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).norm();
-      REQUIRE(std::abs(a.piece.area - b.piece.area) <= 2e-12 * whole);  // Twice the bound.
+      REQUIRE(std::abs(a.piece.area - b.piece.area) <= 2e-12 * whole);  // This is twice the bound.
     }
   }
 }
@@ -498,8 +500,8 @@ TEST_CASE("Clipping the mirror image gives the mirror image, bit for bit",
 
 TEST_CASE("Voxels of the mirror image hold the mirror image of their pieces, corners bit for bit",
           "[geometry][surface_patch][clip_proofs]") {
-  // Quarters: every plane of the mirrored lattice is exactly the mirror image of one. No triangle
-  // lies in a plane, whose voxel would be the higher one in both.
+  // Coordinates are quarters, so that every plane of the mirrored lattice is exactly the mirror
+  // image of one. No triangle lies in a plane, whose voxel would be the higher one in both.
   Random random(17);
   const TriangleMesh mesh = loose_triangles(100, [&] { return random.uniform(-0.9, 0.9); });
   TriangleMesh image = mesh;
@@ -519,7 +521,7 @@ TEST_CASE("Voxels of the mirror image hold the mirror image of their pieces, cor
     std::vector<Eigen::Vector3d> back;
     for (const Eigen::Vector3d& corner : found->piece.polygon) back.push_back(mirrored(corner));
     REQUIRE(sorted_corners(piece.polygon) == sorted_corners(back));
-    // Twice the bound; the triangles have areas up to 3.
+    // This is twice the bound; the triangles have areas up to 3.
     REQUIRE(std::abs(found->piece.area - piece.area) <= 6e-12);
   }
 }

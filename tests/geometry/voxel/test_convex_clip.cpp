@@ -31,15 +31,15 @@ TEST_CASE("A triangle in a bounding plane counts as inside", "[geometry][convex_
 }
 
 TEST_CASE("Touching at a corner or along an edge is empty", "[geometry][convex_clip]") {
-  CHECK_FALSE(clip(kUnit, {{{1, 1, 0}, 0.0}}));    // At the corner (0, 0).
-  CHECK_FALSE(clip(kUnit, {{{1, 0, 0}, 0.0}}));    // Along x = 0.
-  CHECK_FALSE(clip(kUnit, {{{-1, 0, 0}, -1.0}}));  // At the corner (1, 0).
+  CHECK_FALSE(clip(kUnit, {{{1, 1, 0}, 0.0}}));    // It is the corner (0, 0).
+  CHECK_FALSE(clip(kUnit, {{{1, 0, 0}, 0.0}}));    // It is the edge along x = 0.
+  CHECK_FALSE(clip(kUnit, {{{-1, 0, 0}, -1.0}}));  // It is the corner (1, 0).
 }
 
 TEST_CASE("A triangle cut to a square has that square's area and centroid",
           "[geometry][convex_clip]") {
-  // (0,0), (2,0), (0,2) cut at x ≤ 1 and y ≤ 1 is the unit square; the cut edge passes through
-  // (1,1).
+  // The triangle (0,0), (2,0), (0,2) cut at x ≤ 1 and y ≤ 1 is the unit square; the cut edge passes
+  // through (1,1).
   const Triangle triangle = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(2, 0, 0),
                              Eigen::Vector3d(0, 2, 0)};
   const auto piece = clip(triangle, {{{1, 0, 0}, 1.0}, {{0, 1, 0}, 1.0}});
@@ -53,8 +53,8 @@ TEST_CASE("Without planes the whole triangle is left, between contradicting ones
           "[geometry][convex_clip]") {
   CHECK(area_of(clip(kUnit, {})) == 0.5);
   CHECK_FALSE(clip(kUnit, {{{1, 0, 0}, 0.25}, {{-1, 0, 0}, -0.75}}));
-  CHECK_FALSE(clip(kUnit, {{{0, 0, 0}, -1.0}}));           // 0 ≤ −1 holds nowhere,
-  CHECK(area_of(clip(kUnit, {{{0, 0, 0}, 0.0}})) == 0.5);  // 0 ≤ 0 everywhere.
+  CHECK_FALSE(clip(kUnit, {{{0, 0, 0}, -1.0}}));           // 0 ≤ −1 holds nowhere.
+  CHECK(area_of(clip(kUnit, {{{0, 0, 0}, 0.0}})) == 0.5);  // 0 ≤ 0 holds everywhere.
 }
 
 TEST_CASE("Degenerate triangles have no piece", "[geometry][convex_clip]") {

@@ -94,8 +94,9 @@ TEST_CASE("The distance map of a solid is 1-Lipschitz between any two voxels",
       lattice_around(bounding_box(mesh), {.resolution = 24, .margin = 0.02});
   const VoxelGrid grid = voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice));
   const SignedDistanceMap map = signed_distance_map(grid);
-  // Every step to a neighbor, diagonal ones too. The surface is partial voxels without a gap, so
-  // that the sign changes through zero; across a diagonal it need not, and magnitudes are compared.
+  // The loop tries every step to a neighbor, diagonal ones too. The surface is partial voxels
+  // without a gap, so that the sign changes through zero; across a diagonal it need not, and
+  // magnitudes are compared.
   for (std::int64_t index = 0; index < lattice.num_voxels(); ++index) {
     const Eigen::Vector3i voxel = lattice.voxel(index);
     for (int n = 0; n < 27; ++n) {
@@ -107,13 +108,13 @@ TEST_CASE("The distance map of a solid is 1-Lipschitz between any two voxels",
       const double change = is_straight
                                 ? std::abs(map.at(next) - map.at(voxel))
                                 : std::abs(std::abs(map.at(next)) - std::abs(map.at(voxel)));
-      REQUIRE(change <= distance + 1e-5);  // Floats: half an ulp of values up to 64.
+      REQUIRE(change <= distance + 1e-5);  // Half an ulp is of values up to 64.
     }
     const VoxelClass c = grid.classes[index];
     REQUIRE((map.values[index] > 0) == (c == VoxelClass::Empty));
     REQUIRE((map.values[index] < 0) == (c == VoxelClass::Full));
   }
-  // And pairs far apart.
+  // These are pairs that are far apart.
   Random random(22);
   for (int i = 0; i < 20000; ++i) {
     const auto any = [&] {
@@ -129,7 +130,8 @@ TEST_CASE("The distance map of a solid is 1-Lipschitz between any two voxels",
 
 TEST_CASE("At 256 voxels along the longest axis the distance map is that of single voxels",
           "[geometry][distance_map]") {
-  // A flat box of 256 x 40 x 20 voxels, a few of them partial: brute force over those few.
+  // In a flat box of 256 x 40 x 20 voxels a few are partial, and the reference is brute force over
+  // those few.
   Random random(23);
   VoxelGrid grid = grid_of({256, 40, 20}, VoxelClass::Empty);
   std::vector<Eigen::Vector3i> partial;
@@ -157,7 +159,8 @@ TEST_CASE("A point takes its voxel's distance, beyond the lattice more",
   CHECK(map.at(Eigen::Vector3d(2.999, 1.001, 1.999)) == 2.0F);
   CHECK(map.at(Eigen::Vector3d(6.5, 1.5, 1.5)) == 6.0F);
   CHECK(map.at(Eigen::Vector3d(-3.5, 1.5, 1.5)) == 4.0F);
-  CHECK(map.at(Eigen::Vector3d(6.5, 5.5, 2.5)) == std::sqrt(53.0F));  // (6, 5, 2) to (0, 1, 1)
+  // It is from (6, 5, 2) to (0, 1, 1).
+  CHECK(map.at(Eigen::Vector3d(6.5, 5.5, 2.5)) == std::sqrt(53.0F));
   CHECK(map.at(Eigen::Vector3d(1e9, 1.5, 1.5)) == 1e9F);
 }
 
@@ -168,7 +171,7 @@ TEST_CASE("Beyond the lattice distances are bounds from below that a larger latt
         bounding_box(mesh), {.resolution = 16, .margin = 2 * longest_extent(mesh) / 16});
     const VoxelGrid grid = voxelize(MeshQuery(mesh), inner, surface_patches(mesh, inner));
     const SignedDistanceMap small = signed_distance_map(grid);
-    constexpr int kMore = 12;  // Voxels to every side.
+    constexpr int kMore = 12;  // It is in voxels to every side.
     VoxelGrid padded{{inner.origin - Eigen::Vector3d::Constant(kMore * inner.voxel_size),
                       inner.voxel_size, inner.counts.array() + 2 * kMore},
                      {}};
@@ -191,13 +194,13 @@ TEST_CASE("Beyond the lattice distances are bounds from below that a larger latt
       if (inner.contains(voxel.array() - kMore)) {
         REQUIRE(bound == large.values[index]);
       } else {
-        REQUIRE(bound >= 2.0F);  // Of two voxels of room the tie rule may take one.
+        REQUIRE(bound >= 2.0F);  // Of a margin of two voxels the tie rule may take one.
         num_equal_beyond += bound == large.values[index];
       }
       for (int axis = 0; axis < 3; ++axis) {
         if (voxel[axis] + 1 == lattice.counts[axis]) continue;
         const float next = bounds[lattice.index(voxel + Eigen::Vector3i::Unit(axis))];
-        REQUIRE(std::abs(next - bound) <= 1.0F + 1e-5F);  // Half an ulp of values up to 64.
+        REQUIRE(std::abs(next - bound) <= 1.0F + 1e-5F);  // This is half an ulp of values up to 64.
       }
     }
     CHECK(num_equal_beyond > 1000);

@@ -26,7 +26,7 @@ Triangle triangle_of(const Coordinate& coordinate) {
   return triangle;
 }
 
-// Every voxel for itself against slab by slab.
+// Compares cutting every voxel by itself with cutting slab by slab.
 void check_against_single_voxels(const Triangle& triangle, const VoxelLattice& lattice) {
   TriangleMesh mesh;
   mesh.vertices.assign(triangle.begin(), triangle.end());
@@ -74,8 +74,9 @@ TEST_CASE("Exact rationals are exact", "[geometry][exact_clip]") {
 
 TEST_CASE("A triangle cut to a pentagon has that pentagon's exact area and centroid",
           "[geometry][exact_clip]") {
-  // (0,0), (3,0), (0,3) cut at x ≤ 2 and y ≤ 2: corner triangles of area 1/2 with centroids
-  // (7/3, 1/3) and (1/3, 7/3) go from 9/2 with (1, 1). Left: 7/2, and (9/2 − 4/3) / (7/2) = 19/21.
+  // The triangle (0,0), (3,0), (0,3) is cut at x ≤ 2 and y ≤ 2: corner triangles of area 1/2 with
+  // centroids (7/3, 1/3) and (1/3, 7/3) go from 9/2 with (1, 1). What is left has 7/2, and (9/2 −
+  // 4/3) / (7/2) = 19/21.
   const auto piece = exact_clip(kTriangle, {{{1, 0, 0}, 2.0}, {{0, 1, 0}, 2.0}});
   REQUIRE(piece);
   CHECK(piece->polygon.size() == 5);
@@ -91,9 +92,9 @@ TEST_CASE("A triangle cut to a pentagon has that pentagon's exact area and centr
 TEST_CASE("Exact clipping has the outcomes of clip at touches and in planes",
           "[geometry][exact_clip]") {
   for (const double z : {1.0, -1.0}) CHECK(exact_clip(kTriangle, {{{0, 0, z}, 0.0}}));
-  CHECK_FALSE(exact_clip(kTriangle, {{{1, 1, 0}, 0.0}}));    // At the corner (0, 0).
-  CHECK_FALSE(exact_clip(kTriangle, {{{1, 0, 0}, 0.0}}));    // Along x = 0.
-  CHECK_FALSE(exact_clip(kTriangle, {{{-1, 0, 0}, -3.0}}));  // At the corner (3, 0).
+  CHECK_FALSE(exact_clip(kTriangle, {{{1, 1, 0}, 0.0}}));    // It is the corner (0, 0).
+  CHECK_FALSE(exact_clip(kTriangle, {{{1, 0, 0}, 0.0}}));    // It is the edge along x = 0.
+  CHECK_FALSE(exact_clip(kTriangle, {{{-1, 0, 0}, -3.0}}));  // It is the corner (3, 0).
   CHECK(exact_clip(kTriangle, {})->vector_area[2].to_string() == "9/2");
   CHECK_FALSE(exact_clip({kTriangle[0], kTriangle[1], kTriangle[1]}, {}));
   CHECK_THROWS_AS(exact_clip(kTriangle, {{{1, 0, 0}, std::nan("")}}), InvalidInput);

@@ -30,7 +30,7 @@ double sum_of_areas(const std::vector<SurfacePatch>& patches) {
 
 TEST_CASE("The face of a box that lies in a voxel plane belongs to the higher voxel",
           "[geometry][surface_patch]") {
-  // The unit cube in the middle voxel of 3 x 3 x 3. Its low faces lie in planes 1, of which that
+  // The unit cube is in the middle voxel of 3 x 3 x 3. Its low faces lie in planes 1, of which that
   // voxel is the higher side; each high face lies in a plane 2 and goes to the next voxel.
   TriangleMesh cube = box({1.0, 1.0, 1.0});
   for (auto& vertex : cube.vertices) vertex.array() += 1.5;
@@ -69,8 +69,8 @@ TEST_CASE("Pieces of a face have vector areas that sum to its own", "[geometry][
   }
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     const Eigen::Vector3d whole = vector_area(mesh, face);
-    // Coordinates of 0.07 rounded at 1e-17 against faces of 0.01: 1e-15 relative, a few hundred
-    // pieces.
+    // Coordinates of 0.07 are rounded at 1e-17 against faces of 0.01: 1e-15 relative, in a few
+    // hundred pieces.
     CHECK((sums[face] - whole).norm() <= 1e-12 * whole.norm());
   }
 }
@@ -87,7 +87,8 @@ TEST_CASE("A patch's centroid lies on the patch and in its voxel", "[geometry][s
             0.5 * lattice.voxel_size * (1 + 1e-12));
       REQUIRE(patch.has_normal);
       CHECK(patch.outward_normal.norm() == Approx(1.0));
-      // A voxel is an eighth of the diameter: the normal varies little about the radial direction.
+      // A voxel is an eighth of the diameter, so that the normal varies little about the radial
+      // direction.
       CHECK(patch.outward_normal.dot(patch.centroid.normalized()) > 0.9);
       CHECK(std::is_sorted(patch.faces.begin(), patch.faces.end()));
     }
@@ -112,7 +113,7 @@ TEST_CASE("Both sides of a thin plate in one voxel leave no normal", "[geometry]
 }
 
 TEST_CASE("Area weighting and plain averaging differ as documented", "[geometry][surface_patch]") {
-  // In one voxel: a triangle of area 1/2 facing +z and one of area 1/8 facing +x.
+  // In one voxel are a triangle of area 1/2 facing +z and one of area 1/8 facing +x.
   TriangleMesh mesh;
   mesh.vertices = {{0, 0, 0.5}, {1, 0, 0.5},   {0, 1, 0.5},
                    {0.5, 0, 0}, {0.5, 0.5, 0}, {0.5, 0, 0.5}};
@@ -140,7 +141,7 @@ TEST_CASE("A patch has both normals and the center of area, whatever the options
   REQUIRE(weighted.size() == plain.size());
   for (std::size_t i = 0; i < weighted.size(); ++i) {
     const SurfacePatch& patch = weighted[i];
-    // The averages from their definitions.
+    // The averages follow from their definitions.
     double area = 0.0;
     double count = 0.0;
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -170,7 +171,7 @@ TEST_CASE("A patch has both normals and the center of area, whatever the options
 
 TEST_CASE("A patch's centroid is the nearest point of all its pieces to their mean",
           "[geometry][surface_patch]") {
-  // Against looking at every piece: the fast path excludes most by a ball about each.
+  // The reference visits every piece; the fast path excludes most by a ball about each.
   for (const TriangleMesh& mesh : {ball(0.05, 4), torus(0.05, 0.02, 60, 30)}) {
     const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 6});
     const auto pieces = clip_by_voxels(mesh, lattice);
@@ -197,7 +198,8 @@ TEST_CASE("At 256 voxels along the longest axis of a flat body the patches hold 
   TriangleMesh mesh = ball(0.1, 4);
   for (auto& vertex : mesh.vertices) vertex = vertex.cwiseProduct(Eigen::Vector3d(0.4, 1.0, 0.2));
   const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = 256});
-  // 0.4 and 0.2 of 256 are 102.4 and 51.2: rounded up, and one voxel of margin on each side.
+  // 0.4 and 0.2 of 256 are 102.4 and 51.2, which are rounded up, with a margin of one voxel on each
+  // side.
   CHECK(lattice.counts == Eigen::Vector3i(105, 258, 54));
   const auto patches = surface_patches(mesh, lattice);
   CHECK(sum_of_areas(patches) == Approx(surface_area(mesh)).epsilon(1e-12));
@@ -206,7 +208,8 @@ TEST_CASE("At 256 voxels along the longest axis of a flat body the patches hold 
 }
 
 TEST_CASE("Patches do not depend on the order of the faces", "[geometry][surface_patch]") {
-  // Turned, since in a symmetric position two points of a patch can be equally near to its mean.
+  // The torus is turned, since in a symmetric position two points of a patch can be equally near to
+  // its mean.
   const RigidTransform X(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
   const TriangleMesh mesh = transformed(torus(0.05, 0.02, 24, 12), X);
   TriangleMesh reversed = mesh;
@@ -246,7 +249,8 @@ TEST_CASE("Patches ascend by voxel in layers of more than 2^22 voxels",
 TEST_CASE("A mesh that leaves the lattice is refused", "[geometry][surface_patch]") {
   TriangleMesh cube = box({1.0, 1.0, 1.0});
   CHECK_THROWS_AS(surface_patches(cube, unit_lattice(3)), InvalidInput);
-  for (auto& vertex : cube.vertices) vertex.array() += 2.5;  // High faces in the last plane.
+  // High faces are in the last plane.
+  for (auto& vertex : cube.vertices) vertex.array() += 2.5;
   CHECK_THROWS_WITH(surface_patches(cube, unit_lattice(3)),
                     graspfit::testing::Contains("leaves the lattice"));
   CHECK_NOTHROW(surface_patches(cube, unit_lattice(4)));

@@ -23,8 +23,8 @@ VoxelGrid voxels_of(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   return voxelize(MeshQuery(mesh), lattice, surface_patches(mesh, lattice));
 }
 
-// Sum of the solid angles of all faces seen from a point: 4 pi inside, 0 outside
-// [Van Oosterom & Strackee 1983].
+// Returns the sum of the solid angles of all faces seen from a point: 4 pi inside, 0 outside [Van
+// Oosterom & Strackee 1983].
 double solid_angle(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
   double sum = 0.0;
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -39,8 +39,8 @@ double solid_angle(const TriangleMesh& mesh, const Eigen::Vector3d& point) {
   return sum;
 }
 
-// Classes from the definition: a voxel is partial iff rational clipping leaves a face some area in
-// it; else it is full iff the solid angle at its center says so.
+// Computes classes from the definition: a voxel is partial if and only if rational clipping leaves
+// a face some area in it; else it is full if and only if the solid angle at its center says so.
 VoxelGrid brute_force(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   std::set<std::int64_t> partial;
   for (const auto& [name, fraction] : graspfit::testing::voxel_fractions(mesh, lattice)) {
@@ -79,8 +79,8 @@ TEST_CASE("A box aligned with the lattice has the counts of the tie rule",
 
 TEST_CASE("A box that lies across the lattice has the counts of its cross section",
           "[geometry][voxel_grid]") {
-  // Half a voxel off: faces run through the middle of voxels. The box then reaches over 9 x 7 x 5
-  // voxels, of which the inner 7 x 5 x 3 are full.
+  // The box is half a voxel off, so that faces run through the middle of voxels. It then reaches
+  // over 9 x 7 x 5 voxels, of which the inner 7 x 5 x 3 are full.
   TriangleMesh mesh = box({8.0, 6.0, 4.0});
   for (auto& vertex : mesh.vertices) vertex += Eigen::Vector3d(6.5, 5.5, 4.5);
   const VoxelGrid grid = voxels_of(mesh, {Eigen::Vector3d::Zero(), 1.0, {13, 11, 9}});
@@ -89,7 +89,8 @@ TEST_CASE("A box that lies across the lattice has the counts of its cross sectio
 }
 
 TEST_CASE("Voxel classes are those of brute force", "[geometry][voxel_grid]") {
-  // Lattices of unequal counts, one per body, in a general position and with vertices in planes.
+  // There are lattices of unequal counts, one per body, in a general position and with vertices in
+  // planes.
   const RigidTransform X(Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, -2, 3).normalized()));
   TriangleMesh whole = box({4.0, 2.0, 3.0});
   for (auto& vertex : whole.vertices) vertex += Eigen::Vector3d(3.0, 3.0, 2.5);
@@ -109,9 +110,10 @@ TEST_CASE("Voxel classes are those of brute force", "[geometry][voxel_grid]") {
 
 TEST_CASE("A ball of 30 voxels has as many partial voxels as its surface predicts",
           "[geometry][voxel_grid]") {
-  // A plane meets one voxel more per unit of area projected on each axis; averaged over the sphere
+  // A plane meets one voxel more per unit of area projected on each axis. Averaged over the sphere
   // that is 1.5 a voxel face: 1.5 · pi · 30² = 4241 where the sphere is locally flat; its curvature
-  // takes some off (counted elsewhere: 4056 for one position). Full and partial bracket the volume.
+  // takes some off (an independent count is 4056 for one position). Full and partial voxels bracket
+  // the volume.
   const TriangleMesh mesh = ball(15.0, 5);
   const VoxelGrid grid = voxels_of(mesh, lattice_around(bounding_box(mesh), {}));
   const auto partial = static_cast<double>(grid.count(VoxelClass::Partial));
@@ -165,7 +167,7 @@ TEST_CASE("A lattice has the asked voxels along the longest extent and the box i
   for (const double margin : {0.0, 0.004, 0.01, 0.123}) {
     const VoxelLattice lattice = lattice_around(object, {.resolution = 30, .margin = margin});
     CHECK(lattice.voxel_size == Approx(0.01));
-    // 0.3, 0.2 and 0.15 are whole numbers of voxels; the margin is rounded up, at least one.
+    // 0.3, 0.2 and 0.15 are whole numbers of voxels; the margin is rounded up and at least one.
     const int side = std::max(1, static_cast<int>(std::ceil(margin / 0.01 * (1 - 1e-12))));
     CHECK(lattice.counts == Eigen::Vector3i(30 + 2 * side, 20 + 2 * side, 15 + 2 * side));
     const Eigen::Vector3d top = lattice.origin + lattice.voxel_size * lattice.counts.cast<double>();
