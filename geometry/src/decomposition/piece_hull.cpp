@@ -156,8 +156,7 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
         static_cast<std::size_t>(options.max_vertices) -
         std::min(static_cast<std::size_t>(options.max_vertices), hull.mesh.vertices.size());
     if (farthest.empty() || num_allowed == 0) break;
-    chosen.clear();
-    std::vector<Vector3d> kept = hull.mesh.vertices;
+    kept = hull.mesh.vertices;
     for (std::size_t k = 0; k < std::min(num_allowed, farthest.size()); ++k) {
       kept.push_back(points[farthest[k].second]);
       // A point is added once: the hull then holds it, even if the rounded plane of a face of a

@@ -132,7 +132,7 @@ constexpr auto fitting_rows = [](auto& at, auto& fitting) {
       "voxels: P; meshes: R"});
   at(fitting.contact_state,
      {"contact_state", kAny, "contact-state", "", kTargets,
-      "without refinement: when a closing finger or palm has touched: when its next motion would "
+      "when, without refinement, a closing finger or palm has touched: when its next motion would "
       "enter the object, or when its clip volume holds a first sliver of surface, for comparison; "
       "with refinement always the latter, whatever is set",
       "closed: P; first-graze: R", "A32"});
