@@ -4,6 +4,7 @@
 #include <CGAL/Interval_nt.h>
 
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -43,15 +44,19 @@ int sign_of_expression(const Expression& evaluate) {
   return sign ? *sign : sign_of(evaluate(Exact()));
 }
 
+/// The interval of an expression. Not inlined, so that nothing else is computed while numbers round
+/// upward.
+template <typename Expression>
+[[gnu::noinline]] Interval interval_of(const Expression& evaluate) {
+  const CGAL::Protect_FPU_rounding<true> upward;
+  return evaluate(Interval());
+}
+
 /// Value of an expression as `sign_by_intervals` takes it, or nothing if intervals leave it open by
 /// more than `share` of it.
 template <typename Expression>
 std::optional<double> value_by_intervals(const Expression& evaluate, double share) {
-  Interval value;
-  {
-    const CGAL::Protect_FPU_rounding<true> upward;
-    value = evaluate(Interval());
-  }
+  const Interval value = interval_of(evaluate);
   const double middle = 0.5 * (value.inf() + value.sup());
   if (value.inf() != value.sup() && !(value.sup() - value.inf() <= share * std::abs(middle))) {
     return std::nullopt;
@@ -64,7 +69,8 @@ std::optional<double> value_by_intervals(const Expression& evaluate, double shar
 /// (`CGAL::to_double` of a Gmpq cuts digits off.)
 template <typename Exact>
 double nearest_double(const Exact& value) {
-  const auto [low, high] = CGAL::to_interval(value);  // Neighbors, or the number itself.
+  const auto [low, high] = CGAL::to_interval(value);
+  assert(high <= std::nextafter(low, HUGE_VAL));  // They are neighbors, or the number itself.
   if (low == high || !std::isfinite(low) || !std::isfinite(high)) {
     return std::isfinite(low) ? low : high;
   }

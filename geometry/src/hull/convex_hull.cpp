@@ -6,10 +6,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "exact/exact_number.hpp"
@@ -21,23 +19,6 @@ namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Indices of distinct points, ascending; of equal ones the first.
-std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
-  const auto coordinates = [&](std::size_t i) {
-    return std::tie(points[i].x(), points[i].y(), points[i].z());
-  };
-  std::vector<std::size_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return coordinates(a) < coordinates(b); });
-  order.erase(
-      std::unique(order.begin(), order.end(),
-                  [&](std::size_t a, std::size_t b) { return coordinates(a) == coordinates(b); }),
-      order.end());
-  std::sort(order.begin(), order.end());
-  return order;
-}
 
 Vector3d mean_of(std::span<const Vector3d> points, const std::vector<std::size_t>& indices) {
   Vector3d sum = Vector3d::Zero();
@@ -148,7 +129,8 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
     return hull;
   }
 
-  const std::vector<std::size_t> distinct = distinct_points(points);
+  std::vector<std::size_t> distinct = internal::distinct_points(points);
+  std::sort(distinct.begin(), distinct.end());
   const Vector3d mean = mean_of(points, distinct);
   Eigen::Matrix3Xd centered(3, distinct.size());
   for (std::size_t k = 0; k < distinct.size(); ++k) {

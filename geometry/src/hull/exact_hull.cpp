@@ -6,6 +6,7 @@
 #include <CGAL/convex_hull_3.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -21,8 +22,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Indices = std::vector<std::size_t>;
 
-/// Indices of distinct points in lexicographic order; of equal points the first.
-Indices distinct_points(std::span<const Vector3d> points) {
+}  // namespace
+
+std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
   const auto coordinates = [&](std::size_t i) {
     return std::tie(points[i].x(), points[i].y(), points[i].z());
   };
@@ -36,6 +38,8 @@ Indices distinct_points(std::span<const Vector3d> points) {
       order.end());
   return order;
 }
+
+namespace {
 
 void start_at_least(Indices& ring) {
   std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
@@ -91,9 +95,11 @@ class SolidHull {
     for (const Mesh::Edge_index edge : mesh_.edges()) {
       const Mesh::Halfedge_index side = mesh_.halfedge(edge);
       const Mesh::Halfedge_index other = mesh_.opposite(side);
-      if (orientation(at(mesh_.source(side)), at(mesh_.target(side)),
-                      at(mesh_.target(mesh_.next(side))),
-                      at(mesh_.target(mesh_.next(other)))) == 0) {
+      const int bend =
+          orientation(at(mesh_.source(side)), at(mesh_.target(side)),
+                      at(mesh_.target(mesh_.next(side))), at(mesh_.target(mesh_.next(other))));
+      assert(bend <= 0);  // The hull is convex.
+      if (bend == 0) {
         sets.unite(static_cast<std::int32_t>(mesh_.face(side).idx()),
                    static_cast<std::int32_t>(mesh_.face(other).idx()));
       }

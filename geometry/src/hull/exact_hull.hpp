@@ -25,6 +25,9 @@ struct ExactHull {
                                                       ///< corners is a fan from the least.
 };
 
+/// Indices of distinct points in lexicographic order; of equal points the first.
+std::vector<std::size_t> distinct_points(std::span<const Eigen::Vector3d> points);
+
 /// The hull of finite points; of equal points the first counts.
 ExactHull exact_hull(std::span<const Eigen::Vector3d> points);
 

@@ -4,8 +4,8 @@
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 /// \file
-/// What every public function that takes meshes and poses refuses before it computes anything: CGAL
-/// and sorting by coordinates have no answer for numbers that are not finite.
+/// What is refused at the doors by which meshes and poses come in, before anything is computed:
+/// CGAL and sorting by coordinates have no answer for numbers that are not finite.
 
 namespace graspfit::geometry::internal {
 

@@ -1,7 +1,7 @@
 #include "query/box_tree.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 #include <utility>
 

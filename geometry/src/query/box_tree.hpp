@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,11 +9,8 @@
 
 namespace graspfit::geometry::internal {
 
-/// Larger than the depth of any tree: below level 48 the builder halves the set of triangles.
-inline constexpr int kMostTreeDepth = 128;
-
-/// A binary tree of axis-aligned boxes over the faces of a mesh, for searches that walk two trees
-/// at once, one of them moved; all others walk a `FaceTree`. Boxes are exact: the least and
+/// A binary tree of axis-aligned boxes over the faces of a mesh, for searches in two meshes, one
+/// of them moved; all others walk a `FaceTree`. Boxes are exact: the least and
 /// greatest coordinates of the vertices below.
 struct BoxTree {
   struct Node {
@@ -29,24 +25,5 @@ struct BoxTree {
 
   explicit BoxTree(const TriangleMesh& mesh);
 };
-
-/// Calls visit(triangle) for all triangles in leaves that are reached through nodes for which
-/// enter(node) holds, in the order of the tree.
-template <typename Enter, typename Visit>
-void traverse(const BoxTree& tree, const Enter& enter, const Visit& visit) {
-  std::array<std::int32_t, kMostTreeDepth> open;
-  int size = 0;
-  open[size++] = 0;
-  while (size > 0) {
-    const std::int32_t index = open[--size];
-    const BoxTree::Node& node = tree.nodes[index];
-    if (!enter(node)) continue;
-    if (node.count == 0) {
-      open[size++] = node.first;
-      open[size++] = index + 1;
-    }
-    for (std::int32_t i = node.first; i < node.first + node.count; ++i) visit(tree.triangles[i]);
-  }
-}
 
 }  // namespace graspfit::geometry::internal

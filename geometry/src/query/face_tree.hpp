@@ -66,8 +66,8 @@ class FaceTree {
     tree_.traversal(0, walk);
   }
 
-  /// As `traverse` for the boxes for which bound(box) ≤ limit(), of two the one with the smaller
-  /// bound first; `limit` may fall meanwhile.
+  /// Calls visit(triangle) for triangles for whose boxes bound(box) ≤ limit() at that moment; of
+  /// two nodes the one with the smaller bound comes first. `limit` may fall meanwhile.
   template <typename Bound, typename Limit, typename Visit>
   void traverse_by_bound(const Bound& bound, const Limit& limit, const Visit& visit) const {
     WalkByBound<Bound, Limit, Visit> walk{bound, limit, visit};
@@ -121,7 +121,9 @@ class FaceTree {
       const double least = bound(box_of_node(node));
       return {least <= limit(), -least};
     }
-    void intersection(int, const FacePrimitive& face) const { visit(face.triangle()); }
+    void intersection(int, const FacePrimitive& face) const {
+      if (bound(box_of(face.triangle().corners)) <= limit()) visit(face.triangle());
+    }
   };
 
   CGAL::AABB_tree<Traits> tree_;

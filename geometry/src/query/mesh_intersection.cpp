@@ -11,6 +11,7 @@
 #include <queue>
 
 #include "exact/predicates.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "mesh/input_check.hpp"
@@ -263,6 +264,7 @@ class DeepestPoint {
       return stays && box.intersects(of_faces);
     };
     solid_.indexed().tree().traverse(enter, [&](const IndexedTriangle& triangle) {
+      if (!box.intersects(internal::box_of(triangle.corners))) return;
       const Corners& face = triangle.corners;
       const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
       bool is_above = false;
@@ -335,10 +337,10 @@ void PenetrationOptions::validate() const {
 
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB) {
   internal::require_finite(X_AB, "do_intersect");
-  if (surfaces_intersect(a.indexed().pair_tree(), b.indexed().pair_tree(), X_AB)) return true;
-  const SeenBox box_b = seen_from(b.indexed().pair_tree().nodes.front(), X_AB);
+  const SeenBox box_b = seen_from(b.indexed().box, X_AB);
   const Eigen::AlignedBox3d& box_a = a.indexed().box;
   if (!overlap(box_a.min(), box_a.max(), box_b)) return false;
+  if (surfaces_intersect(a.indexed().pair_tree(), b.indexed().pair_tree(), X_AB)) return true;
   if (holds_a_part(a, part_points(b, X_AB))) return true;
   const std::vector<Vector3d> points_a = part_points(a, RigidTransform::Identity());
   return std::any_of(points_a.begin(), points_a.end(), [&](const Vector3d& point_A) {
@@ -382,8 +384,8 @@ MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransfo
   if (do_intersect(a, b, X_AB)) return none;
   const std::optional<SurfaceProximity> nearest =
       nearest_points(a, b, X_AB, std::numeric_limits<double>::infinity());
-  return nearest ? MeshDistance{nearest->distance, nearest->point_on_a_A, nearest->point_on_b_A}
-                 : none;
+  if (!nearest) throw base::InvalidInput("distance: the solids are too far apart to be squared");
+  return {nearest->distance, nearest->point_on_a_A, nearest->point_on_b_A};
 }
 
 }  // namespace graspfit::geometry

@@ -57,6 +57,9 @@ class Line {
       throw base::InvalidInput(std::string(who) + ": the origin is not finite");
     length_ = 2.0 * (box.exteriorDistance(origin) + box.diagonal().norm() + 1e-300);
     ahead_ = origin + length_ * unit;
+    if (!ahead_.allFinite()) {
+      throw base::InvalidInput(std::string(who) + ": the origin is too far from the mesh");
+    }
     inverse_ = (ahead_ - origin).cwiseInverse();
   }
 
@@ -176,6 +179,11 @@ MeshQuery::MeshQuery(TriangleMesh mesh)
 
 const TriangleMesh& MeshQuery::mesh() const { return indexed_->mesh; }
 
+void MeshQuery::build() const {
+  indexed_->tree();
+  indexed_->pair_tree();
+}
+
 const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }
 
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
@@ -183,7 +191,7 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   best.squared_distance = std::numeric_limits<double>::infinity();
   indexed_->tree().traverse_by_bound(
       [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
-      // A rounded nearest point may lie an ulp outside its box.
+      // More than what squares of boxes and of points are rounded by.
       [&] { return best.squared_distance * (1.0 + 0x1p-50); },
       [&](const IndexedTriangle& triangle) {
         const internal::TrianglePoint candidate =

@@ -93,10 +93,6 @@ struct Heights {
                         ///< normal's length; 0 if the triangle crosses the plane.
 };
 
-// How far RᵀR of a rotation matrix R may be from the identity. Lengths that are measured along its
-// columns are off by no more than the bounds of this file.
-constexpr double kRotationError = 1e-12;
-
 /// One search for nearest points, depth first, the nearer children first. Pairs of nodes that are
 /// surely no nearer than `share` times the best distance are left out.
 class Search {
@@ -109,7 +105,7 @@ class Search {
         tree_b_(b_.pair_tree()),
         X_AB_(X_AB),
         turn_(X_AB.linear().cwiseAbs()),
-        is_rotation_((X_AB.linear().transpose() * X_AB.linear()).isIdentity(kRotationError)),
+        is_rotation_(is_rotation(X_AB)),
         squared_enough_(enough * enough),
         squared_share_(share * share),
         squared_near_enough_(near_enough < 0.0 ? -1.0 : near_enough * near_enough),
@@ -275,7 +271,7 @@ class Search {
   const BoxTree& tree_b_;
   const RigidTransform& X_AB_;
   const Eigen::Matrix3d turn_;
-  const bool is_rotation_;  ///< Up to rounding; not where a file gave a few digits of a matrix.
+  const bool is_rotation_;  ///< Whether lengths along the axes of B are lengths in A, too.
   const double squared_enough_;
   const double squared_share_;
   const double squared_near_enough_;
@@ -285,12 +281,23 @@ class Search {
   std::optional<SurfaceProximity> best_;
 };
 
+void require_seed(const ProximitySeed& seed, const MeshQuery& a, const MeshQuery& b,
+                  const char* who) {
+  const auto is_face_of = [](std::int32_t face, const MeshQuery& query) {
+    return face < static_cast<std::int64_t>(query.mesh().faces.size());
+  };
+  base::require(is_face_of(seed.face_a, a), who, "seed.face_a", seed.face_a, "a face of the mesh");
+  base::require(is_face_of(seed.face_b, b), who, "seed.face_b", seed.face_b, "a face of the mesh");
+}
+
 }  // namespace
 
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
                                                const RigidTransform& X_AB, double enough,
                                                const ProximitySeed& seed, double near_enough) {
   internal::require_finite(X_AB, "nearest_points");
+  require_seed(seed, a, b, "nearest_points");
+  base::require(!std::isnan(near_enough), "nearest_points", "near_enough", near_enough, "a number");
   base::require(!std::isnan(enough), "nearest_points", "enough", enough, "a number");
   Search search(a, b, X_AB, enough, 1.0, near_enough);
   search.run(seed);
@@ -301,6 +308,7 @@ SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,
                                    const ProximitySeed& seed) {
   internal::require_finite(X_AB, "surface_clearance");
+  require_seed(seed, a, b, "surface_clearance");
   base::require(!std::isnan(enough), "surface_clearance", "enough", enough, "a number");
   base::require(share > 0.0 && share <= 1.0, "surface_clearance", "share", share, "in (0, 1]");
   Search search(a, b, X_AB, enough, share, 0.0);

@@ -70,6 +70,7 @@ constexpr int kBlock = 16;
 
 float SignedDistanceMap::at_beyond(const Eigen::Vector3d& position) const {
   using Eigen::Array3d;
+  if (position.hasNaN()) throw base::InvalidInput("SignedDistanceMap::at: the point is no point");
   const Array3d voxel = position.array().floor();
   const Array3d inner = voxel.max(0.0).min(lattice.counts.cast<double>().array() - 1.0);
   const float value = at(Eigen::Vector3i(inner.cast<int>()));

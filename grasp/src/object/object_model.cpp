@@ -98,7 +98,11 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
   const geometry::VoxelLattice lattice = lattice_of(box, options);
 
   ObjectModelTimings spent;
-  geometry::MeshQuery query = timed(spent.query_s, [&] { return geometry::MeshQuery(mesh); });
+  geometry::MeshQuery query = timed(spent.query_s, [&] {
+    geometry::MeshQuery built(mesh);
+    built.build();
+    return built;
+  });
   const auto find = [&] { return find_parts(query, lattice, options, spent); };
   internal::ObjectParts parts =
       cache.is_on ? cache.value(

@@ -28,7 +28,9 @@ geometry::MeshDistance distance_up_to(const geometry::MeshQuery& a, const geomet
   const geometry::MeshDistance none{std::numeric_limits<double>::infinity(), Vector3d::Zero(),
                                     Vector3d::Zero()};
   if (box_gap(a.box(), b.box(), X_AB) > enough) return none;
-  if (box_gap(b.box(), a.box(), X_AB.inverse()) > enough) return none;
+  if (geometry::is_rotation(X_AB) && box_gap(b.box(), a.box(), X_AB.inverse()) > enough) {
+    return none;
+  }
   if (geometry::do_intersect(a, b, X_AB)) return {0.0, Vector3d::Zero(), Vector3d::Zero()};
   const auto found = geometry::nearest_points(a, b, X_AB, enough);
   if (!found) return none;

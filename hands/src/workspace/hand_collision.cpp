@@ -21,11 +21,12 @@ Eigen::AlignedBox3d box_around(const Eigen::AlignedBox3d& box_B, const RigidTran
   return {center_A - half_A, center_A + half_A};
 }
 
-/// False only if the boxes are apart: the axes of one of the frames separate them.
+/// False only if the boxes are apart: the axes of one of the frames separate them. The second frame
+/// is asked only where the inverse of the pose is at hand.
 bool may_meet(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B,
               const RigidTransform& X_AB) {
   return box_A.intersects(box_around(box_B, X_AB)) &&
-         box_B.intersects(box_around(box_A, X_AB.inverse()));
+         (!geometry::is_rotation(X_AB) || box_B.intersects(box_around(box_A, X_AB.inverse())));
 }
 
 void take_deeper(HandCollision::Result& result, const geometry::Penetration& found, int link_a,

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,14 +70,15 @@ TEST_CASE("A mesh with a coordinate that is not finite is refused wherever meshe
     mesh.vertices[5][1] = bad;
     INFO(bad);
     check_refused(calls_with(mesh));
-    check_refused({{"clip",
-                    [&] {
-                      clip(corners(mesh, 0), {{Vector3d::UnitX(), 0.25}});
-                    }},
-                   {"clip", [&] {
-                      const std::vector<std::int32_t> all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-                      clip(mesh, all, {{Vector3d::UnitX(), 0.25}});
-                    }}});
+    std::vector<std::int32_t> all(mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0);
+    const auto touched = std::find_if(mesh.faces.begin(), mesh.faces.end(), [](const Face& face) {
+      return std::count(face.begin(), face.end(), 5) > 0;
+    });
+    const auto face = static_cast<std::size_t>(touched - mesh.faces.begin());
+    const ConvexVolume half = {{Vector3d::UnitX(), 0.25}};
+    check_refused({{"clip of a triangle", [&] { clip(corners(mesh, face), half); }},
+                   {"clip of a mesh", [&] { clip(mesh, all, half); }}});
   }
 }
 

@@ -283,14 +283,19 @@ Corners sorted_corners(const std::vector<Eigen::Vector3d>& polygon) {
 
 TEST_CASE("Pieces of adversarial triangles are exact by their origins",
           "[geometry][surface_patch][clip_proofs]") {
+  std::int64_t num_in_rationals = 0;
   for (const Adversarial& adversarial : adversarial_meshes()) {
     CAPTURE(adversarial.name);
     const internal::ClipStatistics statistics = prove_pieces(adversarial.mesh, adversarial.lattice);
-    // The fast path alone would not be enough.
-    CHECK(statistics.signs_in_rationals + statistics.corners_in_rationals +
+    // The rounded corners alone would not be enough.
+    CHECK(statistics.signs_by_determinant + statistics.corners_in_rationals +
               statistics.areas_in_rationals >
           0);
+    num_in_rationals += statistics.signs_in_rationals + statistics.corners_in_rationals +
+                        statistics.areas_in_rationals;
   }
+  // Nor would intervals.
+  CHECK(num_in_rationals > 0);
 }
 
 TEST_CASE("Pieces of sampled faces of real meshes are exact by their origins",

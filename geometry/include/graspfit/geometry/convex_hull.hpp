@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "graspfit/base/floating_point.hpp"
+
 namespace graspfit::geometry {
 
 /// A facet of a hull: corner indices into the input points, counter-clockwise from outside.
@@ -35,10 +37,10 @@ struct HullOptions {
                                ///< and measured.
 };
 
-/// The convex hull of points with its measure and centroid. It is that of `ConvexPolytope`, but
-/// nearly planar and nearly collinear points count as planar and collinear below the thresholds.
-/// With zero thresholds the combinatorics are exact; measure and centroid are rounded. Of equal
-/// points the first counts.
+/// The convex hull of points with its measure and centroid, by CGAL's `convex_hull_2` and
+/// `convex_hull_3`, but nearly planar and nearly collinear points count as planar and collinear
+/// below the thresholds. With zero thresholds the combinatorics are exact and depend on the points
+/// alone; measure and centroid are rounded. Of equal points the first counts.
 /// @throws InvalidInput for a point that is not finite and a threshold that is not at least 0.
 ConvexHull3 convex_hull(std::span<const Eigen::Vector3d> points, const HullOptions& options = {});
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "graspfit/base/floating_point.hpp"
+
 namespace graspfit::geometry {
 
 /// The nearest multiples of 2^`power` to the entries of a matrix, halves to even. Sums and

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "graspfit/base/floating_point.hpp"
+
 namespace graspfit::geometry {
 
 /// How a linear program ended.

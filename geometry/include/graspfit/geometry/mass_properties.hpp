@@ -29,6 +29,7 @@ struct MassProperties {
 /// union, so that overlaps count once; `method` tells which of the two was done. A single part that
 /// crosses itself, and a mesh that is not closed, are summed as they are: a region around which the
 /// surface winds twice counts twice (it counts once if `solid_boundary` is applied first).
+/// @throws InvalidInput if a coordinate is not finite or a face has a vertex that is none.
 /// @throws DegenerateGeometry if the volume is not positive (open, inside-out or flat mesh).
 MassProperties mass_properties(const TriangleMesh& mesh);
 

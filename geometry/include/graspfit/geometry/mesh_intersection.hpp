@@ -11,6 +11,7 @@ namespace graspfit::geometry {
 ///
 /// Exact on the vertices of `b` mapped to frame A by `X_AB` and rounded once (exactly the mesh
 /// `transformed(b.mesh(), X_AB)`).
+/// @throws InvalidInput for a pose that is not finite, as all functions of this header.
 bool do_intersect(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
 
 /// How deep two solids overlap.

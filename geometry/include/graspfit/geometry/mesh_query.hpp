@@ -10,7 +10,7 @@
 namespace graspfit::geometry {
 
 namespace internal {
-struct IndexedMesh;
+class IndexedMesh;
 }
 
 /// Where a point lies against a closed surface.
@@ -55,11 +55,16 @@ class MeshQuery {
 
   const TriangleMesh& mesh() const;
 
+  /// Builds now what the first query of each kind would build, about 1 µs a face: where the first
+  /// answer must not be late, or times are taken.
+  void build() const;
+
   /// Box of all faces. Exact.
   const Eigen::AlignedBox3d& box() const;
 
-  /// Nearest surface point. Approximate to rounding (double constructions); of equally near faces
-  /// the one with the lowest index.
+  /// Nearest surface point. Approximate to rounding (double constructions); of faces at the same
+  /// rounded distance the one with the lowest index. @throws InvalidInput where squared distances
+  /// overflow, too.
   ClosestPoint closest_point(const Eigen::Vector3d& point) const;
 
   /// Exact for closed meshes: inside is where the winding number of the surface is not zero,

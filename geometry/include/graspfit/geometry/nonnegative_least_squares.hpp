@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "graspfit/base/floating_point.hpp"
+
 namespace graspfit::geometry {
 
 /// A minimizer x ≥ 0 of ‖A x − b‖ by active sets [Lawson & Hanson 1974, chapter 23]: its positive

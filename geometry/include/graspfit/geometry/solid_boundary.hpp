@@ -19,7 +19,8 @@ namespace graspfit::geometry {
 ///
 /// Cost: that of counting self-intersections, and about a fifth of a millisecond for each pair of
 /// faces that cross. A mesh without faces gives one without faces.
-/// @throws InvalidInput if the mesh is not closed in the sense above.
+/// @throws InvalidInput if the mesh is not closed in the sense above, a coordinate is not finite or
+/// a face has a vertex that is none.
 TriangleMesh solid_boundary(const TriangleMesh& mesh);
 
 }  // namespace graspfit::geometry

@@ -52,7 +52,8 @@ struct SurfacePatchOptions {
 /// Which triangle has area in which voxel is decided exactly; areas, centroids and normals are
 /// rounded (see `clip` for the pieces; sums add an ulp per piece). Degenerate faces have no pieces.
 /// Cost: linear in the number of pieces.
-/// @throws InvalidInput if the mesh leaves the lattice.
+/// @throws InvalidInput if the mesh leaves the lattice, a coordinate is not finite or a face has a
+/// vertex that is none.
 std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
                                           const SurfacePatchOptions& options = {});
 

@@ -33,6 +33,8 @@ struct ProximitySeed {
 /// result is approximate, to the rounding of distances; surfaces that cross have distance zero,
 /// except for crossings as small as rounding. Where intersection matters use `do_intersect`, which
 /// is exact.
+/// @throws InvalidInput for a pose that is not finite, a limit that is not a number and a seed that
+/// is not of these meshes.
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
                                                const RigidTransform& X_AB, double enough,
                                                const ProximitySeed& seed = {},
@@ -52,6 +54,7 @@ struct SurfaceClearance {
 ///
 /// `share` in (0, 1] is the share of the distance that suffices; 1 asks for the distance itself.
 /// The function is cheaper than `nearest_points`: boxes alone bound the pairs of faces that remain.
+/// @throws InvalidInput as `nearest_points`, and for another `share`.
 SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,
                                    const ProximitySeed& seed = {});
