@@ -113,8 +113,10 @@ TEST_CASE("A cube rests on the table, and is lifted by jaws that press hard enou
   }
 }
 
-TEST_CASE("A pre-grasp deep in the object is rejected, one that is shallow or missing too",
-          "[hold_test]") {
+TEST_CASE(
+    "A pre-grasp deep in the object is rejected, and so is a grasp without one or without a "
+    "squeeze",
+    "[hold_test]") {
   HoldTest test = jaws_on_cube(bench());
   grasp::Grasp deep = pinch(5.0);
   deep.pre_grasp->configuration = jaws_at(0.052, 0.03);  // The jaw is 12 mm deep.

@@ -192,8 +192,9 @@ TEST_CASE("A grasp has room over the table at the goal too, lower, upside down o
   }
 }
 
-TEST_CASE("A hand whose palm is in the object goes straight down, and none is said to have failed",
-          "[grasp][pick_and_place]") {
+TEST_CASE(
+    "A palm that starts in the object is no error, and where no grasp is tried none has failed",
+    "[grasp][pick_and_place]") {
   const TableScene scene = two_blocks();
   PickAndPlaceOptions options = options_for(scene.hand());
   options.planner.max_attempts = 4;

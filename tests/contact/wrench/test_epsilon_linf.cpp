@@ -61,7 +61,10 @@ TEST_CASE("Epsilon, L-infinity, lies between epsilon and as many times that as c
   CHECK(num_closed >= 2);
 }
 
-TEST_CASE("Without friction, contacts around an axis push with one each", "[grasp][epsilon_linf]") {
+TEST_CASE(
+    "Six contacts of a cube withstand no torque without friction, and with it what their friction "
+    "can turn",
+    "[grasp][epsilon_linf]") {
   // Each of the six contacts of the cube pushes its own way alone, and about no axis is there a
   // torque.
   const LInfinityEpsilon none = epsilon_linf(on_cube(), convention_of(0.0));
