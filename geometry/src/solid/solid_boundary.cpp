@@ -8,6 +8,7 @@
 #include <CGAL/intersections.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
@@ -167,6 +168,14 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return result;
 }
 
+/// What a face meets.
+struct Crossings {
+  std::vector<Common> cuts;            ///< Of faces in other planes.
+  std::vector<std::int32_t> coplanar;  ///< Faces in its own plane.
+
+  bool empty() const { return cuts.empty() && coplanar.empty(); }
+};
+
 class Builder {
  public:
   explicit Builder(const TriangleMesh& mesh) : mesh_(welded(mesh)) {
@@ -176,12 +185,17 @@ class Builder {
   TriangleMesh build() {
     if (mesh_.faces.empty()) return result_;
     tree_.emplace(mesh_);
-    std::vector<std::vector<Common>> met(mesh_.faces.size());
+    std::vector<Crossings> met(mesh_.faces.size());
     for (const auto& [first, second] : internal::crossing_faces(mesh_)) {
+      if (are_coplanar(first, second)) {
+        met[first].coplanar.push_back(second);
+        met[second].coplanar.push_back(first);
+        continue;
+      }
       // Both faces share the exact points, which are evaluated once.
       const Common common = CGAL::intersection(triangle(first), triangle(second));
-      met[first].push_back(common);
-      met[second].push_back(common);
+      met[first].cuts.push_back(common);
+      met[second].cuts.push_back(common);
     }
     add_whole_faces(met);
     for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
@@ -196,9 +210,17 @@ class Builder {
     return {to_exact(a), to_exact(b), to_exact(c)};
   }
 
+  bool are_coplanar(std::int32_t first, std::int32_t second) const {
+    const auto [a, b, c] = geometry::corners(mesh_, static_cast<std::size_t>(first));
+    const Corners other = geometry::corners(mesh_, static_cast<std::size_t>(second));
+    return std::all_of(other.begin(), other.end(), [&](const Vector3d& corner) {
+      return internal::orientation(a, b, c, corner) == 0;
+    });
+  }
+
   /// Adds the faces that cross nothing and bound the solid. The sides of such faces are the same
   /// throughout a set of them that is connected by edges with two faces.
-  void add_whole_faces(const std::vector<std::vector<Common>>& met) {
+  void add_whole_faces(const std::vector<Crossings>& met) {
     internal::DisjointSets regions(mesh_.faces.size());
     internal::for_each_edge(internal::sorted_sides(mesh_), [&](auto first, auto last) {
       if (last - first == 2 && met[first->face].empty() && met[(first + 1)->face].empty()) {
@@ -235,7 +257,7 @@ class Builder {
   }
 
   /// Cuts a face by all that it meets and adds the pieces that bound the solid.
-  void add_pieces(std::int32_t face, const std::vector<Common>& crossings) {
+  void add_pieces(std::int32_t face, const Crossings& crossings) {
     const Corners corners = geometry::corners(mesh_, static_cast<std::size_t>(face));
     const int axis = main_axis(corners);
     const int a = (axis + 1) % 3;
@@ -248,7 +270,24 @@ class Builder {
       vertex_of[own[i]] = mesh_.faces[face][i];
     }
     for (int i = 0; i < 3; ++i) cut.insert_constraint(own[i], own[(i + 1) % 3]);
-    insert_crossings(crossings, a, b, cut);
+    insert_cuts(crossings.cuts, a, b, cut);
+    // Edges of coplanar faces cut as they are: what they have in common with this face would only
+    // be computed to be forgotten. What lies beyond this face is left out below.
+    for (const std::int32_t other : crossings.coplanar) {
+      const Corners c = geometry::corners(mesh_, static_cast<std::size_t>(other));
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        cut.insert_constraint(Exact::Point_2(c[i][a], c[i][b]), Exact::Point_2(c[j][a], c[j][b]));
+      }
+    }
+    const CGAL::Orientation turn =
+        CGAL::orientation(own[0]->point(), own[1]->point(), own[2]->point());
+    const auto is_in_face = [&](const Exact::Point_2& p) {
+      for (int i = 0; i < 3; ++i) {
+        if (CGAL::orientation(own[i]->point(), own[(i + 1) % 3]->point(), p) != turn) return false;
+      }
+      return true;
+    };
 
     // Lifts a point of the projection back to the plane of the face.
     const Exact::Triangle_3 triangle = this->triangle(face);
@@ -284,7 +323,9 @@ class Builder {
         }
       }
       const Cut::Triangle t = cut.triangle(largest);
-      const Sides sides = sides_at(*tree_, lifted(CGAL::centroid(t[0], t[1], t[2])), face, axis);
+      const Exact::Point_2 within = CGAL::centroid(t[0], t[1], t[2]);
+      if (!is_in_face(within)) continue;
+      const Sides sides = sides_at(*tree_, lifted(within), face, axis);
       // Where faces cover each other only the first one adds the piece.
       if (sides.first_face != face || sides.is_solid_above == sides.is_solid_below) continue;
       for (const Cut::Face_handle part : piece) {
@@ -303,22 +344,15 @@ class Builder {
     }
   }
 
-  static void insert_crossings(const std::vector<Common>& crossings, int a, int b, Cut& cut) {
+  /// Planes that are not the same have a point or a segment in common.
+  static void insert_cuts(const std::vector<Common>& cuts, int a, int b, Cut& cut) {
     const auto flat = [&](const Exact::Point_3& p) { return Exact::Point_2(p[a], p[b]); };
-    for (const Common& common : crossings) {
+    for (const Common& common : cuts) {
       using internal::intersection_part;
-      std::vector<Exact::Point_2> outline;
       if (const auto* point = intersection_part<Exact::Point_3>(common)) {
         cut.insert(flat(*point));
       } else if (const auto* segment = intersection_part<Exact::Segment_3>(common)) {
         cut.insert_constraint(flat(segment->source()), flat(segment->target()));
-      } else if (const auto* shared = intersection_part<Exact::Triangle_3>(common)) {
-        for (int i = 0; i < 3; ++i) outline.push_back(flat((*shared)[i]));
-      } else if (const auto* polygon = intersection_part<std::vector<Exact::Point_3>>(common)) {
-        for (const Exact::Point_3& p : *polygon) outline.push_back(flat(p));
-      }
-      for (std::size_t i = 0; i < outline.size(); ++i) {
-        cut.insert_constraint(outline[i], outline[(i + 1) % outline.size()]);
       }
     }
   }
