@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -41,8 +42,9 @@ std::vector<std::size_t> distinct_points(std::span<const Vector3d> points) {
 
 namespace {
 
-void start_at_least(Indices& ring) {
-  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+template <typename Ring, typename Less>
+void start_at_least(Ring& ring, const Less& less) {
+  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), less), ring.end());
 }
 
 /// CGAL's hull of points that span space, with what makes it canonical.
@@ -69,6 +71,10 @@ class SolidHull {
       hull.corners.push_back(index_of(vertex));
     }
     std::sort(hull.corners.begin(), hull.corners.end());
+    const auto by_coordinates = [&](std::size_t a, std::size_t b) {
+      return std::tie(points_[a].x(), points_[a].y(), points_[a].z()) <
+             std::tie(points_[b].x(), points_[b].y(), points_[b].z());
+    };
     std::vector<char> is_done(mesh_.number_of_faces(), 0);
     for (const Mesh::Halfedge_index start : mesh_.halfedges()) {
       if (!is_rim(start) || is_done[facet_of(start)] != 0) continue;
@@ -79,9 +85,11 @@ class SolidHull {
         if (is_corner[mesh_.target(side)] != 0) ring.push_back(index_of(mesh_.target(side)));
         side = next_on_rim(side);
       } while (side != start);
-      start_at_least(ring);
+      start_at_least(ring, by_coordinates);
       for (std::size_t i = 2; i < ring.size(); ++i) {
-        hull.triangles.push_back({ring[0], ring[i - 1], ring[i]});
+        std::array<std::size_t, 3> triangle = {ring[0], ring[i - 1], ring[i]};
+        start_at_least(triangle, std::less<>());
+        hull.triangles.push_back(triangle);
       }
     }
     std::sort(hull.triangles.begin(), hull.triangles.end());
@@ -174,7 +182,7 @@ std::vector<std::size_t> hull_in_plane(std::span<const Vector3d> points,
     const auto found = std::lower_bound(given.begin(), given.end(), corner);
     ring.push_back(order[static_cast<std::size_t>(found - given.begin())]);
   }
-  std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), less), ring.end());
+  start_at_least(ring, less);
   return ring;
 }
 
@@ -208,7 +216,7 @@ ExactHull exact_hull(std::span<const Vector3d> points) {
   for (const auto& [u, v] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
     if (orientation_2d(first, last, third, u, v) == 0) continue;
     hull.corners = hull_in_plane(points, sorted, u, v);
-    start_at_least(hull.corners);
+    start_at_least(hull.corners, std::less<>());
     break;
   }
   return hull;

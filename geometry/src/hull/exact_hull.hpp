@@ -22,7 +22,8 @@ struct ExactHull {
   std::vector<std::array<std::size_t, 3>> triangles;  ///< At rank 3, counter-clockwise seen from
                                                       ///< outside, the least corner first, in
                                                       ///< lexicographic order. A facet with more
-                                                      ///< corners is a fan from the least.
+                                                      ///< corners is a fan from the least point
+                                                      ///< (x, y, z).
 };
 
 /// Indices of distinct points in lexicographic order; of equal points the first.
