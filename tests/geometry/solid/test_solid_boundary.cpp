@@ -6,6 +6,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
@@ -73,7 +74,12 @@ TEST_CASE("A face whose area is of the size of rounding is no gap in the boundar
                 {11, 12, 16}, {11, 16, 15}, {12, 9, 13}, {12, 13, 16}, {9, 11, 10},  {9, 12, 11},
                 {13, 14, 15}, {13, 15, 16}};
   const TriangleMesh boundary = checked_boundary(mesh);
-  CHECK(boundary.faces.size() == 42);
+  CHECK(analyze(boundary).is_closed);
+  // The second box stands upright with its lower half in the first one.
+  const double outer =
+      signed_volume({mesh.vertices, {mesh.faces.begin(), mesh.faces.begin() + 14}});
+  const double inner = signed_volume({mesh.vertices, {mesh.faces.begin() + 14, mesh.faces.end()}});
+  CHECK(signed_volume(boundary) == Approx(outer + 0.5 * inner).epsilon(1e-12));
 }
 
 TEST_CASE("Boxes in every position to each other are united", "[geometry][solid_boundary]") {
