@@ -22,7 +22,7 @@ using namespace graspfit::base;
 using graspfit::testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
-TEST_CASE("What is written is read back byte for byte", "[geometry][atomic_file]") {
+TEST_CASE("What is written is read back byte for byte", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "some file";
   for (const std::string& content : {std::string(), std::string("text\r\n"),
@@ -34,7 +34,7 @@ TEST_CASE("What is written is read back byte for byte", "[geometry][atomic_file]
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("A file written in pieces appears whole or not at all", "[geometry][atomic_file]") {
+TEST_CASE("A file written in pieces appears whole or not at all", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "table";
   write_file_atomically(file, "old");
@@ -55,7 +55,7 @@ TEST_CASE("A file written in pieces appears whole or not at all", "[geometry][at
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("What is behind a link is written, and the link stays", "[geometry][atomic_file]") {
+TEST_CASE("What is behind a link is written, and the link stays", "[base][atomic_file]") {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "far");
   fs::create_symlink("far/file", folder.path() / "near");
@@ -79,7 +79,7 @@ TEST_CASE("What is behind a link is written, and the link stays", "[geometry][at
                     "cannot write " + (folder.path() / "folder").string() + ": it is a folder");
 }
 
-TEST_CASE("A pipe is written into", "[geometry][atomic_file]") {
+TEST_CASE("A pipe is written into", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path pipe = folder.path() / "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
@@ -99,7 +99,7 @@ TEST_CASE("A pipe is written into", "[geometry][atomic_file]") {
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 2);
 }
 
-TEST_CASE("A device is written into, and what it says is reported", "[geometry][atomic_file]") {
+TEST_CASE("A device is written into, and what it says is reported", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path full = folder.path() / "full";
   if (::mknod(full.c_str(), S_IFCHR | 0600, ::makedev(1, 7)) != 0 ||
@@ -122,7 +122,7 @@ TEST_CASE("A device is written into, and what it says is reported", "[geometry][
   }
 }
 
-TEST_CASE("An open file is written into by its descriptor's name", "[geometry][atomic_file]") {
+TEST_CASE("An open file is written into by its descriptor's name", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "file";
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT, 0600);
@@ -135,7 +135,7 @@ TEST_CASE("An open file is written into by its descriptor's name", "[geometry][a
 }
 
 TEST_CASE("Writers of one file do not meet, and what a killed one left is taken over",
-          "[geometry][atomic_file]") {
+          "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "table";
   {
@@ -164,8 +164,7 @@ TEST_CASE("Writers of one file do not meet, and what a killed one left is taken 
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 3);
 }
 
-TEST_CASE("A file that cannot be written or read is named with the reason",
-          "[geometry][atomic_file]") {
+TEST_CASE("A file that cannot be written or read is named with the reason", "[base][atomic_file]") {
   const TemporaryFolder folder;
   const fs::path missing = folder.path() / "no/such";
   CHECK_THROWS_WITH(write_file_atomically(missing, "x"),
@@ -177,12 +176,12 @@ TEST_CASE("A file that cannot be written or read is named with the reason",
   CHECK(fs::is_empty(folder.path()));
 }
 
-TEST_CASE("SHA-256 is that of FIPS 180-4", "[geometry][atomic_file]") {
+TEST_CASE("SHA-256 is that of FIPS 180-4", "[base][atomic_file]") {
   CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-TEST_CASE("Decimals are the shortest that read back", "[geometry][atomic_file]") {
+TEST_CASE("Decimals are the shortest that read back", "[base][atomic_file]") {
   CHECK(shortest_decimal(0.1) == "0.1");
   CHECK(shortest_decimal(1.0) == "1");
   CHECK(shortest_decimal(-2.5e-7) == "-2.5e-07");

@@ -10,7 +10,7 @@ namespace test_bounded_integer {
 using graspfit::base::bounded_integer;
 
 TEST_CASE("A double within the bounds loses its fraction, any other becomes a bound",
-          "[geometry][bounded_integer]") {
+          "[base][bounded_integer]") {
   CHECK(bounded_integer(3.99, 0, 10) == 3);
   CHECK(bounded_integer(-3.99, -10, 10) == -3);
   CHECK(bounded_integer(0.0, 0, 10) == 0);
@@ -23,7 +23,7 @@ TEST_CASE("A double within the bounds loses its fraction, any other becomes a bo
   CHECK(bounded_integer(std::nan(""), 1, 10) == 1);
 }
 
-TEST_CASE("Bounds that no double holds are kept", "[geometry][bounded_integer]") {
+TEST_CASE("Bounds that no double holds are kept", "[base][bounded_integer]") {
   constexpr auto kLeast = std::numeric_limits<std::int64_t>::min();
   constexpr auto kMost = std::numeric_limits<std::int64_t>::max();  // As a double this is 2^63.
   CHECK(bounded_integer(0x1p63, kLeast, kMost) == kMost);

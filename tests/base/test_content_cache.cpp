@@ -26,7 +26,7 @@ const std::string kKey = sha256_hex("some content");
 }  // namespace
 
 TEST_CASE("What is kept is read back byte for byte, under its own kind and key only",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   const TemporaryFolder folder;
   const ContentCache cache{.folder = folder.path() / "new/folder"};
   CHECK_FALSE(cache.read("numbers", kKey));
@@ -46,7 +46,7 @@ TEST_CASE("What is kept is read back byte for byte, under its own kind and key o
 }
 
 TEST_CASE("A damaged entry is as good as none, whichever byte it is, and is replaced",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   const TemporaryFolder folder;
   const ContentCache cache{.folder = folder.path()};
   cache.write("numbers", kKey, "12 34 56 ");
@@ -84,7 +84,7 @@ TEST_CASE("A damaged entry is as good as none, whichever byte it is, and is repl
 }
 
 TEST_CASE("A cache that is off, or that cannot be written, keeps nothing and is no error",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   const TemporaryFolder folder;
   const ContentCache off{.is_on = false, .folder = folder.path()};
   off.write("numbers", kKey, "1");
@@ -108,7 +108,7 @@ TEST_CASE("A cache that is off, or that cannot be written, keeps nothing and is 
 }
 
 TEST_CASE("The cache is where the environment says, and nowhere without a home",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   const TemporaryFolder folder;
   const std::vector<const char*> variables = {"GRASPFIT_CACHE", "XDG_CACHE_HOME", "HOME"};
   std::vector<std::optional<std::string>> before;
@@ -144,7 +144,7 @@ TEST_CASE("The cache is where the environment says, and nowhere without a home",
 }
 
 TEST_CASE("Kinds that are no folder's name and keys that are no hash are refused",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   const ContentCache cache;
   for (const char* kind : {"", "..", "a/b", "Numbers", "a b"}) {
     CHECK_THROWS_WITH(cache.read(kind, kKey), "ContentCache: kind '" + std::string(kind) +
@@ -157,7 +157,7 @@ TEST_CASE("Kinds that are no folder's name and keys that are no hash are refused
 }
 
 TEST_CASE("Keys differ with every bit and every border between what they are made of",
-          "[geometry][content_cache]") {
+          "[base][content_cache]") {
   std::set<std::string> keys;
   int num_keys = 0;
   const auto add = [&](const auto& fill) {
@@ -180,7 +180,7 @@ TEST_CASE("Keys differ with every bit and every border between what they are mad
   CHECK(ContentKey("test 1").sha256() == ContentKey("test 1").sha256());
 }
 
-TEST_CASE("Numbers are read back to the bit, and nothing else is", "[geometry][content_cache]") {
+TEST_CASE("Numbers are read back to the bit, and nothing else is", "[base][content_cache]") {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::vector<double> reals = {0.0,     0.1,  -1e300,    5e-324,
                                      1.0 / 3, 1e22, kInfinity, -kInfinity};

@@ -34,7 +34,7 @@ class Opened {
 
 }  // namespace
 
-TEST_CASE("A file or folder is locked by one until that one closes it", "[geometry][file_lock]") {
+TEST_CASE("A file or folder is locked by one until that one closes it", "[base][file_lock]") {
   const TemporaryFolder folder;
   for (const fs::path& path : {folder.write("a.txt", "a"), folder.path()}) {
     const Opened second(path);
@@ -49,7 +49,7 @@ TEST_CASE("A file or folder is locked by one until that one closes it", "[geomet
 }
 
 TEST_CASE("What was removed or replaced after it was opened is nobody's to lock",
-          "[geometry][file_lock]") {
+          "[base][file_lock]") {
   const TemporaryFolder folder;
   const fs::path removed = folder.write("removed.txt", "a");
   const fs::path replaced = folder.write("replaced.txt", "a");

@@ -29,7 +29,7 @@ std::string nested(int depth) {
          std::string(static_cast<std::size_t>(depth), ']');
 }
 
-TEST_CASE("JSON may nest to the limit and not one level deeper", "[geometry][json_bounds]") {
+TEST_CASE("JSON may nest to the limit and not one level deeper", "[base][json_bounds]") {
   CHECK(refusal("") == "accepted");
   CHECK(refusal("7") == "accepted");
   CHECK(refusal(nested(kDeepestJson)) == "accepted");
@@ -45,7 +45,7 @@ TEST_CASE("JSON may nest to the limit and not one level deeper", "[geometry][jso
 }
 
 TEST_CASE("Brackets in JSON strings do not nest, and escaped quotes do not end a string",
-          "[geometry][json_bounds]") {
+          "[base][json_bounds]") {
   const std::string brackets(100, '[');
   CHECK(refusal("{\"" + brackets + "\": \"" + brackets + "\"}") == "accepted");
   CHECK(refusal(R"(["\")" + brackets + R"("])") == "accepted");
@@ -75,7 +75,7 @@ TEST_CASE("An object may have so many members and not one more", "[base][json_bo
   CHECK(refusal_of(":::") == "accepted");  // This is no object, and no JSON.
 }
 
-TEST_CASE("A JSON file that is too large is refused before it is read", "[geometry][json_bounds]") {
+TEST_CASE("A JSON file that is too large is refused before it is read", "[base][json_bounds]") {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "large.json";
   std::ofstream(file) << "{}";

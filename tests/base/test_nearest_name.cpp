@@ -6,7 +6,7 @@ namespace test_nearest_name {
 using graspfit::base::did_you_mean;
 using graspfit::base::nearest_name;
 
-TEST_CASE("A mistyped name is told from its nearest known one", "[geometry][nearest_name]") {
+TEST_CASE("A mistyped name is told from its nearest known one", "[base][nearest_name]") {
   const std::vector<std::string> known = {"plan", "inspect", "evaluate", "hold", "hand", "shape"};
   // In these one letter is replaced, left out or inserted, two neighbors are swapped, or the case
   // is another.
@@ -20,7 +20,7 @@ TEST_CASE("A mistyped name is told from its nearest known one", "[geometry][near
   CHECK(did_you_mean("plam", known) == "; did you mean \"plan\"?");
 }
 
-TEST_CASE("A third of the letters is near, more is not", "[geometry][nearest_name]") {
+TEST_CASE("A third of the letters is near, more is not", "[base][nearest_name]") {
   CHECK(nearest_name("abcxyf", {"abcdef"}) == "abcdef");  // 2 of 6 letters differ.
   CHECK_FALSE(nearest_name("abxyzf", {"abcdef"}));        // 3 of 6 letters differ.
   CHECK(nearest_name("ab", {"ac"}) == "ac");              // One letter may always differ.
@@ -31,14 +31,14 @@ TEST_CASE("A third of the letters is near, more is not", "[geometry][nearest_nam
 }
 
 TEST_CASE("Of names equally near the first is meant, and a nearer one before it",
-          "[geometry][nearest_name]") {
+          "[base][nearest_name]") {
   CHECK(nearest_name("w4", {"w1", "w2", "w3"}) == "w1");
   CHECK(nearest_name("table2", {"table1", "tables", "table1_refined"}) == "table1");
   CHECK(nearest_name("tabel_2", {"tab_e_3", "table_2"}) == "table_2");
 }
 
 TEST_CASE("The beginning of a longer name is completed where nothing is near",
-          "[geometry][nearest_name]") {
+          "[base][nearest_name]") {
   CHECK(nearest_name("dexonomy", {"dexgraspbench-100g", "dexonomy-hard"}) == "dexonomy-hard");
   CHECK_FALSE(nearest_name("de", {"dexonomy-hard"}));
 }

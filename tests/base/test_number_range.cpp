@@ -11,7 +11,7 @@ namespace test_number_range {
 
 using namespace graspfit::base;
 
-TEST_CASE("A range ends where its text says", "[geometry][number_range]") {
+TEST_CASE("A range ends where its text says", "[base][number_range]") {
   const NumberRange half_open = {.least = 0, .most = 1, .has_most = false};
   CHECK(half_open.text() == "in [0, 1)");
   CHECK(half_open.contains(0.0));
@@ -30,7 +30,7 @@ TEST_CASE("A range ends where its text says", "[geometry][number_range]") {
 }
 
 TEST_CASE("Plain decimals have an exponent only where they are huge or tiny",
-          "[geometry][number_range]") {
+          "[base][number_range]") {
   CHECK(plain_decimal(100000) == "100000");
   CHECK(plain_decimal(0.0009) == "0.0009");
   CHECK(plain_decimal(-0.1) == "-0.1");
@@ -42,14 +42,14 @@ TEST_CASE("Plain decimals have an exponent only where they are huge or tiny",
   CHECK(between(1, 1000000).text() == "in [1, 1000000]");
 }
 
-TEST_CASE("Nothing that is not finite is in a range", "[geometry][number_range]") {
+TEST_CASE("Nothing that is not finite is in a range", "[base][number_range]") {
   for (const NumberRange& range : {NumberRange{}, at_least(0), above(0)}) {
     CHECK_FALSE(range.contains(std::numeric_limits<double>::infinity()));
     CHECK_FALSE(range.contains(std::numeric_limits<double>::quiet_NaN()));
   }
 }
 
-TEST_CASE("A value outside is refused by name, value and range", "[geometry][number_range]") {
+TEST_CASE("A value outside is refused by name, value and range", "[base][number_range]") {
   CHECK(between(0, 1).checked("--share", 0.25) == 0.25);
   CHECK_THROWS_WITH(between(0, 0.01).checked("--weld", -1), "--weld is -1, must be in [0, 0.01]");
   CHECK_THROWS_AS(above(0).checked("--step", 0), InvalidInput);

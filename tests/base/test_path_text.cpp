@@ -7,7 +7,7 @@ namespace test_path_text {
 
 using namespace graspfit::base;
 
-TEST_CASE("Only what Unicode calls UTF-8 is UTF-8", "[geometry][path_text]") {
+TEST_CASE("Only what Unicode calls UTF-8 is UTF-8", "[base][path_text]") {
   for (const char* text : {"", "plain", "caf\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\xA4\x96",
                            "\xEF\xBF\xBF", "\xF4\x8F\xBF\xBF", "\xED\x9F\xBF", "\x01\x7F"}) {
     CAPTURE(text);
@@ -22,7 +22,7 @@ TEST_CASE("Only what Unicode calls UTF-8 is UTF-8", "[geometry][path_text]") {
 }
 
 TEST_CASE("Paths in UTF-8 are their own texts, others have their bytes in digits",
-          "[geometry][path_text]") {
+          "[base][path_text]") {
   CHECK(path_text("meshes/caf\xC3\xA9 100%.off") == "meshes/caf\xC3\xA9 100%.off");
   CHECK(path_text("") == "");
   CHECK(path_text("a/caf\xE9 1.off") == "file:a/caf%E9%201.off");
@@ -35,7 +35,7 @@ TEST_CASE("Paths in UTF-8 are their own texts, others have their bytes in digits
         "A");
 }
 
-TEST_CASE("Every path comes back from its text, which is UTF-8", "[geometry][path_text]") {
+TEST_CASE("Every path comes back from its text, which is UTF-8", "[base][path_text]") {
   std::string all;
   for (int byte = 1; byte < 256; ++byte) {
     const std::string one(1, static_cast<char>(byte));

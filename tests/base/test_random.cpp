@@ -8,7 +8,7 @@ namespace test_random {
 
 using namespace graspfit::base;
 
-TEST_CASE("The generator is SplitMix64", "[geometry][random]") {
+TEST_CASE("The generator is SplitMix64", "[base][random]") {
   // These are the first outputs for seed 1234567 of the public reference implementation by S.
   // Vigna.
   Random random(1234567);
@@ -19,7 +19,7 @@ TEST_CASE("The generator is SplitMix64", "[geometry][random]") {
   CHECK(random.next() == 16408922859458223821U);
 }
 
-TEST_CASE("Uniform numbers fill their interval evenly", "[geometry][random]") {
+TEST_CASE("Uniform numbers fill their interval evenly", "[base][random]") {
   Random random(61);
   std::vector<int> bins(10, 0);
   for (int i = 0; i < 100000; ++i) {
@@ -37,7 +37,7 @@ TEST_CASE("Uniform numbers fill their interval evenly", "[geometry][random]") {
   }
 }
 
-TEST_CASE("Indices are below their count and all are drawn", "[geometry][random]") {
+TEST_CASE("Indices are below their count and all are drawn", "[base][random]") {
   Random random(62);
   for (const std::uint64_t count : {1U, 2U, 3U, 7U, 10U}) {
     std::set<std::uint64_t> seen;
@@ -49,7 +49,7 @@ TEST_CASE("Indices are below their count and all are drawn", "[geometry][random]
   for (int i = 0; i < 100; ++i) CHECK(random.index((1ULL << 63) + 1) <= (1ULL << 63));
 }
 
-TEST_CASE("Streams depend on seed and index alone", "[geometry][random]") {
+TEST_CASE("Streams depend on seed and index alone", "[base][random]") {
   CHECK(Random::stream(5, 3).next() == Random::stream(5, 3).next());
   std::set<std::uint64_t> firsts;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {

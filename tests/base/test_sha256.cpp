@@ -10,7 +10,7 @@ namespace test_sha256 {
 
 using namespace graspfit::base;
 
-TEST_CASE("A file's hash is that of its bytes, whatever its size", "[geometry][file_hash]") {
+TEST_CASE("A file's hash is that of its bytes, whatever its size", "[base][file_hash]") {
   const graspfit::testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "bytes";
   // The sizes are around those of the blocks of 64 kB in which a file is read.

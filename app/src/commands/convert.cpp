@@ -163,8 +163,7 @@ Source import_isaac(const Flags& flags) {
   }
   if (flags.has("palm")) options.palm = true;
   warn_of_findings("convert", reading);
-  const grasp::ObjectFile object =
-      grasp::read_object_file(flags.text("object"), object_read_options(flags));
+  const grasp::ObjectFile object = load_object(flags, flags.text("object"));
   require_solid(object);
   exchange::ImportResult result =
       exchange::import_grasps(object, reading.model, grasps,

@@ -286,8 +286,7 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   if (flags.has("out")) out.emplace(flags.text("out"), is_inspect_file);
 
   ProgressBar progress(true);
-  progress.show("reading " + flags.positional());
-  const grasp::ObjectFile object_file = load_object(flags);
+  const grasp::ObjectFile object_file = load_object(flags, flags.positional());
   const bool is_solid =
       object_file.record.analysis.is_closed && object_file.record.analysis.is_outward;
   std::optional<grasp::ObjectModel> object;

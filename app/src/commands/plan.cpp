@@ -289,8 +289,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   warn_of_findings("plan", reading);
 
   ProgressBar progress(!flags.has("quiet"));
-  progress.show("reading " + flags.positional());
-  const grasp::ObjectFile object_file = load_object(flags);
+  const grasp::ObjectFile object_file = load_object(flags, flags.positional());
   require_solid(object_file);
   const LoadedSurroundings around = load_surroundings(flags, object_file.mesh);
   progress.clear();

@@ -8,6 +8,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/grasp/object_difference.hpp"
+#include "output/progress_bar.hpp"
 #include "output/text_table.hpp"
 
 namespace graspfit::app {
@@ -118,6 +119,7 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
   options.repair = object_read_options(flags).repair;
   options.meters_per_file_unit = meters_per(flags, "obstacle-unit");
   for (const std::string& file : flags.texts("obstacle")) {
+    const SecondsBar seconds(!flags.has("quiet"), "reading and repairing " + file);
     grasp::ObjectFile obstacle = grasp::read_object_file(file, options);
     require_solid(obstacle);
     loaded.record.obstacles.push_back(obstacle.record);
@@ -126,8 +128,9 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
   return loaded;
 }
 
-grasp::ObjectFile load_object(const Flags& flags) {
-  return grasp::read_object_file(flags.positional(), object_read_options(flags));
+grasp::ObjectFile load_object(const Flags& flags, const std::string& file) {
+  const SecondsBar seconds(!flags.has("quiet"), "reading and repairing " + file);
+  return grasp::read_object_file(file, object_read_options(flags));
 }
 
 void require_solid(const grasp::ObjectFile& object) {

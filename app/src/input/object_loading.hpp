@@ -31,8 +31,9 @@ struct LoadedSurroundings {
 /// InvalidInput, IoError, DegenerateGeometry.
 LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O);
 
-/// Reads the object that the command names.
-grasp::ObjectFile load_object(const Flags& flags);
+/// Reads an object's file. Repair may take long: unless the command is to be quiet, the terminal
+/// shows for how many seconds it has.
+grasp::ObjectFile load_object(const Flags& flags, const std::string& file);
 
 /// Throws InvalidInput unless the object's surface is closed and faces outward (a mesh that was
 /// left as it is may not).

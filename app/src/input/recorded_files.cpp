@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
+#include "output/progress_bar.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -33,9 +34,11 @@ void add_object_flag(boost::program_options::options_description& options) {
 }
 
 geometry::TriangleMesh load_recorded_object(const Flags& flags, const grasp::GraspFile& file) {
-  return grasp::read_object(file.object, flags.has("object")
-                                             ? std::filesystem::path(flags.text("object"))
-                                             : find_mesh(flags, file.object, kObjectFile));
+  const std::filesystem::path mesh_file = flags.has("object")
+                                              ? std::filesystem::path(flags.text("object"))
+                                              : find_mesh(flags, file.object, kObjectFile);
+  const SecondsBar seconds(!flags.has("quiet"), "reading and repairing " + mesh_file.string());
+  return grasp::read_object(file.object, mesh_file);
 }
 
 grasp::Surroundings load_recorded_surroundings(const Flags& flags, const grasp::GraspFile& file) {

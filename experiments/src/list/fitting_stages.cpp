@@ -83,8 +83,7 @@ class Loop {
   grasp::FittingResult fit(const grasp::PalmPlacement& placement,
                            std::optional<int> max_iterations = {}) const {
     const grasp::PlannerOptions& options = planned_.settings.options;
-    grasp::FittingOptions fitting = options.fitting;
-    if (options.refine) fitting.contact_state = grasp::ContactState::FirstGraze;
+    grasp::FittingOptions fitting = grasp::fitting_options(options);
     if (max_iterations) fitting.max_iterations = *max_iterations;
     const contact::ContactEstimationOptions contact_options{
         .clip_thickness = grasp::clip_thickness(options, planned_.object.grid.lattice.voxel_size),

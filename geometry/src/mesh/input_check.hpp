@@ -13,6 +13,9 @@ namespace graspfit::geometry::internal {
 /// the first of either, unused vertices included.
 void require_usable(const TriangleMesh& mesh, const char* who);
 
+/// As `require_usable`, but of the faces' indices alone.
+void require_indices(const TriangleMesh& mesh, const char* who);
+
 /// @throws InvalidInput "<who>: the pose is not finite".
 void require_finite(const RigidTransform& pose, const char* who);
 

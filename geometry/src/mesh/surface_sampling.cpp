@@ -8,6 +8,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/random.hpp"
+#include "mesh/input_check.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -76,6 +77,7 @@ void SurfaceSamplingOptions::validate() const {
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh,
                                           const SurfaceSamplingOptions& options) {
   options.validate();
+  internal::require_usable(mesh, "sample_surface");
   const AreaSampler sampler("sample_surface", mesh, options.seed);
   std::vector<SurfaceSample> samples;
   samples.reserve(options.count);

@@ -1,8 +1,11 @@
 #include "graspfit/geometry/used_vertices.hpp"
 
+#include "mesh/input_check.hpp"
+
 namespace graspfit::geometry {
 
 std::vector<Eigen::Vector3d> used_vertices(const TriangleMesh& mesh) {
+  internal::require_indices(mesh, "used_vertices");
   std::vector<bool> is_used(mesh.vertices.size(), false);
   for (const Face& face : mesh.faces) {
     for (const std::int32_t vertex : face) is_used[vertex] = true;

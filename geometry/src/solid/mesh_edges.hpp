@@ -1,16 +1,18 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "graspfit/geometry/triangle_mesh.hpp"
-#include "query/face_tree.hpp"
 
 /// \file
 /// Edges of a mesh with their faces, and the parts of a mesh, as analysis and repair both use them.
 
 namespace graspfit::geometry::internal {
+
+class FaceTree;
 
 /// One side of a face: the edge from `tail` to `head` as the face runs through it.
 struct FaceSide {

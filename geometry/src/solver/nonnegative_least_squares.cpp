@@ -2,7 +2,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <string>
 #include <vector>
+
+#include "graspfit/base/errors.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -18,6 +21,14 @@ constexpr double kGradientRel = 1e-13;
 }  // namespace
 
 VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
+  if (a.rows() != b.size()) {
+    throw base::InvalidInput("nonnegative_least_squares: the matrix has " +
+                             std::to_string(a.rows()) + " rows, the target " +
+                             std::to_string(b.size()));
+  }
+  if (!a.allFinite() || !b.allFinite()) {
+    throw base::InvalidInput("nonnegative_least_squares: a number is not finite");
+  }
   VectorXd x = VectorXd::Zero(a.cols());
   std::vector<Index> passive;  // columns that may be positive, ascending
   const VectorXd lengths = a.colwise().norm();

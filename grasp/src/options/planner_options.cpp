@@ -1,6 +1,7 @@
 #include "graspfit/grasp/planner_options.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "graspfit/base/errors.hpp"
@@ -50,6 +51,18 @@ void PlannerOptions::validate() const {
 
 double clip_thickness(const PlannerOptions& options, double voxel_size) {
   return options.clip_thickness.value_or(std::max(0.5 * voxel_size, 0.001));
+}
+
+FittingOptions fitting_options(const PlannerOptions& options) {
+  FittingOptions fitting = options.fitting;
+  // At the first graze refinement takes over, which moves the palm too and would undo any further
+  // closing.
+  if (options.refine) fitting.contact_state = ContactState::FirstGraze;
+  // Where other contacts may do, fingers close however far one of them has stopped.
+  if (options.missing_contact == MissingContact::Measured) {
+    fitting.give_up_distance = std::numeric_limits<double>::max();
+  }
+  return fitting;
 }
 
 double merge_distance(const PlannerOptions& options, double voxel_size) {

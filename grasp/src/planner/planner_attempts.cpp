@@ -33,13 +33,7 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
     options.targets.min_separation = fingertip_width(hand, parts.fingers);
   }
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
-  // At the first graze refinement takes over, which moves the palm too and would undo any further
-  // closing.
-  if (options.refine) options.fitting.contact_state = ContactState::FirstGraze;
-  // Where other contacts may do, fingers close however far one of them has stopped.
-  if (options.missing_contact == MissingContact::Measured) {
-    options.fitting.give_up_distance = std::numeric_limits<double>::max();
-  }
+  options.fitting = fitting_options(options);
   return options;
 }
 

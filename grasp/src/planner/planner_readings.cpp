@@ -30,12 +30,23 @@ bool is_about_targets(std::string_view number) {
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
-/// What an attempt does beyond taking one set, after "N sets".
+/// Which set of targets an attempt takes.
 std::string choice_reading(const PlannerOptions& options) {
-  const bool is_balance_first = options.candidate_order == CandidateOrder::Balance;
-  return std::string(is_balance_first ? ", those that balance first" : "") +
-         (options.kept == KeptCandidate::Strongest ? ", of whose sides the strongest grasp is kept"
-                                                   : "");
+  const TargetOptions& targets = options.targets;
+  const std::string kept = options.kept == KeptCandidate::Strongest
+                               ? ", of whose sides the strongest grasp is kept"
+                               : "";
+  if (targets.search == TargetSearch::Ranked) {
+    return "every feasible set once, those that fit best first" + kept;
+  }
+  const bool is_balance_first =
+      options.candidate_order == CandidateOrder::Balance && options.target_draws > 1;
+  return "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +
+         std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
+         " seeds per set; the second of three or more from all; fitted: the flattest for the "
+         "fingertip pads of " +
+         std::to_string(options.target_draws) + " sets" +
+         (is_balance_first ? ", those that balance first" : "") + kept;
 }
 
 std::string text(std::string_view name) { return std::string(name); }
@@ -90,11 +101,7 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   ", centroid within " + shortest_decimal(targets.centroid_limit_rel) +
                   " of the normalizing radius, ranked; relaxed by half after " +
                   std::to_string(targets.relax_after_seeds) + " seeds"},
-      {"A20", "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +
-                  std::to_string(targets.pool_minimum) + "; " + std::to_string(targets.max_seeds) +
-                  " seeds per set; the second of three or more from all; fitted: the flattest for "
-                  "the fingertip pads of " +
-                  std::to_string(options.target_draws) + " sets" + choice_reading(options)},
+      {"A20", choice_reading(options)},
       {"A21", "assignment of least angular error around the palm axis"},
       {"A22", "the thumb if requested, else the first finger"},
       {"A23",
@@ -117,11 +124,13 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A31", options.missing_contact == MissingContact::Fails
                   ? text("a part without contact fails the attempt")
                   : text("the contacts that there are count")},
-      {"A32", (options.refine ? text("closed until refinement makes contacts real")
-               : fitting.contact_state == ContactState::Closed
-                   ? text("closed until the next motion would enter")
-                   : text("closed until the first sliver of surface in the clip volume")) +
-                  "; guard on " + text(name_of(fitting.guard))},
+      {"A32",
+       (options.refine
+            ? text("closed until the first sliver of surface in the clip volume, then refined")
+        : fitting.contact_state == ContactState::Closed
+            ? text("closed until the next motion would enter")
+            : text("closed until the first sliver of surface in the clip volume")) +
+           "; guard on " + text(name_of(fitting.guard))},
       {"A33", options.clip_thickness
                   ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
                   : "clip volume max(0.5 voxel, 1 mm) thick"},

@@ -49,7 +49,8 @@ RigidTransform above(double x, double y, double top, double gap) {
 
 }  // namespace
 
-TEST_CASE("On a flat face the contact is the pad's own rectangle", "[grasp][contact_estimation]") {
+TEST_CASE("On a flat face the contact is the pad's own rectangle",
+          "[contact][contact_estimation]") {
   // A pad of 2 x 4 cm is half a millimeter above the middle of the top of a box of 20 cm; its clip
   // volume is 2 mm thick.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
@@ -70,7 +71,7 @@ TEST_CASE("On a flat face the contact is the pad's own rectangle", "[grasp][cont
 }
 
 TEST_CASE("A curved pad touches where its offset surface reaches, and its gap is that of its top",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   // The pad is a roof over an outline of 2 x 4 cm with a ridge of height 5 mm along x. It is half a
   // millimeter above a flat face, so that the clip volume, 2 mm over the roof, covers |y| <= 20 mm
   // (2 - 0.5) / 5.
@@ -93,7 +94,7 @@ TEST_CASE("A curved pad touches where its offset surface reaches, and its gap is
       estimate_contact(hand, 1, above(0, 0, 0.1, height + 1.01 * kThickness), box, kOptions));
 }
 
-TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estimation]") {
+TEST_CASE("A pad over an edge touches what it overlaps", "[contact][contact_estimation]") {
   // The pad's middle is over the edge x = 0.1: half its width, 1 cm, is above the top face, and the
   // side wall runs down through the volume from the top to its end, 2 - 0.5 mm.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
@@ -116,7 +117,7 @@ TEST_CASE("A pad over an edge touches what it overlaps", "[grasp][contact_estima
   CHECK(contact->pad_boundary_distance == Approx(0.01 - (0.1 - x)).epsilon(1e-9));
 }
 
-TEST_CASE("Plain averaging counts pieces, whatever their size", "[grasp][contact_estimation]") {
+TEST_CASE("Plain averaging counts pieces, whatever their size", "[contact][contact_estimation]") {
   // The pad, 1 cm long, is over the same edge at y = 0.06. The two triangles of a face meet along a
   // diagonal, which is within 1 cm of the edge only near its ends, y = ±0.1. So the pad sees one
   // piece of the top and one of the wall, and the normal is the bisector of +z and +x although the
@@ -131,7 +132,7 @@ TEST_CASE("Plain averaging counts pieces, whatever their size", "[grasp][contact
 }
 
 TEST_CASE("On a ball the contact is the cap that the clip volume cuts off",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   // A slab of depth t - gap below the pole has the lateral area 2 pi R (t - gap) [Archimedes], as
   // long as the pad covers the cap. The mesh is inscribed: its edges sag by s = e²/(8 R) with edges
   // e of about 1.1 R / 2^6, which is 0.0019 mm here. The depth is 2 mm, so that the areas agree to
@@ -173,7 +174,7 @@ geometry::TriangleMesh bars(double second_top, double middle_top) {
 }  // namespace
 
 TEST_CASE("The point of a contact lies on its pieces, not on whatever is near their mean",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   // A pad that reaches 10 mm far sees bars from 5 to 15 mm on either side. Their mean is over the
   // slit, 1 mm from the middle bar, which ends just below the clip volume.
   const double gap = 0.0005;
@@ -191,7 +192,7 @@ TEST_CASE("The point of a contact lies on its pieces, not on whatever is near th
 }
 
 TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   const double gap = 0.0005;
   const double lower = 0.001;
   const MeshQuery object(bars(0.1 - lower, 0.05));
@@ -222,7 +223,7 @@ TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
   CHECK(estimate_contacts(wide, X_OL, object, separate).size() == 1);
 }
 
-TEST_CASE("Contacts of fingertips and palm alone", "[grasp][contact_estimation]") {
+TEST_CASE("Contacts of fingertips and palm alone", "[contact][contact_estimation]") {
   // One finger has two pads, the first of which is no fingertip's.
   hands::HandModel hand = pad_hand(2);
   hand.pads[1].finger = 1;
@@ -238,7 +239,7 @@ TEST_CASE("Contacts of fingertips and palm alone", "[grasp][contact_estimation]"
   CHECK(contacts[1].pad == 2);
 }
 
-TEST_CASE("Contacts that touch are those within the gap", "[grasp][contact_estimation]") {
+TEST_CASE("Contacts that touch are those within the gap", "[contact][contact_estimation]") {
   std::vector<Contact> contacts(3);
   contacts[0].gap = 0.0001;
   contacts[1].gap = 0.0002;
@@ -250,7 +251,7 @@ TEST_CASE("Contacts that touch are those within the gap", "[grasp][contact_estim
   CHECK(touching[1].gap == 0.0);
 }
 
-TEST_CASE("A pad off the middle knows how far its outline is", "[grasp][contact_estimation]") {
+TEST_CASE("A pad off the middle knows how far its outline is", "[contact][contact_estimation]") {
   // The ball's pole is 6 mm from the pad's middle along x, so 20 - 6 mm from the outline. The
   // outline would cut the cap only beyond 14 mm, so that the cap is whole.
   const double radius = 0.05;
@@ -262,7 +263,7 @@ TEST_CASE("A pad off the middle knows how far its outline is", "[grasp][contact_
   CHECK(contact->pad_boundary_distance == Approx(0.014).margin(5e-5));
 }
 
-TEST_CASE("No surface in the clip volume is no contact", "[grasp][contact_estimation]") {
+TEST_CASE("No surface in the clip volume is no contact", "[contact][contact_estimation]") {
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const auto touches = [&](const RigidTransform& X_OC) {
@@ -283,7 +284,7 @@ TEST_CASE("No surface in the clip volume is no contact", "[grasp][contact_estima
 }
 
 TEST_CASE("The two sides of a plate thinner than the clip volume cancel",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const auto contact_on_plate = [&](double thickness) {
     const MeshQuery plate(geometry::box({0.2, 0.2, thickness}));
@@ -296,7 +297,7 @@ TEST_CASE("The two sides of a plate thinner than the clip volume cancel",
   CHECK(contact_on_plate(0.003));
 }
 
-TEST_CASE("A pad's own thickness comes before the options'", "[grasp][contact_estimation]") {
+TEST_CASE("A pad's own thickness comes before the options'", "[contact][contact_estimation]") {
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const RigidTransform X_OC = above(0, 0, 0.1, 0.005);
@@ -307,7 +308,7 @@ TEST_CASE("A pad's own thickness comes before the options'", "[grasp][contact_es
   CHECK(contact->gap == Approx(0.005).epsilon(1e-10));
 }
 
-TEST_CASE("Contacts move with hand and object together", "[grasp][contact_estimation]") {
+TEST_CASE("Contacts move with hand and object together", "[contact][contact_estimation]") {
   const geometry::TriangleMesh mesh_B = geometry::torus(0.05, 0.02);
   const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
   const RigidTransform X_BC = facing({0.05, 0.001, 0.0203}, -Vector3d::UnitZ());
@@ -326,7 +327,7 @@ TEST_CASE("Contacts move with hand and object together", "[grasp][contact_estima
   CHECK(moved->pad_boundary_distance == Approx(contact->pad_boundary_distance).epsilon(1e-8));
 }
 
-TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]") {
+TEST_CASE("No triangle near a pad is overlooked", "[contact][contact_estimation]") {
   // The reference is the clip of every triangle of the mesh, at random poses of a long pad that
   // touch.
   const MeshQuery torus(geometry::torus(0.05, 0.02));
@@ -366,7 +367,7 @@ TEST_CASE("No triangle near a pad is overlooked", "[grasp][contact_estimation]")
 }
 
 TEST_CASE("All pads of a hand report in pad order, the palm's without a finger",
-          "[grasp][contact_estimation]") {
+          "[contact][contact_estimation]") {
   // Two fingers and a palm are around a box of 10 cm: finger 0 is on +x, finger 1 is clear of the
   // box, the palm is on top.
   const MeshQuery box(geometry::box({0.1, 0.1, 0.1}));
@@ -387,7 +388,7 @@ TEST_CASE("All pads of a hand report in pad order, the palm's without a finger",
   CHECK(estimate_contacts(shifted, X_OL, box, kOptions).size() == 3);
 }
 
-TEST_CASE("Contact estimation refuses what makes no sense", "[grasp][contact_estimation]") {
+TEST_CASE("Contact estimation refuses what makes no sense", "[contact][contact_estimation]") {
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1);
   CHECK_THROWS_WITH(ContactEstimationOptions{}.validate(), Contains("clip_thickness = 0"));
@@ -404,7 +405,7 @@ TEST_CASE("Contact estimation refuses what makes no sense", "[grasp][contact_est
 
 TEST_CASE(
     "A contact is weak if at least half of its surface is, and unknown where nothing is known",
-    "[grasp][contact_estimation]") {
+    "[contact][contact_estimation]") {
   // The two triangles of the top meet along x = y; the one with y < x is weak.
   const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
   const hands::HandModel hand = pad_hand(1, 0.02, 0.02);

@@ -69,7 +69,7 @@ std::vector<Contact> irregular_contacts(const hands::HandModel& hand) {
 }  // namespace
 
 TEST_CASE("Three contacts on a ball have the measure of the angles between them",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   // Contacts s degrees apart see each other at theta = 90 - s/2, so the pair counts 1 - theta/45 if
   // s > 90. The triangle's angles are half the arcs opposite, its edges 2 sin(s/2). A row holds the
   // arcs, M2, R, and M/M1 with R of angles alone and with both. An independent program computed the
@@ -92,7 +92,7 @@ TEST_CASE("Three contacts on a ball have the measure of the angles between them"
   CHECK(by_angles.m / by_angles.m1 == Approx(row.ratio_angles).margin(0.006));
 }
 
-TEST_CASE("Antipodal contacts reach M = M1", "[grasp][contact_quality]") {
+TEST_CASE("Antipodal contacts reach M = M1", "[contact][contact_quality]") {
   // Two contacts have theta = 0 and R = 1, so that M2 = M3 = 1.
   const hands::HandModel hand = pad_hand(2);
   const ContactQuality quality =
@@ -107,7 +107,7 @@ TEST_CASE("Antipodal contacts reach M = M1", "[grasp][contact_quality]") {
 }
 
 TEST_CASE("Contacts at the corners of regular solids have the pairs of the solid",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   SECTION("tetrahedron: all six pairs, 109.47 degrees apart") {
     // Here cos s = -1/3 and theta = 90 - s/2 = 35.264 degrees, so that M2 = 6 (1 - theta/45) =
     // 1.298.
@@ -136,7 +136,7 @@ TEST_CASE("Contacts at the corners of regular solids have the pairs of the solid
   }
 }
 
-TEST_CASE("A pair counts only strictly inside both cones", "[grasp][contact_quality]") {
+TEST_CASE("A pair counts only strictly inside both cones", "[contact][contact_quality]") {
   const double theta_max = kPi / 4;
   const Vector3d a = Vector3d::Zero();
   const Vector3d b = 0.1 * Vector3d::UnitX();
@@ -175,7 +175,7 @@ TEST_CASE("A pair counts only strictly inside both cones", "[grasp][contact_qual
 }
 
 TEST_CASE("M1 weighs boundary distance, area and strength in the units chosen",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   // The pad is 2 x 4 cm: its area is 8 cm², its largest d 1 cm.
   const hands::HandModel hand = pad_hand(2, 0.02, 0.04);
   std::vector<Contact> contacts = ball_contacts(hand, {Vector3d::UnitX(), -Vector3d::UnitX()});
@@ -216,7 +216,7 @@ TEST_CASE("M1 weighs boundary distance, area and strength in the units chosen",
 }
 
 TEST_CASE("M3 subtracts the distance of the hull's centroid from the center of mass",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(4);
   const QualityContext context{
       .center_of_mass_O = {0.0, 0.03, 0.0}, .normalizing_radius = 0.06, .hand = &hand};
@@ -253,7 +253,7 @@ TEST_CASE("M3 subtracts the distance of the hull's centroid from the center of m
 }
 
 TEST_CASE("Pairs form between contacts of different fingers only, the palm being one",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   hands::HandModel hand = pad_hand(2);
   const auto num_pairs = [&](int finger_a, int finger_b) {
     std::vector<Contact> contacts = {ball_contact(hand, finger_a, Vector3d::UnitX()),
@@ -266,7 +266,7 @@ TEST_CASE("Pairs form between contacts of different fingers only, the palm being
   CHECK(num_pairs(-1, -1) == 0);
 }
 
-TEST_CASE("M is zero when any requirement of the measure fails", "[grasp][contact_quality]") {
+TEST_CASE("M is zero when any requirement of the measure fails", "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(3);
   std::vector<Contact> contacts = ball_contacts(hand, equator(120, 120));
   QualityContext context{
@@ -310,7 +310,7 @@ TEST_CASE("M is zero when any requirement of the measure fails", "[grasp][contac
 }
 
 TEST_CASE("M does not change under rigid motion, order, or the scale of hand and object together",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(5);
   const std::vector<Contact> contacts = irregular_contacts(hand);
   const QualityContext context{
@@ -362,7 +362,7 @@ TEST_CASE("M does not change under rigid motion, order, or the scale of hand and
   }
 }
 
-TEST_CASE("The exponents and weights enter M as written", "[grasp][contact_quality]") {
+TEST_CASE("The exponents and weights enter M as written", "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(5);
   const std::vector<Contact> contacts = irregular_contacts(hand);
   const QualityContext context{
@@ -389,7 +389,7 @@ TEST_CASE("The exponents and weights enter M as written", "[grasp][contact_quali
       Approx(std::pow(m1, 2.0) * std::pow(m2, 0.7) * std::pow(quality.m3, 1.3)).epsilon(kRounding));
 }
 
-TEST_CASE("The ideal measure takes its terms as given", "[grasp][contact_quality]") {
+TEST_CASE("The ideal measure takes its terms as given", "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(3);
   std::vector<Contact> contacts = ball_contacts(hand, equator(120, 120));
   for (Contact& contact : contacts) {
@@ -425,7 +425,7 @@ TEST_CASE("The ideal measure takes its terms as given", "[grasp][contact_quality
 }
 
 TEST_CASE("Quality options out of range are refused by field and value",
-          "[grasp][contact_quality]") {
+          "[contact][contact_quality]") {
   struct Case {
     std::string field, value;
     std::function<void(QualityOptions&)> set;
@@ -457,7 +457,7 @@ TEST_CASE("Quality options out of range are refused by field and value",
   }
 }
 
-TEST_CASE("Contacts and context that make no sense are refused", "[grasp][contact_quality]") {
+TEST_CASE("Contacts and context that make no sense are refused", "[contact][contact_quality]") {
   const hands::HandModel hand = pad_hand(2);
   std::vector<Contact> contacts = ball_contacts(hand, {Vector3d::UnitX(), -Vector3d::UnitX()});
   QualityContext context{

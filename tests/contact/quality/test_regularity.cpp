@@ -27,7 +27,7 @@ constexpr double kRounding = 1e-13;
 
 }  // namespace
 
-TEST_CASE("Regular polygons and polyhedra have regularity 1", "[grasp][regularity]") {
+TEST_CASE("Regular polygons and polyhedra have regularity 1", "[contact][regularity]") {
   std::vector<Vector3d> points;
   SECTION("equilateral triangle") { points = equator(120, 120); }
   SECTION("square") { points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}; }
@@ -62,7 +62,8 @@ TEST_CASE("Regular polygons and polyhedra have regularity 1", "[grasp][regularit
   }
 }
 
-TEST_CASE("Irregular hulls have the regularity of their angles and edges", "[grasp][regularity]") {
+TEST_CASE("Irregular hulls have the regularity of their angles and edges",
+          "[contact][regularity]") {
   SECTION("isosceles triangle with an apex of 20 degrees") {
     // The angles are 20, 80, 80, so that Q = (40 + 20 + 20)/240 = 1/3. The edges have base/leg = 2
     // sin 10 = 0.3473.
@@ -102,7 +103,7 @@ TEST_CASE("Irregular hulls have the regularity of their angles and edges", "[gra
   }
 }
 
-TEST_CASE("Collinear, coincident, few points: the documented regularity", "[grasp][regularity]") {
+TEST_CASE("Collinear, coincident, few points: the documented regularity", "[contact][regularity]") {
   const Vector3d a(0.1, 0.2, 0.3);
   const Vector3d u = Vector3d(1, -2, 0.5).normalized();
   using Points = std::vector<Vector3d>;
@@ -117,7 +118,7 @@ TEST_CASE("Collinear, coincident, few points: the documented regularity", "[gras
 }
 
 TEST_CASE("Close contacts are one point of the hull, in whatever order they come",
-          "[grasp][regularity]") {
+          "[contact][regularity]") {
   std::vector<Vector3d> points = equator(120, 120);
   points.push_back(points[0] + Vector3d(0, 0.008, 0));
   points.push_back(points[0] -
@@ -135,7 +136,7 @@ TEST_CASE("Close contacts are one point of the hull, in whatever order they come
 }
 
 TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a solid above",
-          "[grasp][regularity]") {
+          "[contact][regularity]") {
   // The corners are (±1, ±1/2) at heights ±t/2, with the sign of x y. The principal axes are x, y,
   // z, the extent is 2 and the thickness t, so the branch is at t = 0.2. The planar hull is the
   // rectangle, with R = sqrt(1 * 1/2). The solid one has four equal faces with sides sqrt 5
@@ -167,7 +168,7 @@ TEST_CASE("Four nearly planar contacts are a polygon below thickness 0.1 and a s
 }
 
 TEST_CASE("A fifth contact raised over four is no corner below thickness 0.1, and an apex above",
-          "[grasp][regularity]") {
+          "[contact][regularity]") {
   // The points are a rhombus with diagonals 2 and 1.8 and a point over its center: the extent is 2,
   // and the thickness is the point's height. The planar hull is the rhombus, whatever the height,
   // as the point is within it.
@@ -188,7 +189,7 @@ TEST_CASE("A fifth contact raised over four is no corner below thickness 0.1, an
   CHECK(regularity(points(h), Regularity::Combined) < planar - 0.1);
 }
 
-TEST_CASE("Regularity is continuous away from the documented branches", "[grasp][regularity]") {
+TEST_CASE("Regularity is continuous away from the documented branches", "[contact][regularity]") {
   const std::vector<Vector3d> points =
       GENERATE(equator(120, 110), tetrahedron(), bipyramid(), octahedron());
   for (std::size_t moved = 0; moved < points.size(); ++moved) {

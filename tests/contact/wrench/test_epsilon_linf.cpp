@@ -41,7 +41,7 @@ double reach_along(const Contacts& contacts, const WrenchConvention& convention,
 }  // namespace
 
 TEST_CASE("Epsilon, L-infinity, lies between epsilon and as many times that as contacts",
-          "[grasp][epsilon_linf]") {
+          "[contact][epsilon_linf]") {
   Random random(61);
   int num_closed = 0;
   for (int i = 0; i < 8; ++i) {
@@ -64,7 +64,7 @@ TEST_CASE("Epsilon, L-infinity, lies between epsilon and as many times that as c
 TEST_CASE(
     "Six contacts of a cube withstand no torque without friction, and with it what their friction "
     "can turn",
-    "[grasp][epsilon_linf]") {
+    "[contact][epsilon_linf]") {
   // Each of the six contacts of the cube pushes its own way alone, and about no axis is there a
   // torque.
   const LInfinityEpsilon none = epsilon_linf(on_cube(), convention_of(0.0));
@@ -81,7 +81,7 @@ TEST_CASE(
 }
 
 TEST_CASE("Epsilon, L-infinity, does not change with the frame, nor with size at its torque scale",
-          "[grasp][epsilon_linf]") {
+          "[contact][epsilon_linf]") {
   Random random(62);
   Contacts contacts;
   while (contacts.size() < 4) {
@@ -106,7 +106,7 @@ TEST_CASE("Epsilon, L-infinity, does not change with the frame, nor with size at
 }
 
 TEST_CASE("Epsilon, L-infinity, is zero without closure and says its convention",
-          "[grasp][epsilon_linf]") {
+          "[contact][epsilon_linf]") {
   const LInfinityEpsilon two = epsilon_linf(antipodal(), convention_of(0.5));
   CHECK(two.lower == 0.0);
   CHECK(two.upper == 0.0);

@@ -65,7 +65,7 @@ void check_optimal(const Contacts& contacts, const Vector3d& reference, const Wr
 
 }  // namespace
 
-TEST_CASE("A single contact can push but not pull", "[grasp][grasp_balance]") {
+TEST_CASE("A single contact can push but not pull", "[contact][grasp_balance]") {
   const Contacts contacts = {contact_at(Vector3d::Zero(), Vector3d::UnitZ())};
   BalanceOptions options{.friction = 0.0, .torque_scale = 1.0};
   const auto balance = [&](double push) {
@@ -82,7 +82,7 @@ TEST_CASE("A single contact can push but not pull", "[grasp][grasp_balance]") {
 }
 
 TEST_CASE("Two fingers hold a weight by friction if they squeeze enough",
-          "[grasp][grasp_balance]") {
+          "[contact][grasp_balance]") {
   const double mu = 0.5;
   const double weight = 6.0;
   const Contacts contacts = {contact_at({1, 0, 0}, -Vector3d::UnitX()),
@@ -104,7 +104,7 @@ TEST_CASE("Two fingers hold a weight by friction if they squeeze enough",
         Approx(2.0).epsilon(1e-12));
 }
 
-TEST_CASE("Balance forces meet the conditions of an optimum", "[grasp][grasp_balance]") {
+TEST_CASE("Balance forces meet the conditions of an optimum", "[contact][grasp_balance]") {
   Random random(91);
   int num_active = 0;
   int num_balanced = 0;
@@ -128,7 +128,7 @@ TEST_CASE("Balance forces meet the conditions of an optimum", "[grasp][grasp_bal
 }
 
 TEST_CASE("Even forces are those of no other balance by much, and alike where contacts are",
-          "[grasp][grasp_balance]") {
+          "[contact][grasp_balance]") {
   Random random(77);
   BalanceOptions options{.friction = 0.6, .least_normal_sum = 6.0, .torque_scale = 0.9};
   for (int i = 0; i < 30; ++i) {
@@ -158,7 +158,8 @@ TEST_CASE("Even forces are those of no other balance by much, and alike where co
   }
 }
 
-TEST_CASE("Balances without contacts or sense have documented outcomes", "[grasp][grasp_balance]") {
+TEST_CASE("Balances without contacts or sense have documented outcomes",
+          "[contact][grasp_balance]") {
   const Wrench load = load_of({1, 2, 2});
   const BalanceOptions options{.torque_scale = 1.0};
   const BalanceForces none = balance_forces({}, Vector3d::Zero(), load, options);

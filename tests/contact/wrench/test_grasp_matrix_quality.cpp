@@ -27,7 +27,7 @@ GraspMatrixQuality of(const testing::Contacts& contacts, double torque_scale = 1
 // torques, and Σ [p_i]ₓ / λ between them, which is zero where the points balance.
 
 TEST_CASE("Singular values of contacts on a ball are the known ones",
-          "[grasp][grasp_matrix_quality]") {
+          "[contact][grasp_matrix_quality]") {
   for (const double scale : {1.0, 0.5, 4.0}) {
     CAPTURE(scale);
     // Six contacts have 6 I and (6 − 2) I / λ².
@@ -52,7 +52,7 @@ TEST_CASE("Singular values of contacts on a ball are the known ones",
 }
 
 TEST_CASE("Singular values do not change with the frame, nor with size at its torque scale",
-          "[grasp][grasp_matrix_quality]") {
+          "[contact][grasp_matrix_quality]") {
   base::Random random(41);
   for (int i = 0; i < 5; ++i) {
     const testing::Contacts contacts = testing::random_contacts(random, 3 + i);
@@ -71,7 +71,7 @@ TEST_CASE("Singular values do not change with the frame, nor with size at its to
   }
 }
 
-TEST_CASE("Few contacts span fewer directions", "[grasp][grasp_matrix_quality]") {
+TEST_CASE("Few contacts span fewer directions", "[contact][grasp_matrix_quality]") {
   CHECK(of({}).singular_values.norm() == 0.0);
   CHECK(of({}).ratio() == 0.0);
   const GraspMatrixQuality one = of({testing::on_cube()[0]});

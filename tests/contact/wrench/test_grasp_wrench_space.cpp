@@ -45,7 +45,7 @@ constexpr double kRounding = 1e-12;
 // letter in test_min_weight.cpp.
 
 TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   Wrenches cross(6, 12);
   cross << MatrixXd::Identity(6, 6), -MatrixXd::Identity(6, 6);
   const ConvexPolytope a(cross);
@@ -68,7 +68,7 @@ TEST_CASE("Cases A and B: cross-polytope and regular simplex in 6-D",
   CHECK(is_force_closure(simplex));
 }
 
-TEST_CASE("Case C: two contacts of a planar disk", "[grasp][grasp_wrench_space]") {
+TEST_CASE("Case C: two contacts of a planar disk", "[contact][grasp_wrench_space]") {
   const double mu = GENERATE(0.2, 0.5, 1.0);
   MatrixXd wrenches(3, 4);   // The rows are force x, force y and torque / R.
   wrenches << -1, -1, 1, 1,  //
@@ -83,7 +83,7 @@ TEST_CASE("Case C: two contacts of a planar disk", "[grasp][grasp_wrench_space]"
 }
 
 TEST_CASE("Case E: two opposite contacts have rank 5 and no closure",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   for (const double mu : {0.2, 0.5, 1.0}) {
     for (int axis = 0; axis < 3; ++axis) {
       const WrenchQuality quality =
@@ -97,7 +97,7 @@ TEST_CASE("Case E: two opposite contacts have rank 5 and no closure",
 }
 
 TEST_CASE("Cases F and G: cube and sphere have the known epsilon and volume",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   struct Row {
     Contacts contacts;
     int num_edges;
@@ -128,7 +128,7 @@ TEST_CASE("Cases F and G: cube and sphere have the known epsilon and volume",
 }
 
 TEST_CASE("Epsilon and volume of random contacts are those of Qhull's hull",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   Random random(81);
   int num_closed = 0;
   for (int i = 0; i < 24; ++i) {
@@ -149,7 +149,7 @@ TEST_CASE("Epsilon and volume of random contacts are those of Qhull's hull",
 }
 
 TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its torque scale",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   Random random(82);
   for (int i = 0; i < 5; ++i) {
     Contacts contacts;
@@ -193,7 +193,7 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
 }
 
 TEST_CASE("Closure is exact where epsilon is 1e-18, zero and below",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   // This is half a cross-polytope with its base at `gap`.
   for (const double gap : {0x1p-60, 0.0, -0x1p-60}) {
     Wrenches wrenches(6, 11);
@@ -208,7 +208,8 @@ TEST_CASE("Closure is exact where epsilon is 1e-18, zero and below",
   }
 }
 
-TEST_CASE("The early no to closure is never wrong and often given", "[grasp][grasp_wrench_space]") {
+TEST_CASE("The early no to closure is never wrong and often given",
+          "[contact][grasp_wrench_space]") {
   Random random(83);
   int num_early = 0;
   int num_open = 0;
@@ -227,7 +228,7 @@ TEST_CASE("The early no to closure is never wrong and often given", "[grasp][gra
 }
 
 TEST_CASE("Force scaling, limit and the value outside are as chosen",
-          "[grasp][grasp_wrench_space]") {
+          "[contact][grasp_wrench_space]") {
   const double mu = 0.5;
   WrenchSpaceOptions options{.friction = mu, .torque_scale = 1.0};
   const auto epsilon = [&](const Contacts& contacts) {

@@ -48,7 +48,7 @@ Wrenches simplex() {
 // Test cases that are named by one letter, A to G, share their wrenches with those of the same
 // letter in test_grasp_wrench_space.cpp.
 
-TEST_CASE("Cases A to G have the known min-weight", "[grasp][min_weight]") {
+TEST_CASE("Cases A to G have the known min-weight", "[contact][min_weight]") {
   Wrenches cross(6, 12);
   cross << MatrixXd::Identity(6, 6), -MatrixXd::Identity(6, 6);
   const MinWeight a = min_weight(cross);
@@ -84,7 +84,7 @@ TEST_CASE("Cases A to G have the known min-weight", "[grasp][min_weight]") {
 TEST_CASE(
     "Case E: two contacts opposite each other balance evenly and are not closed, however they "
     "are turned",
-    "[grasp][min_weight]") {
+    "[contact][min_weight]") {
   Random random(51);
   for (const double mu : {0.2, 0.5, 1.0}) {
     const MinWeight e = min_weight(wrenches_of(antipodal(), mu));
@@ -103,7 +103,7 @@ TEST_CASE(
 TEST_CASE(
     "The sign of the min-weight is force closure, and half of it times the smallest singular "
     "value is below epsilon",
-    "[grasp][min_weight]") {
+    "[contact][min_weight]") {
   Random random(52);
   int num_closed = 0;
   constexpr int kGrasps = 40;
@@ -130,7 +130,7 @@ TEST_CASE(
 }
 
 TEST_CASE("The min-weight does not change with scale, nor by any map of the wrenches",
-          "[grasp][min_weight]") {
+          "[contact][min_weight]") {
   Random random(53);
   const Wrenches wrenches = wrenches_of(random_contacts(random, 5), 0.9);
   const double weight = *min_weight(wrenches).weight;
@@ -139,7 +139,7 @@ TEST_CASE("The min-weight does not change with scale, nor by any map of the wren
   CHECK(*min_weight(7.0 * map * wrenches).weight == Approx(weight).epsilon(1e-9).margin(1e-12));
 }
 
-TEST_CASE("Wrenches that cancel by no weights have no min-weight", "[grasp][min_weight]") {
+TEST_CASE("Wrenches that cancel by no weights have no min-weight", "[contact][min_weight]") {
   const MinWeight one = min_weight(Wrenches(Wrench::Unit(2)));
   CHECK_FALSE(one.weight.has_value());
   CHECK(one.normalized == 0.0);

@@ -96,7 +96,7 @@ HandModel ring_hand(int count, double radius) {
 
 }  // namespace
 
-TEST_CASE("A pad that does not touch is not pressed", "[grasp][squeeze]") {
+TEST_CASE("A pad that does not touch is not pressed", "[contact][squeeze]") {
   const HandModel hand = ring_hand(3, 0.05);
   HandConfiguration grasp = hands::open_configuration(hand);
   Contacts contacts;
@@ -122,7 +122,7 @@ TEST_CASE("A pad that does not touch is not pressed", "[grasp][squeeze]") {
                   InvalidInput);
 }
 
-TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[grasp][squeeze]") {
+TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[contact][squeeze]") {
   HandModel hand = hands::find_hand("parallel_gripper");
   const double half = 0.02;
   HandConfiguration grasp = hands::open_configuration(hand);
@@ -169,7 +169,7 @@ TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[grasp][
 }
 
 TEST_CASE("Fingers around a ball press alike, with a third of the force times lever over kp",
-          "[grasp][squeeze]") {
+          "[contact][squeeze]") {
   const double radius = 0.04;
   for (const int count : {2, 3, 5}) {
     const HandModel hand = ring_hand(count, radius);
@@ -192,7 +192,7 @@ TEST_CASE("Fingers around a ball press alike, with a third of the force times le
   }
 }
 
-TEST_CASE("Mirrored fingers of the Barrett hand get equal torques", "[grasp][squeeze]") {
+TEST_CASE("Mirrored fingers of the Barrett hand get equal torques", "[contact][squeeze]") {
   const HandModel hand = hands::find_hand("barrett");
   const HandConfiguration grasp = hands::open_configuration(hand);
   const Vector3d center(0.0, 0.0, 0.1);
@@ -218,7 +218,7 @@ TEST_CASE("Mirrored fingers of the Barrett hand get equal torques", "[grasp][squ
 }
 
 TEST_CASE("Stiffness times displacement is the contact forces' virtual work on every joint",
-          "[grasp][squeeze]") {
+          "[contact][squeeze]") {
   Random random(23);
   int num_unbalanced = 0;
   for (const char* name : {"barrett", "human_hand", "human_hand_coupled"}) {
@@ -258,7 +258,7 @@ TEST_CASE("Stiffness times displacement is the contact forces' virtual work on e
   CHECK(num_unbalanced > 0);
 }
 
-TEST_CASE("Contacts that cannot balance are said to leave their force over", "[grasp][squeeze]") {
+TEST_CASE("Contacts that cannot balance are said to leave their force over", "[contact][squeeze]") {
   const HandModel hand = ring_hand(3, 0.04);
   const HandConfiguration grasp{Eigen::Isometry3d::Identity(), VectorXd::Zero(3)};
   const Contacts one = {link_contact(1, {0.04, 0.0, 0.07}, {-1.0, 0.0, 0.0})};
@@ -278,7 +278,7 @@ TEST_CASE("Contacts that cannot balance are said to leave their force over", "[g
 }
 
 TEST_CASE("A follower that has broken away neither counts nor moves by itself",
-          "[grasp][squeeze]") {
+          "[contact][squeeze]") {
   const HandModel hand = hands::find_hand("barrett");
   HandConfiguration grasp = hands::open_configuration(hand);
   const int proximal = hand.joint_index("thumb_proximal");
@@ -297,7 +297,7 @@ TEST_CASE("A follower that has broken away neither counts nor moves by itself",
   CHECK(squeeze.configuration.q[proximal] - 0.3 == Approx(jacobian(1, proximal) / 5.0));
 }
 
-TEST_CASE("A squeeze refuses what makes no sense", "[grasp][squeeze]") {
+TEST_CASE("A squeeze refuses what makes no sense", "[contact][squeeze]") {
   const HandModel hand = ring_hand(2, 0.04);
   const HandConfiguration grasp{Eigen::Isometry3d::Identity(), VectorXd::Zero(2)};
   const Contacts contacts = {link_contact(1, {0.04, 0.0, 0.0}, {-1.0, 0.0, 0.0})};

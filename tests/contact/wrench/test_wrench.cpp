@@ -20,7 +20,7 @@ using graspfit::base::InvalidInput;
 using graspfit::base::Random;
 using graspfit::testing::random_direction;
 
-TEST_CASE("Cone edges lie on the cone, evenly spaced from normal x e_x on", "[grasp][wrench]") {
+TEST_CASE("Cone edges lie on the cone, evenly spaced from normal x e_x on", "[contact][wrench]") {
   Random random(71);
   const int num_edges = GENERATE(3, 4, 7, 8, 12);
   const double friction = GENERATE(0.0, 0.3, 2.0);
@@ -42,7 +42,7 @@ TEST_CASE("Cone edges lie on the cone, evenly spaced from normal x e_x on", "[gr
 }
 
 TEST_CASE("The edges of an eight-gon around an axis are its mirror images, bit by bit",
-          "[grasp][wrench]") {
+          "[contact][wrench]") {
   const Eigen::Matrix3Xd edges = cone_edges(friction_cone(Vector3d::UnitZ(), 0.5), 8);
   for (int k = 0; k < 8; ++k) {
     CHECK(edges(0, k) == -edges(0, (k + 4) % 8));
@@ -53,7 +53,7 @@ TEST_CASE("The edges of an eight-gon around an axis are its mirror images, bit b
 }
 
 TEST_CASE("The grasp matrix takes forces in contact frames to the wrench of their sum",
-          "[grasp][wrench]") {
+          "[contact][wrench]") {
   Random random(72);
   const std::vector<Contact> contacts = graspfit::testing::random_contacts(random, 4);
   const Vector3d reference(0.3, -0.2, 0.1);
@@ -73,7 +73,7 @@ TEST_CASE("The grasp matrix takes forces in contact frames to the wrench of thei
   CHECK((matrix * forces - total).norm() < 1e-12 * total.norm());
 }
 
-TEST_CASE("Each tool's convention has its scale, origin and forces", "[grasp][wrench]") {
+TEST_CASE("Each tool's convention has its scale, origin and forces", "[contact][wrench]") {
   Random random(73);
   const Vector3d com(0.01, 0.0, 0.02);
   const WrenchObject object{
@@ -115,7 +115,7 @@ TEST_CASE("Each tool's convention has its scale, origin and forces", "[grasp][wr
   CHECK_THROWS_AS(wrench_convention(DexGraspBench, object, {}, 0.4), InvalidInput);
 }
 
-TEST_CASE("Cones, scales and options out of range are refused", "[grasp][wrench]") {
+TEST_CASE("Cones, scales and options out of range are refused", "[contact][wrench]") {
   CHECK_THROWS_AS(friction_cone(Vector3d::UnitX() * 1.01, 0.5), InvalidInput);
   CHECK_THROWS_AS(friction_cone(Vector3d::UnitX(), -0.1), InvalidInput);
   CHECK_THROWS_AS(cone_edges(friction_cone(Vector3d::UnitX(), 0.5), 2), InvalidInput);

@@ -139,10 +139,11 @@ TEST_CASE("What is no triangle mesh is refused by its first fault", "[geometry][
   }
   quad.add_face(corners[0], corners[1], corners[2], corners[3]);
   CHECK(refusal([&] { adapter::triangle_mesh(quad); }) ==
-        "face 0 has 4 corners, must have 3: triangulate the mesh first");
+        "cgal::triangle_mesh: face 0 has 4 corners, must have 3: triangulate the mesh first");
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   quad.add_vertex(Epick::Point_3(0, kNan, 0));
-  CHECK(refusal([&] { adapter::triangle_mesh(quad); }) == "vertex 4 is not finite");
+  CHECK(refusal([&] { adapter::triangle_mesh(quad); }) ==
+        "cgal::triangle_mesh: vertex 4 is not finite");
 
   TriangleMesh fan{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, {}};
   fan.faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};  // These are three faces at an edge.
@@ -151,13 +152,15 @@ TEST_CASE("What is no triangle mesh is refused by its first fault", "[geometry][
   fan.faces = {{0, 1, 2}, {0, 1, 3}};  // both run from 0 to 1
   CHECK_THAT(refusal([&] { adapter::face_graph(fan); }), Contains("face 1 (0, 1, 3)"));
   fan.faces = {{0, 1, 2}, {3, 3, 4}};
-  CHECK(refusal([&] { adapter::face_graph(fan); }) == "face 1 (3, 3, 4) has a vertex twice");
+  CHECK(refusal([&] { adapter::face_graph(fan); }) ==
+        "cgal::face_graph: face 1 (3, 3, 4) has a vertex twice");
   fan.faces = {{0, 1, 5}};
-  CHECK(refusal([&] { adapter::face_graph(fan); }) == "face 0 has vertex 5 of 5");
+  CHECK(refusal([&] { adapter::face_graph(fan); }) == "cgal::face_graph: face 0 has vertex 5 of 5");
   fan.faces = {{0, -1, 2}};
-  CHECK(refusal([&] { adapter::face_graph(fan); }) == "face 0 has vertex -1 of 5");
+  CHECK(refusal([&] { adapter::face_graph(fan); }) ==
+        "cgal::face_graph: face 0 has vertex -1 of 5");
   fan.vertices[3].z() = kNan;
-  CHECK(refusal([&] { adapter::face_graph(fan); }) == "vertex 3 is not finite");
+  CHECK(refusal([&] { adapter::face_graph(fan); }) == "cgal::face_graph: vertex 3 is not finite");
 }
 
 TEST_CASE("Sheets may meet at a vertex where both have borders, closed surfaces may not",
@@ -184,10 +187,10 @@ TEST_CASE("A soup of any index type becomes a mesh, or its first fault is named"
         std::vector<Face>{{2, 0, 1}});
   CHECK(refusal([&] {
           adapter::triangle_mesh_of_soup(points, std::vector<std::array<int, 3>>{{2, 0, 3}});
-        }) == "face 0 has vertex 3 of 3");
+        }) == "cgal::triangle_mesh_of_soup: face 0 has vertex 3 of 3");
   CHECK(refusal([&] {
           adapter::triangle_mesh_of_soup(points, std::vector<std::array<int, 3>>{{2, 0, -1}});
-        }) == "face 0 has vertex -1 of 3");
+        }) == "cgal::triangle_mesh_of_soup: face 0 has vertex -1 of 3");
   CHECK_THAT(
       refusal([&] {
         adapter::triangle_mesh_of_soup(points, std::vector<std::vector<int>>{{0, 1, 2}, {0, 1}});

@@ -23,6 +23,7 @@
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/geometry/surface_sampling.hpp"
+#include "graspfit/geometry/used_vertices.hpp"
 #include "support/catch.hpp"
 
 namespace test_input_check {
@@ -51,6 +52,7 @@ std::vector<Call> calls_with(const TriangleMesh& mesh) {
       {"solid_boundary", [mesh] { solid_boundary(mesh); }},
       {"mass_properties", [mesh] { mass_properties(mesh); }},
       {"convex_decomposition", [mesh] { convex_decomposition(mesh, {}); }},
+      {"sample_surface", [mesh] { sample_surface(mesh); }},
       {"surface_patches", [mesh, lattice] { surface_patches(mesh, lattice); }},
       {"clip_by_voxels", [mesh, lattice] { clip_by_voxels(mesh, lattice); }},
       {"rest_poses", [mesh] { rest_poses(mesh, Vector3d::Zero()); }},
@@ -89,6 +91,15 @@ TEST_CASE("A mesh with a face of a vertex that is none is refused wherever meshe
     mesh.faces[3][1] = bad;
     INFO(bad);
     check_refused(calls_with(mesh));
+    const std::vector<std::int32_t> third = {3};
+    check_refused({{"used_vertices", [&] { used_vertices(mesh); }},
+                   {"clip of a mesh", [&] { clip(mesh, third, {}); }}});
+  }
+  for (const std::int32_t bad : {-1, 12}) {
+    const TriangleMesh mesh = box({1, 1, 1});
+    const std::vector<std::int32_t> faces = {0, bad};
+    INFO(bad);
+    check_refused({{"clip of a mesh", [&] { clip(mesh, faces, {}); }}});
   }
   TriangleMesh mesh = box({1, 1, 1});
   mesh.faces[3][1] = 8;

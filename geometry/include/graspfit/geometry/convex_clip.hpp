@@ -43,6 +43,7 @@ std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
 
 /// Pieces of the given faces of a mesh inside `volume`, in the order of `faces`, empty ones left
 /// out.
+/// @throws InvalidInput as the other, or for an index that is no face's or no vertex's.
 std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::int32_t> faces,
                                const ConvexVolume& volume);
 

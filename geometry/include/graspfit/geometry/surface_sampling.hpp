@@ -28,7 +28,8 @@ struct SurfaceSamplingOptions {
 ///
 /// The k-th point depends on seed and k only, so that a smaller `count` gives the first points of a
 /// larger one. Cost: linear in faces, log n per point.
-/// @throws DegenerateGeometry if the mesh has no area.
+/// @throws DegenerateGeometry if the mesh has no area; InvalidInput if it has numbers that are not
+/// finite, or an index that is no vertex's.
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh,
                                           const SurfaceSamplingOptions& options = {});
 

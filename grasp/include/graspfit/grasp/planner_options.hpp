@@ -166,6 +166,10 @@ struct PlannerOptions {
 /// The planner's rule for clip volumes.
 double clip_thickness(const PlannerOptions& options, double voxel_size);
 
+/// The options by which the planner fits a hand: with refinement, fingers stop at the first graze;
+/// where other contacts may do, none is given up for lying far from its target.
+FittingOptions fitting_options(const PlannerOptions& options);
+
 /// The planner's rule for deviations from targets [m].
 double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand);
 

@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -60,26 +61,36 @@ double rounded(const Number& number) {
   }
 }
 
-inline Eigen::Vector3d finite_vertex(const Eigen::Vector3d& vertex, std::size_t number) {
-  if (vertex.allFinite()) return vertex;
-  throw base::InvalidInput("vertex " + std::to_string(number) + " is not finite");
+[[noreturn]] inline void refuse(const char* who, const std::string& what) {
+  throw base::InvalidInput(std::string("cgal::") + who + ": " + what);
 }
 
-[[noreturn]] inline void refuse_polygon(std::size_t face, std::size_t num_corners) {
-  throw base::InvalidInput("face " + std::to_string(face) + " has " + std::to_string(num_corners) +
-                           " corners, must have 3: triangulate the mesh first");
+// A vertex as it enters a mesh, whose indices are 32 bits wide.
+inline Eigen::Vector3d checked_vertex(const char* who, const Eigen::Vector3d& vertex,
+                                      std::size_t number) {
+  if (!vertex.allFinite()) refuse(who, "vertex " + std::to_string(number) + " is not finite");
+  if (number > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+    refuse(who, "more than 2^31 vertices");
+  }
+  return vertex;
 }
 
-[[noreturn]] inline void refuse_index(std::size_t face, std::int64_t index,
+[[noreturn]] inline void refuse_polygon(const char* who, std::size_t face,
+                                        std::size_t num_corners) {
+  refuse(who, "face " + std::to_string(face) + " has " + std::to_string(num_corners) +
+                  " corners, must have 3: triangulate the mesh first");
+}
+
+[[noreturn]] inline void refuse_index(const char* who, std::size_t face, std::int64_t index,
                                       std::size_t num_vertices) {
-  throw base::InvalidInput("face " + std::to_string(face) + " has vertex " + std::to_string(index) +
-                           " of " + std::to_string(num_vertices));
+  refuse(who, "face " + std::to_string(face) + " has vertex " + std::to_string(index) + " of " +
+                  std::to_string(num_vertices));
 }
 
-[[noreturn]] inline void refuse_face(std::size_t number, const Face& face, const char* why) {
-  throw base::InvalidInput("face " + std::to_string(number) + " (" + std::to_string(face[0]) +
-                           ", " + std::to_string(face[1]) + ", " + std::to_string(face[2]) + ") " +
-                           why);
+[[noreturn]] inline void refuse_face(const char* who, std::size_t number, const Face& face,
+                                     const char* why) {
+  refuse(who, "face " + std::to_string(number) + " (" + std::to_string(face[0]) + ", " +
+                  std::to_string(face[1]) + ", " + std::to_string(face[2]) + ") " + why);
 }
 
 }  // namespace internal
@@ -108,7 +119,8 @@ TriangleMesh triangle_mesh(const FaceGraph& graph,
   std::unordered_map<Vertex, std::int32_t> number_of;
   for (const Vertex v : vertices(graph)) {
     number_of.emplace(v, static_cast<std::int32_t>(mesh.vertices.size()));
-    mesh.vertices.push_back(internal::finite_vertex(vector(get(points, v)), mesh.vertices.size()));
+    mesh.vertices.push_back(
+        internal::checked_vertex("triangle_mesh", vector(get(points, v)), mesh.vertices.size()));
   }
   for (const auto f : faces(graph)) {
     Face face{};
@@ -117,7 +129,7 @@ TriangleMesh triangle_mesh(const FaceGraph& graph,
       if (size < 3) face[size] = number_of.at(v);
       ++size;
     }
-    if (size != 3) internal::refuse_polygon(mesh.faces.size(), size);
+    if (size != 3) internal::refuse_polygon("triangle_mesh", mesh.faces.size(), size);
     mesh.faces.push_back(face);
   }
   return mesh;
@@ -131,18 +143,19 @@ template <class Points, class Polygons>
 TriangleMesh triangle_mesh_of_soup(const Points& points, const Polygons& polygons) {
   TriangleMesh mesh;
   for (const auto& p : points) {
-    mesh.vertices.push_back(internal::finite_vertex(vector(p), mesh.vertices.size()));
+    mesh.vertices.push_back(
+        internal::checked_vertex("triangle_mesh_of_soup", vector(p), mesh.vertices.size()));
   }
   for (const auto& polygon : polygons) {
     const std::size_t size = std::size(polygon);
-    if (size != 3) internal::refuse_polygon(mesh.faces.size(), size);
+    if (size != 3) internal::refuse_polygon("triangle_mesh_of_soup", mesh.faces.size(), size);
     Face face{};
     std::size_t k = 0;
     for (const auto& index : polygon) {
       const auto number = static_cast<std::size_t>(index);
       if (number >= mesh.vertices.size()) {
-        internal::refuse_index(mesh.faces.size(), static_cast<std::int64_t>(number),
-                               mesh.vertices.size());
+        internal::refuse_index("triangle_mesh_of_soup", mesh.faces.size(),
+                               static_cast<std::int64_t>(number), mesh.vertices.size());
       }
       face[k++] = static_cast<std::int32_t>(number);
     }
@@ -168,7 +181,7 @@ FaceGraph face_graph(const TriangleMesh& mesh) {
   std::vector<Vertex> vertices;
   vertices.reserve(mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
-    const Eigen::Vector3d p = internal::finite_vertex(vertex, vertices.size());
+    const Eigen::Vector3d p = internal::checked_vertex("face_graph", vertex, vertices.size());
     vertices.push_back(add_vertex(graph));
     put(points, vertices.back(), Point(p.x(), p.y(), p.z()));
   }
@@ -176,18 +189,18 @@ FaceGraph face_graph(const TriangleMesh& mesh) {
     const Face& face = mesh.faces[f];
     for (const std::int32_t index : face) {
       if (index < 0 || static_cast<std::size_t>(index) >= vertices.size()) {
-        internal::refuse_index(f, index, vertices.size());
+        internal::refuse_index("face_graph", f, index, vertices.size());
       }
     }
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) {
-      internal::refuse_face(f, face, "has a vertex twice");
+      internal::refuse_face("face_graph", f, face, "has a vertex twice");
     }
     const std::array<Vertex, 3> corners = {vertices[face[0]], vertices[face[1]], vertices[face[2]]};
     const bool can_add =
         CGAL::Euler::can_add_face(corners, graph) &&
         CGAL::Euler::add_face(corners, graph) != boost::graph_traits<FaceGraph>::null_face();
     if (!can_add) {
-      internal::refuse_face(f, face,
+      internal::refuse_face("face_graph", f, face,
                             "makes an edge or a vertex non-manifold, or is turned against a "
                             "neighbor; repair_mesh splits and turns such faces");
     }
