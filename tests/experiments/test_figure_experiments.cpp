@@ -262,6 +262,73 @@ TEST_CASE("Stages are those of fitting: another planner is refused by name",
   }
 }
 
+/// Spearman's rank correlation of the rows that have both numbers, by counting ranks.
+double rank_correlation(const std::vector<Fields>& rows, const std::string& a,
+                        const std::string& b) {
+  std::vector<const Fields*> both;
+  for (const Fields& row : rows) {
+    if (!row.at(a).empty() && !row.at(b).empty()) both.push_back(&row);
+  }
+  // From the middle rank.
+  const auto rank = [&](const Fields& row, const std::string& name) {
+    double below_less_above = 0.0;
+    for (const Fields* other : both) {
+      if (number(*other, name) < number(row, name)) below_less_above += 0.5;
+      if (number(*other, name) > number(row, name)) below_less_above -= 0.5;
+    }
+    return below_less_above;
+  };
+  double ab = 0.0;
+  double aa = 0.0;
+  double bb = 0.0;
+  for (const Fields* row : both) {
+    ab += rank(*row, a) * rank(*row, b);
+    aa += rank(*row, a) * rank(*row, a);
+    bb += rank(*row, b) * rank(*row, b);
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+TEST_CASE("Every candidate of an attempt is looked at, and a row sums them up",
+          "[experiments][candidate_prediction]") {
+  const std::string settings =
+      R"("shape": "torus", "size_m": 0.12, "hand": "barrett", "contacts": 3, "weak-thickness-mm": 0,
+         "max-attempts": 2, "count": 2, "preset": "strong", "max-placements": 6,
+         "reach_attempts": 1)";
+  const Result result = run("candidate_prediction", "{" + settings + "}");
+  CHECK(result.row.at("attempts") == "2");
+  REQUIRE(result.row.at("candidates") == std::to_string(result.details.size()));
+  CHECK(result.details.size() <= 12);
+  std::set<std::pair<std::string, std::string>> numbers;
+  int num_valid = 0;
+  int num_closed = 0;
+  for (const Fields& candidate : result.details) {
+    numbers.insert({candidate.at("attempt"), candidate.at("start")});
+    const bool is_valid = candidate.at("outcome") == "valid";
+    CHECK(candidate.at("epsilon").empty() == !is_valid);
+    if (!is_valid) continue;
+    ++num_valid;
+    if (candidate.at("closed") == "1") ++num_closed;
+    // What closes within the narrower cones of the squeeze closes within those of epsilon.
+    if (number(candidate, "epsilon") > 1e-6) CHECK(candidate.at("closed") == "1");
+    CHECK(number(candidate, "target_distance_m") >= 0.0);
+  }
+  CHECK(numbers.size() == result.details.size());
+  CHECK(result.row.at("valid") == std::to_string(num_valid));
+  CHECK(result.row.at("closed") == std::to_string(num_closed));
+  REQUIRE(num_valid > 2);
+  CHECK(number(result.row, "rank_correlation_by_targets") ==
+        Approx(rank_correlation(result.details, "targets_epsilon", "epsilon")).margin(1e-9));
+  CHECK(number(result.row, "rank_correlation_by_posture") ==
+        Approx(rank_correlation(result.details, "posture_epsilon", "epsilon")).margin(1e-9));
+  // All sides of 32 sets of three targets: two each.
+  CHECK(result.row.at("reach_sides") == "64");
+  CHECK_THROWS_AS(run("candidate_prediction", "{" + settings + R"(, "keep": "first"})"),
+                  SettingError);
+  CHECK_THROWS_AS(run("candidate_prediction", "{" + settings + R"(, "planner": "gs"})"),
+                  SettingError);
+}
+
 TEST_CASE("Time and quality by contacts: the row sums up the grasps",
           "[experiments][contacts_and_time]") {
   const std::string grip = R"({"shape": "torus", "size_m": 0.14, "hand": "barrett", "contacts": 3,

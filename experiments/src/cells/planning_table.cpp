@@ -102,7 +102,7 @@ void require_over_table(const geometry::TriangleMesh& mesh_O, std::optional<doub
 
 }  // namespace
 
-Planned plan(const PlanningSettings& settings) {
+Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
   const Clock::time_point start = Clock::now();
   std::shared_ptr<const grasp::ObjectFile> file = load_object(settings.object);
   std::shared_ptr<const hands::HandModel> hand = load_hand(settings.hand);
@@ -120,14 +120,23 @@ Planned plan(const PlanningSettings& settings) {
       {}};
   const Clock::time_point plan_start = Clock::now();
   const double cpu_start = base::thread_cpu_s();
+  grasp::TriedStartObserver tried_start;
+  if (observer) {
+    tried_start = [&](const grasp::TriedStart& tried) {
+      observer(tried, *planned.hand, planned.object);
+    };
+  }
   planned.result =
       grasp::plan_grasps(planned.object, *planned.hand, settings.options,
                          {.table_z_O = settings.table_z_O, .obstacles = {}},
-                         {.num_threads = 1, .progress = [&](std::int64_t, std::int64_t grasps) {
-                            planned.attempt_cpu_s.push_back(base::thread_cpu_s() - cpu_start);
-                            if (grasps > 0 && !planned.first_s)
-                              planned.first_s = base::seconds_since(plan_start);
-                          }});
+                         {.num_threads = 1,
+                          .progress =
+                              [&](std::int64_t, std::int64_t grasps) {
+                                planned.attempt_cpu_s.push_back(base::thread_cpu_s() - cpu_start);
+                                if (grasps > 0 && !planned.first_s)
+                                  planned.first_s = base::seconds_since(plan_start);
+                              },
+                          .tried_start = tried_start});
   planned.plan_s = base::seconds_since(plan_start);
   planned.result.timings.object = timings;
   return planned;

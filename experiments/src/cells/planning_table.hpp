@@ -1,12 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "graspfit/experiments/planning_settings.hpp"
-#include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
 
 namespace graspfit::experiments::internal {
 
@@ -25,8 +26,13 @@ struct Planned {
   std::optional<double> first_s;      ///< From the planner's start to its first accepted grasp.
 };
 
-/// @throws MissingData; as `grasp::prepare_object` and `grasp::plan_grasps`.
-Planned plan(const PlanningSettings& settings);
+/// Called for every start that is tried, with the cell's hand and object.
+using StartObserver = std::function<void(const grasp::TriedStart&, const hands::HandModel&,
+                                         const grasp::ObjectModel&)>;
+
+/// @param observer may be empty. @throws MissingData; as `grasp::prepare_object` and
+/// `grasp::plan_grasps`.
+Planned plan(const PlanningSettings& settings, const StartObserver& observer = {});
 
 /// Columns about all that a planner's run found, and their values.
 std::vector<sweep::Column> planning_columns();

@@ -7,6 +7,7 @@
 
 namespace graspfit::experiments::internal {
 
+sweep::Experiment candidate_prediction();
 sweep::Experiment contacts_and_time();
 sweep::Experiment fitting_stages();
 sweep::Experiment force_closure();

@@ -19,6 +19,7 @@ using sweep::Experiment;
 std::vector<Experiment> listed_experiments() {
   using namespace internal;
   return {
+      candidate_prediction(),
       contacts_and_time(),
       fitting_stages(),
       force_closure(),

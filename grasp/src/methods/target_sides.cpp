@@ -47,6 +47,7 @@ std::vector<GuidedStart> starts_from(std::vector<TargetSide> sides, const Guidan
       return fit_hand(scene, scene.options.style, targets, placement, scene.options.fitting, goal);
     };
     start.targets = std::move(side.targets);
+    start.posture = std::move(side.goal);
     starts.push_back(std::move(start));
   }
   return starts;

@@ -66,7 +66,7 @@ class Search {
       const std::int64_t number = next_++;
       if (number >= options_.max_attempts) return;
       try {
-        internal::AttemptResult made = attempts_.make(number);
+        internal::AttemptResult made = attempts_.make(number, run_.tried_start);
         const std::lock_guard<std::mutex> lock(lock_);
         waiting_.emplace(number, std::move(made));
         take_in_order();
@@ -210,6 +210,17 @@ GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& 
   return internal::PlannerAttempts(object, hand, options, surroundings, planning_methods())
       .guidance()
       .model();
+}
+
+void visit_starts(const ObjectModel& object, const hands::HandModel& hand,
+                  const PlannerOptions& options, std::int64_t num_attempts,
+                  const std::function<void(const GuidedStart&)>& visit) {
+  const internal::PlannerAttempts attempts(object, hand, options, {}, planning_methods());
+  for (std::int64_t number = 0; number < num_attempts; ++number) {
+    const GuidedStarts guided = attempts.guidance().starts(number);
+    for (const GuidedStart& start : guided.starts) visit(start);
+    if (guided.is_exhausted) return;
+  }
 }
 
 }  // namespace graspfit::grasp

@@ -77,17 +77,12 @@ bool is_balanced(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
 }
 
-/// ε of the contacts that touch, with the friction cones of the squeeze: negative without force
-/// closure, minus infinity without contacts.
+/// ε of the contacts that touch, with the friction cones of the squeeze.
 double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
   std::vector<contact::Contact> contacts;
   if (result.grasp)
     contacts = contact::touching_contacts(result.grasp->contacts, scene.bearing_gap);
-  if (contacts.empty()) return -std::numeric_limits<double>::infinity();
-  contact::WrenchConvention convention = contact::wrench_convention(
-      contact::WrenchTool::Graspfit, scene.wrench_object, contacts, friction);
-  convention.options.outside = contact::OutsideValue::Signed;
-  return contact::epsilon_quality(contact::grasp_wrench_space(contacts, convention));
+  return contact::signed_epsilon(contacts, scene.wrench_object, friction);
 }
 
 }  // namespace
@@ -141,7 +136,7 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       {{fitting_hand_, object_, surroundings_, scene_.contact_options}, parts_, options_});
 }
 
-AttemptResult PlannerAttempts::make(std::int64_t number) const {
+AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserver& observer) const {
   AttemptResult work;  // counters and times of everything that this attempt tries
   GuidedStarts guided;
   {
@@ -155,6 +150,10 @@ AttemptResult PlannerAttempts::make(std::int64_t number) const {
   std::size_t best = 0;
   for (const GuidedStart& start : guided.starts) {
     tried.push_back(try_start(start, number));
+    if (observer) {
+      const AttemptResult& last = tried.back();
+      observer({number, start, last.outcome, last.grasp ? &*last.grasp : nullptr});
+    }
     best = best_of(tried);
     if (!is_enough(tried[best])) continue;
     best = best_with_way_in(tried);

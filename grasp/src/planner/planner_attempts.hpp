@@ -9,6 +9,7 @@
 
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_measure.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/planner_options.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 
@@ -38,7 +39,8 @@ class PlannerAttempts {
                   const PlannerOptions& options, const Surroundings& surroundings,
                   const PlanningMethods& methods);
 
-  AttemptResult make(std::int64_t number) const;
+  /// @param observer called for every start that is tried; may be empty.
+  AttemptResult make(std::int64_t number, const TriedStartObserver& observer = {}) const;
 
   const GraspGuidance& guidance() const { return *guidance_; }
   double guidance_s() const { return guidance_s_; }  ///< What it took to prepare.

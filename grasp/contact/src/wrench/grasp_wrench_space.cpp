@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contacts/contact_check.hpp"
 #include "graspfit/geometry/dyadic_grid.hpp"
@@ -79,6 +80,14 @@ double epsilon_quality(const GraspWrenchSpace& space) {
       break;
   }
   return 0.0;
+}
+
+double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& object,
+                      double friction) {
+  if (contacts.empty()) return -std::numeric_limits<double>::infinity();
+  WrenchConvention convention = wrench_convention(WrenchTool::Graspfit, object, contacts, friction);
+  convention.options.outside = OutsideValue::Signed;
+  return epsilon_quality(grasp_wrench_space(contacts, convention));
 }
 
 bool is_force_closure(const GraspWrenchSpace& space) { return has_origin_inside(space.hull); }

@@ -13,6 +13,7 @@
 #include "graspfit/grasp/grasp_scene.hpp"
 #include "graspfit/grasp/hand_fitting.hpp"
 #include "graspfit/grasp/planner_options.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
 
 /// \file
 /// What one planning method does differently from another: where hands start and how they close.
@@ -35,6 +36,9 @@ struct GuidedStart {
   TargetContacts targets = {};  ///< Assigned contacts to reach; empty where a method has none.
   std::function<FittingResult()> close = {};  ///< Brings the hand to the object, by `fit_hand` or
                                               ///< `close_hand` for example. Const and thread-safe.
+  /// Where the hand would be at the targets, were there no object; empty where a method does not
+  /// know it.
+  std::optional<hands::HandConfiguration> posture = {};
 };
 
 /// The starts of one attempt, the most promising first: they are tried in turn until one of them

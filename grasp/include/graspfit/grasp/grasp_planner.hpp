@@ -17,6 +17,21 @@ namespace graspfit::grasp {
 /// Called after each attempt with (attempts done, grasps found); may be empty.
 using PlannerProgress = std::function<void(std::int64_t, std::int64_t)>;
 
+/// A start of an attempt that was tried, and what became of it.
+struct TriedStart {
+  std::int64_t attempt = 0;
+  const GuidedStart& start;
+  /// As of an attempt that had no other start, except that no way in was looked for: `Valid` may
+  /// yet be `NoWayIn`.
+  AttemptOutcome outcome = AttemptOutcome::NoTargets;
+  /// Its grasp; null where it ended before one was measured.
+  const Grasp* grasp = nullptr;
+};
+
+/// Called for every start that was tried, in their order within an attempt; attempts of several
+/// threads call it at once. What it is given lasts until it returns.
+using TriedStartObserver = std::function<void(const TriedStart&)>;
+
 /// How a run is carried out. Except for a requested stop, other `methods` and the wall-clock limit
 /// of the options, no result depends on it.
 struct PlanningRun {
@@ -26,6 +41,7 @@ struct PlanningRun {
                                   ///< finished and count.
   /// The methods that `options.planner` is one of.
   const PlanningMethods& methods = planning_methods();
+  TriedStartObserver tried_start = {};  ///< To look at what attempts do; may be empty.
 };
 
 /// Why `hand` could not hold the object in any pose: along every axis of the mesh's own frame the
@@ -63,5 +79,11 @@ PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& han
 /// The intermediate model of the method that `options` name. @throws as `plan_grasps`.
 GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& hand,
                              const PlannerOptions& options, const Surroundings& surroundings = {});
+
+/// Calls `visit` with the starts of the attempts 0 to `num_attempts` − 1, none of which is tried,
+/// in their order. What it is given lasts until it returns. @throws as `plan_grasps`.
+void visit_starts(const ObjectModel& object, const hands::HandModel& hand,
+                  const PlannerOptions& options, std::int64_t num_attempts,
+                  const std::function<void(const GuidedStart&)>& visit);
 
 }  // namespace graspfit::grasp

@@ -54,6 +54,13 @@ WrenchQuality wrench_quality(const GraspWrenchSpace& space);
 /// what it is where the origin is outside. Its sign is exact, its magnitude rounded.
 double epsilon_quality(const GraspWrenchSpace& space);
 
+/// ε of contacts in this project's own convention (`WrenchTool::Graspfit`), but with a sign:
+/// without force closure it is minus the largest distance from the origin to the plane of a facet
+/// that cuts it off (`OutsideValue::Signed`). Minus infinity without contacts. @throws as
+/// `contact_wrenches`.
+double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& object,
+                      double friction);
+
 /// Says whether the origin lies strictly within the hull of the wrenches, so that any load is
 /// balanced by some contact forces within the linearized cones. The answer is exact for the
 /// wrenches as they are.
