@@ -1,5 +1,6 @@
 """`graspfit hand` as its user meets it: list, show, check, derive, export, and hands without sidecar."""
 
+import csv
 import json
 import os
 import pty
@@ -142,6 +143,45 @@ class Show(program.ProgramTest):
         self.assertEqual([pose["name"] for pose in data["poses"]], ["open", "closed"])
         self.assertEqual(len(data["hand"]["joints"]), 8)
         self.assertEqual(self.contents(), ["a.html", "b.html"])
+
+
+class Reach(program.ProgramTest):
+    def test_jaws_are_square_as_far_as_they_open(self):
+        files = {flag: self.folder / f"reach.{flag}" for flag in ("csv", "svg", "html")}
+        flags = [word for flag, file in files.items() for word in (f"--{flag}", file)]
+        done = program.run("hand", "reach", "parallel_gripper", *flags)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("parallel_gripper at friction 0.4: pads may lean by 21.8 degrees", done.stdout)
+        self.assertRegex(done.stdout, r"fingertips +0 to 90 +0\.0 ")
+        self.assertRegex(done.stdout, r"proximal pads +none +- +- +none that face each other")
+        rows = [row for row in csv.DictReader(files["csv"].read_text().splitlines())
+                if row["pinch"] == "fingertips"]
+        self.assertEqual(len(rows), 18)  # classes of 5 mm to 85 mm, that of 85 to 90 included
+        for number, row in enumerate(rows):
+            self.assertAlmostEqual(float(row["opening_m"]), 0.005 * number, delta=0.005)
+            self.assertLess(float(row["lean_rad"]), 1e-7)
+        self.assertTrue(files["svg"].read_text().startswith("<svg "))
+        self.assertIn("What parallel_gripper pinches squarely", files["html"].read_text())
+        self.assertEqual(self.contents(), ["reach.csv", "reach.html", "reach.svg"])
+
+    def test_a_finer_friction_leaves_less(self):
+        def square(friction):
+            done = program.run("hand", "reach", "barrett", "--friction", friction)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            ranges = re.search(r"thumb and two fingers +(.*?)  +\d", done.stdout).group(1)
+            return sum(float(last) - float(first)
+                       for first, last in re.findall(r"(\d+) to (\d+)", ranges))
+        self.assertGreater(square("0.4"), square("0.2"))
+        self.assertGreater(square("0.2"), 0)
+
+    def test_what_cannot_be_charted_is_one_line(self):
+        for arguments, says in [
+                (["claw"], ["claw", "barrett"]),
+                (["barrett", "--friction", "-1"], ["friction", "-1"]),
+                (["barrett", "--step-mm", "0"], ["step-mm", "0"]),
+                (["barrett", "--svg", self.folder / "missing" / "x.svg"], ["--svg", "missing"])]:
+            with self.subTest(arguments):
+                self.assert_refused("hand", "reach", *arguments, says=says)
 
 
 class Picture(program.ProgramTest):

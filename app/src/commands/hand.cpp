@@ -27,6 +27,7 @@ const char* const kHandUsage =
     "\n"
     "  graspfit hand list            the shipped hands\n"
     "  graspfit hand show HAND       joints, fingers, pads as tables, a picture or a page\n"
+    "  graspfit hand reach HAND      widths that it pinches squarely: tables, a picture or a page\n"
     "  graspfit hand check HAND      everything missing or suspicious about a description\n"
     "  graspfit hand derive HAND     writes what was derived to <description>.graspfit.json to "
     "edit\n"
@@ -39,8 +40,9 @@ const char* const kHandUsage =
     "\n"
     "graspfit hand COMMAND --help lists a command's options with their defaults and units.\n";
 
-constexpr std::array<NamedCommand, 5> kHandCommands = {{{"list", run_hand_list},
+constexpr std::array<NamedCommand, 6> kHandCommands = {{{"list", run_hand_list},
                                                         {"show", run_hand_show},
+                                                        {"reach", run_hand_reach},
                                                         {"check", run_hand_check},
                                                         {"derive", run_hand_derive},
                                                         {"export", run_hand_export}}};

@@ -9,9 +9,8 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
-#include "graspfit/base/random.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "graspfit/hands/kinematic_chain.hpp"
+#include "workspace/joint_samples.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -34,122 +33,10 @@ constexpr double kMostPoses = 1 << 14;
 constexpr std::size_t kStarts = 4;
 // Distance, in bins, between two of these starts where bins of distance are searched.
 constexpr std::ptrdiff_t kBinsBetweenStarts = 4;
-// Local search ends at this share of a grid step; the remaining error is of second order in it.
-constexpr double kFinestShare = 1e-5;
-constexpr int kMostRounds = 2000;
+// Local search ends at this share of a grid step.
+constexpr double kFinest = 1e-5;
 // Number of random steps in all joints at once, per joint.
 constexpr int kDrawnPerJoint = 4;
-
-/// Positions of some independent joints: a grid or, if `per_joint` is 0, `count` random positions.
-class Samples {
- public:
-  Samples(const HandModel& model, std::vector<int> joints, int per_joint, std::int64_t count)
-      : model_(model), joints_(std::move(joints)), per_joint_(per_joint), size_(count) {
-    if (joints_.empty()) size_ = 1;
-    if (per_joint_ > 0) {
-      size_ = 1;
-      for (std::size_t i = 0; i < joints_.size(); ++i) size_ *= per_joint_;
-    }
-  }
-
-  std::int64_t size() const { return size_; }
-
-  void set(std::int64_t sample, VectorXd& q) const {
-    auto random = base::Random::stream(0, static_cast<std::uint64_t>(sample));
-    for (const int joint : joints_) {
-      double share = 0.0;
-      if (per_joint_ > 0) {
-        share = static_cast<double>(sample % per_joint_) / (per_joint_ - 1);
-        sample /= per_joint_;
-      } else {
-        share = random.uniform();
-      }
-      const Joint& limits = model_.joints[joint];
-      q[joint] = limits.lower + share * (limits.upper - limits.lower);
-    }
-  }
-
- private:
-  const HandModel& model_;
-  std::vector<int> joints_;
-  int per_joint_;
-  std::int64_t size_;
-};
-
-/// Local search: improves positions of `joints` as long as their value grows, by steps in one joint
-/// at a time, then by `num_drawn` random steps in all joints at once (at the border of the allowed
-/// positions, steps in one joint may not help), larger steps first. `value(q, best)` is empty where
-/// q is not allowed or not better than `best`. Deterministic; ends near a local best.
-template <class Value>
-double move_on(const HandModel& model, const std::vector<int>& joints, double first_share,
-               int num_drawn, double best, VectorXd& q, const Value& value) {
-  base::Random random(0);
-  const auto takes = [&](const VectorXd& trial) {
-    if (trial == q) return false;
-    const std::optional<double> found = value(trial, best);
-    if (!found) return false;
-    best = *found;
-    q = trial;
-    return true;
-  };
-  const auto move = [&](VectorXd& trial, int joint, double share) {
-    const Joint& limits = model.joints[joint];
-    trial[joint] = std::clamp(trial[joint] + share * (limits.upper - limits.lower), limits.lower,
-                              limits.upper);
-  };
-  int rounds = 0;
-  for (double share = first_share; share > first_share * kFinestShare && rounds < kMostRounds;
-       ++rounds) {
-    bool is_better = false;
-    for (const int joint : joints) {
-      for (const double sign : {1.0, -1.0}) {
-        VectorXd trial = q;
-        move(trial, joint, sign * share);
-        if (!takes(trial)) continue;
-        is_better = true;
-        break;
-      }
-    }
-    for (int i = 0; i < num_drawn && !is_better; ++i) {
-      VectorXd trial = q;
-      for (const int joint : joints) move(trial, joint, share * random.uniform(-1.0, 1.0));
-      is_better = takes(trial);
-    }
-    if (!is_better) share /= 2;
-  }
-  return best;
-}
-
-/// The independent joints that move one tip relative to another: those that move both, and those
-/// that move only the one or only the other. Also the joints that carry both tips alike.
-struct PairJoints {
-  std::vector<int> shared, only_a, only_b, all;
-  /// Joints, coupled ones too, from the root to where the chains of the two tips part.
-  std::vector<int> carrying;
-};
-
-PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b) {
-  PairJoints result;
-  std::vector<int> to_a = joints_to(model, link_a);
-  std::vector<int> to_b = joints_to(model, link_b);
-  const auto parting = std::mismatch(to_a.begin(), to_a.end(), to_b.begin(), to_b.end());
-  result.carrying.assign(to_a.begin(), parting.first);
-  to_a.erase(to_a.begin(), parting.first);
-  to_b.erase(to_b.begin(), parting.second);
-  const std::vector<int> a = leaders_of(model, to_a);
-  const std::vector<int> b = leaders_of(model, to_b);
-  const std::vector<int> carriers = leaders_of(model, result.carrying);
-  const auto has = [](const std::vector<int>& list, int joint) {
-    return std::binary_search(list.begin(), list.end(), joint);
-  };
-  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result.all));
-  for (const int joint : result.all) {
-    // A joint that also sets a joint before the chains part must have one position for both tips.
-    const bool is_shared = (has(a, joint) && has(b, joint)) || has(carriers, joint);
-    (is_shared ? result.shared : has(a, joint) ? result.only_a : result.only_b).push_back(joint);
-  }
-  return result;
-}
 
 /// Samples per joint of the finest grid that the options and kMostPoses allow; 0 if not even 2 fit.
 int grid_of(const PairJoints& joints, const WorkspaceOptions& options) {
@@ -204,23 +91,23 @@ class TipPair {
   DistanceRange distances() const {
     DistanceRange range{kInfinity, 0.0, error()};
     BestStarts nearest, farthest;
-    for_each_row(
-        [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
-          std::size_t near = 0, far = 0;
-          double least = kInfinity, most = -1.0;
-          for (std::size_t i = 0; i < all_b.size(); ++i) {
-            const double squared = (a.point - all_b[i].point).squaredNorm();
-            if (squared < least) least = squared, near = i;
-            if (squared > most) most = squared, far = i;
-          }
-          const auto offer = [&](BestStarts& starts, double value, std::size_t sample_b) {
-            if (!starts.takes(value)) return;
-            samples_b.set(static_cast<std::int64_t>(sample_b), q);
-            starts.add(value, q);
-          };
-          offer(nearest, -std::sqrt(least), near);
-          offer(farthest, std::sqrt(most), far);
-        });
+    for_each_row([&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b,
+                     const JointSamples& samples_b) {
+      std::size_t near = 0, far = 0;
+      double least = kInfinity, most = -1.0;
+      for (std::size_t i = 0; i < all_b.size(); ++i) {
+        const double squared = (a.point - all_b[i].point).squaredNorm();
+        if (squared < least) least = squared, near = i;
+        if (squared > most) most = squared, far = i;
+      }
+      const auto offer = [&](BestStarts& starts, double value, std::size_t sample_b) {
+        if (!starts.takes(value)) return;
+        samples_b.set(static_cast<std::int64_t>(sample_b), q);
+        starts.add(value, q);
+      };
+      offer(nearest, -std::sqrt(least), near);
+      offer(farthest, std::sqrt(most), far);
+    });
     range.smallest = -best_of(nearest, -1.0);
     range.largest = best_of(farthest, 1.0);
     return range;
@@ -232,25 +119,25 @@ class TipPair {
     // For each millimeter of distance, a bin holds the configuration whose pads face each other
     // best.
     std::vector<Start> bins;
-    for_each_row(
-        [&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b, const Samples& samples_b) {
-          for (std::size_t i = 0; i < all_b.size(); ++i) {
-            const double distance = (all_b[i].point - a.point).norm();
-            const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
-            if (!facing) continue;
-            // Written so that NaN fails.
-            if (!(distance < kFarthest)) {
-              throw base::InvalidInput("hand " + hand_.model().name + ": tips come " +
-                                       base::shortest_decimal(distance) +
-                                       " m apart; the limits of its slides are in another unit");
-            }
-            const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
-            if (bin >= bins.size()) bins.resize(bin + 1);
-            if (!(*facing > bins[bin].value)) continue;
-            samples_b.set(static_cast<std::int64_t>(i), q);
-            bins[bin] = {*facing, q};
-          }
-        });
+    for_each_row([&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b,
+                     const JointSamples& samples_b) {
+      for (std::size_t i = 0; i < all_b.size(); ++i) {
+        const double distance = (all_b[i].point - a.point).norm();
+        const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
+        if (!facing) continue;
+        // Written so that NaN fails.
+        if (!(distance < kFarthest)) {
+          throw base::InvalidInput("hand " + hand_.model().name + ": tips come " +
+                                   base::shortest_decimal(distance) +
+                                   " m apart; the limits of its slides are in another unit");
+        }
+        const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
+        if (bin >= bins.size()) bins.resize(bin + 1);
+        if (!(*facing > bins[bin].value)) continue;
+        samples_b.set(static_cast<std::int64_t>(i), q);
+        bins[bin] = {*facing, q};
+      }
+    });
     const auto end = [&](auto begin, auto finish, double sign) -> std::optional<double> {
       std::optional<double> best;
       std::size_t num_starts = 0;
@@ -303,18 +190,18 @@ class TipPair {
     return cosine >= least ? std::optional<double>(cosine) : std::nullopt;
   }
 
-  Samples samples_of(const std::vector<int>& joints) const {
+  JointSamples samples_of(const std::vector<int>& joints) const {
     const double most = std::cbrt(static_cast<double>(options_.max_configurations));
-    return {hand_.model(), joints, per_joint_, static_cast<std::int64_t>(most)};
+    return {hand_.model(), each_alone(joints), per_joint_, static_cast<std::int64_t>(most)};
   }
 
   /// Calls `visit(q, tip of a, all tips of b, the samples of b)` for every position of the joints
   /// that move a; q holds this position, and `visit` may change only the joints of b in it.
   template <class Visit>
   void for_each_row(const Visit& visit) const {
-    const Samples shared = samples_of(joints_.shared);
-    const Samples only_a = samples_of(joints_.only_a);
-    const Samples only_b = samples_of(joints_.only_b);
+    const JointSamples shared = samples_of(joints_.shared);
+    const JointSamples only_a = samples_of(joints_.only_a);
+    const JointSamples only_b = samples_of(joints_.only_b);
     VectorXd q = hand_.open();
     std::vector<Tip> all_b(static_cast<std::size_t>(only_b.size()));
     for (std::int64_t s = 0; s < shared.size(); ++s) {
@@ -334,7 +221,8 @@ class TipPair {
   double moved_on(VectorXd q, int drawn_per_joint, double best, const Value& value) const {
     const double step = per_joint_ > 0 ? 1.0 / (per_joint_ - 1) : 0.5;
     const int num_drawn = drawn_per_joint * static_cast<int>(joints_.all.size());
-    return move_on(hand_.model(), joints_.all, step, num_drawn, best, q, value);
+    return move_on(hand_.model(), each_alone(joints_.all), step, num_drawn, kFinest, best, q,
+                   value);
   }
 
   /// The best of some starts, improved by local search where the grid had to be coarser than

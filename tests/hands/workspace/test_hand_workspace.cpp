@@ -13,6 +13,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
+#include "hands/workspace/planar_hand.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -21,6 +22,7 @@ namespace test_hand_workspace {
 namespace {
 
 using namespace graspfit;
+using namespace graspfit::testing;
 using Eigen::Vector3d;
 using hands::DistanceRange;
 using hands::HandModel;
@@ -29,79 +31,6 @@ using hands::RigidTransform;
 using hands::TipDistances;
 using hands::WorkspaceOptions;
 using std::numbers::pi;
-
-RigidTransform at(const Vector3d& point) {
-  RigidTransform X = RigidTransform::Identity();
-  X.translation() = point;
-  return X;
-}
-
-/// Adds a link that turns about −y (x toward z for growing q) or, prismatic, moves along x.
-int add_link(HandModel& hand, int parent, const RigidTransform& X_PJ, double lower, double upper,
-             hands::JointType type = hands::JointType::Revolute) {
-  const int link = static_cast<int>(hand.links.size());
-  const int joint = static_cast<int>(hand.joints.size());
-  hands::Joint& j = hand.joints.emplace_back();
-  j.name = "joint " + std::to_string(joint);
-  j.type = type;
-  j.parent_link = parent;
-  j.child_link = link;
-  j.X_PJ = X_PJ;
-  j.axis_J = type == hands::JointType::Revolute ? Vector3d(0, -1, 0) : Vector3d(1, 0, 0);
-  j.lower = lower;
-  j.upper = upper;
-  j.closing_sign = 1;
-  hands::Link& l = hand.links.emplace_back();
-  l.name = "link " + std::to_string(link);
-  l.parent_link = parent;
-  l.parent_joint = joint;
-  return link;
-}
-
-/// Adds a finger of the last `num_links` links whose pad has pose `X_LC` on the last.
-void add_finger(HandModel& hand, int num_links, const RigidTransform& X_LC) {
-  const int index = static_cast<int>(hand.fingers.size());
-  hands::Finger& finger = hand.fingers.emplace_back();
-  finger.name = "finger " + std::to_string(index);
-  finger.tip_pad = static_cast<int>(hand.pads.size());
-  for (int link = static_cast<int>(hand.links.size()) - num_links;
-       link < static_cast<int>(hand.links.size()); ++link) {
-    finger.links.push_back(link);
-    finger.joints.push_back(*hand.links[link].parent_joint);
-  }
-  hands::ContactPad& pad = hand.pads.emplace_back();
-  pad.name = "pad " + std::to_string(index);
-  pad.link = finger.links.back();
-  pad.finger = index;
-  pad.X_LC = X_LC;
-  pad.outline = {{-0.01, -0.01}, {0.01, -0.01}, {0.01, 0.01}, {-0.01, 0.01}};
-}
-
-HandModel bare_palm() {
-  HandModel hand;
-  hand.name = "test";
-  hand.links.emplace_back().name = "palm";
-  hand.palm.link = 0;
-  return hand;
-}
-
-/// Returns two fingers in the x-z plane, mirrored, with bases at x = ±base. Each is a chain of
-/// links of given lengths, straight outward at q = 0, and each joint turns from 0 to `upper` toward
-/// z and inward. The pads look where the fingers close.
-HandModel planar_hand(double base, const std::vector<double>& lengths, double upper) {
-  HandModel hand = bare_palm();
-  for (const double side : {1.0, -1.0}) {
-    RigidTransform X = at({side * base, 0, 0});
-    if (side < 0) X.linear() = Eigen::AngleAxisd(pi, Vector3d::UnitZ()).toRotationMatrix();
-    int parent = 0;
-    for (const double length : lengths) {
-      parent = add_link(hand, parent, X, 0.0, upper);
-      X = at({length, 0, 0});
-    }
-    add_finger(hand, static_cast<int>(lengths.size()), X);
-  }
-  return hand;
-}
 
 TEST_CASE("Two planar fingers of two links reach what two rings reach", "[hands][hand_workspace]") {
   struct Case {

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "graspfit/base/random.hpp"
+#include "graspfit/hands/hand_model.hpp"
+
+/// \file
+/// Positions of a hand's independent joints: on grids, drawn, or improved step by step.
+
+namespace graspfit::hands::internal {
+
+/// Joints that are moved alike: each to the same share of its range.
+using JointGroup = std::vector<int>;
+
+/// Every joint a group of its own.
+std::vector<JointGroup> each_alone(const std::vector<int>& joints);
+
+/// Positions of some independent joints: a grid or, if `per_group` is 0, `count` random positions.
+class JointSamples {
+ public:
+  JointSamples(const HandModel& model, std::vector<JointGroup> groups, int per_group,
+               std::int64_t count);
+
+  std::int64_t size() const { return size_; }
+
+  /// Sets the joints of the groups to the positions of a sample.
+  void set(std::int64_t sample, Eigen::VectorXd& q) const;
+
+ private:
+  const HandModel& model_;
+  std::vector<JointGroup> groups_;
+  int per_group_;
+  std::int64_t size_;
+};
+
+/// The independent joints that move one part of the hand relative to another: those that move both,
+/// and those that move only the one or only the other. Also the joints that carry both alike.
+struct PairJoints {
+  std::vector<int> shared, only_a, only_b, all;
+  /// Joints, coupled ones too, from the root to where the chains of the two links part.
+  std::vector<int> carrying;
+};
+
+PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b);
+
+/// Local search: improves positions of `groups` as long as their value grows, by steps in one group
+/// at a time, then by `num_drawn` random steps in all groups at once (at the border of the allowed
+/// positions, steps in one group may not help), larger steps first. `value(q, best)` is empty where
+/// q is not allowed or not better than `best`. Deterministic; ends near a local best, whose value
+/// it returns.
+template <class Value>
+double move_on(const HandModel& model, const std::vector<JointGroup>& groups, double first_share,
+               int num_drawn, double finest, double best, Eigen::VectorXd& q, const Value& value) {
+  constexpr int kMostRounds = 2000;
+  base::Random random(0);
+  const auto takes = [&](const Eigen::VectorXd& trial) {
+    if (trial == q) return false;
+    const std::optional<double> found = value(trial, best);
+    if (!found) return false;
+    best = *found;
+    q = trial;
+    return true;
+  };
+  const auto move = [&](Eigen::VectorXd& trial, const JointGroup& group, double share) {
+    for (const int joint : group) {
+      const Joint& limits = model.joints[joint];
+      trial[joint] = std::clamp(trial[joint] + share * (limits.upper - limits.lower), limits.lower,
+                                limits.upper);
+    }
+  };
+  int rounds = 0;
+  for (double share = first_share; share > first_share * finest && rounds < kMostRounds; ++rounds) {
+    bool is_better = false;
+    for (const JointGroup& group : groups) {
+      for (const double sign : {1.0, -1.0}) {
+        Eigen::VectorXd trial = q;
+        move(trial, group, sign * share);
+        if (!takes(trial)) continue;
+        is_better = true;
+        break;
+      }
+    }
+    for (int i = 0; i < num_drawn && !is_better; ++i) {
+      Eigen::VectorXd trial = q;
+      for (const JointGroup& group : groups) move(trial, group, share * random.uniform(-1.0, 1.0));
+      is_better = takes(trial);
+    }
+    if (!is_better) share /= 2;
+  }
+  return best;
+}
+
+}  // namespace graspfit::hands::internal

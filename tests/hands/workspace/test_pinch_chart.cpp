@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "graspfit/hands/pinch_chart.hpp"
+#include "hands/workspace/planar_hand.hpp"
+#include "support/catch.hpp"
+
+namespace test_pinch_chart {
+
+namespace {
+
+using namespace graspfit;
+using namespace graspfit::testing;
+using Eigen::Vector3d;
+using hands::HandModel;
+using hands::OpeningRange;
+using hands::Pinch;
+using hands::PinchChart;
+using hands::PinchKind;
+using std::numbers::pi;
+
+constexpr double kDegree = pi / 180.0;
+
+/// The opening of a pinch of two pads, and the larger angle of their normals with the line, by the
+/// kinematics of its configuration.
+std::pair<double, double> opening_and_lean(const HandModel& hand, const Pinch& pinch) {
+  const auto X_HL = hands::forward_kinematics(hand, {hands::RigidTransform::Identity(), pinch.q});
+  Vector3d b = Vector3d::Zero();
+  for (std::size_t i = 1; i < pinch.pads.size(); ++i) {
+    b += hands::pad_contact_point(hand, pinch.pads[i], X_HL) /
+         static_cast<double>(pinch.pads.size() - 1);
+  }
+  const Vector3d line = b - hands::pad_contact_point(hand, pinch.pads.front(), X_HL);
+  double lean = 0.0;
+  for (std::size_t i = 0; i < pinch.pads.size(); ++i) {
+    const Vector3d normal = hands::pad_pose(hand, pinch.pads[i], X_HL).linear().col(2);
+    const Vector3d to_other = i == 0 ? line : Vector3d(-line);
+    lean = std::max(lean, std::atan2(normal.cross(to_other).norm(), normal.dot(to_other)));
+  }
+  return {line.norm(), lean};
+}
+
+/// The lean at an opening, between those of the neighboring classes.
+double lean_at(const PinchChart& chart, double opening) {
+  const auto number = static_cast<std::size_t>(opening / chart.step);
+  REQUIRE(number < chart.pinches.size());
+  REQUIRE(chart.pinches[number]);
+  return chart.pinches[number]->lean;
+}
+
+}  // namespace
+
+TEST_CASE("Pads on arms that turn lean by the angle that the arms are raised beyond upright",
+          "[hands][pinch_chart]") {
+  // Arms of length l at ±b, both raised by s, are 2 (b + l cos s) apart, and their pads lean by |s
+  // − 90°|; raised differently the larger lean is larger (see test_hand_workspace). So at an
+  // opening of d the least lean is asin(|d/2 − b| / l).
+  const double base = 0.06;
+  const double length = 0.08;
+  const HandModel hand = planar_hand(base, {length}, pi);
+  const PinchChart chart = hands::pinch_chart(hand, PinchKind::Tips, {.step = 0.004});
+  CHECK(chart.pinches.size() == 70);  // up to a lean of 80 degrees: 2 (b + l sin 80°) = 277.6 mm
+  for (std::size_t k = 0; k < chart.pinches.size(); ++k) {
+    CAPTURE(k);
+    REQUIRE(chart.pinches[k]);
+    const Pinch& pinch = *chart.pinches[k];
+    const auto [opening, lean] = opening_and_lean(hand, pinch);
+    CHECK(pinch.opening == Approx(opening).margin(1e-12));
+    CHECK(pinch.lean == Approx(lean).margin(1e-7));
+    CHECK(pinch.opening >= static_cast<double>(k) * chart.step);
+    CHECK(pinch.opening < static_cast<double>(k + 1) * chart.step);
+    // The least lean of the class is at the end that is nearer to 2 b.
+    const double first = static_cast<double>(k) * chart.step;
+    const double nearest = std::clamp(2.0 * base, first, first + chart.step);
+    const double least = std::asin(std::min(1.0, std::abs(0.5 * nearest - base) / length));
+    CHECK(pinch.lean >= least - 1e-9);
+    CHECK(pinch.lean <= least + 0.3 * kDegree);
+  }
+  // Where d/2 − b is at most l sin 20°: from 120 − 54.7 to 120 + 54.7 mm, in whole classes.
+  const std::vector<OpeningRange> widths = hands::square_widths(chart, std::tan(20.0 * kDegree));
+  REQUIRE(widths.size() == 1);
+  CHECK(widths[0].smallest == Approx(0.064));
+  CHECK(widths[0].largest == Approx(0.176));
+  // There is one other finger, no palm pad, and no proximal pad.
+  for (const PinchKind kind : {PinchKind::TwoFingers, PinchKind::Palm, PinchKind::Proximal}) {
+    CHECK(hands::pinch_chart(hand, kind).pinches.empty());
+  }
+}
+
+TEST_CASE("Parallel jaws pinch squarely as far as they open", "[hands][pinch_chart]") {
+  const HandModel hand = hands::find_hand("parallel_gripper");
+  const PinchChart chart = hands::pinch_chart(hand, PinchKind::Tips);
+  REQUIRE(!chart.pinches.empty());
+  for (const std::optional<Pinch>& pinch : chart.pinches) {
+    REQUIRE(pinch);
+    CHECK(pinch->lean < 1e-7);
+  }
+  CHECK(hands::square_widths(chart, 1e-6) ==
+        std::vector<OpeningRange>{{0.0, chart.step * static_cast<double>(chart.pinches.size())}});
+}
+
+TEST_CASE("A Barrett hand's fingertips lean as measured by hand", "[hands][pinch_chart]") {
+  // Its three fingers closed alike with the spread at zero, so that the two face the thumb: 29
+  // degrees at 242 mm, 3 at 194, 11 at 166, 24 at 137, 31 at 122, 37 at 107, 51 at 78, 64 at 51.
+  const HandModel hand = hands::find_hand("barrett");
+  const PinchChart chart = hands::pinch_chart(hand, PinchKind::TwoFingers);
+  for (const auto& [opening_mm, lean_deg] :
+       {std::pair(242, 29), std::pair(194, 3), std::pair(166, 11), std::pair(137, 24),
+        std::pair(122, 31), std::pair(107, 37), std::pair(78, 51), std::pair(51, 64)}) {
+    CAPTURE(opening_mm);
+    const double lean = lean_at(chart, 1e-3 * opening_mm) / kDegree;
+    CHECK(lean == Approx(lean_deg).margin(3.5));
+  }
+}
+
+TEST_CASE("No configuration that random search finds is much squarer", "[hands][pinch_chart]") {
+  for (const char* name : {"barrett", "human_hand"}) {
+    CAPTURE(name);
+    const HandModel hand = hands::find_hand(name);
+    const PinchChart chart = hands::pinch_chart(hand, PinchKind::Tips);
+    const hands::HandCollision collision(hand);
+    base::Random random(3);
+    const int thumb = *hand.fingers[hand.thumb()].tip_pad;
+    int num_compared = 0;
+    for (int round = 0; round < 20000; ++round) {
+      hands::HandConfiguration configuration = hands::open_configuration(hand);
+      for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+        const hands::Joint& joint = hand.joints[j];
+        if (joint.coupling) continue;
+        configuration.q[static_cast<Eigen::Index>(j)] = random.uniform(joint.lower, joint.upper);
+      }
+      hands::apply_couplings(hand, configuration.q);
+      for (const hands::Finger& finger : hand.fingers) {
+        if (!finger.tip_pad || *finger.tip_pad == thumb) continue;
+        const Pinch found{0.0, 0.0, {thumb, *finger.tip_pad}, configuration.q};
+        const auto [opening, lean] = opening_and_lean(hand, found);
+        if (lean > 60.0 * kDegree) continue;
+        const auto number = static_cast<std::size_t>(opening / chart.step);
+        const std::optional<Pinch> best =
+            number < chart.pinches.size() ? chart.pinches[number] : std::nullopt;
+        if (best && best->lean <= lean + 2.0 * kDegree) {
+          ++num_compared;
+          continue;
+        }
+        const auto X_HL =
+            hands::forward_kinematics(hand, {hands::RigidTransform::Identity(), configuration.q});
+        CAPTURE(opening, lean / kDegree);
+        CHECK(collision.overlaps_self(X_HL, 1e-4));
+      }
+    }
+    CHECK(num_compared > 100);
+  }
+}
+
+TEST_CASE("Pinches bring no links into each other, and are the same each time",
+          "[hands][pinch_chart]") {
+  const HandModel hand = hands::find_hand("human_hand");
+  const hands::HandCollision collision(hand);
+  for (const PinchKind kind : hands::kPinchKinds) {
+    const PinchChart chart = hands::pinch_chart(hand, kind, {.max_configurations = 1 << 14});
+    const PinchChart again = hands::pinch_chart(hand, kind, {.max_configurations = 1 << 14});
+    REQUIRE(chart.pinches.size() == again.pinches.size());
+    CHECK(!chart.pinches.empty());
+    for (std::size_t k = 0; k < chart.pinches.size(); ++k) {
+      REQUIRE(chart.pinches[k].has_value() == again.pinches[k].has_value());
+      if (!chart.pinches[k]) continue;
+      CHECK(chart.pinches[k]->q == again.pinches[k]->q);
+      const auto [opening, lean] = opening_and_lean(hand, *chart.pinches[k]);
+      CHECK(chart.pinches[k]->opening == Approx(opening).margin(1e-12));
+      CHECK(chart.pinches[k]->lean == Approx(lean).margin(1e-7));
+      CHECK_FALSE(collision.overlaps_self(
+          hands::forward_kinematics(hand, {hands::RigidTransform::Identity(), chart.pinches[k]->q}),
+          1e-4));
+    }
+  }
+}
+
+TEST_CASE("Options of a chart are checked", "[hands][pinch_chart]") {
+  const HandModel hand = planar_hand(0.06, {0.08}, pi);
+  const auto chart = [&](const hands::PinchChartOptions& options) {
+    return hands::pinch_chart(hand, PinchKind::Tips, options);
+  };
+  CHECK_THROWS_AS(chart({.step = 0.0}), base::InvalidInput);
+  CHECK_THROWS_AS(chart({.step = std::numeric_limits<double>::quiet_NaN()}), base::InvalidInput);
+  CHECK_THROWS_AS(chart({.max_configurations = 1}), base::InvalidInput);
+  CHECK_THROWS_AS(chart({.touch_depth = -1.0}), base::InvalidInput);
+  CHECK_THROWS_WITH(chart({.step = 1e-9}), Contains("too far for a step of 1e-09 m"));
+}
+
+}  // namespace test_pinch_chart
