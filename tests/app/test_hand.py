@@ -152,19 +152,20 @@ class Reach(program.ProgramTest):
         done = program.run("hand", "reach", "parallel_gripper", *flags)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("parallel_gripper at friction 0.4: pads may lean by 21.8 degrees", done.stdout)
-        self.assertRegex(done.stdout, r"fingertips +0 to 90 +0\.0 ")
-        self.assertRegex(done.stdout, r"proximal pads +none +- +- +none that face each other")
+        self.assertRegex(done.stdout, r"fingertips +0 to 85 +0\.0 ")
+        self.assertRegex(done.stdout, r"proximal pads +no such pads +- +- +-")
         rows = [row for row in csv.DictReader(files["csv"].read_text().splitlines())
                 if row["pinch"] == "fingertips"]
         self.assertEqual(len(rows), 18)  # classes of 5 mm to 85 mm, that of 85 to 90 included
         for number, row in enumerate(rows):
-            self.assertAlmostEqual(float(row["opening_m"]), 0.005 * number, delta=0.005)
+            self.assertGreaterEqual(float(row["opening_m"]), 0.005 * number)
+            self.assertLess(float(row["opening_m"]), 0.005 * (number + 1))
             self.assertLess(float(row["lean_rad"]), 1e-7)
         self.assertTrue(files["svg"].read_text().startswith("<svg "))
         self.assertIn("What parallel_gripper pinches squarely", files["html"].read_text())
         self.assertEqual(self.contents(), ["reach.csv", "reach.html", "reach.svg"])
 
-    def test_a_finer_friction_leaves_less(self):
+    def test_less_friction_leaves_less(self):
         def square(friction):
             done = program.run("hand", "reach", "barrett", "--friction", friction)
             self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 
@@ -44,10 +44,12 @@ const char* color_of(PinchKind kind) {
   return "";
 }
 
+/// With so many digits after the point, whatever the locale.
 std::string number(double value, int decimals = 1) {
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+  const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                                 std::chars_format::fixed, decimals);
+  return {text.data(), end.ptr};
 }
 
 /// The text with what means something to HTML replaced.
@@ -85,7 +87,12 @@ class Axes {
     for (const PinchChart& chart : charts) {
       largest = std::max(largest, chart.step * static_cast<double>(chart.pinches.size()));
     }
-    tick_ = largest > 0.25 ? 50.0 : largest > 0.1 ? 20.0 : 10.0;
+    // 1, 2 or 5 times a power of ten, so that there are at most ten marks.
+    const double power = std::pow(10.0, std::floor(std::log10(std::max(1e-3, 1e2 * largest))));
+    for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+      tick_ = factor * power;
+      if (10.0 * tick_ >= 1e3 * largest) break;
+    }
     most_mm_ = std::max(tick_, tick_ * std::ceil(1e3 * largest / tick_ - 1e-9));
   }
   double x(double opening) const { return kLeft + (kRight - kLeft) * 1e3 * opening / most_mm_; }
@@ -137,6 +144,7 @@ std::string curve(const Axes& axes, const PinchChart& chart) {
       const double middle = (static_cast<double>(k) + 0.5) * chart.step;
       path +=
           (is_drawing ? " L" : " M") + number(axes.x(middle)) + ' ' + number(axes.y(pinch->lean));
+      if (!is_drawing) path += " h0";  // a dot, where no line follows
     }
     is_drawing = pinch.has_value();
   }
@@ -154,18 +162,6 @@ std::string bars(const Axes& axes, const PinchChart& chart, double friction, dou
             color_of(chart.kind) + "\"/>\n";
   }
   return text;
-}
-
-std::string widths_text(const PinchChart& chart, double friction) {
-  const std::vector<hands::OpeningRange> ranges = hands::square_widths(chart, friction);
-  if (ranges.empty()) return "none";
-  return base::list_text(ranges, [](const hands::OpeningRange& range) {
-    return number(1e3 * range.smallest, 0) + " to " + number(1e3 * range.largest, 0);
-  });
-}
-
-std::string pads_text(const hands::HandModel& hand, const Pinch& pinch) {
-  return base::list_text(pinch.pads, [&](int pad) { return hand.pads[pad].name; });
 }
 
 std::string table_row(const std::vector<std::string>& cells, const char* element = "td") {
@@ -188,7 +184,7 @@ std::string chart_element(const ReachScene& scene, const std::string& attributes
                     "\" font-family=\"system-ui, Noto Sans, DejaVu Sans, sans-serif\" "
                     "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   svg += frame(axes);
-  const double limit = axes.y(std::atan(scene.friction));
+  const double limit = axes.y(std::min(std::atan(scene.friction), kMostLean * kDegree));
   svg += line(kLeft, limit, kRight, limit, "stroke=\"#9a3b34\" stroke-dasharray=\"5 4\"");
   svg += label(kRight, limit - 5, "end", "friction " + number(scene.friction, 2), "#9a3b34");
   double x = kLeft;
@@ -210,6 +206,32 @@ std::string chart_element(const ReachScene& scene, const std::string& attributes
 }
 
 }  // namespace
+
+std::string square_widths_text(const PinchChart& chart, double friction) {
+  const std::vector<hands::OpeningRange> ranges = hands::square_widths(chart, friction);
+  if (ranges.empty()) return chart.num_sets == 0 ? "no such pads" : "none";
+  return base::list_text(ranges, [](const hands::OpeningRange& range) {
+    return number(1e3 * range.smallest, 0) + " to " + number(1e3 * range.largest, 0);
+  });
+}
+
+std::string pads_text(const hands::HandModel& hand, const Pinch& pinch,
+                      const std::string& separator) {
+  return base::list_text(
+      pinch.pads, [&](int pad) { return hand.pads[pad].name; }, separator);
+}
+
+std::string opening_text(const PinchChart& chart, std::size_t number_of_class) {
+  const auto first = static_cast<double>(number_of_class);
+  const auto millimeters = [&](double classes) {
+    // Whole micrometers: steps such as 2.5 and 0.1 mm are told apart.
+    std::string text = number(1e3 * classes * chart.step, 3);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+  };
+  return millimeters(first) + " to " + millimeters(first + 1.0);
+}
 
 std::string pinch_name(PinchKind kind) {
   switch (kind) {
@@ -251,14 +273,11 @@ std::string reach_page_html(const ReachScene& scene) {
   html += chart_element(scene, "");
   html += "<table>\n" + table_row({"pinch", "squarely, mm", "least lean", "at"}, "th");
   for (const PinchChart& chart : charts) {
-    const std::optional<Pinch>* best = nullptr;
-    for (const std::optional<Pinch>& pinch : chart.pinches) {
-      if (pinch && (!best || pinch->lean < (*best)->lean)) best = &pinch;
-    }
+    const Pinch& best = *hands::squarest(chart);
     html +=
-        table_row({pinch_name(chart.kind), widths_text(chart, scene.friction),
-                   number((*best)->lean / kDegree) + "\u00b0",
-                   number(1e3 * (*best)->opening, 0) + " mm, " + pads_text(scene.hand, **best)});
+        table_row({pinch_name(chart.kind), square_widths_text(chart, scene.friction),
+                   number(best.lean / kDegree) + "\u00b0",
+                   number(1e3 * best.opening, 0) + " mm, " + pads_text(scene.hand, best, ", ")});
   }
   html += "</table>\n<table>\n";
   std::vector<std::string> heading = {"opening, mm"};
@@ -269,13 +288,8 @@ std::string reach_page_html(const ReachScene& scene) {
   }
   html += table_row(heading, "th");
   for (std::size_t k = 0; k < num_rows; ++k) {
-    const auto opening = static_cast<double>(k);
-    std::vector<std::string> cells;
+    std::vector<std::string> cells = {opening_text(charts.front(), k)};
     for (const PinchChart& chart : charts) {
-      if (cells.empty()) {
-        cells.push_back(number(1e3 * opening * chart.step, 0) + " to " +
-                        number(1e3 * (opening + 1.0) * chart.step, 0));
-      }
       const bool has_pinch = k < chart.pinches.size() && chart.pinches[k];
       cells.push_back(has_pinch ? number(chart.pinches[k]->lean / kDegree) + "\u00b0" : "");
     }

@@ -10,9 +10,9 @@
 #include "cli/command_line.hpp"
 #include "commands/hand_commands.hpp"
 #include "graspfit/base/atomic_file.hpp"
-#include "graspfit/base/list_text.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/pinch_chart.hpp"
+#include "graspfit/sweep/result_table.hpp"
 #include "graspfit/viewer/reach_page.hpp"
 #include "input/hand_loading.hpp"
 #include "output/output_folder.hpp"
@@ -22,7 +22,6 @@
 namespace graspfit::app {
 namespace {
 
-using hands::HandModel;
 using hands::Pinch;
 using hands::PinchChart;
 
@@ -37,7 +36,8 @@ Command reach_command() {
       "thumb against two fingers, for a fingertip against the palm, and for proximal pads.\n",
       option_group("Options"),
       "Kinematics alone: no object, no links in one another. What leans by more than the angle of\n"
-      "friction slips off parallel faces.\n"};
+      "friction slips off parallel faces. Widths are those that were found: up to a step more may\n"
+      "do, too.\n"};
   add_option(command.options, "friction", "NUMBER", "0.4",
              "Coulomb's mu at which widths count as square, >= 0");
   add_option(command.options, "step-mm", "NUMBER", "5", "width of a class of openings, > 0");
@@ -48,32 +48,16 @@ Command reach_command() {
   return command;
 }
 
-std::string pads_of(const HandModel& hand, const Pinch& pinch, const std::string& separator) {
-  std::string text;
-  for (const int pad : pinch.pads) text += (text.empty() ? "" : separator) + hand.pads[pad].name;
-  return text;
-}
-
-std::string widths_of(const PinchChart& chart, double friction) {
-  const std::vector<hands::OpeningRange> ranges = hands::square_widths(chart, friction);
-  if (ranges.empty()) return "none";
-  return base::list_text(ranges, [](const hands::OpeningRange& range) {
-    return fixed_decimal(1e3 * range.smallest, 0) + " to " + fixed_decimal(1e3 * range.largest, 0);
-  });
-}
-
 void print_widths(const viewer::ReachScene& scene) {
   std::vector<std::vector<std::string>> rows = {
       {"pinch", "squarely_mm", "least_lean_deg", "at_mm", "pads"}};
   for (const PinchChart& chart : scene.charts) {
-    const Pinch* best = nullptr;
-    for (const std::optional<Pinch>& pinch : chart.pinches) {
-      if (pinch && (!best || pinch->lean < best->lean)) best = &*pinch;
-    }
-    rows.push_back({viewer::pinch_name(chart.kind), widths_of(chart, scene.friction),
+    const Pinch* const best = hands::squarest(chart);
+    rows.push_back({viewer::pinch_name(chart.kind),
+                    viewer::square_widths_text(chart, scene.friction),
                     best ? fixed_decimal(best->lean / kDegree, 1) : "-",
                     best ? fixed_decimal(1e3 * best->opening, 0) : "-",
-                    best ? pads_of(scene.hand, *best, ", ") : "none that face each other"});
+                    best ? viewer::pads_text(scene.hand, *best, ", ") : "-"});
   }
   std::printf("%s", indented_table(rows).c_str());
 }
@@ -88,9 +72,7 @@ void print_leans(const viewer::ReachScene& scene) {
     num_rows = std::max(num_rows, chart.pinches.size());
   }
   for (std::size_t k = 0; k < num_rows; ++k) {
-    const double step = 1e3 * scene.charts.front().step;
-    std::vector<std::string> row = {fixed_decimal(static_cast<double>(k) * step, 0) + " to " +
-                                    fixed_decimal((static_cast<double>(k) + 1.0) * step, 0)};
+    std::vector<std::string> row = {viewer::opening_text(scene.charts.front(), k)};
     for (const PinchChart& chart : scene.charts) {
       const bool has_pinch = k < chart.pinches.size() && chart.pinches[k];
       row.push_back(has_pinch ? fixed_decimal(chart.pinches[k]->lean / kDegree, 1) : "-");
@@ -100,16 +82,20 @@ void print_leans(const viewer::ReachScene& scene) {
   std::printf("\n%s", text_table(rows).c_str());
 }
 
-/// A row per pinch: kind, opening [m], lean [rad], pads, and the position of every joint.
+/// A row per pinch: kind, opening, lean, pads, and the position of every joint with its unit.
 std::string csv_of(const viewer::ReachScene& scene) {
   std::string text = "pinch,opening_m,lean_rad,pads";
-  for (const hands::Joint& joint : scene.hand.joints) text += ',' + joint.name;
+  for (const hands::Joint& joint : scene.hand.joints) {
+    const char* const unit = joint.type == hands::JointType::Revolute ? "_rad" : "_m";
+    text += ',' + sweep::csv_field("joint_" + joint.name + unit);
+  }
   text += '\n';
   for (const PinchChart& chart : scene.charts) {
     for (const std::optional<Pinch>& pinch : chart.pinches) {
       if (!pinch) continue;
       text += viewer::pinch_name(chart.kind) + ',' + base::shortest_decimal(pinch->opening) + ',' +
-              base::shortest_decimal(pinch->lean) + ',' + pads_of(scene.hand, *pinch, " ");
+              base::shortest_decimal(pinch->lean) + ',' +
+              sweep::csv_field(viewer::pads_text(scene.hand, *pinch, "; "));
       for (const double q : pinch->q) text += ',' + base::shortest_decimal(q);
       text += '\n';
     }
@@ -144,9 +130,10 @@ ExitCode run_hand_reach(const std::vector<std::string>& arguments) {
   if (flags.has("csv")) base::write_file_atomically(flags.text("csv"), csv_of(scene));
   if (flags.has("svg")) viewer::write_reach_chart(flags.text("svg"), scene);
   if (flags.has("html")) viewer::write_reach_page(flags.text("html"), scene);
-  std::printf("%s at friction %s: pads may lean by %s degrees\n", scene.hand.name.c_str(),
-              base::shortest_decimal(scene.friction).c_str(),
-              fixed_decimal(std::atan(scene.friction) / kDegree, 1).c_str());
+  std::printf("%s at friction %s: pads may lean by %s degrees; the thumb is %s\n",
+              scene.hand.name.c_str(), base::shortest_decimal(scene.friction).c_str(),
+              fixed_decimal(std::atan(scene.friction) / kDegree, 1).c_str(),
+              scene.hand.fingers[scene.hand.thumb()].name.c_str());
   print_widths(scene);
   print_leans(scene);
   for (const std::string flag : {"csv", "svg", "html"}) {

@@ -7,12 +7,15 @@
 // candidate: epsilon of its targets as they are, epsilon of contacts where the fingertips would be
 // at these targets were there no object, how far they would miss and lean there; and, after fitting
 // and refinement, closure and epsilon of the contacts that touch. A row correlates them over the
-// candidates of one object and hand, the details hold every candidate. The share of reachable
-// targets is of random sets, from all sides, none of which is fitted.
+// candidates of one object and hand, the details hold every candidate. An attempt fits the most
+// promising of the sides that it draws (targets that balance, fingers that do not cross, pads that
+// lie flat): the correlations are over those. The share of reachable targets is of random sets,
+// from all sides, none of which is fitted.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cells/planning_table.hpp"
@@ -80,8 +83,11 @@ PlanningSettings settings_of(const sweep::Cell& cell) {
   if (!grasp::planning_methods().at(options.planner).has_targets) {
     throw sweep::SettingError("planner", "must be one whose hands are fitted to targets");
   }
+  if (options.targets.search == grasp::TargetSearch::Ranked) {
+    throw sweep::SettingError("target-search", "must not be ranked: its sets are no sample");
+  }
   if (options.target_draws < 2) {
-    throw sweep::SettingError("target-draws", "must be at least 2: else no posture is known");
+    throw sweep::SettingError("target-draws", "must be at least 2: else not all have a posture");
   }
   if (options.kept != grasp::KeptCandidate::Strongest) {
     throw sweep::SettingError("keep", "must be strongest: else candidates are left out");
@@ -93,11 +99,12 @@ std::vector<sweep::Column> columns() {
   std::vector<sweep::Column> all = {
       {"object_extent_m", "m", "longest edge of the object's bounding box"},
       {"attempts", "1", "attempts made"},
-      {"candidates", "1", "candidates fitted"},
+      {"candidates", "1",
+       "candidates fitted: of the sides drawn, those that the planner tries first"},
       {"valid", "1", "of these without penetration, every requested part in contact"},
-      {"closed", "1", "of these force closed by contacts that touch, at the friction of epsilon"},
+      {"closed", "1", "of these force closed by contacts that touch, at option friction"},
       {"median_epsilon", "1",
-       "median epsilon of the valid ones within the squeeze's cones, negative without closure"}};
+       "median epsilon of the valid ones within the squeeze's cones, at most 0 without closure"}};
   for (const Predictor& predictor : kPredictors) {
     const std::string by = std::string("_by_") + predictor.name;
     const std::string meaning = predictor.meaning;
@@ -111,10 +118,10 @@ std::vector<sweep::Column> columns() {
                    "share of valid ones in the quarter of candidates that is best in " + meaning});
     all.push_back({"best_quarter_closed" + by, "1", "share of closed ones in that quarter"});
   }
-  all.push_back({"reach_sides", "1", "random sets times sides looked at"});
+  all.push_back({"reach_sides", "1", "sides of random sets looked at"});
   all.push_back({"reach_square_share", "1",
-                 "of these reached squarely: no fingertip misses by more than 5 mm, none leans by "
-                 "more than 15 degrees"});
+                 "of these reached squarely: no fingertip (or palm) misses by more than 5 mm, none "
+                 "leans by more than 15 degrees"});
   all.push_back({"reach_median_miss_m", "m", "median of the largest distance from a target"});
   all.push_back({"reach_median_lean_rad", "rad", "median of the largest lean of a pad"});
   return all;
@@ -124,12 +131,13 @@ std::vector<sweep::Column> details() {
   return {{"attempt", "1", "number of the attempt"},
           {"start", "1", "number of the candidate in its attempt"},
           {"outcome", "", "what became of it"},
-          {"targets_epsilon", "1", "epsilon of the targets, negative without closure"},
+          {"targets_epsilon", "1",
+           "epsilon of the targets within the squeeze's cones, at most 0 without closure"},
           {"posture_epsilon", "1",
-           "epsilon of the points of the surface nearest to the fingertips at the targets"},
-          {"miss_m", "m", "largest distance of a fingertip there from its target"},
+           "the same of the points of the surface nearest to the fingertips at the targets"},
+          {"miss_m", "m", "largest distance of a fingertip (or the palm) there from its target"},
           {"lean_rad", "rad", "largest angle of a pad there with its target's surface"},
-          {"closed", "1", "1: contacts that touch close, at the friction of epsilon"},
+          {"closed", "1", "1: contacts that touch close, at option friction"},
           {"epsilon", "1", "of contacts that touch, within the squeeze's cones"},
           {"target_distance_m", "m", "mean distance of contacts from their targets"}};
 }

@@ -101,10 +101,10 @@ Cube cube_around(const PieceHull& hull) {
   return {box.center(), 0.5 * box.sizes().maxCoeff()};
 }
 
-using Span = std::pair<double, double>;
+using Segment = std::pair<double, double>;
 
 /// The part of the line through `origin` along x in the hull; empty if first > second.
-Span interval_in(const PieceHull& hull, const Vector3d& origin) {
+Segment interval_in(const PieceHull& hull, const Vector3d& origin) {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   const Eigen::VectorXd slack = hull.offsets - hull.normals.transpose() * origin;
@@ -121,7 +121,7 @@ Span interval_in(const PieceHull& hull, const Vector3d& origin) {
   return {low, high};
 }
 
-double united_length(std::vector<Span>& intervals) {
+double united_length(std::vector<Segment>& intervals) {
   std::sort(intervals.begin(), intervals.end());
   double length = 0.0;
   double reached = -std::numeric_limits<double>::infinity();
@@ -221,7 +221,7 @@ double volume_difference(const std::vector<PieceHull>& pieces, const MeshQuery& 
   const double step_y = box.sizes()[1] / num_lines;
   const double step_z = box.sizes()[2] / num_lines;
   double sum = 0.0;
-  std::vector<Span> intervals;
+  std::vector<Segment> intervals;
   for (int k = 0; k < num_lines; ++k) {
     for (int j = 0; j < num_lines; ++j) {
       const Vector3d origin(box.min()[0] - step_y, box.min()[1] + (j + 0.5) * step_y,
@@ -232,7 +232,7 @@ double volume_difference(const std::vector<PieceHull>& pieces, const MeshQuery& 
             origin[2] < boxes[p].min()[2] || origin[2] > boxes[p].max()[2]) {
           continue;
         }
-        const Span interval = interval_in(pieces[p], origin);
+        const Segment interval = interval_in(pieces[p], origin);
         if (interval.first < interval.second) intervals.push_back(interval);
       }
       sum += united_length(intervals) - length_inside(solid, origin);

@@ -214,8 +214,9 @@ GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& 
 
 void visit_starts(const ObjectModel& object, const hands::HandModel& hand,
                   const PlannerOptions& options, std::int64_t num_attempts,
-                  const std::function<void(const GuidedStart&)>& visit) {
-  const internal::PlannerAttempts attempts(object, hand, options, {}, planning_methods());
+                  const std::function<void(const GuidedStart&)>& visit,
+                  const Surroundings& surroundings) {
+  const internal::PlannerAttempts attempts(object, hand, options, surroundings, planning_methods());
   for (std::int64_t number = 0; number < num_attempts; ++number) {
     const GuidedStarts guided = attempts.guidance().starts(number);
     for (const GuidedStart& start : guided.starts) visit(start);

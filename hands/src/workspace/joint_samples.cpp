@@ -1,5 +1,6 @@
 #include "workspace/joint_samples.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -11,6 +12,23 @@ std::vector<JointGroup> each_alone(const std::vector<int>& joints) {
   std::vector<JointGroup> groups;
   for (const int joint : joints) groups.push_back({joint});
   return groups;
+}
+
+namespace {
+
+bool is_reversed(const HandModel& model, const JointGroup& group, int joint) {
+  return group.size() > 1 && model.joints[joint].closing_sign < 0;
+}
+
+}  // namespace
+
+void move_group(const HandModel& model, const JointGroup& group, double share, Eigen::VectorXd& q) {
+  for (const int joint : group) {
+    const Joint& limits = model.joints[joint];
+    const double way =
+        (is_reversed(model, group, joint) ? -share : share) * (limits.upper - limits.lower);
+    q[joint] = std::clamp(q[joint] + way, limits.lower, limits.upper);
+  }
 }
 
 JointSamples::JointSamples(const HandModel& model, std::vector<JointGroup> groups, int per_group,
@@ -35,7 +53,8 @@ void JointSamples::set(std::int64_t sample, Eigen::VectorXd& q) const {
     }
     for (const int joint : group) {
       const Joint& limits = model_.joints[joint];
-      q[joint] = limits.lower + share * (limits.upper - limits.lower);
+      const double from_lower = is_reversed(model_, group, joint) ? 1.0 - share : share;
+      q[joint] = limits.lower + from_lower * (limits.upper - limits.lower);
     }
   }
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -14,8 +13,12 @@
 
 namespace graspfit::hands::internal {
 
-/// Joints that are moved alike: each to the same share of its range.
+/// Joints that are moved alike: all to the same share of their ranges. In a group of several the
+/// share is counted from the limit that opens the hand, so that mirrored joints close together.
 using JointGroup = std::vector<int>;
+
+/// Moves the joints of a group by a share of their ranges, within their limits.
+void move_group(const HandModel& model, const JointGroup& group, double share, Eigen::VectorXd& q);
 
 /// Every joint a group of its own.
 std::vector<JointGroup> each_alone(const std::vector<int>& joints);
@@ -66,20 +69,13 @@ double move_on(const HandModel& model, const std::vector<JointGroup>& groups, do
     q = trial;
     return true;
   };
-  const auto move = [&](Eigen::VectorXd& trial, const JointGroup& group, double share) {
-    for (const int joint : group) {
-      const Joint& limits = model.joints[joint];
-      trial[joint] = std::clamp(trial[joint] + share * (limits.upper - limits.lower), limits.lower,
-                                limits.upper);
-    }
-  };
   int rounds = 0;
   for (double share = first_share; share > first_share * finest && rounds < kMostRounds; ++rounds) {
     bool is_better = false;
     for (const JointGroup& group : groups) {
       for (const double sign : {1.0, -1.0}) {
         Eigen::VectorXd trial = q;
-        move(trial, group, sign * share);
+        move_group(model, group, sign * share, trial);
         if (!takes(trial)) continue;
         is_better = true;
         break;
@@ -87,7 +83,9 @@ double move_on(const HandModel& model, const std::vector<JointGroup>& groups, do
     }
     for (int i = 0; i < num_drawn && !is_better; ++i) {
       Eigen::VectorXd trial = q;
-      for (const JointGroup& group : groups) move(trial, group, share * random.uniform(-1.0, 1.0));
+      for (const JointGroup& group : groups) {
+        move_group(model, group, share * random.uniform(-1.0, 1.0), trial);
+      }
       is_better = takes(trial);
     }
     if (!is_better) share /= 2;

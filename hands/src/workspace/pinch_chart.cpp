@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -29,7 +30,9 @@ using internal::Tip;
 // one brings links into each other there is another.
 constexpr double kLeanStep = 4.0 * std::numbers::pi / 180.0;
 constexpr std::size_t kLeanClasses = 20;  // to 80 degrees
-constexpr double kMostClasses = 1e5;      // of openings
+constexpr double kMostClasses = 2000.0;   // of openings
+// Most positions of one side, whose kinematics are computed one by one.
+constexpr double kMostPoses = 1 << 14;
 // Points nearer than this count as one, with no line between them [m].
 constexpr double kSamePoint = 1e-9;
 // Larger grids change leans by less than local search does, and cost kinematics.
@@ -57,43 +60,63 @@ struct SideJoints {
 };
 
 SideJoints joints_of(const HandModel& model, const Sides& sides) {
-  SideJoints joints;
-  std::vector<std::vector<int>> only_b;
+  // Joints that move all pads alike are no joints of the sides; those that can turn none are left
+  // out.
+  std::vector<std::vector<int>> relative;  // per pad of side b: what moves it against side a
   std::vector<int> shared;
   std::vector<int> only_a;
   for (const int pad : sides.pads_b) {
-    const internal::PairJoints pair =
+    internal::PairJoints pair =
         internal::joints_of_pair(model, model.pads[sides.pad_a].link, model.pads[pad].link);
     shared.insert(shared.end(), pair.shared.begin(), pair.shared.end());
-    only_a = pair.only_a;
-    only_b.push_back(pair.only_b);
+    only_a.insert(only_a.end(), pair.only_a.begin(), pair.only_a.end());
+    relative.push_back(std::move(pair.only_b));
   }
-  std::sort(shared.begin(), shared.end());
-  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-  // A joint that both sides share with one finger is not another's own.
-  const auto is_shared = [&](int joint) {
-    return std::binary_search(shared.begin(), shared.end(), joint);
+  const auto moves = [&](int joint, int pad) {
+    const std::vector<int> leaders = leaders_of(model, joints_to(model, model.pads[pad].link));
+    return std::binary_search(leaders.begin(), leaders.end(), joint);
   };
-  std::erase_if(only_a, is_shared);
-  for (std::vector<int>& own : only_b) std::erase_if(own, is_shared);
-  if (only_b.size() == 2) {
-    // What moves both fingers of a side is moved alone; the others are paired in order.
+  // What moves side a and one finger of side b, but not the other, has one position for both sides.
+  for (const int joint : only_a) {
+    const bool moves_b = std::any_of(sides.pads_b.begin(), sides.pads_b.end(),
+                                     [&](int pad) { return moves(joint, pad); });
+    if (moves_b) shared.push_back(joint);
+  }
+  const auto make_unique = [](std::vector<int>& joints) {
+    std::sort(joints.begin(), joints.end());
+    joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
+  };
+  make_unique(shared);
+  make_unique(only_a);
+  const auto is_no_own = [&](int joint) {
+    const Joint& limits = model.joints[joint];
+    return !(limits.upper > limits.lower) ||
+           std::binary_search(shared.begin(), shared.end(), joint);
+  };
+  std::erase_if(only_a, is_no_own);
+  for (std::vector<int>& own : relative) std::erase_if(own, is_no_own);
+  std::erase_if(
+      shared, [&](int joint) { return !(model.joints[joint].upper > model.joints[joint].lower); });
+
+  SideJoints joints;
+  if (relative.size() == 2) {
+    // What moves both fingers of a side is moved alone; the others are paired from the tips.
     std::vector<int> common;
-    std::set_intersection(only_b[0].begin(), only_b[0].end(), only_b[1].begin(), only_b[1].end(),
-                          std::back_inserter(common));
+    std::set_intersection(relative[0].begin(), relative[0].end(), relative[1].begin(),
+                          relative[1].end(), std::back_inserter(common));
     for (const int joint : common) {
       joints.only_b.push_back({joint});
-      for (std::vector<int>& own : only_b) std::erase(own, joint);
+      for (std::vector<int>& own : relative) std::erase(own, joint);
     }
-    for (std::size_t k = 0; k < std::max(only_b[0].size(), only_b[1].size()); ++k) {
+    for (std::size_t k = 0; k < std::max(relative[0].size(), relative[1].size()); ++k) {
       JointGroup group;
-      for (const std::vector<int>& own : only_b) {
-        if (k < own.size()) group.push_back(own[k]);
+      for (const std::vector<int>& own : relative) {
+        if (k < own.size()) group.push_back(own[own.size() - 1 - k]);
       }
       joints.only_b.push_back(std::move(group));
     }
   } else {
-    joints.only_b = internal::each_alone(only_b.front());
+    joints.only_b = internal::each_alone(relative.front());
   }
   joints.shared = internal::each_alone(shared);
   joints.only_a = internal::each_alone(only_a);
@@ -135,13 +158,16 @@ class Pincher {
         sides_(std::move(sides)),
         options_(options),
         joints_(joints_of(hand.model(), sides_)) {
-    const auto size = static_cast<double>(joints_.all.size());
+    const auto fits = [&](int n) {
+      const auto grid = [n](std::size_t size) { return std::pow(n, static_cast<double>(size)); };
+      const std::size_t of_one =
+          joints_.shared.size() + std::max(joints_.only_a.size(), joints_.only_b.size());
+      return grid(joints_.all.size()) <= static_cast<double>(options.max_configurations) &&
+             grid(of_one) <= kMostPoses;
+    };
     per_group_ = kMostPerGroup;
-    while (per_group_ > 2 &&
-           std::pow(per_group_, size) > static_cast<double>(options.max_configurations)) {
-      --per_group_;
-    }
-    has_grid_ = std::pow(per_group_, size) <= static_cast<double>(options.max_configurations);
+    while (per_group_ > 2 && !fits(per_group_)) --per_group_;
+    has_grid_ = fits(per_group_);
   }
 
   /// Calls `visit(facing, q)` for the configurations of the grid, or for random ones where not even
@@ -251,8 +277,8 @@ struct Found {
   std::size_t pincher = 0;
 };
 
-/// Per class of leans, the squarest configuration of a class of openings.
-using Class = std::array<std::optional<Kept>, kLeanClasses>;
+/// Per pair of sides and class of leans, the squarest configuration of a class of openings.
+using Class = std::vector<std::array<std::optional<Kept>, kLeanClasses>>;
 
 std::vector<Sides> sides_of(const HandModel& model, PinchKind kind) {
   std::vector<Sides> all;
@@ -305,7 +331,8 @@ void PinchChartOptions::validate() const {
   const char* const where = "PinchChartOptions";
   base::require(step > 0.0 && std::isfinite(step), where, "step", step, "finite and > 0 m");
   base::require(max_configurations >= 2, where, "max_configurations", max_configurations, ">= 2");
-  base::require(touch_depth >= 0.0, where, "touch_depth", touch_depth, ">= 0 m");
+  base::require(touch_depth > 0.0 && std::isfinite(touch_depth), where, "touch_depth", touch_depth,
+                "finite and > 0 m");
 }
 
 PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartOptions& options) {
@@ -322,17 +349,17 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
   std::vector<Class> classes;
   for (std::size_t p = 0; p < pinchers.size(); ++p) {
     pinchers[p].for_each([&](const Facing& facing, const auto& q) {
-      const auto lean_class = static_cast<std::size_t>(facing.lean / kLeanStep);
-      if (lean_class >= kLeanClasses) return;
       // Written so that NaN fails.
       if (!(facing.opening < kMostClasses * options.step)) {
         throw base::InvalidInput(
             "hand " + model.name + ": pads come " + base::shortest_decimal(facing.opening) +
             " m apart, too far for a step of " + base::shortest_decimal(options.step) + " m");
       }
+      const auto lean_class = static_cast<std::size_t>(facing.lean / kLeanStep);
+      if (lean_class >= kLeanClasses) return;
       const auto number = static_cast<std::size_t>(facing.opening / options.step);
-      if (number >= classes.size()) classes.resize(number + 1);
-      std::optional<Kept>& kept = classes[number][lean_class];
+      if (number >= classes.size()) classes.resize(number + 1, Class(pinchers.size()));
+      std::optional<Kept>& kept = classes[number][p][lean_class];
       if (kept && kept->lean <= facing.lean) return;
       kept = Kept{facing.lean, facing.opening, p, q()};
     });
@@ -347,11 +374,17 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
     found[number] = Found{std::move(*pinch), p};
   };
   for (std::size_t number = 0; number < classes.size(); ++number) {
-    for (const std::optional<Kept>& kept : classes[number]) {
-      if (!kept || !is_clear(kept->q)) continue;
-      improve(number, kept->pincher, kept->q);
-      break;
+    std::vector<const Kept*> all;
+    for (const auto& of_sides : classes[number]) {
+      for (const std::optional<Kept>& kept : of_sides) {
+        if (kept) all.push_back(&*kept);
+      }
     }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Kept* a, const Kept* b) { return a->lean < b->lean; });
+    const auto clear =
+        std::find_if(all.begin(), all.end(), [&](const Kept* kept) { return is_clear(kept->q); });
+    if (clear != all.end()) improve(number, (*clear)->pincher, (*clear)->q);
   }
   // Grids in many joints are coarse: the neighbor of a squarer one is squarer, too.
   const auto improve_from = [&](std::size_t number, std::size_t neighbor) {
@@ -365,7 +398,7 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
   for (std::size_t k = 1; k < found.size(); ++k) improve_from(k, k - 1);
   for (std::size_t k = found.size(); k > 1; --k) improve_from(k - 2, k - 1);
 
-  PinchChart chart{kind, options.step, {}};
+  PinchChart chart{kind, options.step, static_cast<int>(pinchers.size()), {}};
   for (std::optional<Found>& one : found) {
     chart.pinches.emplace_back();
     // The search gets into classes beyond the least cosine that the grid is asked for.
@@ -379,14 +412,21 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
   return chart;
 }
 
+const Pinch* squarest(const PinchChart& chart) {
+  const Pinch* best = nullptr;
+  for (const std::optional<Pinch>& pinch : chart.pinches) {
+    if (pinch && (!best || pinch->lean < best->lean)) best = &*pinch;
+  }
+  return best;
+}
+
 std::vector<OpeningRange> square_widths(const PinchChart& chart, double friction) {
   std::vector<OpeningRange> ranges;
   bool is_within = false;
-  for (std::size_t k = 0; k < chart.pinches.size(); ++k) {
-    const bool is_square = chart.pinches[k] && chart.pinches[k]->lean <= std::atan(friction);
-    const auto number = static_cast<double>(k);
-    if (is_square && !is_within) ranges.push_back({number * chart.step, 0.0});
-    if (is_square) ranges.back().largest = (number + 1.0) * chart.step;
+  for (const std::optional<Pinch>& pinch : chart.pinches) {
+    const bool is_square = pinch && pinch->lean <= std::atan(friction);
+    if (is_square && !is_within) ranges.push_back({pinch->opening, pinch->opening});
+    if (is_square) ranges.back().largest = pinch->opening;
     is_within = is_square;
   }
   return ranges;

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
-#include <utility>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"

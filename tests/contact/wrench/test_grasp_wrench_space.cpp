@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -40,6 +41,35 @@ GraspWrenchSpace space_of(const Contacts& contacts, double friction, int num_edg
 constexpr double kRounding = 1e-12;
 
 }  // namespace
+
+TEST_CASE("Epsilon with a sign is epsilon with closure, and below zero where the origin is cut off",
+          "[contact][grasp_wrench_space]") {
+  const WrenchObject object{.center_of_mass_O = Vector3d::Zero(),
+                            .largest_radius = 1.0,
+                            .extents_O = Vector3d::Constant(2.0)};
+  Random random(11);
+  int num_closed = 0;
+  for (int round = 0; round < 40; ++round) {
+    const Contacts contacts = random_contacts(random, 4);
+    const double with_sign = signed_epsilon(contacts, object, 0.8);
+    WrenchConvention convention = wrench_convention(WrenchTool::Graspfit, object, contacts, 0.8);
+    const GraspWrenchSpace space = grasp_wrench_space(contacts, convention);
+    CAPTURE(round, with_sign);
+    if (is_force_closure(space)) {
+      CHECK(with_sign == epsilon_quality(space));
+      ++num_closed;
+    } else {
+      CHECK(with_sign <= 0.0);
+    }
+  }
+  CHECK(num_closed > 0);
+  CHECK(num_closed < 40);
+  CHECK(signed_epsilon({}, object, 0.8) == -std::numeric_limits<double>::infinity());
+  // Two contacts that push the same way: no force against them.
+  const Contacts same_way = {contact_at({0, 0, -1}, {0, 0, 1}),
+                             contact_at({0, 0.1, -1}, {0, 0, 1})};
+  CHECK(signed_epsilon(same_way, object, 0.8) <= 0.0);
+}
 
 // Test cases that are named by one letter, A to G, share their wrenches with those of the same
 // letter in test_min_weight.cpp.

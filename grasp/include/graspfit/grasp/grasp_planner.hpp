@@ -24,7 +24,7 @@ struct TriedStart {
   /// As of an attempt that had no other start, except that no way in was looked for: `Valid` may
   /// yet be `NoWayIn`.
   AttemptOutcome outcome = AttemptOutcome::NoTargets;
-  /// Its grasp; null where it ended before one was measured.
+  /// Its grasp; null unless the outcome is `Valid` or `UsableOnly`.
   const Grasp* grasp = nullptr;
 };
 
@@ -84,6 +84,7 @@ GuidanceModel guidance_model(const ObjectModel& object, const hands::HandModel& 
 /// in their order. What it is given lasts until it returns. @throws as `plan_grasps`.
 void visit_starts(const ObjectModel& object, const hands::HandModel& hand,
                   const PlannerOptions& options, std::int64_t num_attempts,
-                  const std::function<void(const GuidedStart&)>& visit);
+                  const std::function<void(const GuidedStart&)>& visit,
+                  const Surroundings& surroundings = {});
 
 }  // namespace graspfit::grasp

@@ -17,9 +17,9 @@ namespace graspfit::hands {
 /// Which pads press against each other.
 enum class PinchKind {
   Tips,  ///< The thumb's tip pad (`HandModel::thumb`) and that of another finger.
-  /// The thumb's tip pad and those of two other fingers side by side: their normals are at most 15°
-  /// apart. They close alike: their independent joints, in the order of their chains, stand at the
-  /// same shares of their ranges.
+  /// The thumb's tip pad and those of two other fingers, neighbors in the model's order, side by
+  /// side: their normals are at most 15° apart. They close alike: their independent joints, counted
+  /// from the tips, stand at the same shares of their ranges, from where these open the hand.
   TwoFingers,
   Palm,      ///< The pad of a fingertip and the palm's.
   Proximal,  ///< A pad of the thumb and a pad of another finger, at least one of them no tip's.
@@ -45,7 +45,8 @@ struct PinchChartOptions {
   double step = 0.005;  ///< Width of a class of openings [m], > 0.
   /// Largest number of configurations per set of pads, ≥ 2; a grid in their independent joints.
   std::int64_t max_configurations = std::int64_t{1} << 20;
-  /// Overlap of links up to which they count as touching [m], ≥ 0.
+  /// Overlap of links up to which they count as touching [m], > 0; a deeper one is noticed from 1.5
+  /// times this depth on (`HandCollision::overlaps_self`).
   double touch_depth = 1e-4;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
@@ -54,20 +55,26 @@ struct PinchChartOptions {
 struct PinchChart {
   PinchKind kind = PinchKind::Tips;
   double step = 0.0;  ///< [m]
-  /// Number k is for openings in [k · step, (k + 1) · step); empty where the pads do not face each
-  /// other at all: every configuration found leans by 80° or more, or brings links into each other.
+  int num_sets = 0;   ///< Sets of pads looked at; 0: the hand has none for this kind.
+  /// Number k is for openings in [k · step, (k + 1) · step); empty where every configuration that
+  /// was looked at leans by 80° or more, or brings links into each other.
   std::vector<std::optional<Pinch>> pinches;
 };
 
-/// The chart of one kind of pinch. Fingers that do not take part are open. Coupled joints follow
-/// their leaders; a breakaway joint goes no farther than its coupling.
+/// The pinch of least lean of all openings; null without any.
+const Pinch* squarest(const PinchChart& chart);
+
+/// The chart of one kind of pinch. The thumb is `HandModel::thumb`, the first finger where none is
+/// marked. Fingers that do not take part are open. Coupled joints follow their leaders; a breakaway
+/// joint goes no farther than its coupling.
 ///
-/// Approximate: of every class of openings the configuration of least lean is taken from a grid,
-/// among those in which no two links overlap by more than `touch_depth`, and improved by local
-/// search within the class. The lean is that of a configuration that was found, so the least one is
-/// no larger. Deterministic. Cost: some seconds for a hand with five fingers.
-/// @throws InvalidInput as the options' and the model's `validate`, and for a step of less than
-/// 1e-5 of an opening.
+/// Approximate: per class of openings, set of pads and 4° of lean, the configuration of a grid that
+/// leans least is kept; the least of these whose links do not overlap by more than `touch_depth` is
+/// improved by local search, also from the pinches of its neighbors. The lean is that of a
+/// configuration that was found, so the least one is no larger. Deterministic. Cost: some seconds
+/// for a hand with five fingers, and in proportion to the number of classes.
+/// @throws InvalidInput as the options' and the model's `validate`, and where openings have more
+/// than 2000 classes.
 PinchChart pinch_chart(const HandModel& model, PinchKind kind,
                        const PinchChartOptions& options = {});
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,16 @@ struct ReachScene {
 
 /// What the kind of pinch is called: "fingertips".
 std::string pinch_name(hands::PinchKind kind);
+
+/// "20 to 185, 190 to 195": the square widths in millimeters; "none", "no such pads".
+std::string square_widths_text(const hands::PinchChart& chart, double friction);
+
+/// The names of a pinch's pads.
+std::string pads_text(const hands::HandModel& hand, const hands::Pinch& pinch,
+                      const std::string& separator);
+
+/// The openings of a class of the chart in millimeters: "2.5 to 5".
+std::string opening_text(const hands::PinchChart& chart, std::size_t number_of_class);
 
 /// The picture: lean of the pads in degrees over the opening in millimeters, a curve per chart, and
 /// below the openings at which the lean is within the friction. One SVG document; the same input

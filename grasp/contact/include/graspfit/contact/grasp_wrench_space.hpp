@@ -55,9 +55,9 @@ WrenchQuality wrench_quality(const GraspWrenchSpace& space);
 double epsilon_quality(const GraspWrenchSpace& space);
 
 /// ε of contacts in this project's own convention (`WrenchTool::Graspfit`), but with a sign:
-/// without force closure it is minus the largest distance from the origin to the plane of a facet
-/// that cuts it off (`OutsideValue::Signed`). Minus infinity without contacts. @throws as
-/// `contact_wrenches`.
+/// where the origin is outside the wrench space it is minus the largest distance from the origin to
+/// the plane of a facet that cuts it off (`OutsideValue::Signed`), and 0 on the boundary. Minus
+/// infinity without contacts. @throws as `contact_wrenches`.
 double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& object,
                       double friction);
 

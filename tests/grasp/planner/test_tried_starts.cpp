@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/planner_presets.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "support/catch.hpp"
+
+namespace test_tried_starts {
+
+namespace {
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+
+/// What an observer saw of a start; everything that must not outlive the call is copied.
+struct Seen {
+  std::int64_t attempt = 0;
+  AttemptOutcome outcome = AttemptOutcome::NoTargets;
+  std::size_t num_targets = 0;
+  bool has_posture = false;
+  std::optional<double> m;
+  bool operator==(const Seen&) const = default;
+};
+
+PlannerOptions few_attempts() {
+  PlannerOptions options;
+  options.max_attempts = 4;
+  options.count = 100;
+  options.weak.reset();
+  options.distinct = {.translation = 0.0, .rotation = 0.0, .joints = 0.0};
+  return options;
+}
+
+struct Fixture {
+  hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = few_attempts();
+  ObjectModel object = prepare_object(geometry::capsule(0.03, 0.08), hand, options);
+
+  PlannerResult plan(std::vector<Seen>& seen, int num_threads) const {
+    std::mutex lock;
+    PlanningRun run;
+    run.num_threads = num_threads;
+    run.tried_start = [&](const TriedStart& tried) {
+      const std::lock_guard<std::mutex> guard(lock);
+      seen.push_back({tried.attempt, tried.outcome, tried.start.targets.contacts.size(),
+                      tried.start.posture.has_value(),
+                      tried.grasp ? std::optional<double>(tried.grasp->quality.m) : std::nullopt});
+    };
+    return plan_grasps(object, hand, options, {}, run);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Every start that is tried is shown with what became of it", "[grasp][tried_starts]") {
+  const Fixture fixture;
+  std::vector<Seen> seen;
+  const PlannerResult result = fixture.plan(seen, 1);
+  REQUIRE(!seen.empty());
+  std::map<std::int64_t, std::vector<Seen>> by_attempt;
+  for (const Seen& start : seen) {
+    by_attempt[start.attempt].push_back(start);
+    CHECK(start.num_targets == 3);
+    CHECK(start.has_posture);
+    const bool has_grasp =
+        start.outcome == AttemptOutcome::Valid || start.outcome == AttemptOutcome::UsableOnly;
+    CHECK(start.m.has_value() == has_grasp);
+  }
+  // The first valid one is kept, and none after it is tried.
+  for (const auto& [attempt, starts] : by_attempt) {
+    CHECK(starts.size() <= static_cast<std::size_t>(fixture.options.max_placements));
+    for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+      // A valid one without a way in is followed by others.
+      if (starts[i].outcome != AttemptOutcome::Valid) continue;
+      CHECK(std::none_of(result.grasps.begin(), result.grasps.end(), [&](const Grasp& grasp) {
+        return grasp.attempt == attempt && grasp.quality.m == starts[i].m;
+      }));
+    }
+  }
+  for (const Grasp& grasp : result.grasps) {
+    const std::vector<Seen>& starts = by_attempt.at(grasp.attempt);
+    CHECK(std::any_of(starts.begin(), starts.end(),
+                      [&](const Seen& start) { return start.m == grasp.quality.m; }));
+  }
+}
+
+TEST_CASE("Looking on changes nothing, and several threads show the same starts",
+          "[grasp][tried_starts]") {
+  const Fixture fixture;
+  std::vector<Seen> alone;
+  const PlannerResult result = fixture.plan(alone, 1);
+  std::vector<Seen> together;
+  const PlannerResult same = fixture.plan(together, 2);
+  std::stable_sort(together.begin(), together.end(),
+                   [](const Seen& a, const Seen& b) { return a.attempt < b.attempt; });
+  CHECK(together == alone);
+  const PlannerResult unseen =
+      plan_grasps(fixture.object, fixture.hand, fixture.options, {}, {.num_threads = 1});
+  REQUIRE(unseen.grasps.size() == result.grasps.size());
+  REQUIRE(same.grasps.size() == result.grasps.size());
+  for (std::size_t i = 0; i < result.grasps.size(); ++i) {
+    CHECK(unseen.grasps[i].configuration.q == result.grasps[i].configuration.q);
+    CHECK(same.grasps[i].configuration.q == result.grasps[i].configuration.q);
+  }
+}
+
+TEST_CASE("What an observer throws ends the run", "[grasp][tried_starts]") {
+  const Fixture fixture;
+  PlanningRun run;
+  run.tried_start = [](const TriedStart&) { throw std::runtime_error("seen enough"); };
+  CHECK_THROWS_WITH(plan_grasps(fixture.object, fixture.hand, fixture.options, {}, run),
+                    "seen enough");
+}
+
+TEST_CASE("Starts that nobody tries are those that a run would try", "[grasp][tried_starts]") {
+  Fixture fixture;
+  apply_preset(fixture.options, *preset_named("strong"));
+  fixture.options.max_attempts = 1;
+  std::vector<Seen> tried;
+  fixture.plan(tried, 1);
+  std::size_t num_starts = 0;
+  visit_starts(fixture.object, fixture.hand, fixture.options, 1, [&](const GuidedStart& start) {
+    ++num_starts;
+    CHECK(start.targets.contacts.size() == 3);
+    CHECK(start.posture.has_value());
+    CHECK(start.close != nullptr);
+  });
+  CHECK(num_starts == tried.size());
+  CHECK(num_starts == 24);
+  num_starts = 0;
+  visit_starts(fixture.object, fixture.hand, fixture.options, 0,
+               [&](const GuidedStart&) { ++num_starts; });
+  CHECK(num_starts == 0);
+}
+
+TEST_CASE("Hands are fitted to the first graze with refinement, and closed however far without",
+          "[grasp][tried_starts]") {
+  PlannerOptions options;
+  options.fitting.contact_state = ContactState::Closed;
+  CHECK(fitting_options(options).contact_state == ContactState::FirstGraze);
+  CHECK(fitting_options(options).give_up_distance == options.fitting.give_up_distance);
+  options.refine = false;
+  CHECK(fitting_options(options).contact_state == ContactState::Closed);
+  options.missing_contact = MissingContact::Measured;
+  CHECK(fitting_options(options).give_up_distance > 1e300);
+}
+
+}  // namespace test_tried_starts
