@@ -4,7 +4,6 @@
 #include <utility>
 
 namespace graspfit::viewer::internal {
-namespace {
 
 std::string escaped_for_html(std::string_view text) {
   std::string escaped;
@@ -25,6 +24,8 @@ std::string escaped_for_html(std::string_view text) {
   }
   return escaped;
 }
+
+namespace {
 
 using Replacements = std::initializer_list<std::pair<std::string_view, std::string_view>>;
 

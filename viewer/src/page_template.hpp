@@ -28,6 +28,9 @@ struct PageParts {
 // own.
 std::string script_of_player(std::string_view script);
 
+// The text with what means something to HTML replaced.
+std::string escaped_for_html(std::string_view text);
+
 // The text of a page, filled from the template.
 std::string filled_page(const PageParts& parts);
 

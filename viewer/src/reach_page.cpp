@@ -9,6 +9,7 @@
 
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/list_text.hpp"
+#include "page_template.hpp"
 
 namespace graspfit::viewer {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 using hands::Pinch;
 using hands::PinchChart;
 using hands::PinchKind;
+using internal::escaped_for_html;
 
 constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 
@@ -50,27 +52,6 @@ std::string number(double value, int decimals = 1) {
   const std::to_chars_result end = std::to_chars(text.data(), text.data() + text.size(), value,
                                                  std::chars_format::fixed, decimals);
   return {text.data(), end.ptr};
-}
-
-/// The text with what means something to HTML replaced.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 std::vector<PinchChart> drawn_charts(const ReachScene& scene) {
@@ -113,7 +94,7 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
 std::string label(double x, double y, const char* anchor, const std::string& words,
                   const char* color = "#667078") {
   return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor +
-         "\" fill=\"" + color + "\">" + escaped(words) + "</text>\n";
+         "\" fill=\"" + color + "\">" + escaped_for_html(words) + "</text>\n";
 }
 
 std::string frame(const Axes& axes) {
@@ -167,7 +148,7 @@ std::string bars(const Axes& axes, const PinchChart& chart, double friction, dou
 std::string table_row(const std::vector<std::string>& cells, const char* element = "td") {
   std::string row = "<tr>";
   for (const std::string& cell : cells) {
-    row += std::string("<") + element + '>' + escaped(cell) + "</" + element + '>';
+    row += std::string("<") + element + '>' + escaped_for_html(cell) + "</" + element + '>';
   }
   return row + "</tr>\n";
 }
@@ -257,7 +238,7 @@ std::string reach_page_html(const ReachScene& scene) {
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'\"><title>" +
-      escaped(scene.hand.name) +
+      escaped_for_html(scene.hand.name) +
       ": reach</title>\n<style>\nbody { font: 14px/1.45 system-ui, \"Noto Sans\", \"DejaVu Sans\", "
       "sans-serif; color: #24282d; max-width: 800px; margin: 24px auto; padding: 0 16px; }\n"
       "h1 { font-size: 18px; } p { color: #667078; }\n"
@@ -265,7 +246,7 @@ std::string reach_page_html(const ReachScene& scene) {
       "th, td { padding: 2px 12px 2px 0; text-align: left; vertical-align: top; "
       "border-bottom: 1px solid #e2e4e3; }\nsvg { max-width: 100%; height: auto; }\n"
       "</style></head><body>\n<h1>What " +
-      escaped(scene.hand.name) + " pinches squarely</h1>\n";
+      escaped_for_html(scene.hand.name) + " pinches squarely</h1>\n";
   html +=
       "<p>How much the pads must lean to the line between them, by the distance between their "
       "contact points: kinematics alone, no links in one another. An object with parallel faces "
