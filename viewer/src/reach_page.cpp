@@ -139,7 +139,7 @@ std::string bars(const Axes& axes, const PinchChart& chart, double friction, dou
   for (const hands::OpeningRange& range : hands::square_widths(chart, friction)) {
     const double x = axes.x(range.smallest);
     text += "<rect x=\"" + number(x) + "\" y=\"" + number(y) + "\" width=\"" +
-            number(axes.x(range.largest) - x) + "\" height=\"9\" rx=\"2\" fill=\"" +
+            number(std::max(2.0, axes.x(range.largest) - x)) + "\" height=\"9\" rx=\"2\" fill=\"" +
             color_of(chart.kind) + "\"/>\n";
   }
   return text;
