@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 /// \file
@@ -28,7 +29,8 @@ int sign_of(const Number& value) {
 
 /// Sign of `evaluate(Interval())`, or nothing if the interval holds zero and other numbers.
 /// `evaluate` maps a number of any type, whose value is not used, to the expression's value
-/// computed in that type. Certain also where numbers overflow and underflow.
+/// computed in that type. Certain also where numbers overflow and underflow. Numbers round upward
+/// while it is at work: it may be inlined, so callers compute nothing in doubles beside it.
 template <typename Expression>
 std::optional<int> sign_by_intervals(const Expression& evaluate) {
   const CGAL::Protect_FPU_rounding<true> upward;
@@ -57,7 +59,7 @@ template <typename Expression>
 template <typename Expression>
 std::optional<double> value_by_intervals(const Expression& evaluate, double share) {
   const Interval value = interval_of(evaluate);
-  const double middle = 0.5 * (value.inf() + value.sup());
+  const double middle = 0.5 * value.inf() + 0.5 * value.sup();
   if (value.inf() != value.sup() && !(value.sup() - value.inf() <= share * std::abs(middle))) {
     return std::nullopt;
   }
@@ -65,15 +67,20 @@ std::optional<double> value_by_intervals(const Expression& evaluate, double shar
 }
 
 /// The double nearest to an exact number; of two equally near ones the even one, as IEEE 754
-/// rounds.
+/// rounds, so that from 2^1024 − 2^970 on it is infinity.
 /// (`CGAL::to_double` of a Gmpq cuts digits off.)
 template <typename Exact>
 double nearest_double(const Exact& value) {
   const auto [low, high] = CGAL::to_interval(value);
-  assert(high <= std::nextafter(low, HUGE_VAL));  // They are neighbors, or the number itself.
-  if (low == high || !std::isfinite(low) || !std::isfinite(high)) {
-    return std::isfinite(low) ? low : high;
+  constexpr double kMost = std::numeric_limits<double>::max();
+  if (!std::isfinite(low) || !std::isfinite(high)) {
+    // Half a unit in the last place beyond the largest double.
+    const Exact limit = Exact(kMost) + Exact(0x1p970);
+    if (std::isfinite(low)) return value < limit ? kMost : high;
+    return value > -limit ? -kMost : low;
   }
+  assert(high <= std::nextafter(low, HUGE_VAL));  // They are neighbors, or the number itself.
+  if (low == high) return low;
   const int side = sign_of(Exact(value + value - Exact(low) - Exact(high)));
   if (side != 0) return side > 0 ? high : low;
   return (std::bit_cast<std::uint64_t>(low) & 1) == 0 ? low : high;

@@ -80,6 +80,8 @@ QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
                          const Vector3d& direction, std::int32_t skipped_face) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kMargin = 1e-9;  // Of a triangle's barycentric coordinates.
+  // By so much more than the best t a box is entered, so that equally far triangles are all seen.
+  constexpr double kSlack = 1.0 + 1e-12;
   const Eigen::Array3d inverse = direction.array().inverse();
   QuickHit best;
   // Where the ray enters a box; infinity if it misses it. A zero direction gives infinite bounds,
@@ -96,10 +98,12 @@ QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
       t_in = t_near > t_in ? t_near : t_in;
       t_out = t_far < t_out ? t_far : t_out;
     }
-    return t_in <= t_out * (1.0 + 1e-12) ? t_in : kInfinity;
+    return t_in <= t_out * kSlack ? t_in : kInfinity;
   };
   // A box that is missed is not entered, even where nothing is hit yet.
-  const auto farthest = [&] { return std::min(best.t, std::numeric_limits<double>::max()); };
+  const auto farthest = [&] {
+    return std::min(best.t * kSlack, std::numeric_limits<double>::max());
+  };
   tree.traverse_by_bound(entry, farthest, [&](const internal::IndexedTriangle& triangle) {
     const auto& [corners, face] = triangle;
     if (face == skipped_face) return;

@@ -147,7 +147,9 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
   const double spread = values.size() > 1 ? values[1] : 0.0;
   if (hull.rank >= 2 && spread < options.collinear_rel * values[0]) hull.rank = 1;
   const bool is_nearly_flat = hull.rank == 3 && range(2) < options.planar_rel * range(0);
-  if (hull.rank == 1) {
+  if (exact.rank == 1) {
+    make_segment(points, exact.corners, axes.col(0), hull);
+  } else if (hull.rank == 1) {
     make_segment(points, distinct, axes.col(0), hull);
   } else if (is_nearly_flat) {
     std::vector<Vector3d> flat(points.size(), Vector3d::Zero());

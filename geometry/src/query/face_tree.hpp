@@ -67,7 +67,8 @@ class FaceTree {
   }
 
   /// Calls visit(triangle) for triangles for whose boxes bound(box) ≤ limit() at that moment; of
-  /// two nodes the one with the smaller bound comes first. `limit` may fall meanwhile.
+  /// two nodes the one with the smaller bound comes first. `limit` may fall meanwhile. `bound` is
+  /// never NaN, and never smaller for a box than for one around it.
   template <typename Bound, typename Limit, typename Visit>
   void traverse_by_bound(const Bound& bound, const Limit& limit, const Visit& visit) const {
     WalkByBound<Bound, Limit, Visit> walk{bound, limit, visit};

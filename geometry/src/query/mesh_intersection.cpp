@@ -151,6 +151,18 @@ std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& 
   return points;
 }
 
+/// By how much a matrix may lengthen a vector, at most: 1 for a rotation, more where its numbers
+/// have few digits. Norms of rows and columns bound it.
+double largest_stretch(const Eigen::Matrix3d& matrix) {
+  const double of_columns = matrix.cwiseAbs().colwise().sum().maxCoeff();
+  const double of_rows = matrix.cwiseAbs().rowwise().sum().maxCoeff();
+  const double from_norms = std::sqrt(of_columns * of_rows);
+  // Of a matrix near a rotation this is nearer: the square of the largest singular value.
+  const double from_gram =
+      std::sqrt(1.0 + (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).norm());
+  return std::min(from_norms, from_gram) * (1.0 + 1e-14);
+}
+
 /// Best-first search for the point of one surface that is deepest inside another solid.
 class DeepestPoint {
  public:
@@ -160,6 +172,7 @@ class DeepestPoint {
       : depth(depth_known),
         solid_(solid),
         X_(X_solid_surface),
+        stretch_(largest_stretch(X_solid_surface.linear())),
         tolerance_(options.tolerance),
         enough_(options.enough) {}
 
@@ -216,7 +229,7 @@ class DeepestPoint {
     const Vector3d inset = Vector3d::Constant(depth);
     if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
     const Vector3d center = 0.5 * (box.lower + box.upper);
-    const double radius = 0.5 * (node.upper - node.lower).norm();
+    const double radius = 0.5 * stretch_ * (node.upper - node.lower).norm();
     // The distance to a surface is 1-Lipschitz.
     push(radius - solid_.signed_distance(center), index, kNoCorners, -1);
   }
@@ -322,6 +335,7 @@ class DeepestPoint {
 
   const MeshQuery& solid_;
   const RigidTransform X_;
+  const double stretch_;  ///< By how much X_ may lengthen a vector of the surface.
   const double tolerance_;
   const double enough_;
   std::priority_queue<Item> open_;

@@ -36,7 +36,7 @@ using internal::IndexedTriangle;
 using internal::Interval;
 using Corners = std::array<Vector3d, 3>;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
-using Rational = std::decay_t<decltype(CGAL::exact(Exact::FT()))>;
+using ExactNumber = std::decay_t<decltype(CGAL::exact(Exact::FT()))>;
 using Cut =
     CGAL::Constrained_Delaunay_triangulation_2<Exact, CGAL::Default, CGAL::Exact_intersections_tag>;
 /// What two triangles have in common, exactly.
@@ -54,7 +54,7 @@ struct ExactPoint {
   }
 
   Interval coordinate(int axis, Interval) const { return between[axis]; }
-  Rational coordinate(int axis, const Rational&) const { return CGAL::exact(exact[axis]); }
+  ExactNumber coordinate(int axis, const ExactNumber&) const { return CGAL::exact(exact[axis]); }
 
   /// Rounded from the exact coordinates, so that equal points of different faces stay equal.
   Vector3d rounded() const {
@@ -67,7 +67,7 @@ struct ExactPoint {
 
 /// Sign of the area of (u, v, point) in the plane of coordinates a and b. Exact.
 int turn_about(const Vector3d& u, const Vector3d& v, const ExactPoint& point, int a, int b) {
-  return internal::sign_of_expression<Rational>([&](const auto& number) {
+  return internal::sign_of_expression<ExactNumber>([&](const auto& number) {
     using Number = std::decay_t<decltype(number)>;
     const Number pa = point.coordinate(a, number);
     const Number pb = point.coordinate(b, number);
@@ -78,7 +78,7 @@ int turn_about(const Vector3d& u, const Vector3d& v, const ExactPoint& point, in
 
 /// On which side of the plane of the triangle the point is, as `internal::orientation`. Exact.
 int side_of_plane(const Corners& corners, const ExactPoint& point) {
-  return internal::sign_of_expression<Rational>([&](const auto& number) {
+  return internal::sign_of_expression<ExactNumber>([&](const auto& number) {
     using Number = std::decay_t<decltype(number)>;
     std::array<Number, 3> ab;
     std::array<Number, 3> ac;
@@ -272,11 +272,25 @@ class Builder {
     for (int i = 0; i < 3; ++i) cut.insert_constraint(own[i], own[(i + 1) % 3]);
     insert_cuts(crossings.cuts, a, b, cut);
     // Edges of coplanar faces cut as they are: what they have in common with this face would only
-    // be computed to be forgotten. What lies beyond this face is left out below.
+    // be computed to be forgotten. What lies beyond this face is left out below; edges that are
+    // wholly beyond one of its sides are left out at once, since each would cross all others there.
+    const int around = internal::orientation_2d(corners[0], corners[1], corners[2], a, b);
+    const auto is_beyond_a_side = [&](const Vector3d& u, const Vector3d& v) {
+      for (int i = 0; i < 3; ++i) {
+        const Vector3d& from = corners[i];
+        const Vector3d& to = corners[(i + 1) % 3];
+        if (internal::orientation_2d(from, to, u, a, b) == -around &&
+            internal::orientation_2d(from, to, v, a, b) == -around) {
+          return true;
+        }
+      }
+      return false;
+    };
     for (const std::int32_t other : crossings.coplanar) {
       const Corners c = geometry::corners(mesh_, static_cast<std::size_t>(other));
       for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
+        if (is_beyond_a_side(c[i], c[j])) continue;
         cut.insert_constraint(Exact::Point_2(c[i][a], c[i][b]), Exact::Point_2(c[j][a], c[j][b]));
       }
     }

@@ -44,29 +44,33 @@ std::size_t num_set(const std::vector<bool>& cells) {
   return static_cast<std::size_t>(std::count(cells.begin(), cells.end(), true));
 }
 
-/// Convex hull of points of the plane, counter-clockwise (monotone chain); corners that stand out
-/// by less than 1e-9 of the longest side are left out, so that rounding makes no corners.
-std::vector<Vector2d> hull_of(std::vector<Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
+/// Convex hull of points of the plane, counter-clockwise from its leftmost corner; corners that
+/// stand out by less than 1e-9 of the hull's size are left out, so that rounding makes no corners.
+std::vector<Vector2d> hull_of(const std::vector<Vector2d>& points) {
+  std::vector<Vector3d> flat;
+  for (const Vector2d& p : points) flat.emplace_back(p.x(), p.y(), 0.0);
+  const geometry::ConvexHull3 hull = geometry::convex_hull(flat);
+  if (hull.rank < 2) return {};
+  std::vector<Vector2d> outline;
+  for (const std::size_t i : hull.vertices) outline.push_back(points[i]);
+  if (area_of(outline) < 0.0) std::reverse(outline.begin(), outline.end());
+  const auto is_left = [](const Vector2d& a, const Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  if (points.size() < 3) return {};
-  const double size = (points.back() - points.front()).norm();
-  std::vector<Vector2d> hull;
-  const auto half = [&](auto begin, auto end) {
-    const std::size_t base = hull.size();
-    for (auto p = begin; p != end; ++p) {
-      while (hull.size() >= base + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], *p - hull.back()) <= 1e-9 * size * size) {
-        hull.pop_back();
-      }
-      hull.push_back(*p);
-    }
-    hull.pop_back();
   };
-  half(points.begin(), points.end());
-  half(points.rbegin(), points.rend());
-  return hull;
+  const auto [leftmost, rightmost] = std::minmax_element(outline.begin(), outline.end(), is_left);
+  const double least = 1e-9 * (*rightmost - *leftmost).squaredNorm();
+  std::rotate(outline.begin(), leftmost, outline.end());
+  for (std::size_t i = 0; i < outline.size() && outline.size() >= 3;) {
+    const Vector2d& before = outline[(i + outline.size() - 1) % outline.size()];
+    const Vector2d& after = outline[(i + 1) % outline.size()];
+    if (cross(outline[i] - before, after - outline[i]) <= least) {
+      outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(i));
+      i = i > 0 ? i - 1 : 0;  // the corner before may stand out no longer
+    } else {
+      ++i;
+    }
+  }
+  return outline.size() < 3 ? std::vector<Vector2d>{} : outline;
 }
 
 /// Removes the corner whose removal costs least area, until `count` corners are left.

@@ -31,6 +31,7 @@ struct SignedDistanceMap {
   /// true distance where the partial voxel nearest to c lies on the side of the box toward the
   /// point, as straight in front of a flat face. Where c is a full voxel nothing is known, and the
   /// value is that of c.
+  /// @throws InvalidInput for a point with a coordinate that is no number.
   float at(const Eigen::Vector3d& point) const {
     const Eigen::Vector3d position = (point - lattice.origin) / lattice.voxel_size;
     // This is the hot path of the fitting loop. Inside the lattice truncation rounds down.

@@ -77,7 +77,7 @@ class MeshQuery {
   double signed_distance(const Eigen::Vector3d& point) const;
 
   /// First hit from `origin` along `direction` (need not be unit; zero throws InvalidInput): the
-  /// first of `all_hits`. Cost: about log n.
+  /// first of `all_hits`, up to the rounding of distances. Cost: about log n.
   std::optional<RayHit> first_hit(const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction) const;
 
