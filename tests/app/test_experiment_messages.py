@@ -47,7 +47,7 @@ class Describe(ProgramTest):
         self.assertEqual(settings["size_m"][:3], ["axis size", "m", "> 0"])
         self.assertEqual(settings["resolution"][:3], ["30", "1", "in [4, 512]"])
         self.assertEqual(settings["theta-max-deg"][:3], ["45", "deg", "in (0, 90)"])
-        self.assertEqual(settings["style"][:3], ["precision", "-", "precision|power"])
+        self.assertEqual(settings["style"][:3], ["precision", "-", "precision|power|auto"])
         self.assertEqual(settings["refine"][:3], ["false", "-", "true|false"])
         self.assertEqual(settings["max-iterations"][:2], ["-", "1"])
         for name, (_, unit, allowed, meaning) in settings.items():

@@ -235,7 +235,7 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;
   for (const grasp::Grasp& stored : file.grasps) {
-    comparisons.push_back(compare(stored, scene.measure(stored.configuration)));
+    comparisons.push_back(compare(stored, scene.measure(stored)));
     largest_m_difference = std::max(largest_m_difference, comparisons.back().m_difference);
   }
   const geometry::MeshQuery surface(mesh);

@@ -29,7 +29,7 @@ using internal::PieceHull;
 using internal::SolidPart;
 
 // All relative to the longest extent of the solid.
-constexpr double kOnPlaneRel = 1e-9;     // corners this near to a cut are on it: 1000 ulps
+constexpr double kOnPlaneRel = 1e-9;     // corners this near to a cut are on it
 constexpr double kLeastWidthRel = 1e-5;  // thinner pieces are left out: engines refuse them
 // Relative to the wanted deviation.
 constexpr double kAimedRel = 0.9;  // sampled depths miss some of the true one

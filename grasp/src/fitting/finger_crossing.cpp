@@ -70,7 +70,9 @@ bool do_links_meet(const FittingHand& hand, int link_a, int link_b, const RigidT
   const auto& b = hand.collision().link_solid(link_b);
   if (!a || !b) return false;
   const double apart = (X_AB * b->box().center() - a->box().center()).norm();
-  if (apart > 0.5 * (a->box().diagonal().norm() + b->box().diagonal().norm())) return false;
+  // Balls that are apart by more than their numbers can be off.
+  const double reach = 0.5 * (a->box().diagonal().norm() + b->box().diagonal().norm());
+  if (apart > (1.0 + 1e-9) * reach) return false;
   return geometry::do_intersect(*a, *b, X_AB);
 }
 

@@ -68,8 +68,7 @@ FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacemen
         std::find_if(targets.contacts.begin(), targets.contacts.end(),
                      [&](const TargetContact& contact) { return contact.finger == part.finger; });
     if (target != targets.contacts.end()) part.target_O = target->point_O;
-    part.is_toward_goal =
-        style_ == GraspStyle::Precision && part.closing.size() > 1 && !part.is_shared;
+    part.is_toward_goal = style_ != GraspStyle::Power && part.closing.size() > 1 && !part.is_shared;
   }
   if (!place()) return failed_start();
   approach();

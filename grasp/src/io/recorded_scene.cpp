@@ -24,6 +24,16 @@ std::optional<double> bearing_gap(const GraspFile& file) {
 }
 
 Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) const {
+  return measure(configuration, requested_);
+}
+
+Grasp RecordedScene::measure(const Grasp& recorded) const {
+  const bool is_by_grasp = file_.options.style == GraspStyle::Auto;
+  return measure(recorded.configuration, is_by_grasp ? parts_of(recorded.targets) : requested_);
+}
+
+Grasp RecordedScene::measure(const hands::HandConfiguration& configuration,
+                             const RequestedParts& requested) const {
   const geometry::TriangleMesh& mesh = object_.mesh();
   const PlannerOptions& options = file_.options;
   contact::QualityContext context;
@@ -45,7 +55,7 @@ Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) cons
       .contact_options = contact_estimation(options, file_.clip_thickness),
       .largest_gap = bearing_gap(options),
       .bearing_gap = bearing_gap(file_)};
-  return measure_grasp(scene, configuration, requested_);
+  return measure_grasp(scene, configuration, requested);
 }
 
 }  // namespace graspfit::grasp

@@ -10,6 +10,7 @@
 #include "graspfit/grasp/random_targets.hpp"
 #include "graspfit/grasp/ranked_targets.hpp"
 #include "methods/guidance_list.hpp"
+#include "methods/reach_sides.hpp"
 #include "methods/target_sides.hpp"
 
 namespace graspfit::grasp::internal {
@@ -42,6 +43,9 @@ class FittingGuidance : public GraspGuidance {
         distances_(part_distances(scene.hand.model())) {
     if (scene.options.targets.search == TargetSearch::Ranked) {
       ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
+    } else if (scene.options.targets.search == TargetSearch::Reach) {
+      rules_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
+      reach_.emplace(scene_, *rules_);
     } else {
       selector_.emplace(scene.object, distances_, scene.parts, scene.options.targets,
                         IdealMeasure{&scene.hand.model(), scene.options.quality});
@@ -50,8 +54,10 @@ class FittingGuidance : public GraspGuidance {
 
   GuidedStarts starts(std::int64_t number) const override {
     GuidedStarts result;
-    result.starts =
-        starts_from(ranked_ ? ranked_sides(number, result) : drawn_sides(number, result), scene_);
+    result.starts = starts_from(ranked_  ? ranked_sides(number, result)
+                                : reach_ ? reach_sides(number, result)
+                                         : drawn_sides(number, result),
+                                scene_);
     return result;
   }
 
@@ -99,6 +105,14 @@ class FittingGuidance : public GraspGuidance {
     std::vector<TargetSide> sides = sides_of(*targets, scene_, true);
     if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
     std::stable_sort(sides.begin(), sides.end(), by_misfit);
+    return sides;
+  }
+
+  std::vector<TargetSide> reach_sides(std::int64_t number, GuidedStarts& result) const {
+    base::Random random =
+        base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number));
+    std::vector<TargetSide> sides = reach_->draw(random);
+    if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
     return sides;
   }
 
@@ -179,6 +193,8 @@ class FittingGuidance : public GraspGuidance {
   const double torque_scale_;               ///< The torque scale of squeezes [m].
   const PartDistances distances_;           ///< Outlives the searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
+  std::optional<TargetRules> rules_;
+  std::optional<ReachSides> reach_;
   mutable std::mutex ranked_lock_;
   mutable std::optional<RankedTargets> ranked_;
   mutable std::vector<TargetContacts> ranked_sets_;  ///< Those that `ranked_` gave so far.

@@ -43,10 +43,18 @@ std::vector<GuidedStart> starts_from(std::vector<TargetSide> sides, const Guidan
   std::vector<GuidedStart> starts;
   for (TargetSide& side : sides) {
     GuidedStart start;
-    start.close = [&scene, targets = side.targets, placement = side.placement, goal = side.goal] {
+    start.close = [&scene, targets = side.targets, placement = side.placement, goal = side.goal,
+                   is_at_goal = side.is_at_goal] {
+      if (is_at_goal && scene.options.refine) {
+        FittingResult result;
+        result.initial = result.configuration = *goal;
+        result.stop = FittingStop::Contact;
+        return result;
+      }
       return fit_hand(scene, scene.options.style, targets, placement, scene.options.fitting, goal);
     };
     start.targets = std::move(side.targets);
+    start.draws_to_targets = !side.is_at_goal;
     start.posture = std::move(side.goal);
     starts.push_back(std::move(start));
   }

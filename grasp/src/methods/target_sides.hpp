@@ -16,6 +16,7 @@ struct TargetSide {
   std::optional<hands::HandConfiguration> goal = {};  ///< `fitting_goal`, where it was asked for.
   /// Whether fingers cross at the start from this side, where that counts.
   bool do_fingers_cross = false;
+  bool is_at_goal = false;  ///< The goal is a posture from which to refine, without closing.
 };
 
 /// Sides of sets that balance first where that counts, then those from which fingers need not

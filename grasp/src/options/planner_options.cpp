@@ -34,6 +34,8 @@ void PlannerOptions::validate() const {
                 shortest_decimal((*approach_O)[2]),
             "finite and not zero");
   }
+  require(style != GraspStyle::Auto || targets.search == TargetSearch::Reach, "style",
+          name_of(style), "precision or power unless targets.search is reach");
   require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
           name_of(missing_contact), "fails with refine, which accepts no part without contact");
   score.validate();

@@ -128,7 +128,6 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
       fitting_hand_(hand, options_.fitting.sample_spacing * object.grid.lattice.voxel_size),
       surroundings_(hand, surroundings),
       scene_(measuring_scene(object, fitting_hand_, surroundings_, options_)),
-      requested_pads_(requested_pads(hand, parts_)),
       largest_deviation_(largest_deviation(options_, hand)) {
   const PlanningMethod& method = methods.at(options_.planner);
   const base::Stopwatch watch(guidance_s_);
@@ -235,7 +234,13 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   std::optional<AttemptOutcome> failure = close(start, configuration, result);
   // Refinement also brings fingers into contact that stopped short of the surface.
   const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
-  if (is_refinable) failure = refine(start.targets, configuration, result);
+  const RequestedParts parts =
+      options_.style == GraspStyle::Auto ? parts_of(start.targets) : parts_;
+  if (is_refinable) {
+    const bool is_drawn = start.draws_to_targets && !start.targets.contacts.empty();
+    failure = refine(requested_pads(hand_, parts), is_drawn ? &start.targets : nullptr,
+                     configuration, result);
+  }
   const bool is_measured =
       !failure ||
       (options_.missing_contact == MissingContact::Measured &&
@@ -247,7 +252,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   Grasp grasp;
   {
     const base::Stopwatch watch(result.timings.measure_s);
-    grasp = with_contacts(scene_, configuration, parts_);
+    grasp = with_contacts(scene_, configuration, parts);
     grasp.targets = start.targets;
     if (!start.targets.contacts.empty()) {
       grasp.ideal_m = ideal_m(object_, start.targets, {&hand_, options_.quality});
@@ -315,7 +320,8 @@ std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
 
 /// Brings a hand that is closed at the level of voxels into true contact. Returns why this failed,
 /// if it did.
-std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targets,
+std::optional<AttemptOutcome> PlannerAttempts::refine(const std::vector<int>& pads,
+                                                      const TargetContacts* targets,
                                                       hands::HandConfiguration& configuration,
                                                       AttemptResult& result) const {
   const base::Stopwatch watch(result.timings.refinement_s);
@@ -324,9 +330,9 @@ std::optional<AttemptOutcome> PlannerAttempts::refine(const TargetContacts& targ
     const double left = options_.approach_angle - angle_from_approach(configuration) - kAngleSlack;
     refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
   }
-  const RefinementResult refined = refine_contacts(
-      {fitting_hand_, object_, surroundings_, scene_.contact_options}, requested_pads_,
-      targets.contacts.empty() ? nullptr : &targets, configuration, refinement);
+  const RefinementResult refined =
+      refine_contacts({fitting_hand_, object_, surroundings_, scene_.contact_options}, pads,
+                      targets, configuration, refinement);
   result.refinement_iterations += refined.iterations;
   configuration = refined.configuration;
   switch (refined.stop) {

@@ -54,7 +54,7 @@ class PlannerAttempts {
   std::optional<AttemptOutcome> close(const GuidedStart& start,
                                       hands::HandConfiguration& configuration,
                                       AttemptResult& result) const;
-  std::optional<AttemptOutcome> refine(const TargetContacts& targets,
+  std::optional<AttemptOutcome> refine(const std::vector<int>& pads, const TargetContacts* targets,
                                        hands::HandConfiguration& configuration,
                                        AttemptResult& result) const;
   std::size_t best_of(const std::vector<AttemptResult>& tried) const;
@@ -75,7 +75,6 @@ class PlannerAttempts {
   const FittingHand fitting_hand_;
   const SurroundingsCollision surroundings_;
   const MeasuringScene scene_;
-  std::vector<int> requested_pads_;
   const double largest_deviation_;  ///< From targets [m].
   std::unique_ptr<GraspGuidance> guidance_;
   double guidance_s_ = 0.0;

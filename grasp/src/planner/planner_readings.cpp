@@ -39,6 +39,9 @@ std::string choice_reading(const PlannerOptions& options) {
   if (targets.search == TargetSearch::Ranked) {
     return "every feasible set once, those that fit best first" + kept;
   }
+  if (targets.search == TargetSearch::Reach) {
+    return "where the pads of a hand that is laid onto the object lie, strongest first" + kept;
+  }
   const bool is_balance_first =
       options.candidate_order == CandidateOrder::Balance && options.target_draws > 1;
   return "drawn from the best " + shortest_decimal(targets.pool_fraction) + ", at least " +

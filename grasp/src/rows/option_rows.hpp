@@ -100,10 +100,12 @@ constexpr auto target_rows = [](auto& at, auto& targets) {
                             "of all candidates in a cube of this size the best one stays; 0: all; "
                             "a pad's width makes ranked searches for four and more targets short",
                             "P: sampling"});
-  at(targets.search, {"search", kAny, "target-search", "", kTargets,
-                      "sets of targets at random, or best first until all are tried, which may end "
-                      "with the proof that there is none",
-                      "random: P; ranked: R"});
+  at(targets.search,
+     {"search", kAny, "target-search", "", kTargets,
+      "sets of targets at random; ranked: best first until all are tried, which may end with the "
+      "proof that there is none; reach: sets on which the hand's pads lie before it is fitted "
+      "exactly, those that withstand most first",
+      "random: P; ranked, reach: R"});
   at(targets.exclude_weak, {"exclude_weak", kAny, "exclude-weak", "", kTargets,
                             "no targets on fragile features", "R", "A37"});
   at(targets.ideal_m_bias,
@@ -267,7 +269,8 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                        "R"});
   at(options.style, {"style", kAny, "style", "", kRequest,
                      "where targets go: to the fingertips; power: also to the palm, and links "
-                     "behind the tips are closed onto the object",
+                     "behind the tips are closed onto the object; auto, with target-search reach: "
+                     "also to the palm or to a further finger where fingertips alone do not close",
                      "P; how: R", "A39"});
   at(options.fingers,
      {"fingers", kAny, "fingers", "", kRequest,

@@ -73,6 +73,15 @@ double ideal_m(const ObjectModel& object, const TargetContacts& targets,
       .m;
 }
 
+RequestedParts parts_of(const TargetContacts& targets) {
+  RequestedParts parts;
+  for (const TargetContact& target : targets.contacts) {
+    if (target.finger) parts.fingers.push_back(*target.finger);
+    parts.palm = parts.palm || target.is_palm;
+  }
+  return parts;
+}
+
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested) {
   std::vector<int> pads;
   for (const int finger : requested.fingers) pads.push_back(*hand.fingers[finger].tip_pad);

@@ -244,7 +244,7 @@ TEST_CASE("M computed again from a grasp file and the object is that of the file
   surroundings.table_z_O = file.surroundings.table_z_O;
   const grasp::RecordedScene scene(file, mesh, surroundings);
   for (const grasp::Grasp& stored : file.grasps) {
-    const grasp::Grasp again = scene.measure(stored.configuration);
+    const grasp::Grasp again = scene.measure(stored);
     // The poses move by about 1e-16 m, and contact areas and points follow continuously.
     CHECK(again.quality.m == Approx(stored.quality.m).margin(1e-12));
     CHECK(again.quality.m1 == Approx(stored.quality.m1).margin(1e-12));

@@ -39,6 +39,9 @@ struct GuidedStart {
   /// Where the hand would be at the targets, were there no object; empty where a method does not
   /// know it.
   std::optional<hands::HandConfiguration> posture = {};
+  /// Whether refinement draws the middles of pads toward the targets. Where pads lie at their
+  /// targets already, perhaps by an edge, that would move them away again.
+  bool draws_to_targets = true;
 };
 
 /// The starts of one attempt, the most promising first: they are tried in turn until one of them

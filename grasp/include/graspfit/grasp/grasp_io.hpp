@@ -151,7 +151,14 @@ class RecordedScene {
   /// As `measure_grasp`, for the fingers and palm that the file's grasps were to touch with.
   Grasp measure(const hands::HandConfiguration& configuration) const;
 
+  /// The same for a grasp of the file: where its style leaves to each grasp which parts touch, for
+  /// the parts that its targets are for.
+  Grasp measure(const Grasp& recorded) const;
+
  private:
+  Grasp measure(const hands::HandConfiguration& configuration,
+                const RequestedParts& requested) const;
+
   const GraspFile& file_;
   geometry::MeshQuery object_;
   hands::HandCollision collision_;

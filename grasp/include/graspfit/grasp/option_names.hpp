@@ -38,7 +38,8 @@ template <class Enum>
 inline constexpr auto kNames = nullptr;
 template <>
 inline constexpr std::array kNames<GraspStyle> = {NamedValue{GraspStyle::Precision, "precision"},
-                                                  NamedValue{GraspStyle::Power, "power"}};
+                                                  NamedValue{GraspStyle::Power, "power"},
+                                                  NamedValue{GraspStyle::Auto, "auto"}};
 template <>
 inline constexpr std::array kNames<Acceptance> = {NamedValue{Acceptance::Valid, "valid"},
                                                   NamedValue{Acceptance::Usable, "usable"}};
@@ -120,7 +121,8 @@ inline constexpr std::array kNames<PlannerStop> = {
     NamedValue{PlannerStop::Interrupted, "interrupted"}};
 template <>
 inline constexpr std::array kNames<TargetSearch> = {NamedValue{TargetSearch::Random, "random"},
-                                                    NamedValue{TargetSearch::Ranked, "ranked"}};
+                                                    NamedValue{TargetSearch::Ranked, "ranked"},
+                                                    NamedValue{TargetSearch::Reach, "reach"}};
 template <>
 inline constexpr std::array kNames<contact::WrenchTool> = {
     NamedValue{contact::WrenchTool::Graspfit, "graspfit"},

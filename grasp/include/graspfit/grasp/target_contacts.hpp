@@ -28,6 +28,10 @@ struct RequestedParts {
 enum class TargetSearch {
   Random,  ///< The paper's randomized greedy search.
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
+  /// Sets that the hand can meet: where pads lie in postures of the hand on the object, those first
+  /// whose contacts withstand most [R]. Rules of A19 and A20 do not apply: targets are points of
+  /// the pool, some pair is stable, and they are `min_separation` apart.
+  Reach,
 };
 
 /// Which of the earlier targets a finger's new target must form a stable pair with.
@@ -167,6 +171,9 @@ std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
 /// `contacts_at`. @throws InvalidInput as `contact::ideal_quality`.
 double ideal_m(const ObjectModel& object, const TargetContacts& targets,
                const IdealMeasure& measure, const std::vector<int>& fingers = {});
+
+/// The parts that assigned targets are for, in their order.
+RequestedParts parts_of(const TargetContacts& targets);
 
 /// The pads that must touch: the fingers' tip pads, then the palm's.
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested);

@@ -1,0 +1,179 @@
+#include "methods/hand_grips.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+// Samples of a pad: more find squarer pairs and take longer.
+constexpr int kMostSamples = 1024;
+constexpr std::size_t kMostTableSamples = 512;  // of each pad of a pair
+constexpr std::size_t kMostPerClass = 64;
+constexpr double kDistanceStep = 0.005;  // [m]
+constexpr int kDistanceClasses = 80;
+constexpr double kLeanStep = 9.0 * std::numbers::pi / 180.0;
+constexpr int kLeanClasses = 7;  // to 63 degrees
+
+/// The class of a pair; empty beyond the last ones.
+std::optional<std::size_t> class_of(double distance, double lean_a, double lean_b) {
+  if (!(distance < kDistanceStep * kDistanceClasses) || !(lean_a < kLeanStep * kLeanClasses) ||
+      !(lean_b < kLeanStep * kLeanClasses)) {
+    return std::nullopt;
+  }
+  const int d = static_cast<int>(distance / kDistanceStep);
+  const int a = static_cast<int>(lean_a / kLeanStep);
+  const int b = static_cast<int>(lean_b / kLeanStep);
+  return static_cast<std::size_t>((d * kLeanClasses + a) * kLeanClasses + b);
+}
+
+/// Whether two samples agree in the joints that move both pads.
+bool do_agree(const hands::PadSamples& a, Index sample_a, const hands::PadSamples& b,
+              Index sample_b) {
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    for (std::size_t j = 0; j < b.joints.size(); ++j) {
+      if (a.joints[i] == b.joints[j] && a.positions(static_cast<Index>(i), sample_a) !=
+                                            b.positions(static_cast<Index>(j), sample_b)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// All sets of `size` of the numbers below `count`, 0 among them; each ascending.
+std::vector<std::vector<std::size_t>> sets_with_first(std::size_t count, std::size_t size) {
+  std::vector<std::vector<std::size_t>> sets = {{0}};
+  for (std::size_t i = 1; i < size; ++i) {
+    std::vector<std::vector<std::size_t>> larger;
+    for (const std::vector<std::size_t>& set : sets) {
+      for (std::size_t next = set.back() + 1; next < count; ++next) {
+        larger.push_back(set);
+        larger.back().push_back(next);
+      }
+    }
+    sets = std::move(larger);
+  }
+  return sets;
+}
+
+}  // namespace
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
+    : classes_(static_cast<std::size_t>((kDistanceClasses + 1) * kLeanClasses * kLeanClasses)) {
+  // Every n-th sample; n is odd so that no joint of an even grid is left at one position.
+  const auto stride = [](const hands::PadSamples& samples) {
+    const std::size_t n = (samples.size() + kMostTableSamples - 1) / kMostTableSamples;
+    return n % 2 == 0 ? n + 1 : n;
+  };
+  base::Random random(1);
+  std::vector<std::uint64_t> num_seen(classes_.size(), 0);
+  for (std::size_t i = 0; i < a.size(); i += stride(a)) {
+    const auto sample_a = static_cast<Index>(i);
+    for (std::size_t j = 0; j < b.size(); j += stride(b)) {
+      const auto sample_b = static_cast<Index>(j);
+      if (!do_agree(a, sample_a, b, sample_b)) continue;
+      const Vector3d line = b.points_H.col(sample_b) - a.points_H.col(sample_a);
+      if (!(line.norm() > 0.0)) continue;
+      const std::optional<std::size_t> number =
+          class_of(line.norm(), angle_between(a.normals_H.col(sample_a), line),
+                   angle_between(b.normals_H.col(sample_b), -line));
+      if (!number) continue;
+      auto& entries = classes_[*number];
+      const std::pair<std::int32_t, std::int32_t> entry(static_cast<std::int32_t>(i),
+                                                        static_cast<std::int32_t>(j));
+      // Of more than fit a uniform choice stays.
+      const std::uint64_t seen = num_seen[*number]++;
+      if (entries.size() < kMostPerClass) {
+        entries.push_back(entry);
+      } else if (const std::uint64_t at = random.index(seen + 1); at < kMostPerClass) {
+        entries[at] = entry;
+      }
+    }
+  }
+}
+
+std::optional<std::pair<std::int32_t, std::int32_t>> PinchTable::draw(double distance,
+                                                                      double lean_a, double lean_b,
+                                                                      base::Random& random) const {
+  const std::optional<std::size_t> number = class_of(distance, lean_a, lean_b);
+  if (!number || classes_[*number].empty()) return std::nullopt;
+  return classes_[*number][random.index(classes_[*number].size())];
+}
+
+HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& requested,
+                     GripChoice choice) {
+  RequestedParts all = requested;
+  if (choice != GripChoice::Requested) {
+    for (std::size_t finger = 0; finger < hand.fingers.size(); ++finger) {
+      const auto number = static_cast<int>(finger);
+      const bool is_asked = std::count(all.fingers.begin(), all.fingers.end(), number) > 0;
+      if (!is_asked && hand.fingers[finger].tip_pad) all.fingers.push_back(number);
+    }
+    all.palm = all.palm || hand.palm.pad.has_value();
+  }
+  for (hands::PadSamples& samples :
+       hands::pad_samples(hand, requested_pads(hand, all), kMostSamples)) {
+    parts_.push_back({hand.pads[samples.pad].finger, std::move(samples)});
+  }
+  const std::size_t palm = all.fingers.size();
+  const std::size_t num_asked = requested.fingers.size();
+  const auto add_all = [&](const std::vector<std::vector<std::size_t>>& sets, bool has_palm) {
+    for (std::vector<std::size_t> parts : sets) {
+      if (has_palm) parts.push_back(palm);
+      add(std::move(parts));
+    }
+  };
+  std::vector<std::size_t> fingers(num_asked);
+  std::iota(fingers.begin(), fingers.end(), 0);
+  if (choice == GripChoice::Requested) {
+    add_all({fingers}, requested.palm);
+    return;
+  }
+  const bool may_exchange = choice == GripChoice::AnyFingers;
+  const auto same = may_exchange ? sets_with_first(palm, num_asked)
+                                 : std::vector<std::vector<std::size_t>>{fingers};
+  if (requested.palm) {
+    add_all(same, true);
+    return;
+  }
+  add_all(same, false);
+  if (all.palm) add_all(same, true);
+  std::vector<std::vector<std::size_t>> larger;
+  for (const std::vector<std::size_t>& set : sets_with_first(palm, num_asked + 1)) {
+    if (may_exchange || std::includes(set.begin(), set.end(), fingers.begin(), fingers.end())) {
+      larger.push_back(set);
+    }
+  }
+  add_all(larger, false);
+}
+
+void HandGrips::add(std::vector<std::size_t> parts) {
+  Grip grip;
+  grip.parts = std::move(parts);
+  grip.has_palm = !parts_[grip.parts.back()].finger;
+  const std::size_t first = grip.parts.front();
+  for (const std::size_t other : grip.parts) {
+    if (other == first || grip.has_palm) continue;
+    const auto known = std::find_if(pinches_.begin(), pinches_.end(), [&](const Pinch& pinch) {
+      return pinch.part_a == first && pinch.part_b == other;
+    });
+    grip.pinches.push_back(static_cast<std::size_t>(known - pinches_.begin()));
+    if (known != pinches_.end()) continue;
+    pinches_.push_back({first, other, PinchTable(parts_[first].samples, parts_[other].samples)});
+  }
+  grips_.push_back(std::move(grip));
+}
+
+}  // namespace graspfit::grasp::internal

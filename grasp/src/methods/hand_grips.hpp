@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "graspfit/base/random.hpp"
+#include "graspfit/grasp/target_contacts.hpp"
+#include "graspfit/hands/pad_samples.hpp"
+
+/// \file
+/// What a hand can do, as look-ups: where its pads can be, which pairs of pads can face each other
+/// at which distance, and which parts touch together.
+
+namespace graspfit::grasp::internal {
+
+/// Angle between two vectors [rad].
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// Pairs of samples of two pads by the distance of their contact points and by how far the pads
+/// lean against the line between these.
+class PinchTable {
+ public:
+  PinchTable(const hands::PadSamples& a, const hands::PadSamples& b);
+
+  /// A pair, sample of a and of b, of about this distance [m] and these leans [rad] (within 5 mm
+  /// and 9 degrees); empty if there is none.
+  std::optional<std::pair<std::int32_t, std::int32_t>> draw(double distance, double lean_a,
+                                                            double lean_b,
+                                                            base::Random& random) const;
+
+ private:
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> classes_;
+};
+
+/// Which parts may touch beside the requested ones.
+enum class GripChoice {
+  Requested,   ///< None.
+  OneMore,     ///< The palm or a further finger.
+  AnyFingers,  ///< The same, and other fingers instead of the requested ones but the first.
+};
+
+/// The parts of a hand that may touch, and the grips: which of them touch together.
+class HandGrips {
+ public:
+  /// A part; its samples are those of its tip pad or of the palm's.
+  struct Part {
+    std::optional<int> finger;  ///< Empty: the palm.
+    hands::PadSamples samples;
+  };
+  struct Pinch {
+    std::size_t part_a = 0;
+    std::size_t part_b = 0;
+    PinchTable table;
+  };
+  struct Grip {
+    std::vector<std::size_t> parts;    ///< In the order of the targets: fingers, then the palm.
+    std::vector<std::size_t> pinches;  ///< Of the first finger with the others; none with the palm.
+    bool has_palm = false;
+  };
+
+  /// Grips of the requested parts, and of others that `choice` allows where the hand has them with
+  /// pads. At least one finger is requested.
+  HandGrips(const hands::HandModel& hand, const RequestedParts& requested, GripChoice choice);
+
+  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Pinch>& pinches() const { return pinches_; }
+  const std::vector<Grip>& grips() const { return grips_; }
+
+ private:
+  void add(std::vector<std::size_t> parts);
+
+  std::vector<Part> parts_;
+  std::vector<Pinch> pinches_;
+  std::vector<Grip> grips_;
+};
+
+}  // namespace graspfit::grasp::internal

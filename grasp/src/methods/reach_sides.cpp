@@ -1,0 +1,396 @@
+#include "methods/reach_sides.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "fitting/finger_crossing.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/palm_pose.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// An attempt: it ends with so many strong candidates, or after so much work.
+constexpr std::size_t kMostStarts = 2;  // more cost a refinement each where the first ones fail
+constexpr double kStrong = 0.01;        // ε within the squeeze's cones
+constexpr int kMostPostures = 120;
+constexpr int kMostPairs = 200000;  // of points, or points for the palm
+constexpr int kProposals = 4;       // of which one is laid onto the surface
+
+// Proposals.
+constexpr int kRollDraws = 6;                       // about the line between two points
+constexpr double kMostProposedLean = 60 * kDegree;  // of a pad on its point
+constexpr double kMostTilt = 30 * kDegree;          // of the palm on its point
+constexpr double kLeanLever = 0.03;                 // [m/rad]: a lean beside a gap
+constexpr double kStrengthPerCost = 10.0;           // [1/m]: ε beside a gap
+
+// Postures: pads that lean more touch with their edges only.
+constexpr double kMostLean = 65 * kDegree;
+constexpr double kMostGap = 0.003;    // [m]
+constexpr double kMostDepth = 0.003;  // [m]; refinement opens the hand so far
+
+std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) {
+  std::vector<bool> is_in(num_patches, false);
+  for (const PoolPoint& point : rules.pool()) is_in[static_cast<std::size_t>(*point.patch)] = true;
+  return is_in;
+}
+
+GripChoice grip_choice(const PlannerOptions& options) {
+  if (options.style != GraspStyle::Auto) return GripChoice::Requested;
+  return options.fingers.empty() ? GripChoice::AnyFingers : GripChoice::OneMore;
+}
+
+/// Where a pad is and where it faces: of a sample in H, or as a point of the pool in O.
+struct Facing {
+  Vector3d point;
+  Vector3d normal;
+};
+
+Facing facing(const hands::PadSamples& samples, std::int32_t sample) {
+  return {samples.points_H.col(sample), samples.normals_H.col(sample)};
+}
+Facing facing(const PoolPoint& point) { return {point.point_O, point.inward_normal_O}; }
+
+/// The palm pose in which pads a and b lie on two points as squarely as they can; where their pads
+/// leave the turn about the line open, it is drawn. Empty if a pad leans too much.
+std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, const Facing& a_O,
+                                      const Facing& b_O, base::Random& random) {
+  const Vector3d line_O = (b_O.point - a_O.point).normalized();
+  const Matrix3d onto =
+      Eigen::Quaterniond::FromTwoVectors(b_H.point - a_H.point, line_O).toRotationMatrix();
+  const Vector3d normal_a = onto * a_H.normal;
+  const Vector3d normal_b = onto * b_H.normal;
+  const auto lean = [&](double turn) {
+    const Eigen::AngleAxisd roll(turn, line_O);
+    return std::max(angle_between(roll * normal_a, a_O.normal),
+                    angle_between(roll * normal_b, b_O.normal));
+  };
+  std::optional<double> turn;
+  for (int draw = 0; draw < kRollDraws && !turn; ++draw) {
+    const double drawn = random.uniform(-std::numbers::pi, std::numbers::pi);
+    if (lean(drawn) <= kMostProposedLean) turn = drawn;
+  }
+  if (!turn) {
+    // Both normals' parts across the line turned onto those of the surface, as nearly as possible.
+    double sine = 0.0;
+    double cosine = 0.0;
+    const auto add = [&](const Vector3d& from, const Vector3d& to) {
+      const Vector3d u = from - from.dot(line_O) * line_O;
+      const Vector3d v = to - to.dot(line_O) * line_O;
+      sine += line_O.dot(u.cross(v));
+      cosine += u.dot(v);
+    };
+    add(normal_a, a_O.normal);
+    add(normal_b, b_O.normal);
+    turn = std::atan2(sine, cosine);
+    if (lean(*turn) > kMostProposedLean) return std::nullopt;
+  }
+  RigidTransform X_OH = RigidTransform::Identity();
+  X_OH.linear() = Eigen::AngleAxisd(*turn, line_O).toRotationMatrix() * onto;
+  X_OH.translation() =
+      0.5 * (a_O.point + b_O.point) - X_OH.linear() * (0.5 * (a_H.point + b_H.point));
+  return X_OH;
+}
+
+}  // namespace
+
+ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
+    : scene_(scene),
+      rules_(rules),
+      grips_(scene.hand.model(), scene.parts, grip_choice(scene.options)),
+      nearest_(scene.object, std::vector<bool>(scene.object.patches.size(), true)),
+      places_(scene.object, is_in_pool(rules, scene.object.patches.size())),
+      search_(scene.hand, scene.object, nearest_, places_),
+      clearance_(scene.hand, scene.object, scene.surroundings),
+      pool_of_patch_(scene.object.patches.size(), -1),
+      wrench_object_(
+          contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass)) {
+  for (std::size_t p = 0; p < rules.pool().size(); ++p) {
+    pool_of_patch_[static_cast<std::size_t>(*rules.pool()[p].patch)] = static_cast<std::int32_t>(p);
+  }
+}
+
+std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
+  std::vector<Candidate> best;
+  if (rules_.pool().size() < 2) return {};
+  Work work;
+  std::size_t num_strong = 0;
+  while (num_strong < kMostStarts) {
+    std::optional<Candidate> candidate = next(random, work);
+    if (!candidate) break;
+    if (candidate->strength >= kStrong) ++num_strong;
+    const auto position = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
+      return candidate->strength > other.strength;
+    });
+    best.insert(position, std::move(*candidate));
+    if (best.size() > kMostStarts) best.pop_back();
+  }
+  std::vector<TargetSide> sides;
+  for (const Candidate& candidate : best) sides.push_back(side_of(candidate));
+  std::stable_sort(sides.begin(), sides.end(), by_misfit);
+  return sides;
+}
+
+/// ε, signed, of contacts on patches, within the squeeze's cones; where that is surely not strong,
+/// what a load shows.
+double ReachSides::strength(const std::vector<std::int32_t>& patches) const {
+  const std::vector<contact::Contact> contacts = contacts_on(patches);
+  const double bound = strength_bound(contacts);
+  if (bound < kStrong) return bound;
+  return contact::signed_epsilon(contacts, wrench_object_, scene_.options.squeeze_friction);
+}
+
+/// The next good posture; empty once the work of an attempt is done.
+std::optional<ReachSides::Candidate> ReachSides::next(base::Random& random, Work& work) const {
+  while (work.pairs < kMostPairs && work.postures < kMostPostures) {
+    const Grip& grip = grips_.grips()[random.index(grips_.grips().size())];
+    std::optional<Proposal> best;
+    double most = 0.0;
+    for (int i = 0; i < kProposals; ++i) {
+      std::optional<Proposal> drawn = proposal(grip, random, work);
+      if (!drawn) break;
+      const double drawn_promise = promise(grip, *drawn);
+      if (best && drawn_promise <= most) continue;
+      best = std::move(drawn);
+      most = drawn_promise;
+    }
+    if (!best) break;
+    ++work.postures;
+    hands::apply_couplings(scene_.hand.model(), best->configuration.q);
+    std::vector<int> pads;
+    for (const std::size_t part : grip.parts) pads.push_back(grips_.parts()[part].samples.pad);
+    Candidate candidate{&grip, search_.lay(pads, best->configuration)};
+    if (!is_good(candidate.posture)) continue;
+    candidate.strength = strength(candidate.posture.patches);
+    return candidate;
+  }
+  return std::nullopt;
+}
+
+/// Empty once the work of an attempt is done.
+std::optional<ReachSides::Proposal> ReachSides::proposal(const Grip& grip, base::Random& random,
+                                                         Work& work) const {
+  while (work.pairs < kMostPairs) {
+    ++work.pairs;
+    std::optional<Proposal> proposal =
+        grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
+    if (!proposal || !is_from_approach(proposal->configuration)) continue;
+    for (const std::size_t part : grip.parts) {
+      if (!proposal->patches[part]) complete(part, *proposal);
+    }
+    return proposal;
+  }
+  return std::nullopt;
+}
+
+bool ReachSides::is_from_approach(const hands::HandConfiguration& configuration) const {
+  const Vector3d palm = configuration.X_OH.linear() * scene_.hand.model().palm.direction_H;
+  return hands::angle_from_approach(palm, scene_.options.approach_O) <=
+         scene_.options.approach_angle;
+}
+
+/// How strong the grasp would be, at most, were the parts where they are proposed to be; less what
+/// placing them there costs. No grasp without a stable pair promises anything.
+double ReachSides::promise(const Grip& grip, const Proposal& proposal) const {
+  std::vector<std::int32_t> patches;
+  for (const std::size_t part : grip.parts) patches.push_back(*proposal.patches[part]);
+  if (!has_stable_pair(patches)) return -std::numeric_limits<double>::infinity();
+  return strength_bound(contacts_on(patches)) - kStrengthPerCost * proposal.largest_cost;
+}
+
+bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const {
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (rules_.is_stable_pair(point_of(patches[j]), point_of(patches[i]))) return true;
+    }
+  }
+  return false;
+}
+
+double ReachSides::strength_bound(const std::vector<contact::Contact>& contacts) const {
+  contact::WrenchSpaceOptions options;
+  options.friction = scene_.options.squeeze_friction;
+  options.torque_scale = wrench_object_.largest_radius;
+  return weakest_load_.withstood(contact::contact_wrenches(
+      contacts, {.reference_point_O = scene_.object.mass.center_of_mass, .options = options}));
+}
+
+/// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
+std::optional<ReachSides::Proposal> ReachSides::pinch(const Grip& grip,
+                                                      base::Random& random) const {
+  const std::vector<PoolPoint>& pool = rules_.pool();
+  const HandGrips::Pinch& pinch = grips_.pinches()[grip.pinches[random.index(grip.pinches.size())]];
+  const Facing a_O = facing(pool[random.index(pool.size())]);
+  const Facing b_O = facing(pool[random.index(pool.size())]);
+  const Vector3d line = b_O.point - a_O.point;
+  if (!(line.norm() > 0.0) || line.norm() < rules_.options().min_separation) return std::nullopt;
+  const auto samples = pinch.table.draw(line.norm(), angle_between(a_O.normal, line),
+                                        angle_between(b_O.normal, -line), random);
+  if (!samples) return std::nullopt;
+  const std::optional<RigidTransform> X_OH =
+      aligned(facing(grips_.parts()[pinch.part_a].samples, samples->first),
+              facing(grips_.parts()[pinch.part_b].samples, samples->second), a_O, b_O, random);
+  if (!X_OH) return std::nullopt;
+  Proposal proposal = proposal_at(*X_OH);
+  set(pinch.part_a, samples->first, places_.at(a_O.point), proposal);
+  set(pinch.part_b, samples->second, places_.at(b_O.point), proposal);
+  return proposal;
+}
+
+/// The palm on a point of the pool, leaning a little, turned anyhow.
+ReachSides::Proposal ReachSides::palm_first(const Grip& grip, base::Random& random) const {
+  const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
+  const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
+  const Eigen::AngleAxisd roll(random.uniform(-std::numbers::pi, std::numbers::pi),
+                               point.inward_normal_O);
+  const double around = random.uniform(-std::numbers::pi, std::numbers::pi);
+  const double lean = random.uniform(0.0, kMostTilt);
+  const Vector3d across = point.inward_normal_O.unitOrthogonal();
+  const Eigen::AngleAxisd tilt(lean, Eigen::AngleAxisd(around, point.inward_normal_O) * across);
+  RigidTransform X_OH = RigidTransform::Identity();
+  X_OH.linear() = (tilt * roll).toRotationMatrix() *
+                  Eigen::Quaterniond::FromTwoVectors(palm.normals_H.col(0), point.inward_normal_O)
+                      .toRotationMatrix();
+  X_OH.translation() = point.point_O - X_OH.linear() * palm.points_H.col(0);
+  Proposal proposal = proposal_at(X_OH);
+  set(grip.parts.back(), 0, *point.patch, proposal);
+  return proposal;
+}
+
+ReachSides::Proposal ReachSides::proposal_at(const RigidTransform& X_OH) const {
+  const hands::HandModel& hand = scene_.hand.model();
+  Proposal proposal;
+  proposal.configuration = hands::open_configuration(hand);
+  proposal.configuration.X_OH = X_OH;
+  proposal.is_fixed.resize(hand.joints.size(), false);
+  proposal.patches.resize(grips_.parts().size());
+  return proposal;
+}
+
+void ReachSides::set(std::size_t part, std::int32_t sample, std::int32_t patch,
+                     Proposal& proposal) const {
+  const hands::PadSamples& samples = grips_.parts()[part].samples;
+  for (std::size_t j = 0; j < samples.joints.size(); ++j) {
+    proposal.configuration.q[samples.joints[j]] = samples.positions(static_cast<Index>(j), sample);
+    proposal.is_fixed[static_cast<std::size_t>(samples.joints[j])] = true;
+  }
+  proposal.patches[part] = patch;
+}
+
+/// Places a part by the sample that is nearest to the surface and leans least there.
+void ReachSides::complete(std::size_t part, Proposal& proposal) const {
+  const hands::PadSamples& samples = grips_.parts()[part].samples;
+  const RigidTransform& X_OH = proposal.configuration.X_OH;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;
+  std::int32_t best_patch = 0;
+  for (std::size_t from = 0; from < samples.size(); from += samples.range_size) {
+    bool fits = true;
+    for (std::size_t j = samples.joints.size() - samples.num_shared;
+         j < samples.joints.size() && fits; ++j) {
+      const int joint = samples.joints[j];
+      fits = !proposal.is_fixed[static_cast<std::size_t>(joint)] ||
+             proposal.configuration.q[joint] ==
+                 samples.positions(static_cast<Index>(j), static_cast<Index>(from));
+    }
+    if (!fits) continue;
+    for (std::size_t number = from; number < from + samples.range_size; ++number) {
+      const auto sample = static_cast<Index>(number);
+      const Vector3d point = X_OH * samples.points_H.col(sample);
+      const std::int32_t index = places_.at(point);
+      const geometry::SurfacePatch& patch = scene_.object.patches[index];
+      const double gap = (point - patch.centroid).norm();
+      if (gap >= least) continue;
+      const double cosine =
+          -(X_OH.linear() * samples.normals_H.col(sample)).dot(patch.outward_normal);
+      const double cost = gap + kLeanLever * std::acos(std::clamp(cosine, -1.0, 1.0));
+      if (cost >= least) continue;
+      least = cost;
+      best = number;
+      best_patch = index;
+    }
+  }
+  set(part, static_cast<std::int32_t>(best), best_patch, proposal);
+  proposal.largest_cost = std::max(proposal.largest_cost, least);
+}
+
+bool ReachSides::is_good(const SurfacePosture& posture) const {
+  if (posture.largest_gap > kMostGap || posture.largest_lean > kMostLean ||
+      posture.largest_depth > kMostDepth) {
+    return false;
+  }
+  if (!is_from_approach(posture.configuration)) return false;
+  for (std::size_t i = 0; i < posture.patches.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (rules_.distance(point_of(posture.patches[i]), point_of(posture.patches[j])) <
+          rules_.options().min_separation) {
+        return false;
+      }
+    }
+  }
+  return has_stable_pair(posture.patches) && is_clear_of_surroundings(posture) &&
+         clearance_.is_clear_of_itself(posture.X_OL);
+}
+
+bool ReachSides::is_clear_of_surroundings(const SurfacePosture& posture) const {
+  if (scene_.surroundings.surroundings().is_empty()) return true;
+  for (std::size_t link = 0; link < posture.X_OL.size(); ++link) {
+    const auto number = static_cast<int>(link);
+    if (scene_.surroundings.touches(scene_.hand.collision(), number, posture.X_OL[link])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::int32_t ReachSides::point_of(std::int32_t patch) const {
+  return pool_of_patch_[static_cast<std::size_t>(patch)];
+}
+
+std::vector<contact::Contact> ReachSides::contacts_on(
+    const std::vector<std::int32_t>& patches) const {
+  std::vector<contact::Contact> contacts;
+  for (const std::int32_t patch : patches) {
+    contact::Contact contact;
+    contact.point_O = scene_.object.patches[patch].centroid;
+    contact.inward_normal_O = -scene_.object.patches[patch].outward_normal;
+    contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+TargetSide ReachSides::side_of(const Candidate& candidate) const {
+  const hands::HandModel& hand = scene_.hand.model();
+  std::vector<std::int32_t> points;
+  for (const std::int32_t patch : candidate.posture.patches) {
+    points.push_back(point_of(patch));
+  }
+  TargetSide side;
+  side.targets = rules_.as_targets(points, std::nullopt, 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    TargetContact& target = side.targets.contacts[i];
+    target.finger = grips_.parts()[candidate.grip->parts[i]].finger;
+    target.is_palm = !target.finger;
+  }
+  side.goal = candidate.posture.configuration;
+  side.is_at_goal = true;
+  side.misfit = -candidate.strength;
+  side.placement.direction_O = (side.goal->X_OH.linear() * hand.palm.direction_H).normalized();
+  side.do_fingers_cross =
+      scene_.options.fitting.guard_self && do_fingers_cross(scene_.hand, *side.goal);
+  return side;
+}
+
+}  // namespace graspfit::grasp::internal

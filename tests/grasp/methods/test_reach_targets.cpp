@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grasp/planner_promises.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_io.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "support/catch.hpp"
+
+namespace test_reach_targets {
+
+namespace {
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+
+PlannerOptions reach_options(GraspStyle style, int max_attempts) {
+  PlannerOptions options;
+  options.targets.search = TargetSearch::Reach;
+  options.style = style;
+  options.max_attempts = max_attempts;
+  options.count = max_attempts;
+  options.weak.reset();
+  return options;
+}
+
+/// Distances of the contacts of requested parts from the targets of these parts [m].
+std::vector<double> misses(const Grasp& grasp) {
+  std::vector<double> distances;
+  for (const TargetContact& target : grasp.targets.contacts) {
+    for (const contact::Contact& contact : grasp.contacts) {
+      if (!contact.is_target || !is_for_part_of(target, contact)) continue;
+      distances.push_back((contact.point_O - target.point_O).norm());
+    }
+  }
+  return distances;
+}
+
+}  // namespace
+
+TEST_CASE("Hands meet the targets that are chosen by their reach, and touch without penetrating",
+          "[grasp][reach_targets]") {
+  const geometry::TriangleMesh bottle = geometry::capsule(0.035, 0.10);
+  for (const char* name : {"barrett", "human_hand"}) {
+    CAPTURE(name);
+    const hands::HandModel hand = hands::find_hand(name);
+    const PlannerOptions options = reach_options(GraspStyle::Auto, 12);
+    const ObjectModel object = prepare_object(bottle, hand, options);
+    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+    REQUIRE(result.grasps.size() >= 4);
+    std::vector<double> all;
+    for (const Grasp& grasp : result.grasps) {
+      CHECK(grasp.is_valid());
+      CHECK(grasp.has_all_contacts);
+      CHECK_FALSE(grasp.penetration.is_any());
+      // Which parts touch is each grasp's own matter.
+      CHECK(grasp.targets.contacts.size() >= 3);
+      const std::vector<double> own = misses(grasp);
+      CHECK(own.size() == grasp.targets.contacts.size());
+      all.insert(all.end(), own.begin(), own.end());
+      for (const contact::Contact& contact : grasp.contacts) {
+        if (contact.is_target) CHECK(contact.gap <= options.refinement.largest_gap);
+      }
+    }
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2),
+                     all.end());
+    CHECK(all[all.size() / 2] <= 0.010);
+  }
+}
+
+TEST_CASE("Targets by reach are the same for any number of threads", "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const PlannerOptions options = reach_options(GraspStyle::Auto, 6);
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const auto text_of = [&](int num_threads) {
+    return testing::all_fields(
+        plan_grasps(object, hand, options, {}, {.num_threads = num_threads}));
+  };
+  CHECK(text_of(1) == text_of(2));
+}
+
+TEST_CASE("The palm of targets by reach comes from where it is asked to, and keeps off a table",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = reach_options(GraspStyle::Precision, 12);
+  options.approach_O = Eigen::Vector3d(0.0, 0.0, -1.0);
+  options.approach_angle = 0.9;
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  Surroundings surroundings;
+  surroundings.table_z_O = geometry::bounding_box(object.mesh()).min().z() - 1e-3;
+  const PlannerResult result = plan_grasps(object, hand, options, surroundings, {.num_threads = 1});
+  REQUIRE_FALSE(result.grasps.empty());
+  for (const Grasp& grasp : result.grasps) {
+    const Eigen::Vector3d palm = grasp.configuration.X_OH.linear() * hand.palm.direction_H;
+    CHECK(std::acos(-palm.z()) <= options.approach_angle + 1e-12);
+    CHECK(grasp.targets.contacts.size() == 3);
+    CHECK(grasp.is_valid());
+  }
+}
+
+TEST_CASE("A grip is chosen among targets by reach only", "[grasp][reach_targets]") {
+  PlannerOptions options;
+  options.style = GraspStyle::Auto;
+  CHECK_THROWS_WITH(options.validate(),
+                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("reach"));
+  options.targets.search = TargetSearch::Reach;
+  CHECK_NOTHROW(options.validate());
+}
+
+TEST_CASE("A file of grasps whose parts differ is measured again part by part",
+          "[grasp][reach_targets][grasp_io]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const PlannerOptions options = reach_options(GraspStyle::Auto, 8);
+  const geometry::TriangleMesh mesh = geometry::capsule(0.035, 0.10);
+  const ObjectModel object = prepare_object(mesh, hand, options);
+  const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+  const auto has_palm = [](const Grasp& grasp) { return grasp.targets.contacts.back().is_palm; };
+  REQUIRE(std::any_of(result.grasps.begin(), result.grasps.end(), has_palm));
+  GraspFile file;
+  file.hand = hand;
+  file.options = options;
+  for (const int finger : requested_parts(hand, options).fingers) {
+    file.fingers.push_back(hand.fingers[finger].name);
+  }
+  file.clip_thickness = clip_thickness(options, object.grid.lattice.voxel_size);
+  file.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);
+  const RecordedScene scene(file, mesh, {});
+  for (const Grasp& grasp : result.grasps) {
+    const Grasp again = scene.measure(grasp);
+    CHECK(again.has_all_contacts);
+    REQUIRE(again.contacts.size() == grasp.contacts.size());
+    for (std::size_t i = 0; i < again.contacts.size(); ++i) {
+      CHECK(again.contacts[i].is_target == grasp.contacts[i].is_target);
+    }
+  }
+}
+
+}  // namespace test_reach_targets

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include "graspfit/base/errors.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "graspfit/hands/pad_samples.hpp"
+#include "support/catch.hpp"
+
+namespace test_pad_samples {
+
+using namespace graspfit;
+using hands::HandModel;
+using hands::PadSamples;
+
+TEST_CASE("Samples are where forward kinematics puts the pad", "[hands][pad_samples]") {
+  for (const char* name : {"barrett", "human_hand", "parallel_gripper"}) {
+    CAPTURE(name);
+    const HandModel hand = hands::find_hand(name);
+    std::vector<int> pads;
+    for (std::size_t pad = 0; pad < hand.pads.size(); ++pad) pads.push_back(static_cast<int>(pad));
+    for (const PadSamples& samples : hands::pad_samples(hand, pads, 500)) {
+      CAPTURE(samples.pad);
+      CHECK(samples.size() >= 1);
+      CHECK(samples.size() <= 500);
+      for (Eigen::Index sample = 0; sample < samples.points_H.cols(); sample += 7) {
+        hands::HandConfiguration configuration = hands::open_configuration(hand);
+        for (std::size_t j = 0; j < samples.joints.size(); ++j) {
+          configuration.q[samples.joints[j]] =
+              samples.positions(static_cast<Eigen::Index>(j), sample);
+        }
+        hands::apply_couplings(hand, configuration.q);
+        const auto X_HL = hands::forward_kinematics(hand, configuration);
+        CHECK((hands::pad_contact_point(hand, samples.pad, X_HL) - samples.points_H.col(sample))
+                  .norm() < 1e-12);
+        CHECK((hands::pad_pose(hand, samples.pad, X_HL).linear().col(2) -
+               samples.normals_H.col(sample))
+                  .norm() < 1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("Samples that agree in shared joints are a range, of the same positions for all pads",
+          "[hands][pad_samples]") {
+  const HandModel hand = hands::find_hand("barrett");
+  const std::vector<int> pads = {*hand.fingers[0].tip_pad, *hand.fingers[1].tip_pad,
+                                 *hand.fingers[2].tip_pad};
+  const std::vector<PadSamples> all = hands::pad_samples(hand, pads, 400);
+  const int spread = hand.joint_index("finger_1_spread");
+  std::vector<std::set<double>> positions;
+  for (const PadSamples& samples : all) {
+    const auto found = std::find(samples.joints.begin(), samples.joints.end(), spread);
+    if (found == samples.joints.end()) {
+      CHECK(samples.num_shared == 0);
+      continue;
+    }
+    REQUIRE(samples.num_shared == 1);
+    REQUIRE(found == samples.joints.end() - 1);
+    const Eigen::VectorXd row = samples.positions.bottomRows(1).transpose();
+    CHECK(std::is_sorted(row.begin(), row.end()));
+    positions.emplace_back(row.begin(), row.end());
+  }
+  REQUIRE(positions.size() == 2);
+  CHECK(positions[0] == positions[1]);
+  CHECK(positions[0].size() == 20);  // 20 x 20 samples of two joints
+  CHECK_THROWS_AS(hands::pad_samples(hand, pads, 0), base::InvalidInput);
+}
+
+}  // namespace test_pad_samples
