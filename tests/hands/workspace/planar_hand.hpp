@@ -18,10 +18,10 @@ inline hands::RigidTransform at(const Eigen::Vector3d& point) {
   return X;
 }
 
-/// Adds a link that turns about −y (x toward z for growing q) or, prismatic, moves along x.
-inline int add_link(hands::HandModel& hand, int parent, const hands::RigidTransform& X_PJ,
-                    double lower, double upper,
-                    hands::JointType type = hands::JointType::Revolute) {
+/// Adds a link that turns about −y (x toward z for growing q) or, prismatic, moves along x. Poses
+/// are taken by value, since they may be those of a part of the hand, whose lists grow.
+inline int add_link(hands::HandModel& hand, int parent, hands::RigidTransform X_PJ, double lower,
+                    double upper, hands::JointType type = hands::JointType::Revolute) {
   const int link = static_cast<int>(hand.links.size());
   const int joint = static_cast<int>(hand.joints.size());
   hands::Joint& j = hand.joints.emplace_back();
@@ -43,7 +43,7 @@ inline int add_link(hands::HandModel& hand, int parent, const hands::RigidTransf
 }
 
 /// Adds a finger of the last `num_links` links whose pad has pose `X_LC` on the last.
-inline void add_finger(hands::HandModel& hand, int num_links, const hands::RigidTransform& X_LC) {
+inline void add_finger(hands::HandModel& hand, int num_links, hands::RigidTransform X_LC) {
   const int index = static_cast<int>(hand.fingers.size());
   hands::Finger& finger = hand.fingers.emplace_back();
   finger.name = "finger " + std::to_string(index);
