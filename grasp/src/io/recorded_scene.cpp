@@ -28,7 +28,8 @@ Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) cons
 }
 
 Grasp RecordedScene::measure(const Grasp& recorded) const {
-  const bool is_by_grasp = file_.options.style == GraspStyle::Auto;
+  const bool is_by_grasp =
+      file_.options.style == GraspStyle::Auto && !recorded.targets.contacts.empty();
   return measure(recorded.configuration, is_by_grasp ? parts_of(recorded.targets) : requested_);
 }
 
