@@ -283,7 +283,12 @@ def check_poses(X_OL, stored, found, where):
 def check_requested(scene, grasp, contacts, quality, found):
     """Compares what follows from contacts and penetration: gaps of requested parts, usable,
     valid."""
-    requested = set(scene.used["fingers"]) | ({"palm"} if scene.used["palm"] else set())
+    targets = grasp["targets"]["contacts"]
+    if scene.options["style"] == "auto" and targets:
+        # Which parts are to touch is each grasp's own matter.
+        requested = {target.get("finger", "palm") for target in targets}
+    else:
+        requested = set(scene.used["fingers"]) | ({"palm"} if scene.used["palm"] else set())
     requested_pads = {c["pad"] for c in grasp["contacts"] if c["target"]}
     gaps = [contacts[name].gap for name in requested_pads]
     found.equal("gap", "largest_contact_gap_m", max(c.gap for c in contacts.values()),

@@ -70,6 +70,13 @@ std::string target_advice(const std::string& failure, const geometry::TriangleMe
            "; --mesh-unit or --longest gives the object another size, a lower --score-threshold "
            "or a larger --theta-max-deg more places to choose from";
   }
+  if (failure == "no further" && options.targets.search == grasp::TargetSearch::Reach) {
+    return "no posture was found in which the hand's pads lie on places of the object, links "
+           "stay out of it and the palm comes from where it may: " +
+           sizes_text(object, hand, options) +
+           "; more --max-attempts, --style auto, a wider --approach-angle-deg or a lower "
+           "--score-threshold";
+  }
   if (failure == "no further") {
     return "two places are found, but none for a further finger beside them: fewer --contacts, or "
            "a larger --edge-tolerance or --centroid-limit";

@@ -83,8 +83,8 @@ PlanningSettings settings_of(const sweep::Cell& cell) {
   if (!grasp::planning_methods().at(options.planner).has_targets) {
     throw sweep::SettingError("planner", "must be one whose hands are fitted to targets");
   }
-  if (options.targets.search == grasp::TargetSearch::Ranked) {
-    throw sweep::SettingError("target-search", "must not be ranked: its sets are no sample");
+  if (options.targets.search != grasp::TargetSearch::Random) {
+    throw sweep::SettingError("target-search", "must be random: other sets are no sample");
   }
   if (options.target_draws < 2) {
     throw sweep::SettingError("target-draws", "must be at least 2: else not all have a posture");

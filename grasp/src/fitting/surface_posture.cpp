@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
-#include <set>
+#include <tuple>
 #include <utility>
 
 #include "graspfit/hands/contact_pad.hpp"
@@ -27,43 +28,28 @@ constexpr int kMostEvaluations = 20;
 constexpr int kHopelessAfter = 6;
 constexpr double kHopelessGap = 0.012;  // [m]
 constexpr double kLongestStep = 0.02;   // of every entry of a motion [m]
+constexpr double kLongestReach = 0.1;   // of every entry before a step is shortened [m]
 constexpr double kLeastGain = 0.02;     // of the sum of squares, by a step that is worth another
 // Against 1 for a gap: how far a pad leans, as a length; a link's depth.
 constexpr double kLeanLever = 0.002;  // [m/rad]
-constexpr double kDepthWeight = 1.0;
-// By so much pads and links are kept off: patches are rounder than the surface. [voxels]
+constexpr double kDepthWeight = 2.0;
+// By so much pads and links are kept off: patches are rounder than the surface, and refinement
+// closes gaps more often than it frees a hand that is in the object. [voxels]
 constexpr double kMargin = 0.25;
+constexpr double kDepthMargin = 0.5;
 // A point of a pad that is so much higher than another counts 1/e as much as where it touches.
 constexpr double kContactDepth = 0.25;  // [voxels]
 constexpr double kPointSpacing = 2.0;   // of points that show how deep a link is [voxels]
+constexpr double kGroupSpacing = 8.0;   // of groups of them [voxels]
+constexpr double kSelfMargin = 0.001;   // between links of different fingers [m]
 constexpr double kFirstDamping = 0.01;
 constexpr double kMostDamping = 100.0;
 
-}  // namespace
-
-/// Rows w (r · δ − value) whose squares are summed, as normal equations.
-class SurfaceSearch::NormalEquations {
- public:
-  explicit NormalEquations(Index size) : a_(MatrixXd::Zero(size, size)), b_(VectorXd::Zero(size)) {}
-  void want(const RowVectorXd& row, double value, double weight) {
-    a_.noalias() += (weight * weight) * row.transpose() * row;
-    b_.noalias() += (weight * weight * value) * row.transpose();
-    sum_ += weight * weight * value * value;
-  }
-  double sum() const { return sum_; }
-  VectorXd solution(double damping) const {
-    MatrixXd damped = a_;
-    damped.diagonal().array() += damping;
-    return damped.ldlt().solve(b_);
-  }
-
- private:
-  MatrixXd a_;
-  VectorXd b_;
-  double sum_ = 0.0;
-};
-
-namespace {
+/// The cell of a lattice of this spacing, in whole numbers.
+std::array<double, 3> cell_at(const Vector3d& point, double spacing) {
+  const Vector3d cell = (point / spacing).array().floor();
+  return {cell[0], cell[1], cell[2]};
+}
 
 /// From a point of a pad to the patch: along its normal, and across it as far as the point is
 /// beyond the patch's voxel.
@@ -78,13 +64,91 @@ Vector3d way_to_patch(const Vector3d& point_O, const geometry::SurfacePatch& pat
 
 }  // namespace
 
+/// What a motion should do: move a point of a link, perhaps against another link, along a
+/// direction, or turn a link about it, by a value. The squares of weight · (what it does − value)
+/// are summed.
+struct SurfaceSearch::Wish {
+  int link = 0;
+  Vector3d point_O = Vector3d::Zero();
+  Vector3d direction_O = Vector3d::Zero();
+  double value = 0.0;
+  double weight = 1.0;
+  bool is_turn = false;
+  std::optional<int> against = {};
+};
+
+struct SurfaceSearch::Evaluated {
+  SurfacePosture posture;
+  Vector3d pivot_O = Vector3d::Zero();  ///< Of turns of the palm.
+  std::vector<Wish> wishes;
+  double sum = 0.0;  ///< Of the squares, at rest.
+};
+
+/// The sum of squares as a function of the motion.
+class SurfaceSearch::NormalEquations {
+ public:
+  explicit NormalEquations(Index size) : a_(size, size), b_(size) {}
+
+  void set(const std::vector<Wish>& wishes, const HandMotion& motion) {
+    a_.setZero();
+    b_.setZero();
+    for (const Wish& wish : wishes) {
+      RowVectorXd row = wish.is_turn ? motion.turn_row(wish.link, wish.direction_O)
+                                     : motion.row(wish.link, wish.point_O, wish.direction_O);
+      if (wish.against) row -= motion.row(*wish.against, wish.point_O, wish.direction_O);
+      entries_.clear();
+      for (Index i = 0; i < row.size(); ++i) {
+        if (row[i] != 0.0) entries_.push_back(i);
+      }
+      const double squared_weight = wish.weight * wish.weight;
+      for (const Index i : entries_) {
+        b_[i] += squared_weight * wish.value * row[i];
+        for (const Index j : entries_) a_(i, j) += squared_weight * row[i] * row[j];
+      }
+    }
+  }
+
+  /// The motion of least squares, damped, within bounds: what would leave them stays at its bound.
+  VectorXd solution(double damping, const HandMotion::Bounds& bounds) const {
+    MatrixXd damped = a_;
+    damped.diagonal().array() += damping;
+    VectorXd step = damped.ldlt().solve(b_);
+    const auto is_beyond = [&](Index i) {
+      return step[i] < bounds.lower[i] || step[i] > bounds.upper[i];
+    };
+    VectorXd wanted = b_;
+    bool is_bounded = false;
+    for (Index i = 0; i < step.size(); ++i) {
+      if (!is_beyond(i)) continue;
+      is_bounded = true;
+      const double value = std::clamp(step[i], bounds.lower[i], bounds.upper[i]);
+      wanted -= value * damped.col(i);
+      damped.row(i).setZero();
+      damped.col(i).setZero();
+      damped(i, i) = 1.0;
+      wanted[i] = value;
+    }
+    if (is_bounded) step = damped.ldlt().solve(wanted);
+    return step.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  }
+
+ private:
+  MatrixXd a_;
+  VectorXd b_;
+  std::vector<Index> entries_;  ///< Of the row at hand that are not zero.
+};
+
 SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
                              const NearestPatches& nearest, const NearestPatches& places)
     : hand_(hand),
       object_(object),
       nearest_(nearest),
       places_(places),
-      motion_(hand.model(), true, true) {
+      motion_(hand.model(), true, true, HandMotion::Breakaway::Beyond) {
+  for (const geometry::SurfacePatch& patch : object.patches) {
+    planes_.push_back({patch.outward_normal.cast<float>(),
+                       static_cast<float>(patch.outward_normal.dot(patch.centroid))});
+  }
   for (const hands::ContactPad& pad : hand.model().pads) {
     std::vector<Vector3d>& points = pad_points_L_.emplace_back();
     const auto add = [&](const Vector3d& point_C) { points.push_back(pad.X_LC * point_C); };
@@ -98,42 +162,115 @@ SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
     }
     for (const Vector3d& point : pad.surface) add(point);
   }
-  const double spacing = kPointSpacing * object.grid.lattice.voxel_size;
+  const double voxel_size = object.grid.lattice.voxel_size;
   for (std::size_t link = 0; link < hand.model().links.size(); ++link) {
-    std::vector<Vector3d>& points = link_points_L_.emplace_back();
-    std::set<std::array<double, 3>> taken;  // cells, in whole numbers
-    for (const Vector3d& point : hand.samples(static_cast<int>(link)).points_L) {
-      const Vector3d cell = (point / spacing).array().floor();
-      if (taken.insert({cell[0], cell[1], cell[2]}).second) points.push_back(point);
+    groups_.push_back(groups_of(hand.samples(static_cast<int>(link)).points_L, voxel_size));
+  }
+  find_neighbors();
+}
+
+/// Pairs of links of different fingers, but for those whose boxes are too coarse to tell whether
+/// they are apart.
+void SurfaceSearch::find_neighbors() {
+  const hands::HandModel& model = hand_.model();
+  const std::vector<RigidTransform> X_OL =
+      hands::forward_kinematics(model, hands::open_configuration(model));
+  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+    for (std::size_t g = 0; g < f; ++g) {
+      for (const int a : model.fingers[f].links) {
+        for (const int b : model.fingers[g].links) {
+          const bool both = hand_.collision().link_solid(a) && hand_.collision().link_solid(b);
+          if (!both || model.is_excluded(a, b)) continue;
+          if (!overlap(a, b, X_OL)) neighbors_.emplace_back(a, b);
+        }
+      }
     }
   }
 }
 
-/// Of a link's points in full voxels the one deepest below its patch.
+/// The point of one of two links that is deepest in the other's box, grown a little.
+std::optional<SurfaceSearch::Wish> SurfaceSearch::overlap(
+    int a, int b, const std::vector<RigidTransform>& X_OL) const {
+  std::optional<Wish> deepest;
+  const auto seek = [&](int inner, int outer) {
+    Eigen::AlignedBox3d box = hand_.collision().link_solid(outer)->box();
+    box.min().array() -= kSelfMargin;
+    box.max().array() += kSelfMargin;
+    const RigidTransform X = X_OL[outer].inverse() * X_OL[inner];
+    for (const PointGroup& group : groups_[static_cast<std::size_t>(inner)]) {
+      if (box.exteriorDistance(Vector3d(X * group.center_L)) > group.radius) continue;
+      for (const Vector3d& point_L : group.points_L) {
+        const Vector3d point = X * point_L;
+        const Vector3d above = point - box.min();
+        const Vector3d below = box.max() - point;
+        Index low = 0;
+        Index high = 0;
+        const double to_min = above.minCoeff(&low);
+        const double to_max = below.minCoeff(&high);
+        const double depth = std::min(to_min, to_max);
+        if (depth <= (deepest ? deepest->value : 0.0)) continue;
+        const Vector3d out =
+            to_min < to_max ? Vector3d(-Vector3d::Unit(low)) : Vector3d::Unit(high);
+        deepest =
+            Wish{inner, X_OL[outer] * point, X_OL[outer].linear() * out, depth, 1.0, false, outer};
+      }
+    }
+  };
+  const geometry::MeshQuery& solid_a = *hand_.collision().link_solid(a);
+  const geometry::MeshQuery& solid_b = *hand_.collision().link_solid(b);
+  const double apart = (X_OL[a] * solid_a.box().center() - X_OL[b] * solid_b.box().center()).norm();
+  const double reach = 0.5 * (solid_a.box().diagonal().norm() + solid_b.box().diagonal().norm());
+  if (apart > reach + kSelfMargin) return std::nullopt;
+  seek(a, b);
+  seek(b, a);
+  return deepest;
+}
+
+/// One point of every cell, in groups of the cells of a coarser lattice.
+std::vector<SurfaceSearch::PointGroup> SurfaceSearch::groups_of(
+    const std::vector<Vector3d>& points_L, double voxel_size) {
+  std::map<std::array<double, 3>, std::map<std::array<double, 3>, Vector3d>> cells;
+  for (const Vector3d& point : points_L) {
+    cells[cell_at(point, kGroupSpacing * voxel_size)].emplace(
+        cell_at(point, kPointSpacing * voxel_size), point);
+  }
+  std::vector<PointGroup> groups;
+  for (const auto& [number, points] : cells) {
+    PointGroup& group = groups.emplace_back();
+    Eigen::AlignedBox3d box;
+    for (const auto& [cell, point] : points) {
+      group.points_L.push_back(point);
+      box.extend(point);
+    }
+    group.center_L = box.center();
+    group.radius = 0.5 * box.diagonal().norm();
+  }
+  return groups;
+}
+
+double SurfaceSearch::height(const Vector3d& point_O) const {
+  const Plane& plane = planes_[static_cast<std::size_t>(nearest_.at(point_O))];
+  return static_cast<double>(plane.normal.dot(point_O.cast<float>()) - plane.offset);
+}
+
+/// Of a link's points that are not in empty voxels the one deepest below its patch.
 SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link,
                                                       const RigidTransform& X_OL) const {
-  DeepPoint deepest;
-  const FittingHand::LinkSamples& samples = hand_.samples(static_cast<int>(link));
-  if (samples.balls.empty()) return deepest;
-  const FittingHand::Ball& ball = samples.balls.front();
-  const double voxel_size = object_.grid.lattice.voxel_size;
-  // The map's values change by at most √2 per voxel.
-  if (object_.distance.at(Vector3d(X_OL * ball.center_L)) >
-      std::numbers::sqrt2 * (ball.radius / voxel_size + std::numbers::sqrt3)) {
-    return deepest;
-  }
   const geometry::VoxelLattice& lattice = object_.grid.lattice;
-  const Vector3d upper = lattice.counts.cast<double>();
-  const double margin = kMargin * voxel_size;
-  for (const Vector3d& point_L : link_points_L_[link]) {
-    const Vector3d point = X_OL * point_L;
-    const Vector3d position = (point - lattice.origin) / voxel_size;
-    if (!(position.minCoeff() >= 0.0) || !(position.array() < upper.array()).all()) continue;
-    // Thin features have no full voxels.
-    if (object_.distance.at(Eigen::Vector3i(position.cast<int>())) > 0.0F) continue;
-    const geometry::SurfacePatch& patch = object_.patches[nearest_.at(point)];
-    const double depth = margin - patch.outward_normal.dot(point - patch.centroid);
-    if (depth > deepest.depth) deepest = {depth, point, patch.outward_normal};
+  const double voxels_per_meter = 1.0 / lattice.voxel_size;
+  DeepPoint deepest;
+  for (const PointGroup& group : groups_[link]) {
+    const double far = group.radius * voxels_per_meter + std::numbers::sqrt3;
+    if (object_.distance.at(Vector3d(X_OL * group.center_L)) > far) continue;
+    for (const Vector3d& point_L : group.points_L) {
+      const Vector3d point = X_OL * point_L;
+      if (object_.distance.at(point) > 0.0F) continue;
+      const double depth = -height(point);
+      if (depth > deepest.depth) deepest = {depth, point};
+    }
+  }
+  if (deepest.depth > -std::numeric_limits<double>::infinity()) {
+    deepest.outward_O = object_.patches[nearest_.at(deepest.point_O)].outward_normal;
   }
   return deepest;
 }
@@ -143,13 +280,9 @@ SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link,
 Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) const {
   const std::vector<Vector3d>& points_L = pad_points_L_[static_cast<std::size_t>(pad)];
   std::vector<double> heights;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vector3d& point_L : points_L) {
-    const Vector3d point = X_OL * point_L;
-    const geometry::SurfacePatch& patch = object_.patches[nearest_.at(point)];
-    heights.push_back(patch.outward_normal.dot(point - patch.centroid));
-    least = std::min(least, heights.back());
-  }
+  heights.reserve(points_L.size());
+  for (const Vector3d& point_L : points_L) heights.push_back(height(X_OL * point_L));
+  const double least = *std::min_element(heights.begin(), heights.end());
   const double unit = kContactDepth * object_.grid.lattice.voxel_size;
   Vector3d sum = Vector3d::Zero();
   double weights = 0.0;
@@ -163,85 +296,91 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
 
 SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
                                   const hands::HandConfiguration& start) const {
-  HandMotion motions[2] = {motion_, motion_};
-  HandMotion* motion = &motions[0];
-  HandMotion* trial_motion = &motions[1];
-  NormalEquations equations(motion->size());
-  SurfacePosture best = evaluated(pads, start, *motion, equations);
-  NormalEquations trial_equations = equations;
+  HandMotion motion = motion_;
+  NormalEquations equations(motion.size());
+  Evaluated best, trial;
+  const auto accept = [&] {
+    motion.set(best.posture.configuration, best.posture.X_OL, best.pivot_O);
+    equations.set(best.wishes, motion);
+  };
+  evaluate(pads, start, best);
+  accept();
   double damping = kFirstDamping;
   for (int i = 1; i < kMostEvaluations && damping < kMostDamping; ++i) {
-    VectorXd step = equations.solution(damping);
+    VectorXd step = equations.solution(damping, motion.bounds(kLongestReach));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
-    const HandMotion::Bounds bounds = motion->bounds(kLongestStep);
-    SurfacePosture trial =
-        evaluated(pads, motion->moved(step.cwiseMax(bounds.lower).cwiseMin(bounds.upper)),
-                  *trial_motion, trial_equations);
-    if (!(trial_equations.sum() < equations.sum())) {
+    evaluate(pads, motion.moved(step), trial);
+    if (!(trial.sum < best.sum)) {
       damping *= 8.0;
       continue;
     }
-    if (i > kHopelessAfter && trial.largest_gap > kHopelessGap) break;
-    const bool is_done = trial_equations.sum() > (1.0 - kLeastGain) * equations.sum();
-    std::swap(motion, trial_motion);
-    std::swap(equations, trial_equations);
-    best = std::move(trial);
+    if (i > kHopelessAfter && trial.posture.largest_gap > kHopelessGap) break;
+    const bool is_done = trial.sum > (1.0 - kLeastGain) * best.sum;
+    std::swap(best, trial);
     if (is_done) break;
+    accept();
     damping = std::max(0.25 * damping, 1e-4);
   }
-  return best;
+  return std::move(best.posture);
 }
 
-/// The posture of a configuration; sets motion and equations for a step from there.
-SurfacePosture SurfaceSearch::evaluated(const std::vector<int>& pads,
-                                        const hands::HandConfiguration& configuration,
-                                        HandMotion& motion, NormalEquations& equations) const {
+/// The posture of a configuration, and what a step from there should do.
+void SurfaceSearch::evaluate(const std::vector<int>& pads,
+                             const hands::HandConfiguration& configuration,
+                             Evaluated& result) const {
   const hands::HandModel& model = hand_.model();
   const double voxel_size = object_.grid.lattice.voxel_size;
-  SurfacePosture posture;
+  const double margin = kMargin * voxel_size;
+  SurfacePosture& posture = result.posture;
   posture.configuration = configuration;
   posture.X_OL = hands::forward_kinematics(model, configuration);
-  std::vector<Vector3d> points;
-  Vector3d pivot = Vector3d::Zero();
+  posture.patches.clear();
+  posture.largest_gap = posture.largest_lean = posture.largest_depth = 0.0;
+  result.wishes.clear();
+  result.pivot_O = Vector3d::Zero();
   for (const int pad : pads) {
-    points.push_back(touching_point(pad, posture.X_OL[model.pads[pad].link]));
-    pivot += points.back() / static_cast<double>(pads.size());
-  }
-  motion.set(configuration, posture.X_OL, pivot);
-  equations = NormalEquations(motion.size());
-  for (std::size_t i = 0; i < pads.size(); ++i) {
-    const int link = model.pads[pads[i]].link;
-    const std::int32_t number = places_.at(points[i]);
+    const int link = model.pads[pad].link;
+    const Vector3d point = touching_point(pad, posture.X_OL[link]);
+    result.pivot_O += point / static_cast<double>(pads.size());
+    const std::int32_t number = places_.at(point);
     const geometry::SurfacePatch& patch = object_.patches[number];
     posture.patches.push_back(number);
-    const Vector3d way = way_to_patch(points[i], patch, voxel_size);
-    const Vector3d normal = hands::pad_pose(model, pads[i], posture.X_OL).linear().col(2);
+    const Vector3d way = way_to_patch(point, patch, voxel_size);
+    const Vector3d normal = hands::pad_pose(model, pad, posture.X_OL).linear().col(2);
     const Vector3d inward = -patch.outward_normal;
     const Vector3d cross = normal.cross(inward);
     const double lean = std::atan2(cross.norm(), normal.dot(inward));
-    posture.largest_gap = std::max(posture.largest_gap, way.norm());
     posture.largest_lean = std::max(posture.largest_lean, lean);
+    // Turns that swing the normal; about itself the pad is free to turn.
     const Vector3d turn = cross.norm() > 0.0 ? Vector3d(lean / cross.norm() * cross) : cross;
-    for (int axis = 0; axis < 3; ++axis) {
-      equations.want(motion.turn_row(link, Vector3d::Unit(axis)), turn[axis], kLeanLever);
+    const Vector3d u = normal.unitOrthogonal();
+    for (const Vector3d& axis : {u, Vector3d(normal.cross(u))}) {
+      result.wishes.push_back({link, point, axis, turn.dot(axis), kLeanLever, true});
     }
     // Across the patch the pad is free to move.
-    const double along = patch.outward_normal.dot(way) + kMargin * voxel_size;
-    equations.want(motion.row(link, points[i], patch.outward_normal), along, 1.0);
-    const Vector3d across = way - patch.outward_normal.dot(way) * patch.outward_normal;
-    if (const double beyond = across.norm(); beyond > 0.0) {
-      equations.want(motion.row(link, points[i], across / beyond), beyond, 1.0);
-    }
+    const double along = patch.outward_normal.dot(way);
+    result.wishes.push_back({link, point, patch.outward_normal, along + margin});
+    const Vector3d across = way - along * patch.outward_normal;
+    const double beyond = across.norm();
+    if (beyond > 0.0) result.wishes.push_back({link, point, across / beyond, beyond});
+    posture.largest_gap = std::max(posture.largest_gap, std::hypot(along + margin, beyond));
   }
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const DeepPoint deep = deepest_point(link, posture.X_OL[link]);
-    if (!(deep.depth > 0.0)) continue;
     posture.largest_depth = std::max(posture.largest_depth, deep.depth);
-    equations.want(motion.row(static_cast<int>(link), deep.point_O, deep.outward_O), deep.depth,
-                   kDepthWeight);
+    if (deep.depth + kDepthMargin * voxel_size > 0.0) {
+      result.wishes.push_back({static_cast<int>(link), deep.point_O, deep.outward_O,
+                               deep.depth + kDepthMargin * voxel_size, kDepthWeight});
+    }
   }
-  return posture;
+  for (const auto& [a, b] : neighbors_) {
+    if (std::optional<Wish> apart = overlap(a, b, posture.X_OL)) result.wishes.push_back(*apart);
+  }
+  result.sum = 0.0;
+  for (const Wish& wish : result.wishes) {
+    result.sum += wish.weight * wish.weight * wish.value * wish.value;
+  }
 }
 
 }  // namespace graspfit::grasp::internal

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "graspfit/grasp/fitting_hand.hpp"
@@ -14,10 +17,10 @@ namespace graspfit::grasp::internal {
 struct SurfacePosture {
   hands::HandConfiguration configuration;
   std::vector<hands::RigidTransform> X_OL;
-  std::vector<std::int32_t> patches;  ///< Per pad, the nearest one to its contact point.
+  std::vector<std::int32_t> patches;  ///< Per pad, the place nearest to where it touches.
   double largest_gap = 0.0;           ///< Of a pad's contact point from its patch [m].
   double largest_lean = 0.0;          ///< Of a pad against the normal of its patch [rad].
-  double largest_depth = 0.0;         ///< Of a link's point below its patch [m].
+  double largest_depth = 0.0;         ///< Of a link's point below its patch, 0 if none is [m].
 };
 
 /// Lays the contact points of `pads` onto the surface near where they are at `start`, and the pads
@@ -33,25 +36,44 @@ class SurfaceSearch {
   SurfacePosture lay(const std::vector<int>& pads, const hands::HandConfiguration& start) const;
 
  private:
+  struct Wish;
+  struct Evaluated;
   class NormalEquations;
+  /// n · p = offset, of a patch.
+  struct Plane {
+    Eigen::Vector3f normal;
+    float offset;
+  };
+  /// Points of a link that lie near each other.
+  struct PointGroup {
+    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();
+    double radius = 0.0;  ///< [m]
+    std::vector<Eigen::Vector3d> points_L;
+  };
   struct DeepPoint {
-    double depth = 0.0;  ///< [m]
+    double depth = -std::numeric_limits<double>::infinity();  ///< [m]
     Eigen::Vector3d point_O = Eigen::Vector3d::Zero();
     Eigen::Vector3d outward_O = Eigen::Vector3d::Zero();
   };
+  static std::vector<PointGroup> groups_of(const std::vector<Eigen::Vector3d>& points_L,
+                                           double voxel_size);
+  void find_neighbors();
+  std::optional<Wish> overlap(int a, int b, const std::vector<hands::RigidTransform>& X_OL) const;
+  double height(const Eigen::Vector3d& point_O) const;
   DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
-  SurfacePosture evaluated(const std::vector<int>& pads,
-                           const hands::HandConfiguration& configuration, HandMotion& motion,
-                           NormalEquations& equations) const;
+  void evaluate(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
+                Evaluated& result) const;
 
   const FittingHand& hand_;
   const ObjectModel& object_;
-  const NearestPatches& nearest_;  ///< Of all patches.
+  const NearestPatches& nearest_;  ///< Of all patches with a normal.
   const NearestPatches& places_;   ///< Of those on which pads may lie.
   const HandMotion motion_;
-  std::vector<std::vector<Eigen::Vector3d>> pad_points_L_;   ///< Per pad.
-  std::vector<std::vector<Eigen::Vector3d>> link_points_L_;  ///< Per link.
+  std::vector<Plane> planes_;                               ///< Per patch.
+  std::vector<std::vector<Eigen::Vector3d>> pad_points_L_;  ///< Per pad.
+  std::vector<std::vector<PointGroup>> groups_;             ///< Per link.
+  std::vector<std::pair<int, int>> neighbors_;              ///< Links that are kept apart.
 };
 
 }  // namespace graspfit::grasp::internal

@@ -28,9 +28,8 @@ Grasp RecordedScene::measure(const hands::HandConfiguration& configuration) cons
 }
 
 Grasp RecordedScene::measure(const Grasp& recorded) const {
-  const bool is_by_grasp =
-      file_.options.style == GraspStyle::Auto && !recorded.targets.contacts.empty();
-  return measure(recorded.configuration, is_by_grasp ? parts_of(recorded.targets) : requested_);
+  return measure(recorded.configuration,
+                 parts_to_touch(file_.options, requested_, recorded.targets));
 }
 
 Grasp RecordedScene::measure(const hands::HandConfiguration& configuration,

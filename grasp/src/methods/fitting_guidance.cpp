@@ -112,7 +112,11 @@ class FittingGuidance : public GraspGuidance {
     base::Random random =
         base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number));
     std::vector<TargetSide> sides = reach_->draw(random);
-    if (sides.empty()) result.failure = failure_name(TargetFailure::NoFurther);
+    if (sides.empty()) {
+      result.failure = failure_name(rules_->pool().empty()       ? TargetFailure::NoSeed
+                                    : rules_->pool().size() == 1 ? TargetFailure::NoSecond
+                                                                 : TargetFailure::NoFurther);
+    }
     return sides;
   }
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "targets/target_feasibility.hpp"
+
 namespace graspfit::grasp::internal {
 namespace {
 
@@ -72,10 +74,12 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 
 PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
     : classes_(static_cast<std::size_t>((kDistanceClasses + 1) * kLeanClasses * kLeanClasses)) {
-  // Every n-th sample; n is odd so that no joint of an even grid is left at one position.
+  // Every n-th sample; sizes are products of the counts of joints' positions, so that an n without
+  // a common divisor leaves no joint at some of its positions.
   const auto stride = [](const hands::PadSamples& samples) {
-    const std::size_t n = (samples.size() + kMostTableSamples - 1) / kMostTableSamples;
-    return n % 2 == 0 ? n + 1 : n;
+    std::size_t n = (samples.size() + kMostTableSamples - 1) / kMostTableSamples;
+    while (std::gcd(n, samples.size()) > 1) ++n;
+    return n;
   };
   base::Random random(1);
   std::vector<std::uint64_t> num_seen(classes_.size(), 0);
@@ -113,53 +117,45 @@ std::optional<std::pair<std::int32_t, std::int32_t>> PinchTable::draw(double dis
 }
 
 HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& requested,
-                     GripChoice choice) {
+                     const GripRule& rule) {
   RequestedParts all = requested;
-  if (choice != GripChoice::Requested) {
+  if (rule.may_add_finger || rule.may_exchange) {
     for (std::size_t finger = 0; finger < hand.fingers.size(); ++finger) {
       const auto number = static_cast<int>(finger);
       const bool is_asked = std::count(all.fingers.begin(), all.fingers.end(), number) > 0;
       if (!is_asked && hand.fingers[finger].tip_pad) all.fingers.push_back(number);
     }
-    all.palm = all.palm || hand.palm.pad.has_value();
   }
+  const bool may_add_palm = rule.may_add_palm && hand.palm.pad.has_value() && !requested.palm;
+  all.palm = requested.palm || may_add_palm;
   for (hands::PadSamples& samples :
        hands::pad_samples(hand, requested_pads(hand, all), kMostSamples)) {
     parts_.push_back({hand.pads[samples.pad].finger, std::move(samples)});
   }
-  const std::size_t palm = all.fingers.size();
   const std::size_t num_asked = requested.fingers.size();
-  const auto add_all = [&](const std::vector<std::vector<std::size_t>>& sets, bool has_palm) {
-    for (std::vector<std::size_t> parts : sets) {
-      if (has_palm) parts.push_back(palm);
-      add(std::move(parts));
-    }
+  const std::size_t palm = all.fingers.size();
+  std::vector<std::size_t> asked(num_asked);
+  std::iota(asked.begin(), asked.end(), 0);
+  const auto finger_sets = [&](std::size_t size) {
+    std::vector<std::vector<std::size_t>> sets = sets_with_first(palm, size);
+    std::erase_if(sets, [&](const std::vector<std::size_t>& set) {
+      return !rule.may_exchange &&
+             !std::includes(set.begin(), set.end(), asked.begin(), asked.end());
+    });
+    return sets;
   };
-  std::vector<std::size_t> fingers(num_asked);
-  std::iota(fingers.begin(), fingers.end(), 0);
-  if (choice == GripChoice::Requested) {
-    add_all({fingers}, requested.palm);
-    return;
+  for (const std::vector<std::size_t>& set : finger_sets(num_asked)) {
+    std::vector<std::size_t> with_palm = set;
+    with_palm.push_back(palm);
+    if (!requested.palm) add(set);
+    if (all.palm) add(std::move(with_palm));
   }
-  const bool may_exchange = choice == GripChoice::AnyFingers;
-  const auto same = may_exchange ? sets_with_first(palm, num_asked)
-                                 : std::vector<std::vector<std::size_t>>{fingers};
-  if (requested.palm) {
-    add_all(same, true);
-    return;
-  }
-  add_all(same, false);
-  if (all.palm) add_all(same, true);
-  std::vector<std::vector<std::size_t>> larger;
-  for (const std::vector<std::size_t>& set : sets_with_first(palm, num_asked + 1)) {
-    if (may_exchange || std::includes(set.begin(), set.end(), fingers.begin(), fingers.end())) {
-      larger.push_back(set);
-    }
-  }
-  add_all(larger, false);
+  if (!rule.may_add_finger || requested.palm) return;
+  for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
 }
 
 void HandGrips::add(std::vector<std::size_t> parts) {
+  if (parts.size() > kMostParts) return;
   Grip grip;
   grip.parts = std::move(parts);
   grip.has_palm = !parts_[grip.parts.back()].finger;

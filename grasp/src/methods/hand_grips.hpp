@@ -35,10 +35,10 @@ class PinchTable {
 };
 
 /// Which parts may touch beside the requested ones.
-enum class GripChoice {
-  Requested,   ///< None.
-  OneMore,     ///< The palm or a further finger.
-  AnyFingers,  ///< The same, and other fingers instead of the requested ones but the first.
+struct GripRule {
+  bool may_add_finger = false;
+  bool may_add_palm = false;
+  bool may_exchange = false;  ///< Other fingers instead of the requested ones but the first.
 };
 
 /// The parts of a hand that may touch, and the grips: which of them touch together.
@@ -60,9 +60,10 @@ class HandGrips {
     bool has_palm = false;
   };
 
-  /// Grips of the requested parts, and of others that `choice` allows where the hand has them with
-  /// pads. At least one finger is requested.
-  HandGrips(const hands::HandModel& hand, const RequestedParts& requested, GripChoice choice);
+  /// Grips of the requested parts, and others that the rule allows where the hand has them with
+  /// pads: with the palm or a finger more, not both, and of no more than `kMostParts` parts. At
+  /// least one finger is requested.
+  HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
   const std::vector<Pinch>& pinches() const { return pinches_; }

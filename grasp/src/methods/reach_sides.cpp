@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "fitting/finger_crossing.hpp"
+#include "graspfit/contact/epsilon_bound.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
-#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/palm_pose.hpp"
 
 namespace graspfit::grasp::internal {
@@ -22,24 +22,32 @@ using geometry::RigidTransform;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// An attempt: it ends with so many strong candidates, or after so much work.
-constexpr std::size_t kMostStarts = 2;  // more cost a refinement each where the first ones fail
-constexpr double kStrong = 0.01;        // ε within the squeeze's cones
-constexpr int kMostPostures = 120;
+// An attempt ends with a candidate that is strong enough, or after so much work. Twice the postures
+// raise the median strength by a quarter.
+constexpr double kEnough = 0.1;
+constexpr int kMostPostures = 100;
 constexpr int kMostPairs = 200000;  // of points, or points for the palm
-constexpr int kProposals = 4;       // of which one is laid onto the surface
+// Further candidates cost nothing unless the first ones fail.
+constexpr std::size_t kMostStarts = 3;
 
-// Proposals.
-constexpr int kRollDraws = 6;                       // about the line between two points
+// New candidates.
+constexpr int kProposals = 4;                       // of which one is laid onto the surface
 constexpr double kMostProposedLean = 60 * kDegree;  // of a pad on its point
+constexpr int kRollDraws = 6;                       // about the line between two points
 constexpr double kMostTilt = 30 * kDegree;          // of the palm on its point
 constexpr double kLeanLever = 0.03;                 // [m/rad]: a lean beside a gap
-constexpr double kStrengthPerCost = 10.0;           // [1/m]: ε beside a gap
 
-// Postures: pads that lean more touch with their edges only.
+// Variations of the strongest candidate. Three times as many of them are good as of new ones.
+constexpr double kShareVaried = 0.6;  // of all postures
+constexpr double kLeastScale = 0.1;   // of a variation; drawn, as small and large ones help
+constexpr double kMostShift = 0.012;  // of the palm [m]
+constexpr double kMostTurn = 0.24;    // of the palm and of joints [rad; m of prismatic ones]
+
+// Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
+// it frees a hand that is in the object.
 constexpr double kMostLean = 65 * kDegree;
 constexpr double kMostGap = 0.003;    // [m]
-constexpr double kMostDepth = 0.003;  // [m]; refinement opens the hand so far
+constexpr double kMostDepth = 0.003;  // [m]
 
 std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) {
   std::vector<bool> is_in(num_patches, false);
@@ -47,9 +55,17 @@ std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) 
   return is_in;
 }
 
-GripChoice grip_choice(const PlannerOptions& options) {
-  if (options.style != GraspStyle::Auto) return GripChoice::Requested;
-  return options.fingers.empty() ? GripChoice::AnyFingers : GripChoice::OneMore;
+std::vector<bool> have_normal(const std::vector<geometry::SurfacePatch>& patches) {
+  std::vector<bool> have(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) have[i] = patches[i].has_normal;
+  return have;
+}
+
+GripRule grip_rule(const PlannerOptions& options) {
+  if (options.style != GraspStyle::Auto) return {};
+  return {.may_add_finger = true,
+          .may_add_palm = options.palm.value_or(true),
+          .may_exchange = options.fingers.empty()};
 }
 
 /// Where a pad is and where it faces: of a sample in H, or as a point of the pool in O.
@@ -62,6 +78,12 @@ Facing facing(const hands::PadSamples& samples, std::int32_t sample) {
   return {samples.points_H.col(sample), samples.normals_H.col(sample)};
 }
 Facing facing(const PoolPoint& point) { return {point.point_O, point.inward_normal_O}; }
+
+/// What it costs to place a pad so far from a point and facing so: a length.
+double cost(double gap, const Vector3d& pad_normal, const Vector3d& inward_normal) {
+  const double cosine = pad_normal.dot(inward_normal);
+  return gap + kLeanLever * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
 
 /// The palm pose in which pads a and b lie on two points as squarely as they can; where their pads
 /// leave the turn about the line open, it is drawn. Empty if a pad leans too much.
@@ -109,28 +131,34 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
 ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
     : scene_(scene),
       rules_(rules),
-      grips_(scene.hand.model(), scene.parts, grip_choice(scene.options)),
-      nearest_(scene.object, std::vector<bool>(scene.object.patches.size(), true)),
+      grips_(scene.hand.model(), scene.parts, grip_rule(scene.options)),
+      nearest_(scene.object, have_normal(scene.object.patches)),
       places_(scene.object, is_in_pool(rules, scene.object.patches.size())),
       search_(scene.hand, scene.object, nearest_, places_),
       clearance_(scene.hand, scene.object, scene.surroundings),
       pool_of_patch_(scene.object.patches.size(), -1),
-      wrench_object_(
-          contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass)) {
+      wrench_object_(contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass)),
+      strength_friction_(0.5 * (scene.options.friction + scene.options.squeeze_friction)) {
   for (std::size_t p = 0; p < rules.pool().size(); ++p) {
     pool_of_patch_[static_cast<std::size_t>(*rules.pool()[p].patch)] = static_cast<std::int32_t>(p);
   }
 }
 
+bool ReachSides::Work::is_done() const { return pairs >= kMostPairs || postures >= kMostPostures; }
+
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   std::vector<Candidate> best;
   if (rules_.pool().size() < 2) return {};
   Work work;
-  std::size_t num_strong = 0;
-  while (num_strong < kMostStarts) {
-    std::optional<Candidate> candidate = next(random, work);
-    if (!candidate) break;
-    if (candidate->strength >= kStrong) ++num_strong;
+  while (!work.is_done() && (best.empty() || best.front().strength < kEnough)) {
+    const bool is_varied = !best.empty() && random.uniform() < kShareVaried;
+    std::optional<Candidate> candidate =
+        is_varied ? varied(best.front(), random, work) : drawn(random, work);
+    if (!candidate) continue;
+    if (is_varied) {
+      if (candidate->strength > best.front().strength) best.front() = std::move(*candidate);
+      continue;
+    }
     const auto position = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
       return candidate->strength > other.strength;
     });
@@ -143,50 +171,72 @@ std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   return sides;
 }
 
-/// ε, signed, of contacts on patches, within the squeeze's cones; where that is surely not strong,
-/// what a load shows.
-double ReachSides::strength(const std::vector<std::int32_t>& patches) const {
-  const std::vector<contact::Contact> contacts = contacts_on(patches);
-  const double bound = strength_bound(contacts);
-  if (bound < kStrong) return bound;
-  return contact::signed_epsilon(contacts, wrench_object_, scene_.options.squeeze_friction);
+/// Of some proposals that may become a grasp the one that costs least, laid; empty if there was
+/// none or it is not good.
+std::optional<ReachSides::Candidate> ReachSides::drawn(base::Random& random, Work& work) const {
+  std::optional<Proposal> best;
+  for (int i = 0; i < kProposals; ++i) {
+    std::optional<Proposal> proposal = this->proposal(random, work);
+    if (!proposal) break;
+    if (best && proposal->largest_cost >= best->largest_cost) continue;
+    std::vector<std::int32_t> patches;
+    for (const std::size_t part : proposal->grip->parts) {
+      patches.push_back(*proposal->patches[part]);
+    }
+    if (are_apart(patches) && has_stable_pair(patches)) best = std::move(proposal);
+  }
+  if (!best) return std::nullopt;
+  return laid(*best->grip, best->configuration, work);
 }
 
-/// The next good posture; empty once the work of an attempt is done.
-std::optional<ReachSides::Candidate> ReachSides::next(base::Random& random, Work& work) const {
-  while (work.pairs < kMostPairs && work.postures < kMostPostures) {
-    const Grip& grip = grips_.grips()[random.index(grips_.grips().size())];
-    std::optional<Proposal> best;
-    double most = 0.0;
-    for (int i = 0; i < kProposals; ++i) {
-      std::optional<Proposal> drawn = proposal(grip, random, work);
-      if (!drawn) break;
-      const double drawn_promise = promise(grip, *drawn);
-      if (best && drawn_promise <= most) continue;
-      best = std::move(drawn);
-      most = drawn_promise;
-    }
-    if (!best) break;
-    ++work.postures;
-    hands::apply_couplings(scene_.hand.model(), best->configuration.q);
-    std::vector<int> pads;
-    for (const std::size_t part : grip.parts) pads.push_back(grips_.parts()[part].samples.pad);
-    Candidate candidate{&grip, search_.lay(pads, best->configuration)};
-    if (!is_good(candidate.posture)) continue;
-    candidate.strength = strength(candidate.posture.patches);
-    return candidate;
+/// A candidate's posture moved a little, and laid again.
+std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, base::Random& random,
+                                                        Work& work) const {
+  const hands::HandModel& hand = scene_.hand.model();
+  const double scale = random.uniform(0.1, 1.0);
+  const auto drawn = [&](double most) { return scale * random.uniform(-most, most); };
+  hands::HandConfiguration configuration = from.posture.configuration;
+  Vector3d pivot = Vector3d::Zero();
+  for (const contact::Contact& contact : contacts_on(from.posture.patches)) {
+    pivot += contact.point_O / static_cast<double>(from.posture.patches.size());
   }
-  return std::nullopt;
+  Vector3d shift, turn;
+  for (double& x : shift) x = drawn(kMostShift);
+  for (double& x : turn) x = drawn(kMostTurn);
+  const Eigen::AngleAxisd rotation(turn.norm(), turn.stableNormalized());
+  RigidTransform& X_OH = configuration.X_OH;
+  X_OH.linear() = (Eigen::Quaterniond(rotation) * Eigen::Quaterniond(X_OH.linear()))
+                      .normalized()
+                      .toRotationMatrix();
+  X_OH.translation() = pivot + rotation * Vector3d(X_OH.translation() - pivot) + shift;
+  for (double& q : configuration.q) q += drawn(kMostTurn);
+  hands::clamp_to_limits(hand, configuration.q);
+  return laid(*from.grip, configuration, work);
+}
+
+/// Empty if the posture that is laid from there is not good.
+std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
+                                                      hands::HandConfiguration start,
+                                                      Work& work) const {
+  ++work.postures;
+  hands::apply_couplings(scene_.hand.model(), start.q);
+  std::vector<int> pads;
+  for (const std::size_t part : grip.parts) pads.push_back(grips_.parts()[part].samples.pad);
+  Candidate candidate{&grip, search_.lay(pads, start)};
+  if (!is_good(candidate.posture)) return std::nullopt;
+  candidate.strength = strength(candidate.posture.patches);
+  return candidate;
 }
 
 /// Empty once the work of an attempt is done.
-std::optional<ReachSides::Proposal> ReachSides::proposal(const Grip& grip, base::Random& random,
-                                                         Work& work) const {
-  while (work.pairs < kMostPairs) {
+std::optional<ReachSides::Proposal> ReachSides::proposal(base::Random& random, Work& work) const {
+  while (!work.is_done()) {
     ++work.pairs;
+    const Grip& grip = grips_.grips()[random.index(grips_.grips().size())];
     std::optional<Proposal> proposal =
         grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
     if (!proposal || !is_from_approach(proposal->configuration)) continue;
+    proposal->grip = &grip;
     for (const std::size_t part : grip.parts) {
       if (!proposal->patches[part]) complete(part, *proposal);
     }
@@ -201,13 +251,16 @@ bool ReachSides::is_from_approach(const hands::HandConfiguration& configuration)
          scene_.options.approach_angle;
 }
 
-/// How strong the grasp would be, at most, were the parts where they are proposed to be; less what
-/// placing them there costs. No grasp without a stable pair promises anything.
-double ReachSides::promise(const Grip& grip, const Proposal& proposal) const {
-  std::vector<std::int32_t> patches;
-  for (const std::size_t part : grip.parts) patches.push_back(*proposal.patches[part]);
-  if (!has_stable_pair(patches)) return -std::numeric_limits<double>::infinity();
-  return strength_bound(contacts_on(patches)) - kStrengthPerCost * proposal.largest_cost;
+bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (rules_.distance(point_of(patches[i]), point_of(patches[j])) <
+          rules_.options().min_separation) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const {
@@ -219,12 +272,19 @@ bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const
   return false;
 }
 
-double ReachSides::strength_bound(const std::vector<contact::Contact>& contacts) const {
-  contact::WrenchSpaceOptions options;
-  options.friction = scene_.options.squeeze_friction;
-  options.torque_scale = wrench_object_.largest_radius;
-  return weakest_load_.withstood(contact::contact_wrenches(
-      contacts, {.reference_point_O = scene_.object.mass.center_of_mass, .options = options}));
+/// How strong a grasp with contacts on these patches would be [ε]; of two contacts, which cannot
+/// close, how far their line is within the cones.
+double ReachSides::strength(const std::vector<std::int32_t>& patches) const {
+  const std::vector<contact::Contact> contacts = contacts_on(patches);
+  if (contacts.size() == 2) {
+    const Vector3d line = contacts[1].point_O - contacts[0].point_O;
+    const double lean = std::max(angle_between(contacts[0].inward_normal_O, line),
+                                 angle_between(contacts[1].inward_normal_O, -line));
+    return lean < 0.5 * std::numbers::pi ? strength_friction_ - std::tan(lean) : -lean;
+  }
+  return contact::epsilon_bound(contact::contact_wrenches(
+      contacts, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object_, contacts,
+                                           strength_friction_)));
 }
 
 /// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
@@ -232,8 +292,10 @@ std::optional<ReachSides::Proposal> ReachSides::pinch(const Grip& grip,
                                                       base::Random& random) const {
   const std::vector<PoolPoint>& pool = rules_.pool();
   const HandGrips::Pinch& pinch = grips_.pinches()[grip.pinches[random.index(grip.pinches.size())]];
-  const Facing a_O = facing(pool[random.index(pool.size())]);
-  const Facing b_O = facing(pool[random.index(pool.size())]);
+  const PoolPoint& a = pool[random.index(pool.size())];
+  const PoolPoint& b = pool[random.index(pool.size())];
+  const Facing a_O = facing(a);
+  const Facing b_O = facing(b);
   const Vector3d line = b_O.point - a_O.point;
   if (!(line.norm() > 0.0) || line.norm() < rules_.options().min_separation) return std::nullopt;
   const auto samples = pinch.table.draw(line.norm(), angle_between(a_O.normal, line),
@@ -244,8 +306,16 @@ std::optional<ReachSides::Proposal> ReachSides::pinch(const Grip& grip,
               facing(grips_.parts()[pinch.part_b].samples, samples->second), a_O, b_O, random);
   if (!X_OH) return std::nullopt;
   Proposal proposal = proposal_at(*X_OH);
-  set(pinch.part_a, samples->first, places_.at(a_O.point), proposal);
-  set(pinch.part_b, samples->second, places_.at(b_O.point), proposal);
+  set(pinch.part_a, samples->first, *a.patch, proposal);
+  set(pinch.part_b, samples->second, *b.patch, proposal);
+  const auto charge = [&](std::size_t part, std::int32_t sample, const Facing& place_O) {
+    const Facing pad_H = facing(grips_.parts()[part].samples, sample);
+    const double gap = (*X_OH * pad_H.point - place_O.point).norm();
+    proposal.largest_cost =
+        std::max(proposal.largest_cost, cost(gap, X_OH->linear() * pad_H.normal, place_O.normal));
+  };
+  charge(pinch.part_a, samples->first, a_O);
+  charge(pinch.part_b, samples->second, b_O);
   return proposal;
 }
 
@@ -253,6 +323,8 @@ std::optional<ReachSides::Proposal> ReachSides::pinch(const Grip& grip,
 ReachSides::Proposal ReachSides::palm_first(const Grip& grip, base::Random& random) const {
   const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
   const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
+  const auto sample = static_cast<std::int32_t>(random.index(palm.size()));
+  const Facing pad = facing(palm, sample);
   const Eigen::AngleAxisd roll(random.uniform(-std::numbers::pi, std::numbers::pi),
                                point.inward_normal_O);
   const double around = random.uniform(-std::numbers::pi, std::numbers::pi);
@@ -260,12 +332,12 @@ ReachSides::Proposal ReachSides::palm_first(const Grip& grip, base::Random& rand
   const Vector3d across = point.inward_normal_O.unitOrthogonal();
   const Eigen::AngleAxisd tilt(lean, Eigen::AngleAxisd(around, point.inward_normal_O) * across);
   RigidTransform X_OH = RigidTransform::Identity();
-  X_OH.linear() = (tilt * roll).toRotationMatrix() *
-                  Eigen::Quaterniond::FromTwoVectors(palm.normals_H.col(0), point.inward_normal_O)
-                      .toRotationMatrix();
-  X_OH.translation() = point.point_O - X_OH.linear() * palm.points_H.col(0);
+  X_OH.linear() =
+      (tilt * roll).toRotationMatrix() *
+      Eigen::Quaterniond::FromTwoVectors(pad.normal, point.inward_normal_O).toRotationMatrix();
+  X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
   Proposal proposal = proposal_at(X_OH);
-  set(grip.parts.back(), 0, *point.patch, proposal);
+  set(grip.parts.back(), sample, *point.patch, proposal);
   return proposal;
 }
 
@@ -313,11 +385,10 @@ void ReachSides::complete(std::size_t part, Proposal& proposal) const {
       const geometry::SurfacePatch& patch = scene_.object.patches[index];
       const double gap = (point - patch.centroid).norm();
       if (gap >= least) continue;
-      const double cosine =
-          -(X_OH.linear() * samples.normals_H.col(sample)).dot(patch.outward_normal);
-      const double cost = gap + kLeanLever * std::acos(std::clamp(cosine, -1.0, 1.0));
-      if (cost >= least) continue;
-      least = cost;
+      const double its_cost =
+          cost(gap, X_OH.linear() * samples.normals_H.col(sample), -patch.outward_normal);
+      if (its_cost >= least) continue;
+      least = its_cost;
       best = number;
       best_patch = index;
     }
@@ -332,16 +403,8 @@ bool ReachSides::is_good(const SurfacePosture& posture) const {
     return false;
   }
   if (!is_from_approach(posture.configuration)) return false;
-  for (std::size_t i = 0; i < posture.patches.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (rules_.distance(point_of(posture.patches[i]), point_of(posture.patches[j])) <
-          rules_.options().min_separation) {
-        return false;
-      }
-    }
-  }
-  return has_stable_pair(posture.patches) && is_clear_of_surroundings(posture) &&
-         clearance_.is_clear_of_itself(posture.X_OL);
+  return are_apart(posture.patches) && has_stable_pair(posture.patches) &&
+         is_clear_of_surroundings(posture) && clearance_.is_clear_of_itself(posture.X_OL);
 }
 
 bool ReachSides::is_clear_of_surroundings(const SurfacePosture& posture) const {

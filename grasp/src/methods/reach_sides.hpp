@@ -9,15 +9,15 @@
 #include "graspfit/contact/wrench_convention.hpp"
 #include "methods/hand_grips.hpp"
 #include "methods/target_sides.hpp"
-#include "methods/weakest_load.hpp"
 #include "scene/clearance.hpp"
 #include "targets/target_feasibility.hpp"
 
 /// \file
 /// Targets that the hand can meet [R]. Many times a hand is proposed that is about where its pads
 /// lie on points that may be targets: by two pads that can face each other as the points do, or by
-/// the palm. Of some such proposals the one that promises most is laid onto the surface, and where
-/// its pads then lie are the targets: the hand meets them before anything is decided exactly.
+/// the palm. Of some such proposals the one that fits best is laid onto the surface, and where its
+/// pads then lie are the targets: the hand meets them before anything is decided exactly. The
+/// strongest such posture is then varied and laid again.
 
 namespace graspfit::grasp::internal {
 
@@ -27,9 +27,11 @@ class ReachSides {
   /// Refers to the scene and the rules.
   ReachSides(const GuidanceScene& scene, const TargetRules& rules);
 
-  /// The strongest candidates of an attempt, the strongest first, by ε, signed, within the
-  /// squeeze's cones; each with its posture (`TargetSide::goal`), from which it is refined. The
-  /// search ends with as many strong ones, or with its budget of work. Empty if none was found.
+  /// The strongest candidates of an attempt, the strongest first, but those last whose fingers
+  /// cross when they open; each with its posture (`TargetSide::goal`), from which it is refined.
+  /// Strength is `contact::epsilon_bound`; of two contacts, which cannot close, how far their line
+  /// is within the cones. New candidates and variations of the strongest one take turns, at random,
+  /// until one is strong enough or a budget of work is spent. Empty if none was found.
   std::vector<TargetSide> draw(base::Random& random) const;
 
  private:
@@ -44,6 +46,7 @@ class ReachSides {
 
   /// A hand at the object, not yet laid onto it.
   struct Proposal {
+    const Grip* grip = nullptr;
     hands::HandConfiguration configuration;
     std::vector<bool> is_fixed;  ///< Per joint: a sample set its position.
     /// Per part of the hand; empty: it is not placed.
@@ -55,21 +58,23 @@ class ReachSides {
   struct Work {
     int pairs = 0;
     int postures = 0;
+    bool is_done() const;
   };
 
-  std::optional<Candidate> next(base::Random& random, Work& work) const;
+  std::optional<Candidate> drawn(base::Random& random, Work& work) const;
+  std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
+  std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, Work& work) const;
   std::optional<Proposal> pinch(const Grip& grip, base::Random& random) const;
   bool is_from_approach(const hands::HandConfiguration& configuration) const;
   Proposal palm_first(const Grip& grip, base::Random& random) const;
   Proposal proposal_at(const geometry::RigidTransform& X_OH) const;
   void set(std::size_t part, std::int32_t sample, std::int32_t patch, Proposal& proposal) const;
-  std::optional<Proposal> proposal(const Grip& grip, base::Random& random, Work& work) const;
+  std::optional<Proposal> proposal(base::Random& random, Work& work) const;
   double strength(const std::vector<std::int32_t>& patches) const;
-  double strength_bound(const std::vector<contact::Contact>& contacts) const;
-  double promise(const Grip& grip, const Proposal& proposal) const;
   void complete(std::size_t part, Proposal& proposal) const;
   bool is_good(const SurfacePosture& posture) const;
   bool is_clear_of_surroundings(const SurfacePosture& posture) const;
+  bool are_apart(const std::vector<std::int32_t>& patches) const;
   bool has_stable_pair(const std::vector<std::int32_t>& patches) const;
   std::int32_t point_of(std::int32_t patch) const;
   std::vector<contact::Contact> contacts_on(const std::vector<std::int32_t>& patches) const;
@@ -83,8 +88,10 @@ class ReachSides {
   const SurfaceSearch search_;
   const Clearance clearance_;
   std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.
-  const WeakestLoad weakest_load_;
   const contact::WrenchObject wrench_object_;
+  /// Between that of closure and that within which a squeeze is to balance: what is strong there
+  /// still closes where normals turn out a little different.
+  const double strength_friction_;
 };
 
 }  // namespace graspfit::grasp::internal

@@ -13,7 +13,8 @@ struct TargetSide {
   PalmPlacement placement;
   int imbalance = 0;  ///< Imbalance of the set, where that counts.
   double misfit = 0.0;
-  std::optional<hands::HandConfiguration> goal = {};  ///< `fitting_goal`, where it was asked for.
+  std::optional<hands::HandConfiguration> goal = {};  ///< Where to bring the hand: `fitting_goal`
+                                                      ///< if it was asked for, or as `is_at_goal`.
   /// Whether fingers cross at the start from this side, where that counts.
   bool do_fingers_cross = false;
   bool is_at_goal = false;  ///< The goal is a posture from which to refine, without closing.

@@ -36,6 +36,10 @@ void PlannerOptions::validate() const {
   }
   require(style != GraspStyle::Auto || targets.search == TargetSearch::Reach, "style",
           name_of(style), "precision or power unless targets.search is reach");
+  require(style != GraspStyle::Auto || planner == PlannerOptions().planner, "style", name_of(style),
+          "precision or power unless planner is " + PlannerOptions().planner);
+  require(style != GraspStyle::Power || targets.search != TargetSearch::Reach, "style",
+          name_of(style), "precision or auto where targets.search is reach: it closes no links");
   require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
           name_of(missing_contact), "fails with refine, which accepts no part without contact");
   score.validate();
@@ -88,6 +92,11 @@ contact::ContactEstimationOptions contact_estimation(const PlannerOptions& optio
 
 std::optional<double> bearing_gap(const PlannerOptions& options) {
   return options.refine ? std::optional(options.refinement.largest_gap) : std::nullopt;
+}
+
+RequestedParts parts_to_touch(const PlannerOptions& options, const RequestedParts& requested,
+                              const TargetContacts& targets) {
+  return options.style == GraspStyle::Auto ? parts_of(targets) : requested;
 }
 
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {

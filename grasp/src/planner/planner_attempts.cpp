@@ -234,9 +234,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   std::optional<AttemptOutcome> failure = close(start, configuration, result);
   // Refinement also brings fingers into contact that stopped short of the surface.
   const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
-  // Starts of other methods have no targets.
-  const bool is_chosen = options_.style == GraspStyle::Auto && !start.targets.contacts.empty();
-  const RequestedParts parts = is_chosen ? parts_of(start.targets) : parts_;
+  const RequestedParts parts = parts_to_touch(options_, parts_, start.targets);
   if (is_refinable) {
     const bool is_drawn = start.draws_to_targets && !start.targets.contacts.empty();
     failure = refine(requested_pads(hand_, parts), is_drawn ? &start.targets : nullptr,

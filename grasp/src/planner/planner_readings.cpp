@@ -30,6 +30,14 @@ bool is_about_targets(std::string_view number) {
   return std::find(about.begin(), about.end(), number) != about.end();
 }
 
+/// Whether a reading is about what lies between chosen targets and a hand at the object. Targets by
+/// the hand's reach come with a posture at the object, from which it is refined.
+bool is_about_fitting(std::string_view number) {
+  constexpr std::array about = {"A17", "A18", "A19", "A21", "A23",
+                                "A24", "A26", "A28", "A29", "A30"};
+  return std::find(about.begin(), about.end(), number) != about.end();
+}
+
 /// Which set of targets an attempt takes.
 std::string choice_reading(const PlannerOptions& options) {
   const TargetOptions& targets = options.targets;
@@ -77,6 +85,12 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
   const contact::QualityOptions& quality = options.quality;
   const std::string averaging = text(name_of(options.averaging));
   const std::string units = text(name_of(quality.units));
+
+  // Of another library's method everything may matter.
+  const PlanningMethod* const known = planning_methods().find(options.planner);
+  const bool has_scores = known == nullptr || known->has_scores;
+  const bool has_targets = known == nullptr || known->has_targets;
+  const bool is_by_reach = has_targets && targets.search == TargetSearch::Reach && options.refine;
 
   std::vector<std::pair<std::string, std::string>> readings = {
       {"A1", text(name_of(score.normalization))},
@@ -128,7 +142,8 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   ? text("a part without contact fails the attempt")
                   : text("the contacts that there are count")},
       {"A32",
-       (options.refine
+       (is_by_reach ? text("laid onto the object at the level of patches, then refined")
+        : options.refine
             ? text("closed until the first sliver of surface in the clip volume, then refined")
         : fitting.contact_state == ContactState::Closed
             ? text("closed until the next motion would enter")
@@ -168,15 +183,12 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
                   ? "complete sets drawn by (ideal M)^" + shortest_decimal(targets.ideal_m_bias)
                   : text("measure not used in target selection")},
   };
-  // Of another library's method everything may matter.
-  const PlanningMethod* const known = planning_methods().find(options.planner);
-  const bool has_scores = known == nullptr || known->has_scores;
-  const bool has_targets = known == nullptr || known->has_targets;
   for (auto& [number, reading] : readings) {
     const bool is_unused =
         (!has_scores && is_about_scores(number) && !options.contact_score_threshold) ||
         (!has_scores && is_about_choice(number)) || (!has_targets && is_about_targets(number));
     if (is_unused) reading = "not used by planner " + options.planner;
+    if (is_by_reach && is_about_fitting(number)) reading = "not used by target-search reach";
     if (number == "A47" && !has_targets) {
       reading = "of the measure alone: planner " + options.planner + " has no targets";
     }

@@ -270,7 +270,8 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
   at(options.style, {"style", kAny, "style", "", kRequest,
                      "where targets go: to the fingertips; power: also to the palm, and links "
                      "behind the tips are closed onto the object; auto, with target-search reach: "
-                     "also to the palm or to a further finger where fingertips alone do not close",
+                     "to those of the fingertips, or to them and the palm or one finger more, by "
+                     "which the grasp is strongest; where no fingers are named, to any",
                      "P; how: R", "A39"});
   at(options.fingers,
      {"fingers", kAny, "fingers", "", kRequest,

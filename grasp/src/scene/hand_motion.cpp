@@ -16,8 +16,12 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using hands::RigidTransform;
 
-HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns)
-    : hand_(hand), palm_translates_(palm_translates), palm_turns_(palm_turns) {
+HandMotion::HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns,
+                       Breakaway breakaway)
+    : hand_(hand),
+      palm_translates_(palm_translates),
+      palm_turns_(palm_turns),
+      breakaway_(breakaway) {
   constexpr double kShortestLever = 0.02;  // [m]; a shorter one would let a joint spin
   const auto num_joints = hand.joints.size();
   entry_of_joint_.assign(num_joints, 0);
@@ -63,6 +67,12 @@ void HandMotion::set(const hands::HandConfiguration& configuration,
   pivot_O_ = pivot_O;
 }
 
+/// Whether the entry of a joint is what it moves beyond its coupling.
+bool HandMotion::is_beyond(int j) const {
+  const std::optional<hands::Coupling>& coupling = hand_.joints[j].coupling;
+  return breakaway_ == Breakaway::Beyond && coupling && coupling->breakaway;
+}
+
 /// Ratio by which a joint moves with its entry of the motion; 0 where the joint's own limit holds
 /// it back.
 double HandMotion::share_of_follower(int j) const {
@@ -83,6 +93,11 @@ void HandMotion::add_joints(int link, const Vector3d& point_O, const Rate& rate,
     const int entry = entry_of_joint_[j];
     const auto leader = static_cast<std::size_t>(free_joints_[entry - 6]);
     row[entry] += share_of_follower(j) * rate(velocity) / lever_[leader];
+    if (!is_beyond(j)) continue;
+    const int followed = joint.coupling->leader;
+    const int its_entry = entry_of_joint_[followed];
+    row[its_entry] += joint.coupling->ratio * share_of_follower(followed) * rate(velocity) /
+                      lever_[free_joints_[its_entry - 6]];
   }
 }
 
@@ -117,6 +132,11 @@ HandMotion::Bounds HandMotion::bounds(double trust) const {
     const auto entry = static_cast<Index>(6 + k);
     bounds.lower[entry] = std::max(-trust, std::min(0.0, (joint.lower - q) * lever_[j]));
     bounds.upper[entry] = std::min(trust, std::max(0.0, (joint.upper - q) * lever_[j]));
+    if (!is_beyond(free_joints_[k])) continue;
+    const double back = (hands::followed_position(joint, configuration_.q) - q) * lever_[j];
+    double& least = joint.closing_sign > 0 ? bounds.lower[entry] : bounds.upper[entry];
+    least = joint.closing_sign > 0 ? std::max(least, std::min(0.0, back))
+                                   : std::min(least, std::max(0.0, back));
   }
   return bounds;
 }
@@ -179,6 +199,13 @@ hands::HandConfiguration HandMotion::moved(const VectorXd& motion) const {
   if (palm_translates_) result.X_OH.translation() += motion.head<3>();
   for (std::size_t k = 0; k < free_joints_.size(); ++k) {
     result.q[free_joints_[k]] += motion[static_cast<Index>(6 + k)] / lever_[free_joints_[k]];
+  }
+  for (std::size_t k = 0; k < free_joints_.size(); ++k) {
+    const int j = free_joints_[k];
+    if (!is_beyond(j)) continue;
+    const hands::Coupling& coupling = *hand_.joints[j].coupling;
+    result.q[j] +=
+        hands::led_position(coupling, result.q) - hands::led_position(coupling, configuration_.q);
   }
   hands::clamp_to_limits(hand_, result.q);
   hands::apply_couplings(hand_, result.q);

@@ -15,7 +15,14 @@ namespace graspfit::grasp::internal {
 /// coupling (`breakaway_rows`) and are then moved on their own.
 class HandMotion {
  public:
-  HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns);
+  /// What the entry of a breakaway joint is.
+  enum class Breakaway {
+    Alone,   ///< All of its motion; `breakaway_rows` keep it at its coupling.
+    Beyond,  ///< What it moves beyond its coupling; with its leader it moves anyhow.
+  };
+
+  HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns,
+             Breakaway breakaway = Breakaway::Alone);
 
   Eigen::Index size() const { return 6 + static_cast<Eigen::Index>(free_joints_.size()); }
 
@@ -30,7 +37,8 @@ class HandMotion {
   /// The derivative of axis · angular displacement of a link.
   Eigen::RowVectorXd turn_row(int link, const Eigen::Vector3d& axis_O) const;
 
-  /// Least and greatest value of every entry: joint limits, and `trust` [m] each way.
+  /// Least and greatest value of every entry: joint limits, and `trust` [m] each way; what a
+  /// breakaway joint moves beyond its coupling is also limited by how far it is beyond it.
   struct Bounds {
     Eigen::VectorXd lower, upper;
   };
@@ -55,6 +63,7 @@ class HandMotion {
   hands::HandConfiguration moved(const Eigen::VectorXd& motion) const;
 
  private:
+  bool is_beyond(int joint) const;
   double share_of_follower(int follower) const;
   /// Adds what every joint above a link does to a row: `rate` of its `hands::JointVelocity`.
   template <class Rate>
@@ -64,6 +73,7 @@ class HandMotion {
   const hands::HandModel& hand_;
   bool palm_translates_;
   bool palm_turns_;
+  Breakaway breakaway_;
   std::vector<int> free_joints_;
   /// Per link: those that move it, distal ones first.
   std::vector<std::vector<int>> joints_above_;

@@ -1,4 +1,4 @@
-// What targets by reach are made of: nearest patches, pairs of pads, postures, weakest loads.
+// What targets by reach are made of: nearest patches, pairs of pads, grips, postures.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,10 @@
 #include "fitting/surface_posture.hpp"
 #include "grasp/fitting_scene.hpp"
 #include "graspfit/base/random.hpp"
-#include "graspfit/contact/grasp_wrench_space.hpp"
-#include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "methods/hand_grips.hpp"
-#include "methods/weakest_load.hpp"
 #include "object/nearest_patches.hpp"
 #include "support/catch.hpp"
 
@@ -26,13 +23,6 @@ namespace {
 using namespace graspfit;
 using namespace graspfit::grasp;
 using Eigen::Vector3d;
-
-contact::Contact contact_at(const Vector3d& point, const Vector3d& inward) {
-  contact::Contact contact;
-  contact.point_O = point;
-  contact.inward_normal_O = inward.normalized();
-  return contact;
-}
 
 }  // namespace
 
@@ -73,7 +63,7 @@ TEST_CASE("A pair of pads from the table is as far apart and leans as it was ask
           "[grasp][hand_grips]") {
   const hands::HandModel hand = hands::find_hand("human_hand");
   const RequestedParts parts{{hand.thumb(), hand.thumb() == 0 ? 1 : 0}};
-  const internal::HandGrips grips(hand, parts, internal::GripChoice::Requested);
+  const internal::HandGrips grips(hand, parts, internal::GripRule());
   REQUIRE(grips.grips().size() == 1);
   REQUIRE(grips.pinches().size() == 1);
   const internal::HandGrips::Pinch& pinch = grips.pinches().front();
@@ -103,24 +93,37 @@ TEST_CASE("A pair of pads from the table is as far apart and leans as it was ask
 TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
           "[grasp][hand_grips]") {
   const hands::HandModel hand = hands::find_hand("human_hand");
-  const RequestedParts parts{{0, 1, 2}};
-  using internal::GripChoice;
-  using internal::HandGrips;
-  const auto grips = [&](GripChoice choice) { return HandGrips(hand, parts, choice).grips(); };
-  REQUIRE(grips(GripChoice::Requested).size() == 1);
-  CHECK(grips(GripChoice::Requested).front().parts == std::vector<std::size_t>{0, 1, 2});
+  using Parts = std::vector<std::size_t>;
+  const auto grips = [&](const RequestedParts& parts, const internal::GripRule& rule) {
+    return internal::HandGrips(hand, parts, rule).grips();
+  };
+  const RequestedParts three{{0, 1, 2}};
+  REQUIRE(grips(three, {}).size() == 1);
+  CHECK(grips(three, {}).front().parts == Parts{0, 1, 2});
+  CHECK_FALSE(grips(three, {}).front().has_palm);
+  REQUIRE(grips({{0, 1, 2}, true}, {}).size() == 1);
+  CHECK(grips({{0, 1, 2}, true}, {}).front().parts == Parts{0, 1, 2, 3});
+  CHECK(grips({{0, 1, 2}, true}, {}).front().has_palm);
   // The fingers, with the palm, and with each of the two further fingers.
-  REQUIRE(grips(GripChoice::OneMore).size() == 4);
-  CHECK(grips(GripChoice::OneMore)[1].has_palm);
+  internal::GripRule rule = {.may_add_finger = true, .may_add_palm = true};
+  REQUIRE(grips(three, rule).size() == 4);
+  CHECK(grips(three, rule)[1].has_palm);
+  rule.may_add_palm = false;
+  REQUIRE(grips(three, rule).size() == 3);
   // Two of four fingers beside the thumb, the same with the palm, three of four.
-  const auto all = grips(GripChoice::AnyFingers);
+  rule = {.may_add_finger = true, .may_add_palm = true, .may_exchange = true};
+  const auto all = grips(three, rule);
   REQUIRE(all.size() == 6 + 6 + 4);
-  std::set<std::vector<std::size_t>> different;
-  for (const HandGrips::Grip& grip : all) {
+  std::set<Parts> different;
+  for (const internal::HandGrips::Grip& grip : all) {
     CHECK(grip.parts.front() == 0);
     different.insert(grip.parts);
   }
   CHECK(different.size() == all.size());
+  // At most six parts: all five fingers, and with the palm.
+  const auto most = grips({{0, 1, 2, 3, 4}}, rule);
+  REQUIRE(most.size() == 2);
+  CHECK(most.back().parts.size() == 6);
 }
 
 TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface_posture]") {
@@ -163,42 +166,6 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
     }
   }
   CHECK(num_laid >= kTrials / 8);
-}
-
-TEST_CASE("The weakest load bounds epsilon of contacts that close", "[grasp][weakest_load]") {
-  const geometry::TriangleMesh mesh = geometry::ball(0.05, 3);
-  const Vector3d center = geometry::mass_properties(mesh).center_of_mass;
-  const contact::WrenchObject object = contact::wrench_object(mesh, center);
-  const internal::WeakestLoad weakest;
-  base::Random random(2);
-  int num_closed = 0;
-  double largest_slack = 0.0;
-  for (int trial = 0; trial < 200; ++trial) {
-    std::vector<contact::Contact> contacts;
-    for (int i = 0; i < 3 + trial % 3; ++i) {
-      Vector3d u;
-      do {
-        u = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-      } while (u.norm() > 1.0 || u.norm() < 0.1);
-      u.normalize();
-      contacts.push_back(contact_at(0.05 * u, -u));
-    }
-    constexpr double kFriction = 0.5;
-    contact::WrenchSpaceOptions options;
-    options.friction = kFriction;
-    options.torque_scale = object.largest_radius;
-    const double bound = weakest.withstood(
-        contact::contact_wrenches(contacts, {.reference_point_O = center, .options = options}));
-    const double epsilon = contact::signed_epsilon(contacts, object, kFriction);
-    if (epsilon > 0.0) {
-      ++num_closed;
-      CHECK(bound >= epsilon * (1.0 - 1e-9));
-      largest_slack = std::max(largest_slack, bound - epsilon);
-    }
-    if (bound < -1e-9) CHECK(epsilon <= 0.0);
-  }
-  CHECK(num_closed > 20);
-  CHECK(largest_slack < 0.3);
 }
 
 }  // namespace test_reach_parts

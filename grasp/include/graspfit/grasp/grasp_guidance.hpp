@@ -36,8 +36,8 @@ struct GuidedStart {
   TargetContacts targets = {};  ///< Assigned contacts to reach; empty where a method has none.
   std::function<FittingResult()> close = {};  ///< Brings the hand to the object, by `fit_hand` or
                                               ///< `close_hand` for example. Const and thread-safe.
-  /// Where the hand would be at the targets, were there no object; empty where a method does not
-  /// know it.
+  /// Where the hand is to be at the targets, perhaps as if there were no object; empty where a
+  /// method does not know it.
   std::optional<hands::HandConfiguration> posture = {};
   /// Whether refinement draws the middles of pads toward the targets. Where pads lie at their
   /// targets already, perhaps by an edge, that would move them away again.

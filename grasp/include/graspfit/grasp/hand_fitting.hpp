@@ -14,9 +14,9 @@ enum class GraspStyle {
   Precision,  ///< Targets go to the fingertips.
   Power,      ///< Targets go to the fingertips and the palm; the palm is brought to the surface
               ///< first and links behind the tips are closed onto it.
-  Auto,       ///< Fingertips alone, with the palm, or with one finger more, whichever is strongest,
-              ///< by any fingers beside the thumb unless they are named [R]; with
-              ///< `TargetSearch::Reach` only.
+  Auto,       ///< Targets go to fingertips alone, to them and the palm, or to one finger more, of
+              ///< any fingers beside the thumb unless they are named: where the strongest posture
+              ///< is found [R]; with `TargetSearch::Reach` only.
 };
 
 /// Which motions of the hand the guard refuses (paper section 9).

@@ -77,7 +77,8 @@ enum class KeptCandidate {
   /// balanced squeeze is kept, else the strongest accepted one. Strength is ε, signed, of the
   /// contacts that touch (with refinement: within its largest gap), with friction cones of
   /// `squeeze_friction` and torques over the object's largest radius. Candidates are the sides of
-  /// all sets drawn, or of the next set of a ranked search.
+  /// all sets drawn, or of the next set of a ranked search, or the strongest postures of a search
+  /// by the hand's reach.
   Strongest,
 };
 
@@ -187,5 +188,10 @@ std::optional<double> bearing_gap(const PlannerOptions& options);
 
 /// What `options` ask of `hand`, the thumb first where it is among the fingers.
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
+
+/// The parts by which a grasp with these targets must touch: those that were requested; of style
+/// auto those of its targets.
+RequestedParts parts_to_touch(const PlannerOptions& options, const RequestedParts& requested,
+                              const TargetContacts& targets);
 
 }  // namespace graspfit::grasp

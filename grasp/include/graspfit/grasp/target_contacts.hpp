@@ -29,8 +29,8 @@ enum class TargetSearch {
   Random,  ///< The paper's randomized greedy search.
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
   /// Sets that the hand can meet: where pads lie in postures of the hand on the object, those first
-  /// whose contacts withstand most [R]. Rules of A19 and A20 do not apply: targets are points of
-  /// the pool, some pair is stable, and they are `min_separation` apart.
+  /// whose contacts withstand most [R]. Targets are points of the pool, some pair is stable, and
+  /// they are `min_separation` apart; equal edges and a near centroid are not asked for.
   Reach,
 };
 

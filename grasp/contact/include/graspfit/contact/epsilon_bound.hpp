@@ -1,0 +1,19 @@
+#pragma once
+
+#include "graspfit/contact/grasp_wrench_space.hpp"
+
+namespace graspfit::contact {
+
+/// An upper bound of ε (l1), nearly always ε itself, for callers that compare candidates by the
+/// thousand: some 0.05 ms for 32 wrenches, where their hull takes milliseconds.
+///
+/// From the origin rays are shot at the hull of the wrenches, about along the six axes, both ways,
+/// each by a linear program, and from the facet that a ray meets along its normal, until that
+/// leads to no nearer facet: the result is the distance of the nearest facet found. In double
+/// arithmetic: to rounding it is at least ε. Where the origin is outside the hull, or on it, the
+/// result is at most zero: the distance from the origin to a point of the hull near the nearest one
+/// [Gilbert 1966], negative.
+/// @throws InvalidInput unless there is at least one wrench and all are finite.
+double epsilon_bound(const Wrenches& wrenches);
+
+}  // namespace graspfit::contact

@@ -1,0 +1,184 @@
+#include "graspfit/contact/epsilon_bound.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "graspfit/base/errors.hpp"
+
+namespace graspfit::contact {
+namespace {
+
+using Eigen::Index;
+using Column = Eigen::Matrix<double, 7, 1>;
+using Basis = Eigen::Matrix<double, 7, 7>;
+
+constexpr int kMostPivots = 100;      // of a ray; about ten are usual
+constexpr int kMostNormals = 20;      // of facets, from one ray; two are usual
+constexpr double kTolerance = 1e-11;  // of shares and of products of unit wrenches
+constexpr double kPenalty = 1e4;      // of corners that are no wrenches, beside lengths of about 1
+constexpr double kAside = 0.05;       // entries of a ray along an axis for the other axes
+constexpr int kGilbertSteps = 64;
+
+/// The ray from the origin along d: the largest t for which t d = Σ λ_j w_j with shares λ_j ≥ 0 of
+/// sum 1, by the simplex method. Basic are six corners and t. Beside the wrenches there are six
+/// corners along the axes, one for each, that a penalty drives out: with them there is always a
+/// basis to begin with.
+class Ray {
+ public:
+  /// All entries of the direction differ from zero.
+  Ray(const Wrenches& wrenches, const Wrench& direction) : wrenches_(wrenches) {
+    Basis basis = Basis::Zero();
+    for (Index i = 0; i < 6; ++i) {
+      basis(i, i) = direction[i] > 0.0 ? 1.0 : -1.0;
+      basis(6, i) = 1.0;
+      penalty_[i] = -kPenalty;
+    }
+    basis.topRightCorner<6, 1>() = -direction;
+    inverse_ = basis.inverse();
+  }
+
+  /// Pivots until no wrench is beyond the facet. False if the ray leaves the hull nowhere.
+  bool shoot() {
+    for (int pivot = 0; pivot < kMostPivots; ++pivot) {
+      const Facet facet = this->facet();
+      Index most = 0;
+      const double height = (facet.normal.transpose() * wrenches_).maxCoeff(&most);
+      if (height - facet.offset <= kTolerance) return is_of_wrenches();
+      const Column entering = inverse_ * column(most);
+      std::optional<Index> leaving;
+      double least = std::numeric_limits<double>::infinity();
+      for (Index i = 0; i < 6; ++i) {
+        if (entering[i] <= kTolerance) continue;
+        const double ratio = inverse_(i, 6) / entering[i];
+        if (ratio >= least) continue;
+        least = ratio;
+        leaving = i;
+      }
+      if (!leaving) return false;
+      exchange(*leaving, entering);
+    }
+    return false;
+  }
+
+  /// Turns the ray onto the normal of its facet and pivots until it meets a facet again. False if
+  /// that is not found.
+  bool turn() {
+    Column direction = Column::Zero();
+    direction.head<6>() = -facet().normal.normalized();
+    exchange(6, inverse_ * direction);
+    for (int pivot = 0; pivot < kMostPivots; ++pivot) {
+      Index leaving = 0;
+      if (inverse_.col(6).head<6>().minCoeff(&leaving) >= -kTolerance) return true;
+      // Of the wrenches that can take its place the one that the facet's plane meets first.
+      const Facet facet = this->facet();
+      const auto row = inverse_.row(leaving);
+      std::optional<Index> next;
+      double least = std::numeric_limits<double>::infinity();
+      for (Index k = 0; k < wrenches_.cols(); ++k) {
+        const double share = row.head<6>().dot(wrenches_.col(k)) + row[6];
+        if (share >= -kTolerance) continue;
+        const double ratio = (facet.offset - facet.normal.dot(wrenches_.col(k))) / -share;
+        if (ratio >= least) continue;
+        least = ratio;
+        next = k;
+      }
+      if (!next) return false;
+      exchange(leaving, inverse_ * column(*next));
+    }
+    return false;
+  }
+
+  /// The distance from the origin to the plane along the facet's normal that no wrench is beyond.
+  double distance() const {
+    const Wrench normal = facet().normal.normalized();
+    return (normal.transpose() * wrenches_).maxCoeff();
+  }
+
+ private:
+  /// normal · w ≤ offset, with equality at the basic corners, but for their penalties.
+  struct Facet {
+    Wrench normal;
+    double offset;
+  };
+  Facet facet() const {
+    Eigen::Matrix<double, 1, 7> dual = inverse_.row(6);
+    for (Index i = 0; i < 6; ++i) dual += penalty_[i] * inverse_.row(i);
+    return {-dual.head<6>().transpose(), dual[6]};
+  }
+  Column column(Index wrench) const {
+    Column result;
+    result << wrenches_.col(wrench), 1.0;
+    return result;
+  }
+  bool is_of_wrenches() const {
+    for (Index i = 0; i < 6; ++i) {
+      if (penalty_[i] != 0.0 && inverse_(i, 6) > kTolerance) return false;
+    }
+    return true;
+  }
+  /// Puts another column, given in the basis, in the place of a basic one.
+  void exchange(Index leaving, const Column& entering) {
+    const Eigen::Matrix<double, 1, 7> row = inverse_.row(leaving) / entering[leaving];
+    inverse_ -= entering * row;
+    inverse_.row(leaving) = row;
+    if (leaving < 6) penalty_[leaving] = 0.0;
+  }
+
+  const Wrenches& wrenches_;
+  Basis inverse_;
+  Column penalty_ = Column::Zero();
+};
+
+/// Length of a point of the hull near the one nearest to the origin; empty if the origin is in the
+/// hull, or nearly so.
+std::optional<double> distance_outside(const Wrenches& wrenches) {
+  Wrench nearest = wrenches.rowwise().mean();
+  for (int step = 0; step < kGilbertSteps; ++step) {
+    Index against = 0;
+    const double least = (nearest.transpose() * wrenches).minCoeff(&against);
+    const double squared = nearest.squaredNorm();
+    if (least > 0.99 * squared) break;
+    const Wrench way = wrenches.col(against) - nearest;
+    const double share = -nearest.dot(way) / way.squaredNorm();
+    if (!(share > 0.0)) break;
+    nearest += std::min(share, 1.0) * way;
+  }
+  const double least = (nearest.transpose() * wrenches).minCoeff();
+  if (!(least > 0.0)) return std::nullopt;
+  return nearest.norm();
+}
+
+}  // namespace
+
+double epsilon_bound(const Wrenches& wrenches) {
+  if (wrenches.cols() == 0 || !wrenches.allFinite()) {
+    throw base::InvalidInput("epsilon_bound: needs at least one wrench, and finite ones");
+  }
+  const double longest = wrenches.colwise().norm().maxCoeff();
+  if (!(longest > 0.0)) return 0.0;
+  const Wrenches unit = wrenches / longest;
+  if (const std::optional<double> outside = distance_outside(unit)) return -*outside * longest;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index axis = 0; axis < 6; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      Wrench direction = Wrench::Constant(sign * kAside);
+      direction[axis] = sign;
+      Ray ray(unit, direction);
+      if (!ray.shoot()) return 0.0;
+      double distance = ray.distance();
+      for (int i = 0; i < kMostNormals; ++i) {
+        least = std::min(least, distance);
+        if (!ray.turn()) break;
+        const double next = ray.distance();
+        if (!(next < distance)) break;
+        distance = next;
+      }
+    }
+  }
+  return least * longest;
+}
+
+}  // namespace graspfit::contact

@@ -1,0 +1,80 @@
+#include <cmath>
+#include <vector>
+
+#include "contact/random_contacts.hpp"
+#include "grasp/known_grasps.hpp"
+#include "graspfit/base/errors.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/contact/epsilon_bound.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
+#include "support/catch.hpp"
+
+namespace test_epsilon_bound {
+
+using namespace graspfit::contact;
+using graspfit::base::InvalidInput;
+using graspfit::base::Random;
+using graspfit::testing::on_cube;
+using graspfit::testing::random_contacts;
+
+TEST_CASE("The bound of epsilon is the inradius of hulls known in closed form",
+          "[contact][epsilon_bound]") {
+  // ± e_i: facets at 1 / √6. With sides of other lengths a facet is at 1 / √(Σ 1 / a²).
+  Wrenches axes(6, 12);
+  axes << Wrenches::Identity(6, 6), -Wrenches::Identity(6, 6);
+  CHECK(epsilon_bound(axes) == Approx(1.0 / std::sqrt(6.0)).epsilon(1e-12));
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const double side = 1.0 + 0.5 * static_cast<double>(i);
+    axes.row(i) *= side;
+    sum += 1.0 / (side * side);
+  }
+  CHECK(epsilon_bound(axes) == Approx(1.0 / std::sqrt(sum)).epsilon(1e-12));
+  // One wrench of all of them pushed out does not matter, one taken away leaves the origin on the
+  // hull.
+  Wrenches open = axes.leftCols(11);
+  CHECK(epsilon_bound(open) <= 0.0);
+  // All beyond a plane: a distance, negative.
+  open.resize(6, 2);
+  open << Wrench::Unit(0), Wrench::Unit(0) + Wrench::Unit(1);
+  CHECK(epsilon_bound(open) == Approx(-1.0).epsilon(0.01));
+  CHECK_THROWS_AS(epsilon_bound(Wrenches(6, 0)), InvalidInput);
+  axes(0, 0) = std::nan("");
+  CHECK_THROWS_AS(epsilon_bound(axes), InvalidInput);
+}
+
+TEST_CASE("The bound of epsilon is never below it, nearly always equal, and has its sign",
+          "[contact][epsilon_bound]") {
+  const WrenchObject object{.center_of_mass_O = Eigen::Vector3d::Zero(),
+                            .largest_radius = 1.0,
+                            .extents_O = Eigen::Vector3d::Constant(2.0)};
+  Random random(29);
+  int num_closed = 0;
+  int num_equal = 0;
+  for (int round = 0; round < 150; ++round) {
+    const std::vector<Contact> contacts = random_contacts(random, 3 + round % 3);
+    const double friction = random.uniform(0.2, 0.9);
+    const double epsilon = signed_epsilon(contacts, object, friction);
+    const double bound = epsilon_bound(contact_wrenches(
+        contacts, wrench_convention(WrenchTool::Graspfit, object, contacts, friction)));
+    CAPTURE(round, friction, epsilon, bound);
+    if (epsilon > 1e-9) {
+      ++num_closed;
+      CHECK(bound >= epsilon - 1e-9);
+      num_equal += bound <= epsilon + 1e-9;
+      CHECK(bound <= 1.5 * epsilon + 0.01);
+    } else if (epsilon < -1e-9) {
+      CHECK(bound <= 0.0);
+    }
+  }
+  CHECK(num_closed >= 30);
+  CHECK(num_equal >= (9 * num_closed) / 10);
+  // Contacts as regular as these have facets that are nearest among their neighbors only.
+  const double epsilon = signed_epsilon(on_cube(), object, 0.5);
+  const double bound = epsilon_bound(
+      contact_wrenches(on_cube(), wrench_convention(WrenchTool::Graspfit, object, on_cube(), 0.5)));
+  CHECK(bound >= epsilon - 1e-9);
+  CHECK(bound <= 1.1 * epsilon);
+}
+
+}  // namespace test_epsilon_bound
