@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
-#include "fitting/finger_crossing.hpp"
 #include "graspfit/contact/epsilon_bound.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/hands/palm_pose.hpp"
@@ -27,6 +27,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kEnough = 0.1;
 constexpr int kMostPostures = 100;
 constexpr int kMostPairs = 200000;  // of points, or points for the palm
+constexpr int kMostProposals = 1000;
 // Further candidates cost nothing unless the first ones fail.
 constexpr std::size_t kMostStarts = 3;
 
@@ -36,6 +37,11 @@ constexpr double kMostProposedLean = 60 * kDegree;  // of a pad on its point
 constexpr int kRollDraws = 6;                       // about the line between two points
 constexpr double kMostTilt = 30 * kDegree;          // of the palm on its point
 constexpr double kLeanLever = 0.03;                 // [m/rad]: a lean beside a gap
+
+// Grips: how often each is drawn is found by a few candidates of each.
+constexpr int kTrialsOfGrip = 12;
+constexpr double kWeakest = 0.1;      // a strength, negative, that counts nothing
+constexpr double kLeastShare = 0.03;  // of the share of the strongest
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
 constexpr double kShareVaried = 0.6;  // of all postures
@@ -142,51 +148,81 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
   for (std::size_t p = 0; p < rules.pool().size(); ++p) {
     pool_of_patch_[static_cast<std::size_t>(*rules.pool()[p].patch)] = static_cast<std::int32_t>(p);
   }
+  const std::size_t num_grips = grips_.grips().size();
+  shares_.assign(num_grips, 1.0);
+  if (num_grips == 1 || rules.pool().size() < 2) return;
+  for (std::size_t i = 0; i < num_grips; ++i) {
+    base::Random random(1);
+    const std::vector<Candidate> best = strongest(&grips_.grips()[i], kTrialsOfGrip, random);
+    const double strength = best.empty() ? 0.0 : std::max(0.0, best.front().strength);
+    shares_[i] = strength * strength;
+  }
+  const double most = *std::max_element(shares_.begin(), shares_.end());
+  for (double& share : shares_) share = most > 0.0 ? std::max(share, kLeastShare * most) : 1.0;
 }
 
-bool ReachSides::Work::is_done() const { return pairs >= kMostPairs || postures >= kMostPostures; }
+bool ReachSides::Work::is_done() const {
+  return pairs >= kMostPairs || proposals >= kMostProposals || postures_left <= 0;
+}
 
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
-  std::vector<Candidate> best;
   if (rules_.pool().size() < 2) return {};
-  Work work;
+  std::vector<TargetSide> sides;
+  for (const Candidate& candidate : strongest(nullptr, kMostPostures, random)) {
+    sides.push_back(side_of(candidate));
+  }
+  return sides;
+}
+
+/// The strongest of some candidates of a grip, or of grips as they are drawn, the strongest first.
+std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, int most_postures,
+                                                         base::Random& random) const {
+  std::vector<Candidate> best;
+  Work work{.postures_left = most_postures};
   while (!work.is_done() && (best.empty() || best.front().strength < kEnough)) {
-    const bool is_varied = !best.empty() && random.uniform() < kShareVaried;
-    std::optional<Candidate> candidate =
-        is_varied ? varied(best.front(), random, work) : drawn(random, work);
-    if (!candidate) continue;
-    if (is_varied) {
-      if (candidate->strength > best.front().strength) best.front() = std::move(*candidate);
+    if (!best.empty() && random.uniform() < kShareVaried) {
+      std::optional<Candidate> candidate = varied(best.front(), random, work);
+      if (candidate && candidate->strength > best.front().strength) {
+        best.front() = std::move(*candidate);
+      }
       continue;
     }
+    std::optional<Candidate> candidate = drawn(grip ? *grip : drawn_grip(random), random, work);
+    if (!candidate) continue;
     const auto position = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
       return candidate->strength > other.strength;
     });
     best.insert(position, std::move(*candidate));
     if (best.size() > kMostStarts) best.pop_back();
   }
-  std::vector<TargetSide> sides;
-  for (const Candidate& candidate : best) sides.push_back(side_of(candidate));
-  std::stable_sort(sides.begin(), sides.end(), by_misfit);
-  return sides;
+  return best;
+}
+
+/// A grip, the more often the stronger its candidates were at the beginning.
+const ReachSides::Grip& ReachSides::drawn_grip(base::Random& random) const {
+  double left = random.uniform(0.0, std::accumulate(shares_.begin(), shares_.end(), 0.0));
+  for (std::size_t i = 0; i + 1 < shares_.size(); ++i) {
+    if (left < shares_[i]) return grips_.grips()[i];
+    left -= shares_[i];
+  }
+  return grips_.grips().back();
 }
 
 /// Of some proposals that may become a grasp the one that costs least, laid; empty if there was
 /// none or it is not good.
-std::optional<ReachSides::Candidate> ReachSides::drawn(base::Random& random, Work& work) const {
+std::optional<ReachSides::Candidate> ReachSides::drawn(const Grip& grip, base::Random& random,
+                                                       Work& work) const {
   std::optional<Proposal> best;
   for (int i = 0; i < kProposals; ++i) {
-    std::optional<Proposal> proposal = this->proposal(random, work);
+    std::optional<Proposal> proposal = this->proposal(grip, random, work);
     if (!proposal) break;
     if (best && proposal->largest_cost >= best->largest_cost) continue;
     std::vector<std::int32_t> patches;
-    for (const std::size_t part : proposal->grip->parts) {
-      patches.push_back(*proposal->patches[part]);
-    }
+    for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
     if (are_apart(patches) && has_stable_pair(patches)) best = std::move(proposal);
   }
   if (!best) return std::nullopt;
-  return laid(*best->grip, best->configuration, work);
+  return laid(grip, best->configuration, work);
 }
 
 /// A candidate's posture moved a little, and laid again.
@@ -218,7 +254,7 @@ std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, b
 std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
                                                       hands::HandConfiguration start,
                                                       Work& work) const {
-  ++work.postures;
+  --work.postures_left;
   hands::apply_couplings(scene_.hand.model(), start.q);
   std::vector<int> pads;
   for (const std::size_t part : grip.parts) pads.push_back(grips_.parts()[part].samples.pad);
@@ -229,14 +265,14 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
 }
 
 /// Empty once the work of an attempt is done.
-std::optional<ReachSides::Proposal> ReachSides::proposal(base::Random& random, Work& work) const {
+std::optional<ReachSides::Proposal> ReachSides::proposal(const Grip& grip, base::Random& random,
+                                                         Work& work) const {
   while (!work.is_done()) {
     ++work.pairs;
-    const Grip& grip = grips_.grips()[random.index(grips_.grips().size())];
     std::optional<Proposal> proposal =
         grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
     if (!proposal || !is_from_approach(proposal->configuration)) continue;
-    proposal->grip = &grip;
+    ++work.proposals;
     for (const std::size_t part : grip.parts) {
       if (!proposal->patches[part]) complete(part, *proposal);
     }
@@ -451,8 +487,6 @@ TargetSide ReachSides::side_of(const Candidate& candidate) const {
   side.is_at_goal = true;
   side.misfit = -candidate.strength;
   side.placement.direction_O = (side.goal->X_OH.linear() * hand.palm.direction_H).normalized();
-  side.do_fingers_cross =
-      scene_.options.fitting.guard_self && do_fingers_cross(scene_.hand, *side.goal);
   return side;
 }
 

@@ -27,11 +27,11 @@ class ReachSides {
   /// Refers to the scene and the rules.
   ReachSides(const GuidanceScene& scene, const TargetRules& rules);
 
-  /// The strongest candidates of an attempt, the strongest first, but those last whose fingers
-  /// cross when they open; each with its posture (`TargetSide::goal`), from which it is refined.
-  /// Strength is `contact::epsilon_bound`; of two contacts, which cannot close, how far their line
-  /// is within the cones. New candidates and variations of the strongest one take turns, at random,
-  /// until one is strong enough or a budget of work is spent. Empty if none was found.
+  /// The strongest candidates of an attempt, the strongest first, each with its posture
+  /// (`TargetSide::goal`), from which it is refined. Strength is `contact::epsilon_bound`; of two
+  /// contacts, which cannot close, how far their line is within the cones. New candidates and
+  /// variations of the strongest one take turns, at random, until one is strong enough or a budget
+  /// of work is spent. Empty if none was found.
   std::vector<TargetSide> draw(base::Random& random) const;
 
  private:
@@ -46,7 +46,6 @@ class ReachSides {
 
   /// A hand at the object, not yet laid onto it.
   struct Proposal {
-    const Grip* grip = nullptr;
     hands::HandConfiguration configuration;
     std::vector<bool> is_fixed;  ///< Per joint: a sample set its position.
     /// Per part of the hand; empty: it is not placed.
@@ -57,11 +56,14 @@ class ReachSides {
   /// Work done in an attempt.
   struct Work {
     int pairs = 0;
-    int postures = 0;
+    int proposals = 0;
+    int postures_left = 0;
     bool is_done() const;
   };
 
-  std::optional<Candidate> drawn(base::Random& random, Work& work) const;
+  const Grip& drawn_grip(base::Random& random) const;
+  std::vector<Candidate> strongest(const Grip* grip, int most_postures, base::Random& random) const;
+  std::optional<Candidate> drawn(const Grip& grip, base::Random& random, Work& work) const;
   std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
   std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, Work& work) const;
   std::optional<Proposal> pinch(const Grip& grip, base::Random& random) const;
@@ -69,7 +71,7 @@ class ReachSides {
   Proposal palm_first(const Grip& grip, base::Random& random) const;
   Proposal proposal_at(const geometry::RigidTransform& X_OH) const;
   void set(std::size_t part, std::int32_t sample, std::int32_t patch, Proposal& proposal) const;
-  std::optional<Proposal> proposal(base::Random& random, Work& work) const;
+  std::optional<Proposal> proposal(const Grip& grip, base::Random& random, Work& work) const;
   double strength(const std::vector<std::int32_t>& patches) const;
   void complete(std::size_t part, Proposal& proposal) const;
   bool is_good(const SurfacePosture& posture) const;
@@ -92,6 +94,7 @@ class ReachSides {
   /// Between that of closure and that within which a squeeze is to balance: what is strong there
   /// still closes where normals turn out a little different.
   const double strength_friction_;
+  std::vector<double> shares_;  ///< Per grip: how often it is drawn.
 };
 
 }  // namespace graspfit::grasp::internal

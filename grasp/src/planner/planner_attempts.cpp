@@ -365,8 +365,11 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
   Grasp& grasp = *result.grasp;
   if (options_.pre_grasps && !grasp.penetration.is_any()) {
     const base::Stopwatch watch(result.timings.pre_grasp_s);
+    PreGraspOptions pre_grasp = options_.pre_grasp;
+    // Targets by reach are met by whatever the joints can do.
+    if (options_.targets.search == TargetSearch::Reach) pre_grasp.open_neutral = true;
     grasp.pre_grasp = find_pre_grasp(hand_, fitting_hand_.collision(), object_.query, surroundings_,
-                                     grasp.configuration, options_.pre_grasp);
+                                     grasp.configuration, pre_grasp);
   }
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;

@@ -209,7 +209,8 @@ constexpr auto pre_grasp_rows = [](auto& at, auto& pre_grasp) {
   at(pre_grasp.opening_steps, {"opening_steps", between(1, 1000)});
   at(pre_grasp.open_neutral, {"open_neutral", kAny, "pre-grasp-open-neutral", "", kContacts,
                               "where no other way is free, joints that neither open nor close "
-                              "(spread, abduction) go along to where the open hand has them"});
+                              "(spread, abduction) go along to where the open hand has them; "
+                              "always with target-search reach"});
   at(pre_grasp.way_tolerance, {"way_tolerance_m", above(0)});
 };
 
