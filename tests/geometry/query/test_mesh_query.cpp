@@ -478,6 +478,70 @@ TEST_CASE("All hits of random lines are those of a loop over all faces", "[geome
   CHECK(most >= 2);
 }
 
+TEST_CASE("A ray that all but runs along an axis finds what it runs into",
+          "[geometry][mesh_query]") {
+  // From a plane of the box the ray sinks so slowly that the inverse of the step overflows.
+  const MeshQuery query(moved(box({1, 1, 2}), {0.5, -0.5, 0}));
+  for (const double slow : {-1e-310, -0x1p-1074, -1e-300, -1e-20}) {
+    CAPTURE(slow);
+    const auto hits = query.all_hits({-1, 0, 0}, {1, slow, 0});
+    REQUIRE_FALSE(hits.empty());
+    CHECK(hits.front().distance == Approx(1.0).epsilon(1e-14));
+    CHECK(hits.back().distance == Approx(2.0).epsilon(1e-14));
+    int crossings = 0;
+    for (const RayHit& hit : hits) crossings += hit.crossing;
+    CHECK(crossings == 0);
+    REQUIRE(query.first_hit({-1, 0, 0}, {1, slow, 0}));
+    CHECK(query.first_hit({-1, 0, 0}, {1, slow, 0})->face == hits.front().face);
+  }
+}
+
+TEST_CASE("A ray meets a face whose normal is lost in rounding where it is",
+          "[geometry][mesh_query]") {
+  // The corners are on a line but for their last digits, and the ray runs through the second.
+  const MeshQuery query(
+      one_face({Eigen::Vector3d(4.5, 6.3, 1.8), {1.5, 2.1, .6}, {3.0, 4.2, 1.2}}));
+  const auto hit = query.first_hit({.5, 2.1, .6}, {1, 0, 0});
+  REQUIRE(hit);
+  CHECK(hit->distance == Approx(1.0).epsilon(1e-15));
+  CHECK((hit->point - Eigen::Vector3d(1.5, 2.1, .6)).norm() < 1e-15);
+}
+
+TEST_CASE("However thin a face is, and seen however edge-on, a ray meets it where rationals say",
+          "[geometry][mesh_query]") {
+  using namespace graspfit::testing;
+  Random random(40);
+  int num_hits = 0;
+  for (double thinness = 0.1; thinness > 1e-15; thinness *= 0.1) {
+    for (int i = 0; i < 60; ++i) {
+      CAPTURE(thinness, i);
+      // Every other face is seen edge-on as nearly as it is thin.
+      const double tilt = (i % 2 == 0 ? thinness : 1.0) * random.uniform();
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      const Eigen::Vector3d up =
+          Eigen::Vector3d(tilt, std::cos(angle), std::sin(angle)).normalized();
+      const Eigen::Vector3d along = up.cross(drawn(random, 1.0)).normalized();
+      const Eigen::Vector3d across = up.cross(along);
+      const Eigen::Vector3d a = drawn(random, 0.5);
+      const double place = random.uniform();
+      const Triangle corners = {a, a + along, a + place * along + thinness * across};
+      const Eigen::Vector3d target = 0.4 * corners[0] + 0.35 * corners[1] + 0.25 * corners[2];
+      const Eigen::Vector3d origin(-3.0, target[1], target[2]);
+      const auto hit = MeshQuery(one_face(corners)).first_hit(origin, {1, 0, 0});
+      if (!hit) continue;  // Rounding has moved the target off the face.
+      ++num_hits;
+      // A line along the first axis is not turned by rounding the point ahead.
+      const RationalPoint from = minus(exactly(origin), exactly(corners[0]));
+      const RationalPoint normal = cross(minus(exactly(corners[1]), exactly(corners[0])),
+                                         minus(exactly(corners[2]), exactly(corners[0])));
+      const double exact = CGAL::to_double(Rational(-dot(from, normal) / normal[0]));
+      // The origin is less than 5 from the face, and the face less than 1.5 long.
+      CHECK(std::abs(hit->distance - exact) <= 2e-12 * 6.5);
+    }
+  }
+  CHECK(num_hits > 300);
+}
+
 TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][mesh_query]") {
   // With whole coordinates rays run along edges, in faces and through vertices of all three bodies.
   TriangleMesh octahedron;

@@ -78,7 +78,7 @@ class MeshQuery {
   double signed_distance(const Eigen::Vector3d& point) const;
 
   /// First hit from `origin` along `direction` (need not be unit; zero throws InvalidInput): the
-  /// first of `all_hits`, up to the rounding of distances. Cost: about log n.
+  /// first of `all_hits`. Cost: about log n.
   std::optional<RayHit> first_hit(const Eigen::Vector3d& origin,
                                   const Eigen::Vector3d& direction) const;
 
@@ -88,7 +88,8 @@ class MeshQuery {
   /// `origin` that is rounded once. A line through an edge meets the faces on both sides of the
   /// edge, a line through a vertex all faces around the vertex, at equal distances up to rounding.
   /// A face in whose plane the line runs is no hit (its neighbors are). A ray that starts on a face
-  /// hits it at distance 0.
+  /// hits it at distance 0. Distances are rounded, to 2e-12 of the mesh's diagonal and of its
+  /// distance from the origin, also for faces that are thin or seen edge-on.
   ///
   /// To count each crossing of the surface once, add up `crossing`. It is found by symbolic
   /// perturbation: the line counts as moved sideways by an infinitesimal step, so that it passes
