@@ -148,7 +148,8 @@ std::optional<PieceHull> piece_hull(const std::vector<Vector3d>& points,
   for (std::size_t i = 0; i < points.size(); ++i) outside[i] = i;
   PieceHull hull = hull_of(kept, exact);
   while (true) {
-    // The plane of a face of a nearly flat hull is only known to some ulps.
+    // The plane of a face is only known to some ulps. This tolerance only saves rounds for nothing:
+    // the loop ends since each point is added once, and `left_out` counts what is left.
     const double tolerance =
         std::max(options.tolerance, 1e-15 * hull.offsets.cwiseAbs().maxCoeff());
     const auto farthest = farthest_outside(points, hull, tolerance, outside);

@@ -67,7 +67,10 @@ class CubeFilter {
     Eigen::Index f = 0;
     const double height = heights.maxCoeff(&f);
     const double radius = kToCorner * cube.half;
-    constexpr double kSlack = 1.0 + 1e-9;  // more than rounding of distances
+    // More than the rounding of distances, at most 3e-13 of the coordinates, for cubes above 3e-4
+    // of these. What a smaller cube drops lies within three times that rounding of its corner, and
+    // a neighbor has the rest.
+    constexpr double kSlack = 1.0 + 1e-9;
     if (height > 0.0 &&
         surface_.closest_point(cube.center).squared_distance > kSlack * radius * radius) {
       return std::nullopt;
@@ -150,7 +153,7 @@ double length_inside(const MeshQuery& solid, const Vector3d& origin) {
 
 double outward_deviation(std::span<const PieceHull> pieces, const MeshQuery& solid,
                          const OutwardOptions& options) {
-  constexpr double kSlack = 1.0 + 1e-9;                  // more than rounding of distances
+  constexpr double kSlack = 1.0 + 1e-9;                  // see `CubeFilter::plane_at`
   constexpr std::array<double, 2> kDepths = {4.0, 1.0};  // depths of balls, over the cube's radius
   std::vector<CubeFilter> filters(pieces.begin(), pieces.end());
   std::vector<Candidate> pending;  // a heap, the one that may reach farthest on top

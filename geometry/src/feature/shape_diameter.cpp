@@ -74,12 +74,14 @@ struct QuickHit {
 /// doubles: for statistics over many rays, not for decisions.
 ///
 /// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
-/// of them; a triangle seen edge-on is missed, but not its neighbors. Of equal hits the one with
-/// the lowest face is returned.
+/// of them unless they are seen edge-on or are a millionth of the ray's way in size; a triangle
+/// seen edge-on is missed, but not its neighbors. Of equal hits the one with the lowest face is
+/// returned; for such faces hits within 1e-12 of each other may depend on the tree.
 QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
                          const Vector3d& direction, std::int32_t skipped_face) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kMargin = 1e-9;  // Of a triangle's barycentric coordinates.
+  // Of a triangle's barycentric coordinates, which are off by some 7e-16 |s| |ac| / det.
+  constexpr double kMargin = 1e-9;
   // By so much more than the best t a box is entered, so that equally far triangles are all seen.
   constexpr double kSlack = 1.0 + 1e-12;
   const Eigen::Array3d inverse = direction.array().inverse();

@@ -28,12 +28,17 @@ inline constexpr std::array<double, kMaxDimension + 1> kPermanentFactor = {1.0, 
 
 /// Rounding errors of a side value, in units of 2^-53 times that permanent. A minor of k rows is
 /// off by e_k units: e_1 = 1 (the difference of coordinates), e_k = e_{k−1} + k + 1, so e_5 = 19.
-/// A coefficient times a rounded difference, summed up, adds at most 8: 27 for the point and 27
-/// for the offset, 2 for their difference. The rest covers the rounding of the bound itself.
+/// A coefficient times a rounded difference adds 2, and the six additions of a side value 6: 27 for
+/// the point; 26 for the offset, plus the same six additions: 59. The rest covers the rounding of
+/// the bound itself, 32 times 2^-53 of it.
 inline constexpr double kSideUnits = 64.0;
 
-/// What underflow may add where coordinates are scaled to about one.
+/// What underflow may add where coordinates are scaled to about one: fewer than a thousand products
+/// lose up to 2^-1075 each, times coordinates below 2^8 in all, so less than 2^-1057.
 inline constexpr double kUnderflowSlack = 0x1p-960;
+
+/// Products of squared lengths below this may have lost bits to underflow, and bound nothing.
+inline constexpr double kLeastSquaredProduct = 0x1p-960;
 
 /// A plane's coefficients that are less precise than this (1.5e-11), relative to their length, are
 /// recomputed from integers before they become a normal.
@@ -264,7 +269,7 @@ class HullBuilder {
       plane.normal[j] = (D - 1 + j) % 2 == 0 ? minor : -minor;
       plane.offset += plane.normal[j] * x0[j];
     }
-    plane.bound = filter_
+    plane.bound = filter_ && product >= kLeastSquaredProduct
                       ? kSideUnits * 0x1p-53 * kPermanentFactor[D] * std::sqrt(product) * radius_ +
                             kUnderflowSlack
                       : std::numeric_limits<double>::infinity();
@@ -294,6 +299,7 @@ class HullBuilder {
     }
     plane.offset = rounded(exact.offset_parts, all_axes);
     const double scale = length(plane);
+    // Coefficients are cut to 2 units: a side value is off by 2 D + 6, at most 18, of 64.
     plane.bound = filter_ && scale > 0x1p-900
                       ? kSideUnits * 0x1p-53 * scale * radius_ + kUnderflowSlack
                       : std::numeric_limits<double>::infinity();

@@ -1,5 +1,6 @@
 #include "mesh/vertex_welding.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -39,9 +40,6 @@ std::vector<std::int32_t> weld_equal(std::vector<Eigen::Vector3d>& vertices) {
 }
 
 std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, double distance) {
-  // Cells a little wider than the distance, so that rounding loses no neighbor: those that a vertex
-  // is to join lie in its own cell or one of the 26 around it.
-  const double cell_size = 1.001 * distance;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   if (!vertices.empty()) origin = vertices.front();
   Eigen::Vector3d end = origin;
@@ -49,8 +47,13 @@ std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, doub
     origin = origin.cwiseMin(p);
     end = end.cwiseMax(p);
   }
-  // Cells this small have no numbers: below an ulp of the extent only equal vertices are welded.
-  if (!((end - origin).maxCoeff() / cell_size < 0x1p60)) return weld_equal(vertices);
+  // Cells a little wider than the distance, so that rounding loses no neighbor: those that a vertex
+  // is to join lie in its own cell or one of the 26 around it. A difference from the origin is off
+  // by 2^-53 of the extent, and a quotient by as much of itself: both less than 2^-13 cells, if no
+  // cell is smaller than 2^-40 of the extent.
+  const double cell_size = std::max(1.001 * distance, 0x1p-40 * (end - origin).maxCoeff());
+  // Where differences of coordinates overflow, there are no cells.
+  if (!std::isfinite(cell_size)) return weld_equal(vertices);
   using Cell = std::array<std::int64_t, 3>;
   std::unordered_map<Cell, std::vector<std::int32_t>, Hash<std::int64_t>> kept_in_cell;
   std::vector<std::int32_t> target(vertices.size());

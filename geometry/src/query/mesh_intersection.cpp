@@ -34,20 +34,31 @@ struct SeenBox {
   Vector3d upper;
 };
 
-SeenBox seen_from(const Eigen::AlignedBox3d& box, const RigidTransform& X_AB) {
+/// Rounding of what is mapped from one frame to another, over the sum of all coordinates involved:
+/// 90 times u = 2^-53.
+constexpr double kMappedRounding = 1e-14;
+
+SeenBox seen_from(const Eigen::AlignedBox3d& box, const RigidTransform& X_AB, double slack) {
   const Vector3d center = X_AB * Vector3d(0.5 * (box.min() + box.max()));
   const Vector3d half = X_AB.linear().cwiseAbs() * Vector3d(0.5 * (box.max() - box.min()));
-  // The slack is far above the few ulps by which the two products and the mapped vertices are off.
-  const double slack =
-      1e-14 * (center.cwiseAbs().sum() + half.sum() + X_AB.translation().cwiseAbs().sum() +
-               box.min().cwiseAbs().sum() + box.max().cwiseAbs().sum());
   const Vector3d reach = half.array() + slack;
   return {center - reach, center + reach};
 }
 
-SeenBox seen_from(const BoxTree::Node& node, const RigidTransform& X_AB) {
-  return seen_from(Eigen::AlignedBox3d(node.lower, node.upper), X_AB);
+double sum_of_coordinates(const Eigen::AlignedBox3d& box) {
+  return box.min().cwiseAbs().sum() + box.max().cwiseAbs().sum();
 }
+
+double sum_of_coordinates(const RigidTransform& X) { return X.translation().cwiseAbs().sum(); }
+
+/// A box of things that are mapped as it is: center, half the size, their sum and the things
+/// themselves are off by 10 u of those coordinates in all.
+SeenBox seen_from(const Eigen::AlignedBox3d& box, const RigidTransform& X_AB) {
+  return seen_from(box, X_AB,
+                   kMappedRounding * (sum_of_coordinates(box) + sum_of_coordinates(X_AB)));
+}
+
+Eigen::AlignedBox3d box_of(const BoxTree::Node& node) { return {node.lower, node.upper}; }
 
 bool overlap(const Vector3d& lower_a, const Vector3d& upper_a, const SeenBox& b) {
   return (lower_a.array() <= b.upper.array()).all() && (b.lower.array() <= upper_a.array()).all();
@@ -85,18 +96,23 @@ RigidTransform inverse_of(const RigidTransform& X_AB) {
 ///
 /// Two boxes are passed over if they are apart along the axes of either frame: seen from one frame
 /// alone, turned boxes are so much larger that ten times as many pairs are looked at near a touch.
-/// What is seen from B is off by the rounding of the inverse and of the mapped vertices, at most 30
-/// ulps (3e-15) of all coordinates involved, which the slack of `seen_from` covers as well.
+///
+/// The slack is a share of the coordinates of both roots and of both translations. What is seen
+/// from B is off by that share, too: B's vertices in A by 7 u, the inverse by 11 u an entry, its
+/// translation by 14 u, and the box by 5 u, in all by 17 u of the 90 u of the slack.
 bool surfaces_intersect(const BoxTree& a, const BoxTree& b, const RigidTransform& X_AB) {
   const RigidTransform X_BA = inverse_of(X_AB);
+  const double slack = kMappedRounding * (sum_of_coordinates(box_of(a.nodes[0])) +
+                                          sum_of_coordinates(box_of(b.nodes[0])) +
+                                          sum_of_coordinates(X_AB) + sum_of_coordinates(X_BA));
   std::vector<std::pair<std::int32_t, std::int32_t>> open = {{0, 0}};
   while (!open.empty()) {
     const auto [i, j] = open.back();
     open.pop_back();
     const BoxTree::Node& node_a = a.nodes[i];
     const BoxTree::Node& node_b = b.nodes[j];
-    if (!overlap(node_a.lower, node_a.upper, seen_from(node_b, X_AB))) continue;
-    if (!overlap(node_b.lower, node_b.upper, seen_from(node_a, X_BA))) continue;
+    if (!overlap(node_a.lower, node_a.upper, seen_from(box_of(node_b), X_AB, slack))) continue;
+    if (!overlap(node_b.lower, node_b.upper, seen_from(box_of(node_a), X_BA, slack))) continue;
     const bool is_leaf_a = node_a.count > 0;
     const bool is_leaf_b = node_b.count > 0;
     if (is_leaf_a && is_leaf_b) {
@@ -152,7 +168,7 @@ std::vector<Vector3d> part_points(const MeshQuery& query, const RigidTransform& 
 }
 
 /// By how much a matrix may lengthen a vector, at most: 1 for a rotation, more where its numbers
-/// have few digits. Norms of rows and columns bound it.
+/// have few digits. Norms of rows and columns bound it; rounding takes 8 u, and 90 u are added.
 double largest_stretch(const Eigen::Matrix3d& matrix) {
   const double of_columns = matrix.cwiseAbs().colwise().sum().maxCoeff();
   const double of_rows = matrix.cwiseAbs().rowwise().sum().maxCoeff();
@@ -223,7 +239,7 @@ class DeepestPoint {
 
   void push_node(const BoxTree& surface, std::int32_t index) {
     const BoxTree::Node& node = surface.nodes[index];
-    const SeenBox box = seen_from(node, X_);
+    const SeenBox box = seen_from(box_of(node), X_);
     const Eigen::AlignedBox3d& solid_box = solid_.indexed().box;
     // A point deeper than `depth` lies at least that far inside the solid's box.
     const Vector3d inset = Vector3d::Constant(depth);
@@ -259,12 +275,15 @@ class DeepestPoint {
     push(most, -1, corners, closest.face);
   }
 
-  /// Whether a triangle whose middle is outside the solid certainly does not enter the solid: to
-  /// enter, it would have to pass through the plane of a face near it, but it lies on one side of
-  /// each of these planes. This settles at once triangles that touch the solid from outside along
-  /// an edge or a face. False decides nothing.
+  /// Whether a triangle whose middle is outside the solid does not enter the solid: to enter, it
+  /// would have to pass through the plane of a face near it, but it lies on one side of each of
+  /// these planes. This settles at once triangles that touch the solid from outside along an edge
+  /// or a face. False decides nothing.
+  ///
+  /// Corners count as on a plane up to a slack, since those that do lie on it are rounded. So a
+  /// triangle that stays outside may dip into the solid by twice the slack, which `bound` does not
+  /// contain: a larger slack settles more triangles, and is less safe.
   bool stays_outside(const Corners& corners) const {
-    // Rounding of the corners, which is that of the largest coordinate far from the origin.
     const Eigen::AlignedBox3d& whole = solid_.indexed().box;
     const double slack = 1e-12 * whole.diagonal().norm() +
                          1e-15 * whole.min().cwiseAbs().cwiseMax(whole.max().cwiseAbs()).maxCoeff();
@@ -279,7 +298,18 @@ class DeepestPoint {
     solid_.indexed().tree().traverse(enter, [&](const IndexedTriangle& triangle) {
       if (!box.intersects(internal::box_of(triangle.corners))) return;
       const Corners& face = triangle.corners;
-      const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
+      const Vector3d ab = face[1] - face[0];
+      const Vector3d ac = face[2] - face[0];
+      const Vector3d vector = ab.cross(ac);
+      const double squared_edge = std::max(ab.squaredNorm(), ac.squaredNorm());
+      // The normal is off by up to 14 u times an edge squared, over its length. A face thinner than
+      // a thousandth has none that is good to 1.6e-12, and decides nothing; one without area bounds
+      // nothing that its neighbors do not.
+      if (!(vector.squaredNorm() > 1e-6 * squared_edge * squared_edge)) {
+        stays = stays && internal::are_collinear(face[0], face[1], face[2]);
+        return;
+      }
+      const Vector3d normal = vector.normalized();
       bool is_above = false;
       bool is_below = false;
       for (const Vector3d& corner : corners) {

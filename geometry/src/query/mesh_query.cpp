@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/disjoint_sets.hpp"
@@ -33,6 +34,33 @@ std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
     if (is_used[v] && sets.root(v) == v) result.push_back(v);
   }
   return result;
+}
+
+// Height of `origin` over the plane of a triangle and how much of it the way to `ahead` takes, both
+// times the length of the triangle's normal.
+template <typename Number>
+std::pair<Number, Number> height_and_fall(const std::array<Eigen::Vector3d, 3>& corners,
+                                          const Eigen::Vector3d& origin,
+                                          const Eigen::Vector3d& ahead) {
+  const auto minus = [](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+    return std::array<Number, 3>{Number(Number(p[0]) - Number(q[0])),
+                                 Number(Number(p[1]) - Number(q[1])),
+                                 Number(Number(p[2]) - Number(q[2]))};
+  };
+  const auto ab = minus(corners[1], corners[0]);
+  const auto ac = minus(corners[2], corners[0]);
+  const auto over = minus(origin, corners[0]);
+  const auto way = minus(origin, ahead);
+  Number height(0);
+  Number fall(0);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    const Number normal(ab[j] * ac[k] - ab[k] * ac[j]);
+    height += normal * over[i];
+    fall += normal * way[i];
+  }
+  return {height, fall};
 }
 
 // The line through an origin and a point `ahead`, both doubles. `ahead` is so far that rounding it
@@ -65,12 +93,18 @@ class Line {
 
   // Whether the part from..to of the line may meet the box; the answer "no" is certain.
   bool may_meet(const Eigen::AlignedBox3d& box, double from, double to) const {
-    constexpr double kSlack = 1e-12;  // Of the line's length; boxes only have to be too large.
+    // Of the line's length: above the rounding here, 4 u of it, and `kPlaceTolerance` together, so
+    // that the face of the least rounded distance is never passed over.
+    constexpr double kSlack = 1e-12;
     double t_in = from;
     double t_out = to;
     for (int axis = 0; axis < 3; ++axis) {
-      if (ahead_[axis] == origin_[axis]) {
-        if (origin_[axis] < box.min()[axis] || origin_[axis] > box.max()[axis]) return false;
+      if (!std::isfinite(inverse_[axis])) {
+        // The line does not move along this axis, or by so little that its inverse overflows.
+        const double reach = std::abs(ahead_[axis] - origin_[axis]);
+        if (origin_[axis] + reach < box.min()[axis] || origin_[axis] - reach > box.max()[axis]) {
+          return false;
+        }
         continue;
       }
       double t0 = (box.min()[axis] - origin_[axis]) * inverse_[axis];
@@ -97,12 +131,9 @@ class Line {
     if (side != 0) {
       const bool is_ahead = side * internal::orientation(a, b, c, ahead_) <= 0;
       if (!is_ahead && from == 0.0) return std::nullopt;
-      const Eigen::Vector3d normal = (b - a).cross(c - a);
-      const double height = normal.dot(origin_ - a);
-      const double fall = normal.dot(ahead_ - origin_);
-      meeting.t = fall != 0.0 ? -height / fall : 0.0;
       // Exact signs have the last word over a rounded quotient.
-      meeting.t = is_ahead ? std::clamp(meeting.t, 0.0, 1.0) : std::clamp(meeting.t, -1.0, 0.0);
+      const double t = place_in_plane(corners);
+      meeting.t = is_ahead ? std::clamp(t, 0.0, 1.0) : std::clamp(t, -1.0, 0.0);
     }
     const int around = moved_side(meeting.sides[0], a, b);
     const bool crosses = around != 0 && moved_side(meeting.sides[1], b, c) == around &&
@@ -138,6 +169,37 @@ class Line {
   }
 
  private:
+  // Where the line meets the plane of a triangle that it meets, off by at most kPlaceTolerance.
+  //
+  // With A and B the largest coordinates of the two edges of the normal, each coordinate of it is
+  // off by 8 u A B, its product with a vector by 16 u A B times the sum of the vector's
+  // coordinates. Since the quotient is at most 1, it is off by 16 u A B (D + E) over `fall`, D and
+  // E those sums; 32 u are allowed. Only faces seen edge-on and needles are beyond what long
+  // doubles can do.
+  double place_in_plane(const std::array<Eigen::Vector3d, 3>& corners) const {
+    const auto& [a, b, c] = corners;
+    const double edges = (b - a).lpNorm<Eigen::Infinity>() * (c - a).lpNorm<Eigen::Infinity>();
+    const double size = edges * ((origin_ - a).lpNorm<1>() + (ahead_ - origin_).lpNorm<1>());
+    const auto is_precise = [&](double fall, double epsilon) {
+      // Products below this may have lost bits to underflow.
+      constexpr double kLeast = 0x1p-900;
+      return std::min(edges, size) > kLeast && std::isfinite(fall) &&
+             16.0 * epsilon * size <= kPlaceTolerance * std::abs(fall);
+    };
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const double height = normal.dot(origin_ - a);
+    const double fall = normal.dot(origin_ - ahead_);
+    if (is_precise(fall, std::numeric_limits<double>::epsilon())) return height / fall;
+    const auto [long_height, long_fall] = height_and_fall<long double>(corners, origin_, ahead_);
+    constexpr auto kLongEpsilon = static_cast<double>(std::numeric_limits<long double>::epsilon());
+    if (is_precise(static_cast<double>(long_fall), kLongEpsilon)) {
+      return static_cast<double>(long_height / long_fall);
+    }
+    using internal::Rational;
+    const auto [exact_height, exact_fall] = height_and_fall<Rational>(corners, origin_, ahead_);
+    return internal::nearest_double(Rational(exact_height / exact_fall));
+  }
+
   // `side` of the line moved by (ε, ε², ε³) for an infinitely small ε against the line from u to v:
   // where it is zero, the first of its derivatives (u − v) × (ahead − origin) that is not.
   int moved_side(int side, const Eigen::Vector3d& u, const Eigen::Vector3d& v) const {
@@ -146,6 +208,8 @@ class Line {
     }
     return side;
   }
+
+  static constexpr double kPlaceTolerance = 0x1p-40;
 
   Eigen::Vector3d origin_;
   Eigen::Vector3d ahead_;
@@ -191,7 +255,8 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
   best.squared_distance = std::numeric_limits<double>::infinity();
   indexed_->tree().traverse_by_bound(
       [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
-      // More than what squares of boxes and of points are rounded by.
+      // Each coordinate of a point in its box is at least as far as the box, and so are rounded
+      // differences and squares; only the order of two additions differs: 4 u of 8 u.
       [&] { return best.squared_distance * (1.0 + 0x1p-50); },
       [&](const IndexedTriangle& triangle) {
         const internal::TrianglePoint candidate =

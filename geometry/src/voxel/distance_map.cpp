@@ -81,7 +81,8 @@ float SignedDistanceMap::at_beyond(const Eigen::Vector3d& position) const {
   const Array3d gap = (inner - last_partial.cast<double>().array())
                           .max(first_partial.cast<double>().array() - inner)
                           .max(0.0);
-  // The value is a rounded root, the square a whole number: this is the least it can have been.
+  // The value is a rounded root, the square a whole number: this is the least it can have been, as
+  // (1 + 2^-24)² (1 − 2^-22) < 1.
   const double squared = std::ceil(double{value} * value * (1.0 - 0x1p-22));
   return static_cast<float>(
       std::sqrt(squared + excess.square().sum() + 2.0 * (excess * gap).sum()));

@@ -9,7 +9,7 @@ namespace graspfit::grasp::internal {
 namespace {
 
 // Raised whenever the same input may give other parts.
-constexpr std::string_view kAlgorithm = "object parts 2";
+constexpr std::string_view kAlgorithm = "object parts 3";
 
 /// A patch without its faces, as the cache stores it.
 struct PatchRecord {

@@ -459,4 +459,53 @@ TEST_CASE("Coordinates from 1e-80 to 1e80 and far from the origin are no matter"
   check_boundary(ConvexPolytope(wide));
 }
 
+TEST_CASE("Corners so near each other that products of their distances underflow are told apart",
+          "[geometry][convex_polytope]") {
+  Random random(67);
+  const int d = GENERATE(range(2, 7));
+  CAPTURE(d);
+  // Of a facet with all its corners in the cluster the product of squared lengths of d − 1 edges is
+  // about 1e-340. The first point in the order of coordinates, from which differences are taken, is
+  // far away.
+  const double size = std::pow(1e-170, 1.0 / (d - 1));
+  for (int round = 0; round < 5; ++round) {
+    MatrixXd points(d, 2 * d + 4);
+    points << random_points(random, d, d + 3) * size,
+        random_points(random, d, d + 1) + MatrixXd::Constant(d, d + 1, -2.0);
+    check_boundary(ConvexPolytope(points));
+  }
+}
+
+TEST_CASE("Containment is exact for points so near a corner that squares underflow",
+          "[geometry][convex_polytope]") {
+  Random random(68);
+  const int d = GENERATE(range(2, 7));
+  CAPTURE(d);
+  MatrixXd points(d, d + 1);
+  points << VectorXd::Zero(d), random_points(random, d, d);
+  const ConvexPolytope polytope(points);
+  REQUIRE(polytope.rank() == d);
+  MatrixXd corners(d, d + 1);
+  int num_outside = 0;
+  for (int i = 0; i < 50; ++i) {
+    // The point is as near to a facet as rounding permits.
+    VectorXd point = VectorXd::Zero(d);
+    for (int k = 1; k <= d; ++k) {
+      if (k != 1 + i % d) point += random.uniform() * 1e-165 * points.col(k);
+    }
+    int largest = -1;
+    for (Index f = 0; f < polytope.num_facets(); ++f) {
+      for (int k = 0; k < d; ++k) corners.col(k) = points.col(polytope.facets()(k, f));
+      corners.col(d) = point;
+      largest = std::max(largest, exact_orientation(corners));
+    }
+    num_outside += largest > 0;
+    CHECK(polytope.containment(point) == std::array{Containment::Inside, Containment::OnSurface,
+                                                    Containment::Outside}[largest + 1]);
+    const double inradius = polytope.inradius(point);
+    CHECK((inradius > 0.0) - (inradius < 0.0) == -largest);
+  }
+  CHECK(num_outside > 5);
+}
+
 }  // namespace test_convex_polytope

@@ -2,9 +2,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "geometry/rational_clip.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
@@ -151,6 +153,72 @@ TEST_CASE("Down to the last bit of a touch, a placed mesh intersects as the mesh
     ++touches;
   }
   CHECK(touches >= 60);  // These are all balls and boxes.
+}
+
+namespace {
+
+TriangleMesh tetrahedron(const std::array<Eigen::Vector3d, 4>& corners) {
+  TriangleMesh mesh;
+  mesh.vertices.assign(corners.begin(), corners.end());
+  mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  return mesh;
+}
+
+// Whether a face of a large body, turned in place so that its rounded corners leave the origin
+// aside, is met by a tiny body that lies across it where it is nearest to the origin. Empty if the
+// face is too near the origin, or not across after all.
+std::optional<bool> meets_across_rounded_face(const Eigen::Matrix3d& turn) {
+  using namespace graspfit::testing;
+  const TriangleMesh large =
+      tetrahedron({Eigen::Vector3d(1000, 0, 0), {-500, 800, 0}, {-500, -800, 0}, {0, 0, -1000}});
+  RigidTransform X = RigidTransform::Identity();
+  X.linear() = turn;
+  const TriangleMesh placed = transformed(large, X);
+  const RationalPoint a = exactly(placed.vertices[0]);
+  const RationalPoint normal =
+      cross(minus(exactly(placed.vertices[1]), a), minus(exactly(placed.vertices[2]), a));
+  const Rational share = dot(normal, a) / dot(normal, normal);
+  Eigen::Vector3d foot;
+  for (int axis = 0; axis < 3; ++axis) foot[axis] = CGAL::to_double(Rational(share * normal[axis]));
+  const double size = 0.1 * foot.norm();
+  if (!(size > 1e-17)) return std::nullopt;
+  const TriangleMesh tiny = tetrahedron(
+      {foot + size * Eigen::Vector3d(1, 1, 1), foot + size * Eigen::Vector3d(1, -1, -1),
+       foot + size * Eigen::Vector3d(-1, 1, -1), foot + size * Eigen::Vector3d(-1, -1, 1)});
+  bool is_above = false;
+  bool is_below = false;
+  for (const Eigen::Vector3d& corner : tiny.vertices) {
+    const Rational height = dot(minus(exactly(corner), a), normal);
+    is_above = is_above || height > 0;
+    is_below = is_below || height < 0;
+  }
+  if (!is_above || !is_below) return std::nullopt;
+  return do_intersect(MeshQuery(tiny), MeshQuery(large), X);
+}
+
+}  // namespace
+
+TEST_CASE("Rounding of a large body's corners hides no tiny body that they pass",
+          "[geometry][mesh_intersection]") {
+  // The rounded face is beyond the origin by 2.7e-14 here, four times the size of the tiny body, in
+  // whose coordinates there is nothing to tell how far the corners of the large one are rounded.
+  Eigen::Matrix3d turn;
+  turn << -.8932626918727107, -.44946735189607523, .007801467031819165, .3125695942795991,
+      -.6085349107996088, .7293733687693836, -.3230820515599802, .6539605201521282,
+      .6840713603434603;
+  const std::optional<bool> known = meets_across_rounded_face(turn);
+  REQUIRE(known);
+  CHECK(*known);
+  Random random(48);
+  int num_met = 0;
+  for (int i = 0; i < 200; ++i) {
+    const std::optional<bool> meets = meets_across_rounded_face(drawn_pose(random, 0.0).linear());
+    if (!meets) continue;
+    INFO("turn " << i);
+    CHECK(*meets);
+    ++num_met;
+  }
+  CHECK(num_met > 100);
 }
 
 TEST_CASE("Whether triangles intersect does not depend on their scale, down to 1e-108 m",

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "geometry/changed_meshes.hpp"
+#include "geometry/rational_distance.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
@@ -70,6 +71,77 @@ TEST_CASE("The closest point is that of brute force", "[geometry][mesh_query]") 
   }
 }
 
+namespace {
+
+// A mesh of one face.
+TriangleMesh one_face(const std::array<Eigen::Vector3d, 3>& corners) {
+  TriangleMesh mesh;
+  mesh.vertices.assign(corners.begin(), corners.end());
+  mesh.faces = {{0, 1, 2}};
+  return mesh;
+}
+
+// How far a distance found is from that in rationals.
+double error_of_distance(const std::array<Eigen::Vector3d, 3>& corners,
+                         const Eigen::Vector3d& point) {
+  using namespace graspfit::testing;
+  const ClosestPoint found = MeshQuery(one_face(corners)).closest_point(point);
+  CHECK((found.barycentric.minCoeff() >= 0.0 && std::abs(found.barycentric.sum() - 1.0) < 1e-15));
+  const double exact = rounded_root(squared_distance_to_triangle(exactly(point), exactly(corners)));
+  return std::abs(std::sqrt(found.squared_distance) - exact);
+}
+
+}  // namespace
+
+TEST_CASE("A point beside a needle is as near to it as rationals say", "[geometry][mesh_query]") {
+  // Weights by differences of products of four lengths are off by 8.6 mm here.
+  const std::array<Eigen::Vector3d, 3> needle = {
+      Eigen::Vector3d(.006875325561880918, .04856351355379239, -.04510422083100651),
+      {.05509929264263349, .1219441459962315, .002746921071169077},
+      {.026541782603122302, .0784892364092193, -.02558980620285316}};
+  const Eigen::Vector3d point(.04122389500899004, .10036811426080357, -.011170286302036724);
+  CHECK(error_of_distance(needle, point) < 1e-16);
+}
+
+TEST_CASE("However thin a triangle is, the distance from it is that in rationals",
+          "[geometry][mesh_query]") {
+  // The bound of `closest_point`, which the fattest slivers come nearest to: 2.3e-13 of the longest
+  // edge and an ulp or two of coordinates and distances below 0.5.
+  constexpr double kLongest = 0.1;
+  constexpr double kBound = 2.3e-13 * kLongest + 2e-16;
+  Random random(39);
+  for (double thinness = 0.1; thinness > 1e-17; thinness *= 0.1) {
+    for (const double aside : {0.0, 1e-6, 1e-3, 0.3}) {
+      for (int i = 0; i < 60; ++i) {
+        CAPTURE(thinness, aside, i);
+        const Eigen::Vector3d along = drawn(random, 1.0).normalized();
+        const Eigen::Vector3d across = along.cross(drawn(random, 1.0)).normalized();
+        const Eigen::Vector3d start = drawn(random, 0.1);
+        // The third corner is over the middle of the long edge, or near one of its ends.
+        const std::array<double, 3> places = {random.uniform(), thinness * random.uniform(),
+                                              1.0 - thinness * random.uniform()};
+        std::array<Eigen::Vector3d, 3> corners = {
+            start, start + kLongest * along,
+            start + kLongest * (places[i % 3] * along + thinness * across)};
+        std::rotate(corners.begin(), corners.begin() + random.index(3), corners.end());
+        if (random.index(2) == 0) std::swap(corners[0], corners[1]);
+        double s = random.uniform();
+        double t = random.uniform();
+        if (s + t > 1.0) {
+          s = 1.0 - s;
+          t = 1.0 - t;
+        }
+        // Every fourth point is not over the triangle but beside it.
+        const double beyond = i % 4 == 0 ? 1.5 : 1.0;
+        const Eigen::Vector3d point = corners[0] + beyond * s * (corners[1] - corners[0]) +
+                                      beyond * t * (corners[2] - corners[0]) +
+                                      aside * random.uniform(-1.0, 1.0) * along.cross(across);
+        CHECK(error_of_distance(corners, point) <= kBound);
+      }
+    }
+  }
+}
+
 TEST_CASE("Of equally near faces the closest point names the first", "[geometry][mesh_query]") {
   const MeshQuery cube(box({2, 2, 2}));
   // At a vertex of the mesh all faces around it are equally near.
@@ -83,6 +155,23 @@ TEST_CASE("Of equally near faces the closest point names the first", "[geometry]
     }
   }
   CHECK(found.face == first);
+}
+
+TEST_CASE("Of equally near faces the first is named where the nearest point is a rounded corner",
+          "[geometry][mesh_query]") {
+  // On the first edge the point beside its end is rounded to 2.8e-16 from the query, while the box
+  // of the face is 3.1e-16 from it.
+  const TriangleMesh face =
+      one_face({Eigen::Vector3d(-1.201657872665272, -1.7004130315403063, -1.974613905170196),
+                {.00819522451100609, .0050873999458690335, .008686092947757452},
+                {-1.0, 0.0, 0.0}});
+  const Eigen::Vector3d point(.008195224511006398, .005087399945868984, .008686092947757285);
+  TriangleMesh mesh = face;
+  mesh.faces.assign(100, face.faces[0]);
+  const MeshQuery query(mesh);
+  const ClosestPoint closest = query.closest_point(point);
+  CHECK(closest.face == 0);
+  CHECK(closest.squared_distance >= query.box().squaredExteriorDistance(point) * (1.0 - 0x1p-50));
 }
 
 TEST_CASE("Containment in a ball and a torus agrees with their equations",
@@ -387,6 +476,70 @@ TEST_CASE("All hits of random lines are those of a loop over all faces", "[geome
     most = std::max(most, found.size());
   }
   CHECK(most >= 2);
+}
+
+TEST_CASE("A ray that all but runs along an axis finds what it runs into",
+          "[geometry][mesh_query]") {
+  // From a plane of the box the ray sinks so slowly that the inverse of the step overflows.
+  const MeshQuery query(moved(box({1, 1, 2}), {0.5, -0.5, 0}));
+  for (const double slow : {-1e-310, -0x1p-1074, -1e-300, -1e-20}) {
+    CAPTURE(slow);
+    const auto hits = query.all_hits({-1, 0, 0}, {1, slow, 0});
+    REQUIRE_FALSE(hits.empty());
+    CHECK(hits.front().distance == Approx(1.0).epsilon(1e-14));
+    CHECK(hits.back().distance == Approx(2.0).epsilon(1e-14));
+    int crossings = 0;
+    for (const RayHit& hit : hits) crossings += hit.crossing;
+    CHECK(crossings == 0);
+    REQUIRE(query.first_hit({-1, 0, 0}, {1, slow, 0}));
+    CHECK(query.first_hit({-1, 0, 0}, {1, slow, 0})->face == hits.front().face);
+  }
+}
+
+TEST_CASE("A ray meets a face whose normal is lost in rounding where it is",
+          "[geometry][mesh_query]") {
+  // The corners are on a line but for their last digits, and the ray runs through the second.
+  const MeshQuery query(
+      one_face({Eigen::Vector3d(4.5, 6.3, 1.8), {1.5, 2.1, .6}, {3.0, 4.2, 1.2}}));
+  const auto hit = query.first_hit({.5, 2.1, .6}, {1, 0, 0});
+  REQUIRE(hit);
+  CHECK(hit->distance == Approx(1.0).epsilon(1e-15));
+  CHECK((hit->point - Eigen::Vector3d(1.5, 2.1, .6)).norm() < 1e-15);
+}
+
+TEST_CASE("However thin a face is, and seen however edge-on, a ray meets it where rationals say",
+          "[geometry][mesh_query]") {
+  using namespace graspfit::testing;
+  Random random(40);
+  int num_hits = 0;
+  for (double thinness = 0.1; thinness > 1e-15; thinness *= 0.1) {
+    for (int i = 0; i < 60; ++i) {
+      CAPTURE(thinness, i);
+      // Every other face is seen edge-on as nearly as it is thin.
+      const double tilt = (i % 2 == 0 ? thinness : 1.0) * random.uniform();
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      const Eigen::Vector3d up =
+          Eigen::Vector3d(tilt, std::cos(angle), std::sin(angle)).normalized();
+      const Eigen::Vector3d along = up.cross(drawn(random, 1.0)).normalized();
+      const Eigen::Vector3d across = up.cross(along);
+      const Eigen::Vector3d a = drawn(random, 0.5);
+      const double place = random.uniform();
+      const Triangle corners = {a, a + along, a + place * along + thinness * across};
+      const Eigen::Vector3d target = 0.4 * corners[0] + 0.35 * corners[1] + 0.25 * corners[2];
+      const Eigen::Vector3d origin(-3.0, target[1], target[2]);
+      const auto hit = MeshQuery(one_face(corners)).first_hit(origin, {1, 0, 0});
+      if (!hit) continue;  // Rounding has moved the target off the face.
+      ++num_hits;
+      // A line along the first axis is not turned by rounding the point ahead.
+      const RationalPoint from = minus(exactly(origin), exactly(corners[0]));
+      const RationalPoint normal = cross(minus(exactly(corners[1]), exactly(corners[0])),
+                                         minus(exactly(corners[2]), exactly(corners[0])));
+      const double exact = CGAL::to_double(Rational(-dot(from, normal) / normal[0]));
+      // The origin is less than 5 from the face, and the face less than 1.5 long.
+      CHECK(std::abs(hit->distance - exact) <= 2e-12 * 6.5);
+    }
+  }
+  CHECK(num_hits > 300);
 }
 
 TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][mesh_query]") {

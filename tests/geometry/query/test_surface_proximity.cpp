@@ -1,6 +1,10 @@
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 
+#include "geometry/rational_distance.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -95,6 +99,26 @@ TEST_CASE("A pose written with three digits gives the distance of the mesh moved
   CHECK(num_apart > 100);
 }
 
+TEST_CASE("A matrix that is nearly a rotation lengthens no lower bound",
+          "[geometry][surface_proximity]") {
+  // Along the columns of this matrix the two points seem to be farther apart than they are, by
+  // 1.38e-12 of their distance.
+  RigidTransform X_AB = RigidTransform::Identity();
+  X_AB.linear().array() += 4.9e-13;
+  X_AB.linear().diagonal().setConstant(1.0 + 4e-13);
+  TriangleMesh point;
+  point.vertices = {{0, 0, 0}, {1, 1, 1}};
+  point.faces = {{0, 0, 0}};
+  const MeshQuery a(point);
+  point.faces = {{1, 1, 1}};
+  const MeshQuery b(point);
+  const double distance = (X_AB * point.vertices[1]).norm();
+  // What is farther than a limit is left out; 1e-12 of the coordinates is what bounds may be off.
+  const SurfaceClearance found = surface_clearance(a, b, X_AB, distance + 2e-12, 1.0);
+  CHECK(found.at_least <= distance + 1e-12);
+  CHECK(found.at_least >= distance - 1e-12);
+}
+
 TEST_CASE("A surface inside another has a distance from it", "[geometry][surface_proximity]") {
   const MeshQuery outer(box({2, 2, 2}));
   const MeshQuery inner(box({1, 1, 1}));
@@ -116,6 +140,101 @@ TEST_CASE("An open surface pierced in its middle is at distance zero",
   REQUIRE(nearest);
   CHECK(nearest->distance == 0.0);
   CHECK(nearest->face_a == 0);
+}
+
+namespace {
+
+using graspfit::testing::Triangle;
+
+Eigen::Vector3d drawn_direction(Random& random) { return drawn_pose(random, 0.0).linear().col(0); }
+
+MeshQuery one_face(const Triangle& corners) {
+  TriangleMesh mesh;
+  mesh.vertices.assign(corners.begin(), corners.end());
+  mesh.faces = {{0, 1, 2}};
+  return MeshQuery(mesh);
+}
+
+// A face beside which rounding matters most.
+enum class Beside {
+  Corner,  // With a corner over a corner or the middle of the thin face.
+  Edge,    // With an edge along an edge of the thin face, at an angle as small as it is thin.
+  Tip      // A needle through the thin face.
+};
+
+struct PairOfFaces {
+  Triangle thin;
+  Triangle other;
+};
+
+// Two faces with edges of about 0.1 m that are apart by about `gap`, or cross.
+PairOfFaces drawn_pair(Random& random, Beside beside, double thinness, double gap) {
+  const Eigen::Vector3d along = drawn_direction(random);
+  const Eigen::Vector3d across = along.cross(drawn_direction(random)).normalized();
+  const Eigen::Vector3d up = along.cross(across);
+  const Eigen::Vector3d start = 0.05 * drawn_direction(random);
+  // The third corner is over the middle of the long edge, or near one of its ends.
+  const std::array<double, 3> places = {random.uniform(), thinness * random.uniform(),
+                                        1.0 - thinness * random.uniform()};
+  PairOfFaces result;
+  result.thin = {start, start + 0.1 * along,
+                 start + 0.1 * (places[random.index(3)] * along + thinness * across)};
+  const auto& [a, b, c] = result.thin;
+  if (beside == Beside::Corner) {
+    const Eigen::Vector3d middle = 0.3 * a + 0.3 * b + 0.4 * c;
+    const Eigen::Vector3d aside = gap * drawn_direction(random);
+    const bool is_over_corner = random.index(2) == 0;
+    const Eigen::Vector3d place = (is_over_corner ? result.thin[random.index(3)] : middle) + aside;
+    result.other = {place, place + 0.1 * drawn_direction(random),
+                    place + 0.07 * drawn_direction(random)};
+  } else if (beside == Beside::Edge) {
+    const Eigen::Vector3d place = a + 0.3 * (b - a) + gap * up;
+    const Eigen::Vector3d direction = along + 0.01 * thinness * drawn_direction(random);
+    result.other = {place - 0.03 * direction, place + 0.05 * direction, place + 0.05 * up};
+  } else {
+    const Eigen::Vector3d place = 0.4 * a + 0.35 * b + 0.25 * c + gap * up;
+    const Eigen::Vector3d direction = drawn_direction(random);
+    const Eigen::Vector3d end = place - 0.04 * direction;
+    result.other = {place + 0.05 * direction, end, end + 0.01 * thinness * up};
+  }
+  std::rotate(result.thin.begin(), result.thin.begin() + random.index(3), result.thin.end());
+  std::rotate(result.other.begin(), result.other.begin() + random.index(3), result.other.end());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("However thin faces are, their distance is that in rationals",
+          "[geometry][surface_proximity]") {
+  using namespace graspfit::testing;
+  constexpr double kBound = 1e-12 * 0.2;  // No coordinate is larger than 0.2.
+  Random random(13);
+  int num_crossing = 0;
+  for (const Beside beside : {Beside::Corner, Beside::Edge, Beside::Tip}) {
+    for (const double thinness : {0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+      for (int i = 0; i < 40; ++i) {
+        CAPTURE(static_cast<int>(beside), thinness, i);
+        const double gap = std::array{0.0, 1e-12, 1e-9, 1e-6}[i % 4];
+        const auto [thin, other] = drawn_pair(random, beside, thinness, gap);
+        const double exact =
+            rounded_root(squared_distance_of_triangles(exactly(thin), exactly(other)));
+        num_crossing += exact == 0.0 ? 1 : 0;
+        const MeshQuery a = one_face(thin);
+        const MeshQuery b = one_face(other);
+        const RigidTransform at = RigidTransform::Identity();
+        // A near limit leaves out what rounding puts beyond it.
+        for (const double enough : {kNoLimit, exact + 1e-8, exact + 2.0 * kBound}) {
+          CAPTURE(enough);
+          const auto found = nearest_points(a, b, at, enough);
+          REQUIRE(found);
+          CHECK(std::abs(found->distance - exact) <= kBound);
+          const double at_least = surface_clearance(a, b, at, enough, 1.0).at_least;
+          CHECK(std::abs(at_least - exact) <= kBound);
+        }
+      }
+    }
+  }
+  CHECK(num_crossing > 50);
 }
 
 }  // namespace test_surface_proximity

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "geometry/rational_clip.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/convex_clip.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -70,6 +72,29 @@ TEST_CASE("The length of a plane's normal does not matter", "[geometry][convex_c
     REQUIRE(scaled);
     CHECK(scaled->area == Approx(unit->area));
   }
+}
+
+TEST_CASE("Corners keep their bound where the terms of a plane are all but zero",
+          "[geometry][convex_clip]") {
+  // A multiple of y ≤ 1/2 whose values at the corners have few bits left, beside a plane whose
+  // values are so large that the products are of ordinary size.
+  const Triangle triangle = {Eigen::Vector3d(0, 0.1, 0), {0x1p200, 0.37, 0}, {0x1p199, 0.83, 0}};
+  const ConvexVolume volume = {{{1, 0, 0}, 0x1p199 + 0x1p197}, {{0, 0x1p-1060, 0}, 0x1p-1061}};
+  const auto piece = clip(triangle, volume);
+  REQUIRE(piece);
+  graspfit::testing::RationalPolygon exact(triangle);
+  for (const HalfSpace& half_space : volume) exact.clip(half_space.normal, half_space.offset);
+  REQUIRE(piece->polygon.size() == exact.corners().size());
+  const double bound = graspfit::testing::corner_bound(triangle);
+  for (const Eigen::Vector3d& corner : piece->polygon) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const graspfit::testing::RationalPoint& place : exact.corners()) {
+      nearest = std::min(nearest, graspfit::testing::distance(corner, place));
+    }
+    CHECK(nearest <= bound);
+  }
+  // The triangle has 1.19 * 2^198 square meters.
+  CHECK(piece->area == Approx(0x1p198 * 1.19 * CGAL::to_double(exact.fraction())).epsilon(1e-11));
 }
 
 TEST_CASE("Pieces of mesh faces come in the order asked for and name their face",

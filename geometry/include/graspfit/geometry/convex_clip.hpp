@@ -36,7 +36,8 @@ struct ClippedPiece {
 /// by at most 2^-42 of the triangle's longest edge, plus two ulps of the triangle's largest
 /// coordinate. The area is off by at most 1e-12 of the triangle's area. The centroid is off by as
 /// much as a corner, plus 4e-12 of the longest edge times the ratio of the triangle's area to the
-/// piece's. A triangle that lies *in* a bounding plane counts as inside (half-spaces are closed).
+/// piece's; these two up to some 256 corners of the piece. A triangle that lies *in* a bounding
+/// plane counts as inside (half-spaces are closed).
 /// @throws InvalidInput if a half-space or a corner is not finite.
 std::optional<ClippedPiece> clip(const std::array<Eigen::Vector3d, 3>& triangle,
                                  const ConvexVolume& volume);

@@ -38,8 +38,8 @@ struct PenetrationOptions {
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz), so that the answer
 /// does not depend on how finely either mesh is tessellated. The search ends when the tolerance is
 /// met, when `enough` is exceeded, or after 50 000 steps in each of the two directions (as for wide
-/// overlaps of finely tessellated curved surfaces); `depth_bound` holds in all cases, up to the
-/// rounding of distances. Cost: that of `do_intersect` if the solids do not intersect.
+/// overlaps of finely tessellated curved surfaces); both bounds hold in all cases, up to 1e-11 of
+/// the coordinates. Cost: that of `do_intersect` if the solids do not intersect.
 Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB,
                         const PenetrationOptions& options = {});
 
@@ -63,7 +63,8 @@ struct MeshDistance {
 };
 
 /// Smallest distance between the surfaces of two solids. Whether the solids intersect is decided
-/// exactly, as by `do_intersect`; distance and points are approximate, to rounding.
+/// exactly, as by `do_intersect`; distance and points are approximate, as those of
+/// `nearest_points`.
 MeshDistance distance(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB);
 
 }  // namespace graspfit::geometry

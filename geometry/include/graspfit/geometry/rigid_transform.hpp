@@ -16,9 +16,12 @@ namespace graspfit::geometry {
 /// rely on it (`is_rotation`).
 using RigidTransform = Eigen::Isometry3d;
 
-/// Whether the matrix of a pose is orthogonal up to rounding (1e-12).
+/// Whether the matrix of a pose is orthogonal up to rounding: the entries of its product with its
+/// transpose are those of the identity to 5e-14, as those of a hundred poses in a row are. It then
+/// makes no vector longer by more than 7.5e-14 of its length, and what is seen along the axes of
+/// the other frame is as far apart as it is to 5e-13 of the coordinates.
 inline bool is_rotation(const RigidTransform& X) {
-  return (X.linear().transpose() * X.linear()).isIdentity(1e-12);
+  return (X.linear().transpose() * X.linear()).isIdentity(5e-14);
 }
 
 }  // namespace graspfit::geometry

@@ -24,9 +24,9 @@ struct HausdorffOptions {
 ///
 /// Branch and bound over triangles (the distance to a surface is 1-Lipschitz, and the distance to
 /// one face of it is convex), so that the answer does not depend on how finely either mesh is
-/// tessellated [after Tang, Lee & Kim 2009]. The lower bound is approximate to rounding; the upper
-/// one is enlarged by 1e-14 of the coordinates to allow for rounding. Cost: a closest-point query
-/// per face of both, and four per step.
+/// tessellated [after Tang, Lee & Kim 2009]. The lower bound is as approximate as
+/// `MeshQuery::closest_point`; the upper one is enlarged by 2e-14 of the coordinates to allow for
+/// rounding. Cost: a closest-point query per face of both, and four per step.
 HausdorffDistance hausdorff_distance(const MeshQuery& a, const MeshQuery& b,
                                      const HausdorffOptions& options = {});
 

@@ -30,9 +30,9 @@ struct ProximitySeed {
 ///
 /// Where only a yes or no is needed, the search may end early: it ends with the first pair of
 /// points that is no farther apart than `near_enough` [m], even if another pair is nearer. The
-/// result is approximate, to the rounding of distances; surfaces that cross have distance zero,
-/// except for crossings as small as rounding. Where intersection matters use `do_intersect`, which
-/// is exact.
+/// result is approximate, to 1e-12 of the coordinates, however thin faces are; surfaces that cross
+/// have distance zero, except for crossings as small as rounding. Where intersection matters use
+/// `do_intersect`, which is exact.
 /// @throws InvalidInput for a pose that is not finite, a limit that is not a number and a seed that
 /// is not of these meshes.
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
@@ -49,8 +49,8 @@ struct SurfaceClearance {
 
 /// A lower bound of the distance d between two surfaces [m], for proofs that bodies stay apart. The
 /// bound is at least min(share d, `enough`) and at most min(d, `enough`), up to 1e-12 of the
-/// coordinates. It is zero or below rounding where the surfaces cross. Whether one body encloses
-/// the other is not tested.
+/// coordinates, however thin faces are. It is zero or below rounding where the surfaces cross.
+/// Whether one body encloses the other is not tested.
 ///
 /// `share` in (0, 1] is the share of the distance that suffices; 1 asks for the distance itself.
 /// The function is cheaper than `nearest_points`: boxes alone bound the pairs of faces that remain.

@@ -15,7 +15,8 @@ using geometry::ConvexPolytope;
 
 constexpr int kSearchSteps = 64;
 
-/// Rounding error of a product of two vectors of six, relative to the product of their lengths.
+/// Rounding error of a product of two vectors of six, relative to the product of their lengths: 6
+/// roundings of 2^-53, and 2 to spare.
 constexpr double kProductError = 8.0 * 0x1p-53;
 
 bool has_origin_inside(const ConvexPolytope& hull) {
