@@ -113,6 +113,66 @@ TEST_CASE("A grip is chosen among targets by reach only", "[grasp][reach_targets
                     Catch::Matchers::Contains("style") && Catch::Matchers::Contains("reach"));
   options.targets.search = TargetSearch::Reach;
   CHECK_NOTHROW(options.validate());
+  options.planner = "gs";
+  CHECK_THROWS_WITH(options.validate(),
+                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("fitting"));
+  options.planner = "fitting";
+  options.style = GraspStyle::Power;
+  CHECK_THROWS_WITH(options.validate(),
+                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("reach"));
+}
+
+TEST_CASE("Targets by reach are on the palm only where it may touch", "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const geometry::TriangleMesh bottle = geometry::capsule(0.035, 0.10);
+  const auto num_with_palm = [&](std::optional<bool> palm, GraspStyle style) {
+    PlannerOptions options = reach_options(style, 6);
+    options.palm = palm;
+    const ObjectModel object = prepare_object(bottle, hand, options);
+    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+    REQUIRE_FALSE(result.grasps.empty());
+    return std::pair(
+        std::count_if(result.grasps.begin(), result.grasps.end(),
+                      [](const Grasp& grasp) { return grasp.targets.contacts.back().is_palm; }),
+        static_cast<std::ptrdiff_t>(result.grasps.size()));
+  };
+  CHECK(num_with_palm(std::nullopt, GraspStyle::Auto).first > 0);
+  CHECK(num_with_palm(false, GraspStyle::Auto).first == 0);
+  CHECK(num_with_palm(std::nullopt, GraspStyle::Precision).first == 0);
+  const auto [with, all] = num_with_palm(true, GraspStyle::Precision);
+  CHECK(with == all);
+}
+
+TEST_CASE("Two fingers of a gripper meet targets by reach across a thin wall",
+          "[grasp][reach_targets]") {
+  // Patches of a plate thinner than a voxel have both sides in one voxel, and no normal.
+  const hands::HandModel hand = hands::find_hand("parallel_gripper");
+  PlannerOptions options = reach_options(GraspStyle::Precision, 6);
+  options.num_contacts = 2;
+  for (const Eigen::Vector3d& size :
+       {Eigen::Vector3d(0.06, 0.04, 0.03), Eigen::Vector3d(0.15, 0.10, 0.006)}) {
+    CAPTURE(size.transpose());
+    const ObjectModel object = prepare_object(geometry::box(size), hand, options);
+    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+    REQUIRE_FALSE(result.grasps.empty());
+    for (const Grasp& grasp : result.grasps) {
+      REQUIRE(grasp.targets.contacts.size() == 2);
+      CHECK(grasp.is_valid());
+      for (const double miss : misses(grasp)) CHECK(miss <= 0.012);
+    }
+  }
+}
+
+TEST_CASE("Without points that may be targets, those by reach fail for want of the first or second",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = reach_options(GraspStyle::Auto, 2);
+  options.targets.score_threshold = 0.999999;
+  const ObjectModel object = prepare_object(geometry::ball(0.04, 3), hand, options);
+  const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+  CHECK(result.grasps.empty());
+  const auto& failures = result.statistics.target_failures;
+  CHECK(failures.at("no seed") + failures.at("no second") == 2);
 }
 
 TEST_CASE("A file of grasps whose parts differ is measured again part by part",
