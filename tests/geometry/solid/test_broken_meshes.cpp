@@ -289,7 +289,9 @@ void check_queries(const MeshQuery& query) {
     CHECK(std::sqrt(query.closest_point(center).squared_distance) <= 1e-12 * extent);
     // A ray to the middle of a face with area meets that face or one before it.
     const auto hit = extent > 0 ? query.first_hit(center + away, -away) : std::nullopt;
-    if (hit) CHECK(hit->distance <= away.norm() * (1 + 1e-9));
+    // Squares of denormal numbers are zero.
+    constexpr double kUnderflow = 8 * std::numeric_limits<double>::denorm_min();
+    if (hit) CHECK(hit->distance <= away.stableNorm() * (1 + 1e-9) + kUnderflow);
     if (vector_area(mesh, face).dot(away) > 1e-6 * extent * extent * extent) CHECK(hit);
     Eigen::AlignedBox3d box(c[0]);
     box.extend(c[1]).extend(c[2]);
