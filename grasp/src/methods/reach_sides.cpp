@@ -38,10 +38,9 @@ constexpr int kRollDraws = 6;                       // about the line between tw
 constexpr double kMostTilt = 30 * kDegree;          // of the palm on its point
 constexpr double kLeanLever = 0.03;                 // [m/rad]: a lean beside a gap
 
-// Grips: how often each is drawn is found by a few candidates of each.
-constexpr int kTrialsOfGrip = 12;
-constexpr double kWeakest = 0.1;      // a strength, negative, that counts nothing
-constexpr double kLeastShare = 0.03;  // of the share of the strongest
+// Grips are drawn by the squares of the strengths that a short search finds for each.
+constexpr int kTrialsOfGrip = 12;     // postures
+constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
 constexpr double kShareVaried = 0.6;  // of all postures
@@ -198,7 +197,7 @@ std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, int m
   return best;
 }
 
-/// A grip, the more often the stronger its candidates were at the beginning.
+/// A grip, by the shares.
 const ReachSides::Grip& ReachSides::drawn_grip(base::Random& random) const {
   double left = random.uniform(0.0, std::accumulate(shares_.begin(), shares_.end(), 0.0));
   for (std::size_t i = 0; i + 1 < shares_.size(); ++i) {
@@ -229,7 +228,7 @@ std::optional<ReachSides::Candidate> ReachSides::drawn(const Grip& grip, base::R
 std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, base::Random& random,
                                                         Work& work) const {
   const hands::HandModel& hand = scene_.hand.model();
-  const double scale = random.uniform(0.1, 1.0);
+  const double scale = random.uniform(kLeastScale, 1.0);
   const auto drawn = [&](double most) { return scale * random.uniform(-most, most); };
   hands::HandConfiguration configuration = from.posture.configuration;
   Vector3d pivot = Vector3d::Zero();
