@@ -26,8 +26,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // raise the median strength by a quarter.
 constexpr double kEnough = 0.1;
 constexpr int kMostPostures = 100;
-constexpr int kMostPairs = 200000;  // of points, or points for the palm
-constexpr int kMostProposals = 1000;
+constexpr int kMostPairs = 200000;    // of points, or points for the palm
+constexpr int kMostProposals = 4000;  // small objects and wide fingertips need most of them
 // Further candidates cost nothing unless the first ones fail.
 constexpr std::size_t kMostStarts = 3;
 
@@ -39,7 +39,8 @@ constexpr double kMostTilt = 30 * kDegree;          // of the palm on its point
 constexpr double kLeanLever = 0.03;                 // [m/rad]: a lean beside a gap
 
 // Grips are drawn by the squares of the strengths that a short search finds for each.
-constexpr int kTrialsOfGrip = 12;     // postures
+constexpr int kPosturesOfGrip = 12;
+constexpr int kProposalsOfGrip = 500;
 constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
@@ -152,7 +153,9 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
   if (num_grips == 1 || rules.pool().size() < 2) return;
   for (std::size_t i = 0; i < num_grips; ++i) {
     base::Random random(1);
-    const std::vector<Candidate> best = strongest(&grips_.grips()[i], kTrialsOfGrip, random);
+    const std::vector<Candidate> best =
+        strongest(&grips_.grips()[i],
+                  {.proposals_left = kProposalsOfGrip, .postures_left = kPosturesOfGrip}, random);
     const double strength = best.empty() ? 0.0 : std::max(0.0, best.front().strength);
     shares_[i] = strength * strength;
   }
@@ -161,23 +164,23 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
 }
 
 bool ReachSides::Work::is_done() const {
-  return pairs >= kMostPairs || proposals >= kMostProposals || postures_left <= 0;
+  return pairs >= kMostPairs || proposals_left <= 0 || postures_left <= 0;
 }
 
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   if (rules_.pool().size() < 2) return {};
   std::vector<TargetSide> sides;
-  for (const Candidate& candidate : strongest(nullptr, kMostPostures, random)) {
+  for (const Candidate& candidate : strongest(
+           nullptr, {.proposals_left = kMostProposals, .postures_left = kMostPostures}, random)) {
     sides.push_back(side_of(candidate));
   }
   return sides;
 }
 
 /// The strongest of some candidates of a grip, or of grips as they are drawn, the strongest first.
-std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, int most_postures,
+std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, Work work,
                                                          base::Random& random) const {
   std::vector<Candidate> best;
-  Work work{.postures_left = most_postures};
   while (!work.is_done() && (best.empty() || best.front().strength < kEnough)) {
     if (!best.empty() && random.uniform() < kShareVaried) {
       std::optional<Candidate> candidate = varied(best.front(), random, work);
@@ -271,7 +274,7 @@ std::optional<ReachSides::Proposal> ReachSides::proposal(const Grip& grip, base:
     std::optional<Proposal> proposal =
         grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
     if (!proposal || !is_from_approach(proposal->configuration)) continue;
-    ++work.proposals;
+    --work.proposals_left;
     for (const std::size_t part : grip.parts) {
       if (!proposal->patches[part]) complete(part, *proposal);
     }

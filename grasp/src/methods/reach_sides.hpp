@@ -56,13 +56,13 @@ class ReachSides {
   /// Work done in an attempt.
   struct Work {
     int pairs = 0;
-    int proposals = 0;
+    int proposals_left = 0;
     int postures_left = 0;
     bool is_done() const;
   };
 
   const Grip& drawn_grip(base::Random& random) const;
-  std::vector<Candidate> strongest(const Grip* grip, int most_postures, base::Random& random) const;
+  std::vector<Candidate> strongest(const Grip* grip, Work work, base::Random& random) const;
   std::optional<Candidate> drawn(const Grip& grip, base::Random& random, Work& work) const;
   std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
   std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, Work& work) const;

@@ -10,10 +10,13 @@
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/wide_finger_hand.hpp"
 
 namespace test_reach_targets {
 
@@ -158,6 +161,25 @@ TEST_CASE("Two fingers of a gripper meet targets by reach", "[grasp][reach_targe
       CHECK(grasp.is_valid());
       for (const double miss : misses(grasp)) CHECK(miss <= 0.012);
     }
+  }
+}
+
+TEST_CASE("Fingers that would cross as they straighten reach around a small ball",
+          "[grasp][reach_targets]") {
+  const testing::TemporaryFolder folder;
+  const hands::HandModel hand =
+      hands::read_hand_model(folder.write("hand.urdf", testing::wide_finger_hand_urdf()));
+  const PlannerOptions options = reach_options(GraspStyle::Auto, 8);
+  const ObjectModel object = prepare_object(geometry::ball(0.03, 4), hand, options);
+  const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 2});
+  CHECK(result.statistics.attempts == 8);
+  CHECK(result.grasps.size() >= 6);
+  for (const Grasp& grasp : result.grasps) {
+    CHECK(grasp.is_valid());
+    CHECK(grasp.pre_grasp);
+    CHECK_FALSE(hands::HandCollision(hand)
+                    .against_self(hands::forward_kinematics(hand, grasp.configuration))
+                    .intersects);
   }
 }
 
