@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "graspfit/base/errors.hpp"
+#include "wrench/nearest_wrench.hpp"
 
 namespace graspfit::contact {
 namespace {
@@ -20,7 +21,6 @@ constexpr int kMostNormals = 20;      // of facets, from one ray; two are usual
 constexpr double kTolerance = 1e-11;  // of shares and of products of unit wrenches
 constexpr double kPenalty = 1e4;      // of corners that are no wrenches, beside lengths of about 1
 constexpr double kAside = 0.05;       // entries of a ray along an axis for the other axes
-constexpr int kGilbertSteps = 64;
 
 /// The ray from the origin along d: the largest t for which t d = Σ λ_j w_j with shares λ_j ≥ 0 of
 /// sum 1, by the simplex method. Basic are six corners and t. Beside the wrenches there are six
@@ -135,17 +135,10 @@ class Ray {
 /// Length of a point of the hull near the one nearest to the origin; empty if the origin is in the
 /// hull, or nearly so.
 std::optional<double> distance_outside(const Wrenches& wrenches) {
-  Wrench nearest = wrenches.rowwise().mean();
-  for (int step = 0; step < kGilbertSteps; ++step) {
-    Index against = 0;
-    const double least = (nearest.transpose() * wrenches).minCoeff(&against);
-    const double squared = nearest.squaredNorm();
-    if (least > 0.99 * squared) break;
-    const Wrench way = wrenches.col(against) - nearest;
-    const double share = -nearest.dot(way) / way.squaredNorm();
-    if (!(share > 0.0)) break;
-    nearest += std::min(share, 1.0) * way;
-  }
+  const auto is_enough = [](const Wrench& point, double product) {
+    return product > 0.99 * point.squaredNorm();
+  };
+  const Wrench nearest = internal::near_wrench(wrenches, is_enough).point;
   const double least = (nearest.transpose() * wrenches).minCoeff();
   if (!(least > 0.0)) return std::nullopt;
   return nearest.norm();

@@ -6,14 +6,13 @@
 
 #include "contacts/contact_check.hpp"
 #include "graspfit/geometry/dyadic_grid.hpp"
+#include "wrench/nearest_wrench.hpp"
 
 namespace graspfit::contact {
 namespace {
 
 using geometry::Containment;
 using geometry::ConvexPolytope;
-
-constexpr int kSearchSteps = 64;
 
 /// Rounding error of a product of two vectors of six, relative to the product of their lengths: 6
 /// roundings of 2^-53, and 2 to spare.
@@ -101,20 +100,11 @@ bool is_force_closure(const Wrenches& wrenches) {
 bool is_surely_no_force_closure(const Wrenches& wrenches) {
   if (wrenches.cols() == 0) return true;
   const double longest = wrenches.colwise().norm().maxCoeff();
-  Wrench nearest = wrenches.rowwise().mean();
-  for (int step = 0; step < kSearchSteps; ++step) {
-    Eigen::Index against = 0;
-    const double least = (nearest.transpose() * wrenches).minCoeff(&against);
-    if (least > kProductError * nearest.norm() * longest) return true;
-    // The next point is the one nearest to the origin on the segment to the wrench that is most
-    // against it.
-    const Wrench way = wrenches.col(against) - nearest;
-    const double squared_length = way.squaredNorm();
-    const double share = -nearest.dot(way) / squared_length;
-    if (!(share > 0.0)) return false;
-    nearest += std::min(share, 1.0) * way;
-  }
-  return false;
+  return internal::near_wrench(wrenches,
+                               [&](const Wrench& point, double product) {
+                                 return product > kProductError * point.norm() * longest;
+                               })
+      .is_enough;
 }
 
 }  // namespace graspfit::contact
