@@ -12,9 +12,20 @@ import unittest
 PROGRAM = os.environ["GRASPFIT"]
 SOURCE_DIR = pathlib.Path(os.environ["GRASPFIT_SOURCE_DIR"])
 
-# The tests leave nothing in the cache of whoever runs them.
-CACHE = tempfile.TemporaryDirectory()
-os.environ["GRASPFIT_CACHE"] = CACHE.name
+
+def cache_of_tests():
+    """Returns a folder below GRASPFIT_TEST_CACHE for one build of the program: its tests leave
+    nothing in the cache of whoever runs them, but share what takes long (convex pieces of a hand)."""
+    folder = pathlib.Path(os.environ["GRASPFIT_TEST_CACHE"])
+    own = folder / str(os.stat(PROGRAM).st_mtime_ns)
+    for older in folder.glob("*"):
+        if older != own:
+            shutil.rmtree(older, ignore_errors=True)
+    own.mkdir(parents=True, exist_ok=True)
+    return own
+
+
+os.environ["GRASPFIT_CACHE"] = str(cache_of_tests())
 
 
 def run(*arguments, cwd=None, env=None):

@@ -3,7 +3,9 @@
 import csv
 import json
 import os
+import pathlib
 import shutil
+import tempfile
 
 from program import SOURCE_DIR, ProgramTest, main, run
 
@@ -37,6 +39,10 @@ class Quick(ProgramTest):
                 self.assertTrue(manifest["config"]["is_quick"])
                 self.assertFalse(manifest["config"]["is_modified"])
                 self.assertEqual(manifest["cells"]["total"], len(rows))
+
+
+class Run(ProgramTest):
+    """Tests of what a run writes and says."""
 
     def test_rows_do_not_depend_on_jobs_and_runs(self):
         slug = "planner_paper_objects"
@@ -290,24 +296,44 @@ class Columns(ProgramTest):
                     self.assertTrue(column["meaning"], column)
 
 
-class Hold(ProgramTest):
-    """Tests of grasps put to the hold test. SciPy computes the summary again from the rows per
-    grasp."""
+class OneRun(ProgramTest):
+    """Tests of one --quick run of an experiment, which takes too long for one run per test."""
+
+    SLUG = ""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.out = pathlib.Path(temporary.name)
+        cls.done = run("experiment", "run", cls.SLUG, "--quick", "--out", cls.out)
 
     def setUp(self):
         super().setUp()
-        self.out = self.folder / "out"
+        if "no physics engine" in self.done.stderr:
+            self.skipTest(self.done.stderr)
+        self.assertEqual(self.done.returncode, 0, self.done.stderr)
 
-    def run_quick(self, slug, *arguments):
-        done = run("experiment", "run", slug, "--quick", "--out", self.out, *arguments)
-        if "no physics engine" in done.stderr:
-            self.skipTest(done.stderr)
+    def table(self, name=""):
+        return rows_of(self.out / f"{self.SLUG}{name}.csv")
+
+    def assert_two_jobs_write_the_same_bytes(self, *names):
+        two = self.folder / "two"
+        done = run("experiment", "run", self.SLUG, "--quick", "--out", two, "--jobs", 2)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return rows_of(self.out / f"{slug}.csv")
+        for name in names:
+            table = f"{self.SLUG}{name}.csv"
+            self.assertEqual((self.out / table).read_bytes(), (two / table).read_bytes(), table)
+
+
+class HoldRates(OneRun):
+    """Tests of grasps put to the hold test."""
+
+    SLUG = "hold_rates"
 
     def test_rows_count_what_the_details_say(self):
-        rows = self.run_quick("hold_rates")
-        details = rows_of(self.out / "hold_rates.details.csv")
+        rows, details = self.table(), self.table(".details")
         stages = {"held": "held", "rejected": "rejected", "approach": "lost_before_load",
                   "load": "lost_under_load"}
         for row in rows:
@@ -322,20 +348,18 @@ class Hold(ProgramTest):
                                  int(row[protocol + "held"]) / int(row["attempts"]))
             self.assertEqual(sum(d["margin_force_n"] != "" for d in own), int(row["margins"]))
 
+
+class HoldPrediction(OneRun):
+    """Tests of what predicts the hold test. SciPy computes the summary again from the rows per
+    grasp."""
+
+    SLUG = "hold_prediction"
+
     def test_two_jobs_write_the_same_bytes(self):
-        slug = "hold_prediction"
-        self.run_quick(slug)
-        two = self.folder / "two"
-        done = run("experiment", "run", slug, "--quick", "--out", two, "--jobs", 2)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for ending in (".csv", ".details.csv", ".summary.csv"):
-            self.assertEqual((self.out / (slug + ending)).read_bytes(),
-                             (two / (slug + ending)).read_bytes())
+        self.assert_two_jobs_write_the_same_bytes("", ".details", ".summary")
 
     def test_the_dictionary_has_the_columns_of_all_tables(self):
-        slug = "hold_prediction"
-        self.run_quick(slug)
-        tables = json.loads(run("experiment", "columns", slug).stdout)["tables"]
+        tables = json.loads(run("experiment", "columns", self.SLUG).stdout)["tables"]
         self.assertEqual(len(tables), 4)
         for name, columns in tables.items():
             with open(self.out / name, newline="", encoding="utf-8") as stream:
@@ -346,10 +370,9 @@ class Hold(ProgramTest):
             from scipy import stats
         except ImportError as missing:
             self.skipTest(f"{missing.name} is not installed")
-        self.run_quick("hold_prediction")
-        details = rows_of(self.out / "hold_prediction.details.csv")
+        details = self.table(".details")
         self.assertGreater(len(details), 3)
-        for row in rows_of(self.out / "hold_prediction.summary.csv"):
+        for row in self.table(".summary"):
             if row["scope"] != "all":
                 continue
             own = [d for d in details if row["grip"] in ("all", d["grip"]) and d[row["measure"]]]
@@ -374,31 +397,20 @@ class Hold(ProgramTest):
                     self.assertAlmostEqual(float(row["value"]), expected, places=12)
 
 
-class Methods(ProgramTest):
+class Methods(OneRun):
     """Tests that compare planning methods. SciPy computes both tables over all cells again."""
 
     SLUG = "table1"
 
-    def run_quick(self, name, *arguments):
-        out = self.folder / name
-        done = run("experiment", "run", self.SLUG, "--quick", "--out", out, *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return out, rows_of(out / f"{self.SLUG}.csv")
-
-    def test_a_second_run_writes_the_same_bytes(self):
-        one, _ = self.run_quick("one")
-        two, _ = self.run_quick("two", "--jobs", 2)
-        for ending in (".csv", ".details.csv", ".summary.csv", ".correlations.csv"):
-            self.assertEqual((one / (self.SLUG + ending)).read_bytes(),
-                             (two / (self.SLUG + ending)).read_bytes())
+    def test_two_jobs_write_the_same_bytes(self):
+        self.assert_two_jobs_write_the_same_bytes("", ".details", ".summary", ".correlations")
 
     def test_scipy_agrees_with_both_tables(self):
         try:
             from scipy import stats
         except ImportError as missing:
             self.skipTest(f"{missing.name} is not installed")
-        out, rows = self.run_quick("one")
-        details = rows_of(out / f"{self.SLUG}.details.csv")
+        rows, details = self.table(), self.table(".details")
         self.assertGreater(len(details), 4)
         for row in rows:
             own = [float(d["m"]) for d in details if d["planner"] == row["planner"]]
@@ -407,10 +419,10 @@ class Methods(ProgramTest):
             if len(own) > 1:
                 self.assertAlmostEqual(float(row["m_mean"]), stats.tmean(own), places=12)
                 self.assertAlmostEqual(float(row["m_sd"]), stats.tstd(own), places=12)
-        summary = rows_of(out / f"{self.SLUG}.summary.csv")
+        summary = self.table(".summary")
         self.assertEqual([(row["planner"], row["mean_m"]) for row in summary],
                          [(row["planner"], row["m_mean"]) for row in rows])
-        for row in rows_of(out / f"{self.SLUG}.correlations.csv"):
+        for row in self.table(".correlations"):
             if row["scope"] != "all":
                 continue
             both = [(float(d[row["measure"]]), float(d[row["other"]])) for d in details
