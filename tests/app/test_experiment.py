@@ -18,27 +18,29 @@ def rows_of(path):
 
 
 class Quick(ProgramTest):
-    """Tests of --quick of every experiment."""
+    """Tests of --quick, without any data: test_SLUG of every experiment."""
 
-    def test_every_experiment_runs_without_any_data(self):
+    def check(self, slug):
         environment = dict(os.environ, GRASPFIT_DATA=str(self.folder / "none"),
                            GRASPFIT_PACKAGED_MESHES=str(self.folder / "none"))
-        for slug in SLUGS:
-            with self.subTest(slug):
-                out = self.folder / slug
-                done = run("experiment", "run", slug, "--quick", "--out", out, env=environment)
-                if "no physics engine" in done.stderr:
-                    self.assertEqual(done.returncode, 2)
-                    continue
-                self.assertEqual((done.returncode, done.stderr), (0, ""))
-                rows = rows_of(out / f"{slug}.csv")
-                self.assertGreater(len(rows), 0)
-                self.assertEqual({row["status"] for row in rows}, {"ok"}, rows)
-                manifest = json.loads((out / f"{slug}.manifest.json").read_text())
-                self.assertEqual(len(rows_of(out / f"{slug}.timing.csv")), len(rows))
-                self.assertTrue(manifest["config"]["is_quick"])
-                self.assertFalse(manifest["config"]["is_modified"])
-                self.assertEqual(manifest["cells"]["total"], len(rows))
+        out = self.folder / slug
+        done = run("experiment", "run", slug, "--quick", "--out", out, env=environment)
+        if "no physics engine" in done.stderr:
+            self.assertEqual(done.returncode, 2)
+            self.skipTest(done.stderr)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = rows_of(out / f"{slug}.csv")
+        self.assertGreater(len(rows), 0)
+        self.assertEqual({row["status"] for row in rows}, {"ok"}, rows)
+        manifest = json.loads((out / f"{slug}.manifest.json").read_text())
+        self.assertEqual(len(rows_of(out / f"{slug}.timing.csv")), len(rows))
+        self.assertTrue(manifest["config"]["is_quick"])
+        self.assertFalse(manifest["config"]["is_modified"])
+        self.assertEqual(manifest["cells"]["total"], len(rows))
+
+
+for name in SLUGS:
+    setattr(Quick, f"test_{name}", lambda self, slug=name: self.check(slug))
 
 
 class Run(ProgramTest):

@@ -49,6 +49,22 @@ class Plan(program.ProgramTest):
                 ply = (self.folder / planner / "guidance.ply").read_text()
                 self.assertIn(f"element vertex {len(lines) - 1}\n", ply)
 
+    def test_style_auto_says_what_the_hand_can_pinch(self):
+        done = self.plan("--target-search", "reach", "--style", "auto")
+        said = re.search(r"^(\d) of 2 grasps press on the palm; two fingertips of barrett pinch "
+                         r"squarely at friction 0.4 what is (\d+) to (\d+) mm wide", done.stdout, re.M)
+        self.assertTrue(said, done.stdout)
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        grasps = file["results"]["grasps"]
+        self.assertEqual(int(said[1]), sum(any(target["finger"] == "palm" for target in
+                                               grasp["targets"]["contacts"]) for grasp in grasps))
+        # As `graspfit hand reach` has it, to two of its steps of 5 mm.
+        table = program.run("hand", "reach", "barrett", "--friction", "0.4").stdout
+        tips = re.search(r"fingertips +(\d+) to (\d+) ", table)
+        for width, expected in zip(said.groups()[1:], tips.groups()):
+            self.assertAlmostEqual(int(width), int(expected), delta=10)
+        self.assertNotIn("press on the palm", self.plan().stdout)
+
     def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
         def options(*flags):
             self.plan(*flags)

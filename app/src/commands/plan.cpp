@@ -250,6 +250,7 @@ std::string attempts_text(const grasp::PlannerResult& result) {
                      stop_text(result.stop) + "): " + outcomes_text(result.statistics);
   std::string found;
   for (const auto& [what, count] : result.statistics.guidance) {
+    if (what == grasp::kNarrowestPinch || what == grasp::kWidestPinch) continue;  // `grip_text`
     if (count > 0) found += (found.empty() ? "" : ", ") + what + ' ' + std::to_string(count);
   }
   return found.empty() ? text : text + "; guided by " + found;
@@ -340,6 +341,9 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (!flags.has("quiet")) {
     std::printf("%s%zu of %d grasps %s\n", table_of(file).c_str(), file.grasps.size(),
                 options.count, attempts_text(result).c_str());
+    if (const std::string grips = grip_text(file); !grips.empty()) {
+      std::printf("%s\n", grips.c_str());
+    }
     if (file.hold) std::printf("%s\n", hold_text(*file.hold).c_str());
     if (out) std::printf("written to %s\n", out->target().c_str());
   }

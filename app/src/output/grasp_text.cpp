@@ -1,11 +1,36 @@
 #include "output/grasp_text.hpp"
 
+#include <algorithm>
+
+#include "graspfit/base/number_text.hpp"
 #include "output/text_table.hpp"
 
 namespace graspfit::app {
 
 std::string epsilon_text(const grasp::Grasp& grasp, int decimals) {
   return grasp.is_closed() ? fixed_decimal(grasp.epsilon(), decimals) : "open";
+}
+
+std::string grip_text(const grasp::GraspFile& file) {
+  if (file.options.style != grasp::GraspStyle::Auto) return "";
+  const auto num_on_palm =
+      std::count_if(file.grasps.begin(), file.grasps.end(), [](const grasp::Grasp& grasp) {
+        const std::vector<grasp::TargetContact>& targets = grasp.targets.contacts;
+        return std::any_of(targets.begin(), targets.end(),
+                           [](const grasp::TargetContact& target) { return target.is_palm; });
+      });
+  std::string text = std::to_string(num_on_palm) + " of " + std::to_string(file.grasps.size()) +
+                     " grasps press on the palm";
+  const auto& found = file.statistics.guidance;
+  const auto narrowest = found.find(std::string(grasp::kNarrowestPinch));
+  const auto widest = found.find(std::string(grasp::kWidestPinch));
+  const std::string at = " at friction " + base::plain_decimal(file.options.friction);
+  if (narrowest == found.end() || widest == found.end()) {
+    return text + "; two fingertips of " + file.hand.name + " pinch nothing squarely" + at;
+  }
+  return text + "; two fingertips of " + file.hand.name + " pinch squarely" + at + " what is " +
+         std::to_string(narrowest->second) + " to " + std::to_string(widest->second) +
+         " mm wide (graspfit hand reach shows it)";
 }
 
 }  // namespace graspfit::app

@@ -22,6 +22,7 @@
 #include "cells/prediction_statistics.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/geometry/angle.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/sweep/setting_value.hpp"
@@ -162,10 +163,8 @@ PostureErrors errors_of(const hands::HandModel& hand, const grasp::TargetContact
     const int pad = *hand.fingers[*target.finger].tip_pad;
     const Vector3d point = hands::pad_contact_point(hand, pad, X_OL);
     const Vector3d normal = hands::pad_pose(hand, pad, X_OL).linear().col(2);
-    const Vector3d inward = -target.outward_normal_O;
     errors.miss = std::max(errors.miss, (point - target.point_O).norm());
-    errors.lean =
-        std::max(errors.lean, std::atan2(normal.cross(inward).norm(), normal.dot(inward)));
+    errors.lean = std::max(errors.lean, geometry::angle_between(normal, -target.outward_normal_O));
   }
   return errors;
 }

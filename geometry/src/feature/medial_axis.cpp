@@ -9,6 +9,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/parallel_for.hpp"
+#include "graspfit/geometry/angle.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -19,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kUnitLengthTolerance = 1e-6;
 
 double angle_deg(const Vector3d& u, const Vector3d& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi;
+  return angle_between(u, v) * 180.0 / std::numbers::pi;
 }
 
 std::optional<MedialBall> shrunken_ball(const MeshQuery& object, const SurfaceSample& sample,

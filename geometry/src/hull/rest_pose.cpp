@@ -9,6 +9,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/geometry/angle.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/used_vertices.hpp"
 #include "mesh/input_check.hpp"
@@ -26,10 +27,6 @@ void require_finite(const char* what, const Vector& vector) {
   std::string text;
   for (const double x : vector) text += (text.empty() ? "(" : ", ") + base::shortest_decimal(x);
   throw base::InvalidInput(std::string(what) + " = " + text + "), must be finite");
-}
-
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// Whether the line through `center` along the normal of a counter-clockwise triangle meets the

@@ -150,8 +150,8 @@ struct Heights {
                         ///< triangle crosses the plane, or may do so.
 };
 
-/// One search for nearest points, depth first, the nearer children first. Pairs of nodes that are
-/// surely no nearer than `share` times the best distance are left out.
+/// One search for nearest points, depth first, the nearer children first. Pairs of nodes and of
+/// triangles that are surely no nearer than `share` times the best distance are left out.
 class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
@@ -181,11 +181,7 @@ class Search {
     while (!open.empty() && !is_done()) {
       const Pair pair = open.back();
       open.pop_back();
-      if (pair.squared_gap >= squared_limit_) {
-        squared_left_out_ = std::min(squared_left_out_, pair.squared_gap);
-        continue;
-      }
-      visit(pair, open);
+      if (!is_left_out(pair.squared_gap)) visit(pair, open);
     }
   }
 
@@ -228,13 +224,16 @@ class Search {
         (between_B.cwiseAbs() - half_b - turn_.transpose() * half_a).cwiseMax(0.0).squaredNorm());
   }
 
+  /// Whether nodes or triangles that are so far apart at least need not be looked at.
+  bool is_left_out(double squared_gap) {
+    if (squared_gap < squared_limit_) return false;
+    squared_left_out_ = std::min(squared_left_out_, squared_gap);
+    return true;
+  }
+
   void push(std::vector<Pair>& open, std::int32_t i, std::int32_t j) {
     const double gap = squared_gap(i, j);
-    if (gap < squared_limit_) {
-      open.push_back({gap, i, j});
-    } else {
-      squared_left_out_ = std::min(squared_left_out_, gap);
-    }
+    if (!is_left_out(gap)) open.push_back({gap, i, j});
   }
 
   void visit(const Pair& pair, std::vector<Pair>& open) {
@@ -270,12 +269,11 @@ class Search {
       const internal::IndexedTriangle& of_b = tree_b_.triangles[t];
       const Corners corners_b = mapped(of_b.corners);
       const Box box_b = internal::box_of(corners_b);
-      if (squared_apart(Box(node_a.lower, node_a.upper), box_b) >= squared_best_) continue;
+      if (is_left_out(squared_apart(Box(node_a.lower, node_a.upper), box_b))) continue;
       for (std::int32_t s = node_a.first; s < node_a.first + node_a.count; ++s) {
         const internal::IndexedTriangle& of_a = tree_a_.triangles[s];
-        if (squared_apart(internal::box_of(of_a.corners), box_b) < squared_best_) {
-          improve(of_a.corners, of_a.face, corners_b, of_b.face);
-        }
+        if (is_left_out(squared_apart(internal::box_of(of_a.corners), box_b))) continue;
+        improve(of_a.corners, of_a.face, corners_b, of_b.face);
       }
     }
   }
@@ -333,7 +331,7 @@ class Search {
   const double squared_share_;
   const double squared_near_enough_;
   double squared_best_;
-  double squared_limit_;  ///< Pairs of nodes as far apart as this are left out.
+  double squared_limit_;  ///< Nodes and triangles as far apart as this are left out.
   double squared_left_out_ = std::numeric_limits<double>::infinity();
   std::optional<SurfaceProximity> best_;
 };

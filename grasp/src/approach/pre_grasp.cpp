@@ -25,16 +25,24 @@ namespace {
 // all links.
 constexpr int kMostSteps = 1000;
 
+/// A lower bound of a distance, and how far was searched for it: beyond, the bound says no more.
+struct SearchedBound {
+  double at_least = 0.0;  ///< [m]
+  double searched = 0.0;  ///< [m]
+};
+
 struct LinkPair {
   int a;
   int b;
   geometry::ProximitySeed seed;  ///< Faces near each other when last measured.
+  SearchedBound in_grasp = {};
 };
 
 /// A link, to be kept from object and surroundings.
 struct GuardedLink {
   int link;
   geometry::ProximitySeed seed;  ///< With the object.
+  SearchedBound in_grasp = {};   ///< The same.
 };
 
 /// Whether all items pass; an item that fails moves to the front, to be tested first the next time.
@@ -61,14 +69,14 @@ class PreGraspSearch {
         open_q_(hands::open_configuration(hand).q),
         X_OL_grasp_(hands::forward_kinematics(hand, grasp)) {
     for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
-      if (collision.link_solid(link)) links_.push_back({link, {}});
+      if (collision.link_solid(link)) links_.push_back({link, {}, {}});
     }
     for (const GuardedLink& a : links_) {
       for (const GuardedLink& b : links_) {
         if (b.link <= a.link || hand.is_excluded(a.link, b.link)) continue;
         const bool touch = geometry::do_intersect(solid(a.link), solid(b.link),
                                                   between(X_OL_grasp_, a.link, b.link));
-        if (!touch) pairs_.push_back({a.link, b.link, {}});
+        if (!touch) pairs_.push_back({a.link, b.link, {}, {}});
       }
     }
   }
@@ -194,11 +202,17 @@ class PreGraspSearch {
   /// neither link of a pair is in the other.
   bool is_free(const HandConfiguration& start, const std::vector<RigidTransform>& X_OL_start) {
     const internal::StraightWay way(hand_, start, grasp_);
-    const auto stays_apart = [&](double speed, const auto& distance) {
+    const auto stays_apart = [&](double speed, SearchedBound& in_grasp, const auto& distance) {
       return internal::are_apart_on_way(
           speed, options_.way_tolerance, [&](double share, double enough) {
             if (share == 0.0) return std::min(distance(X_OL_start, enough), enough);
-            if (share == 1.0) return std::min(distance(X_OL_grasp_, enough), enough);
+            if (share == 1.0) {
+              // All ways end there.
+              if (in_grasp.at_least >= in_grasp.searched && enough > in_grasp.searched) {
+                in_grasp = {distance(X_OL_grasp_, enough), enough};
+              }
+              return std::min(in_grasp.at_least, enough);
+            }
             const auto X_OL = hands::forward_kinematics(hand_, interpolated(start, grasp_, share));
             return std::min(distance(X_OL, enough), enough);
           });
@@ -206,19 +220,20 @@ class PreGraspSearch {
     const auto is_link_free = [&](GuardedLink& guarded) {
       const int link = guarded.link;
       const auto index = static_cast<std::size_t>(link);
-      return stays_apart(way.speed(link),
+      SearchedBound of_surroundings;
+      return stays_apart(way.speed(link), guarded.in_grasp,
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
                            return clearance(object_, solid(link), X_OL[index], enough,
                                             guarded.seed);
                          }) &&
              (surroundings_.surroundings().is_empty() ||
-              stays_apart(way.speed(link),
+              stays_apart(way.speed(link), of_surroundings,
                           [&](const std::vector<RigidTransform>& X_OL, double enough) {
                             return surroundings_distance(link, X_OL[index], enough);
                           }));
     };
     const auto is_pair_free = [&](LinkPair& pair) {
-      return stays_apart(way.relative_speed(pair.a, pair.b),
+      return stays_apart(way.relative_speed(pair.a, pair.b), pair.in_grasp,
                          [&](const std::vector<RigidTransform>& X_OL, double enough) {
                            return clearance(solid(pair.a), solid(pair.b),
                                             between(X_OL, pair.a, pair.b), enough, pair.seed);

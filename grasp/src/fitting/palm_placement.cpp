@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/geometry/angle.hpp"
+
 namespace graspfit::grasp {
 namespace {
 
@@ -85,7 +87,7 @@ std::vector<PalmPlacement> palm_placements(const ObjectModel& object, const Targ
     if (!has_palm) placement.palm_distance = extent.before_palm;
     double key = extent.whole;
     if (approach_O) {
-      key = std::atan2(direction.cross(*approach_O).norm(), direction.dot(*approach_O));
+      key = geometry::angle_between(direction, *approach_O);
       if (key > approach_angle) continue;
     }
     ranked.push_back({key, placement});

@@ -23,13 +23,14 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using hands::RigidTransform;
 
-constexpr int kMostEvaluations = 20;
+constexpr int kMostEvaluations = 14;
 // A posture with such a gap after so many steps is left there.
-constexpr int kHopelessAfter = 6;
+constexpr int kHopelessAfter = 4;
 constexpr double kHopelessGap = 0.012;  // [m]
 constexpr double kLongestStep = 0.02;   // of every entry of a motion [m]
 constexpr double kLongestReach = 0.1;   // of every entry before a step is shortened [m]
-constexpr double kLeastGain = 0.02;     // of the sum of squares, by a step that is worth another
+// A step is worth it if by this share of the sum of squares it lowers it, or promises to.
+constexpr double kLeastGain = 0.05;
 // Against 1 for a gap: how far a pad leans, as a length; a link's depth.
 constexpr double kLeanLever = 0.002;  // [m/rad]
 constexpr double kDepthWeight = 2.0;
@@ -107,6 +108,9 @@ class SurfaceSearch::NormalEquations {
       }
     }
   }
+
+  /// By how much a motion lowers the sum.
+  double gain(const VectorXd& motion) const { return motion.dot(2.0 * b_ - a_ * motion); }
 
   /// The motion of least squares, damped, within bounds: what would leave them stays at its bound.
   VectorXd solution(double damping, const HandMotion::Bounds& bounds) const {
@@ -253,18 +257,23 @@ double SurfaceSearch::height(const Vector3d& point_O) const {
   return static_cast<double>(plane.normal.dot(point_O.cast<float>()) - plane.offset);
 }
 
-/// Of a link's points that are not in empty voxels the one deepest below its patch.
-SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link,
-                                                      const RigidTransform& X_OL) const {
+/// Of a link's points that are within the lift of voxels that are not empty the one deepest below
+/// its patch.
+SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link, const RigidTransform& X_OL,
+                                                      double lift) const {
   const geometry::VoxelLattice& lattice = object_.grid.lattice;
   const double voxels_per_meter = 1.0 / lattice.voxel_size;
+  const double near = lift * voxels_per_meter;
   DeepPoint deepest;
+  // From points of the link to positions in the lattice.
+  const Eigen::Matrix3d turn = voxels_per_meter * X_OL.linear();
+  const Vector3d shift = voxels_per_meter * (X_OL.translation() - lattice.origin);
   for (const PointGroup& group : groups_[link]) {
-    const double far = group.radius * voxels_per_meter + std::numbers::sqrt3;
-    if (object_.distance.at(Vector3d(X_OL * group.center_L)) > far) continue;
+    const double far = near + group.radius * voxels_per_meter + std::numbers::sqrt3;
+    if (object_.distance.at_position(turn * group.center_L + shift) > far) continue;
     for (const Vector3d& point_L : group.points_L) {
+      if (object_.distance.at_position(turn * point_L + shift) > near) continue;
       const Vector3d point = X_OL * point_L;
-      if (object_.distance.at(point) > 0.0F) continue;
       const double depth = -height(point);
       if (depth > deepest.depth) deepest = {depth, point};
     }
@@ -295,7 +304,7 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
 }
 
 SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
-                                  const hands::HandConfiguration& start) const {
+                                  const hands::HandConfiguration& start, double lift) const {
   HandMotion motion = motion_;
   NormalEquations equations(motion.size());
   Evaluated best, trial;
@@ -303,14 +312,15 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     motion.set(best.posture.configuration, best.posture.X_OL, best.pivot_O);
     equations.set(best.wishes, motion);
   };
-  evaluate(pads, start, best);
+  evaluate(pads, start, lift, best);
   accept();
   double damping = kFirstDamping;
   for (int i = 1; i < kMostEvaluations && damping < kMostDamping; ++i) {
     VectorXd step = equations.solution(damping, motion.bounds(kLongestReach));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
-    evaluate(pads, motion.moved(step), trial);
+    if (equations.gain(step) < kLeastGain * best.sum) break;
+    evaluate(pads, motion.moved(step), lift, trial);
     if (!(trial.sum < best.sum)) {
       damping *= 8.0;
       continue;
@@ -327,11 +337,12 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
 
 /// The posture of a configuration, and what a step from there should do.
 void SurfaceSearch::evaluate(const std::vector<int>& pads,
-                             const hands::HandConfiguration& configuration,
+                             const hands::HandConfiguration& configuration, double lift,
                              Evaluated& result) const {
   const hands::HandModel& model = hand_.model();
   const double voxel_size = object_.grid.lattice.voxel_size;
-  const double margin = kMargin * voxel_size;
+  const double margin = kMargin * voxel_size + lift;
+  const double depth_margin = kDepthMargin * voxel_size + lift;
   SurfacePosture& posture = result.posture;
   posture.configuration = configuration;
   posture.X_OL = hands::forward_kinematics(model, configuration);
@@ -367,11 +378,11 @@ void SurfaceSearch::evaluate(const std::vector<int>& pads,
     posture.largest_gap = std::max(posture.largest_gap, std::hypot(along + margin, beyond));
   }
   for (std::size_t link = 0; link < model.links.size(); ++link) {
-    const DeepPoint deep = deepest_point(link, posture.X_OL[link]);
+    const DeepPoint deep = deepest_point(link, posture.X_OL[link], lift);
     posture.largest_depth = std::max(posture.largest_depth, deep.depth);
-    if (deep.depth + kDepthMargin * voxel_size > 0.0) {
+    if (deep.depth + depth_margin > 0.0) {
       result.wishes.push_back({static_cast<int>(link), deep.point_O, deep.outward_O,
-                               deep.depth + kDepthMargin * voxel_size, kDepthWeight});
+                               deep.depth + depth_margin, kDepthWeight});
     }
   }
   for (const auto& [a, b] : neighbors_) {

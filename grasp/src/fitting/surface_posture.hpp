@@ -33,7 +33,9 @@ class SurfaceSearch {
   SurfaceSearch(const FittingHand& hand, const ObjectModel& object, const NearestPatches& nearest,
                 const NearestPatches& places);
 
-  SurfacePosture lay(const std::vector<int>& pads, const hands::HandConfiguration& start) const;
+  /// By `lift` [m], at most about a voxel, pads and links are kept farther off.
+  SurfacePosture lay(const std::vector<int>& pads, const hands::HandConfiguration& start,
+                     double lift = 0.0) const;
 
  private:
   struct Wish;
@@ -60,10 +62,10 @@ class SurfaceSearch {
   void find_neighbors();
   std::optional<Wish> overlap(int a, int b, const std::vector<hands::RigidTransform>& X_OL) const;
   double height(const Eigen::Vector3d& point_O) const;
-  DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL) const;
+  DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL, double lift) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
   void evaluate(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
-                Evaluated& result) const;
+                double lift, Evaluated& result) const;
 
   const FittingHand& hand_;
   const ObjectModel& object_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fitting/finger_alignment.hpp"
+#include "graspfit/geometry/angle.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/jacobian.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
@@ -272,10 +273,8 @@ double tilt_and_miss(const TargetPosture& posture) {
 double pair_angle(const Vector3d& point_a, const Vector3d& normal_a, const Vector3d& point_b,
                   const Vector3d& normal_b) {
   const Vector3d line = point_b - point_a;
-  const auto angle = [](const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
-  };
-  return std::max(angle(normal_a, line), angle(normal_b, -line));
+  return std::max(geometry::angle_between(normal_a, line),
+                  geometry::angle_between(normal_b, -line));
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 // Hand-object geometric fitting, the paper's method: contacts to reach are chosen on the object by
 // their scores and the hand's kinematics, and the hand is fitted to them.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <mutex>
 #include <utility>
 
 #include "graspfit/contact/grasp_balance.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/grasp/random_targets.hpp"
 #include "graspfit/grasp/ranked_targets.hpp"
 #include "methods/guidance_list.hpp"
@@ -68,6 +70,16 @@ class FittingGuidance : public GraspGuidance {
       names.emplace_back(failure_name(failure));
     }
     return names;
+  }
+
+  /// Of a search by reach, what fingertips can pinch squarely.
+  std::map<std::string, std::int64_t> counts() const override {
+    if (!reach_) return {};
+    const auto widths = reach_->grips().square_widths(scene_.options.friction);
+    if (!widths) return {};
+    const auto in_millimeters = [](double length) { return std::llround(1e3 * length); };
+    return {{std::string(kNarrowestPinch), in_millimeters(widths->smallest)},
+            {std::string(kWidestPinch), in_millimeters(widths->largest)}};
   }
 
   /// The score map: one point per partial voxel.

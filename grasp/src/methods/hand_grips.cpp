@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "graspfit/geometry/angle.hpp"
 #include "targets/target_feasibility.hpp"
 
 namespace graspfit::grasp::internal {
@@ -68,12 +70,9 @@ std::vector<std::vector<std::size_t>> sets_with_first(std::size_t count, std::si
 
 }  // namespace
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
-    : classes_(static_cast<std::size_t>((kDistanceClasses + 1) * kLeanClasses * kLeanClasses)) {
+    : least_lean_(kDistanceClasses, std::numeric_limits<double>::infinity()),
+      classes_(static_cast<std::size_t>((kDistanceClasses + 1) * kLeanClasses * kLeanClasses)) {
   // Every n-th sample; sizes are products of the counts of joints' positions, so that an n without
   // a common divisor leaves no joint at some of its positions.
   const auto stride = [](const hands::PadSamples& samples) {
@@ -90,10 +89,12 @@ PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
       if (!do_agree(a, sample_a, b, sample_b)) continue;
       const Vector3d line = b.points_H.col(sample_b) - a.points_H.col(sample_a);
       if (!(line.norm() > 0.0)) continue;
-      const std::optional<std::size_t> number =
-          class_of(line.norm(), angle_between(a.normals_H.col(sample_a), line),
-                   angle_between(b.normals_H.col(sample_b), -line));
+      const double lean_a = geometry::angle_between(a.normals_H.col(sample_a), line);
+      const double lean_b = geometry::angle_between(b.normals_H.col(sample_b), -line);
+      const std::optional<std::size_t> number = class_of(line.norm(), lean_a, lean_b);
       if (!number) continue;
+      double& least = least_lean_[static_cast<std::size_t>(line.norm() / kDistanceStep)];
+      least = std::min(least, std::max(lean_a, lean_b));
       auto& entries = classes_[*number];
       const std::pair<std::int32_t, std::int32_t> entry(static_cast<std::int32_t>(i),
                                                         static_cast<std::int32_t>(j));
@@ -114,6 +115,16 @@ std::optional<std::pair<std::int32_t, std::int32_t>> PinchTable::draw(double dis
   const std::optional<std::size_t> number = class_of(distance, lean_a, lean_b);
   if (!number || classes_[*number].empty()) return std::nullopt;
   return classes_[*number][random.index(classes_[*number].size())];
+}
+
+std::optional<hands::OpeningRange> PinchTable::distances_up_to(double lean) const {
+  std::optional<hands::OpeningRange> range;
+  for (std::size_t d = 0; d < least_lean_.size(); ++d) {
+    if (least_lean_[d] > lean) continue;
+    if (!range) range = {static_cast<double>(d) * kDistanceStep, 0.0};
+    range->largest = static_cast<double>(d + 1) * kDistanceStep;
+  }
+  return range;
 }
 
 HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& requested,
@@ -150,8 +161,26 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
     if (!requested.palm) add(set);
     if (all.palm) add(std::move(with_palm));
   }
-  if (!rule.may_add_finger || requested.palm) return;
-  for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
+  if (rule.may_add_finger && !requested.palm) {
+    for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
+  }
+  if (!rule.may_add_finger && !rule.may_add_palm) return;
+  const auto cannot_close = [](const Grip& grip) { return grip.parts.size() == 2; };
+  if (!std::all_of(grips_.begin(), grips_.end(), cannot_close)) {
+    std::erase_if(grips_, cannot_close);
+  }
+}
+
+std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) const {
+  std::optional<hands::OpeningRange> range;
+  for (const Pinch& pinch : pinches_) {
+    const auto own = pinch.table.distances_up_to(std::atan(friction));
+    if (!own) continue;
+    if (!range) range = own;
+    range->smallest = std::min(range->smallest, own->smallest);
+    range->largest = std::max(range->largest, own->largest);
+  }
+  return range;
 }
 
 void HandGrips::add(std::vector<std::size_t> parts) {

@@ -8,15 +8,13 @@
 #include "graspfit/base/random.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
 #include "graspfit/hands/pad_samples.hpp"
+#include "graspfit/hands/pinch_chart.hpp"
 
 /// \file
 /// What a hand can do, as look-ups: where its pads can be, which pairs of pads can face each other
 /// at which distance, and which parts touch together.
 
 namespace graspfit::grasp::internal {
-
-/// Angle between two vectors [rad].
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 /// Pairs of samples of two pads by the distance of their contact points and by how far the pads
 /// lean against the line between these.
@@ -30,7 +28,12 @@ class PinchTable {
                                                             double lean_b,
                                                             base::Random& random) const;
 
+  /// The smallest and largest distance at which neither pad need lean more than `lean` [rad], to
+  /// 5 mm; between them it may not be so everywhere. Empty if there is none.
+  std::optional<hands::OpeningRange> distances_up_to(double lean) const;
+
  private:
+  std::vector<double> least_lean_;  ///< Per class of distances: of the pad that leans more [rad].
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> classes_;
 };
 
@@ -61,13 +64,18 @@ class HandGrips {
   };
 
   /// Grips of the requested parts, and others that the rule allows where the hand has them with
-  /// pads: with the palm or a finger more, not both, and of no more than `kMostParts` parts. At
-  /// least one finger is requested.
+  /// pads: with the palm or a finger more, not both, and of no more than `kMostParts` parts. Two
+  /// contacts cannot close, so that where parts may be added there are grips of two only if the
+  /// hand has no others. At least one finger is requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
   const std::vector<Pinch>& pinches() const { return pinches_; }
   const std::vector<Grip>& grips() const { return grips_; }
+
+  /// What two fingertips of the hand can pinch squarely at a friction, from the narrowest to the
+  /// widest (`PinchTable::distances_up_to`); empty for nothing.
+  std::optional<hands::OpeningRange> square_widths(double friction) const;
 
  private:
   void add(std::vector<std::size_t> parts);

@@ -6,8 +6,9 @@
 
 #include "fitting/surface_posture.hpp"
 #include "graspfit/base/random.hpp"
-#include "graspfit/contact/wrench_convention.hpp"
 #include "methods/hand_grips.hpp"
+#include "methods/hand_proposals.hpp"
+#include "methods/place_strength.hpp"
 #include "methods/target_sides.hpp"
 #include "scene/clearance.hpp"
 #include "targets/target_feasibility.hpp"
@@ -28,11 +29,14 @@ class ReachSides {
   ReachSides(const GuidanceScene& scene, const TargetRules& rules);
 
   /// The strongest candidates of an attempt, the strongest first, each with its posture
-  /// (`TargetSide::goal`), from which it is refined. Strength is `contact::epsilon_bound`; of two
-  /// contacts, which cannot close, how far their line is within the cones. New candidates and
-  /// variations of the strongest one take turns, at random, until one is strong enough or a budget
-  /// of work is spent. Empty if none was found.
+  /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
+  /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
+  /// one take turns, at random, until one is strong enough or a budget of work is spent, which is
+  /// larger while none is likely to close. Empty if none was found, or with `GraspStyle::Auto` none
+  /// with a strength above 0.
   std::vector<TargetSide> draw(base::Random& random) const;
+
+  const HandGrips& grips() const { return grips_; }
 
  private:
   using Grip = HandGrips::Grip;
@@ -44,20 +48,13 @@ class ReachSides {
     double strength = 0.0;
   };
 
-  /// A hand at the object, not yet laid onto it.
-  struct Proposal {
-    hands::HandConfiguration configuration;
-    std::vector<bool> is_fixed;  ///< Per joint: a sample set its position.
-    /// Per part of the hand; empty: it is not placed.
-    std::vector<std::optional<std::int32_t>> patches;
-    double largest_cost = 0.0;  ///< Of placing a part where it is [m].
-  };
-
   /// Work done in an attempt.
   struct Work {
     int pairs = 0;
-    int proposals_left = 0;
-    int postures_left = 0;
+    int proposals = 0;
+    int postures = 0;
+    int most_proposals = 0;
+    int most_postures = 0;
     bool is_done() const;
   };
 
@@ -65,21 +62,17 @@ class ReachSides {
   std::vector<Candidate> strongest(const Grip* grip, Work work, base::Random& random) const;
   std::optional<Candidate> drawn(const Grip& grip, base::Random& random, Work& work) const;
   std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
-  std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, Work& work) const;
-  std::optional<Proposal> pinch(const Grip& grip, base::Random& random) const;
+  std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, double least,
+                                Work& work) const;
   bool is_from_approach(const hands::HandConfiguration& configuration) const;
-  Proposal palm_first(const Grip& grip, base::Random& random) const;
-  Proposal proposal_at(const geometry::RigidTransform& X_OH) const;
-  void set(std::size_t part, std::int32_t sample, std::int32_t patch, Proposal& proposal) const;
-  std::optional<Proposal> proposal(const Grip& grip, base::Random& random, Work& work) const;
-  double strength(const std::vector<std::int32_t>& patches) const;
-  void complete(std::size_t part, Proposal& proposal) const;
+  std::optional<HandProposal> proposal(const Grip& grip, base::Random& random, Work& work) const;
+  Candidate cleared(Candidate candidate) const;
+  std::vector<int> pads_of(const Grip& grip) const;
   bool is_good(const SurfacePosture& posture) const;
   bool is_clear_of_surroundings(const SurfacePosture& posture) const;
   bool are_apart(const std::vector<std::int32_t>& patches) const;
   bool has_stable_pair(const std::vector<std::int32_t>& patches) const;
   std::int32_t point_of(std::int32_t patch) const;
-  std::vector<contact::Contact> contacts_on(const std::vector<std::int32_t>& patches) const;
   TargetSide side_of(const Candidate& candidate) const;
 
   const GuidanceScene& scene_;
@@ -89,12 +82,10 @@ class ReachSides {
   const NearestPatches places_;  ///< The pool's.
   const SurfaceSearch search_;
   const Clearance clearance_;
+  const HandProposals proposals_;
+  const PlaceStrength strength_;
   std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.
-  const contact::WrenchObject wrench_object_;
-  /// Between that of closure and that within which a squeeze is to balance: what is strong there
-  /// still closes where normals turn out a little different.
-  const double strength_friction_;
-  std::vector<double> shares_;  ///< Per grip: how often it is drawn.
+  std::vector<double> shares_;               ///< Per grip: how often it is drawn.
 };
 
 }  // namespace graspfit::grasp::internal

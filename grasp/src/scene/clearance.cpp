@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "graspfit/geometry/mesh_intersection.hpp"
 
@@ -18,6 +20,7 @@ namespace {
 /// measured again.
 constexpr double kAhead = 0.04;
 constexpr double kAheadShare = 0.5;
+constexpr double kRounding = 1e-9;  // of a distance and of the coordinates [m]
 
 /// Bound of how far any point of a ball in L moves from one pose to another.
 double motion_bound(const RigidTransform& from, const RigidTransform& to, const Vector3d& center,
@@ -71,6 +74,16 @@ std::optional<SurfaceProximity> Clearance::nearest(Known& known, const geometry:
   return result;
 }
 
+/// A lower bound of the distance of the object from a ball in O, which need not be the distance.
+double Clearance::object_bound(const Vector3d& center_O, double radius, double enough) const {
+  // The point and the nearest surface are within half a diagonal of their voxels' centers.
+  const double by_map = (std::abs(object_.distance.at(center_O)) - std::numbers::sqrt3) *
+                        object_.grid.lattice.voxel_size;
+  if (by_map - radius > enough) return by_map - radius;
+  const double distance = std::sqrt(object_.query.closest_point(center_O).squared_distance);
+  return distance - kRounding * (1.0 + distance) - radius;
+}
+
 std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
   std::vector<NearPoints> near;
   for (std::size_t link = 0; link < pieces_.size(); ++link) {
@@ -80,6 +93,13 @@ std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
       Known& known = pieces_[link][i];
       const FittingHand::Piece& piece = pieces[i];
       if (surely_beyond(known, X, piece.center_L, piece.radius, enough)) continue;
+      if (!known.is_near) {
+        const double bound = object_bound(X * piece.center_L, piece.radius, enough);
+        if (bound > enough) {
+          known = {bound, X, known.seed, true, false};
+          continue;
+        }
+      }
       const auto found = nearest(known, object_.query, piece.surface_L, X, enough);
       if (!found) continue;
       near.push_back({found->distance, static_cast<int>(link), std::nullopt, found->point_on_b_A,

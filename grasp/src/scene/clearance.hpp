@@ -71,6 +71,7 @@ class Clearance {
                                                            double enough);
   static bool surely_beyond(const Known& known, const hands::RigidTransform& X,
                             const Eigen::Vector3d& center, double radius, double enough);
+  double object_bound(const Eigen::Vector3d& center_O, double radius, double enough) const;
 
   const FittingHand& hand_;
   const ObjectModel& object_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "graspfit/geometry/angle.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 
 namespace graspfit::hands {
@@ -72,7 +73,7 @@ geometry::RigidTransform palm_pose(const HandModel& hand, const Vector3d& axis_H
 
 double angle_from_approach(const Vector3d& direction_O, const std::optional<Vector3d>& approach_O) {
   if (!approach_O) return 0.0;
-  return std::atan2(direction_O.cross(*approach_O).norm(), direction_O.dot(*approach_O));
+  return geometry::angle_between(direction_O, *approach_O);
 }
 
 hands::HandConfiguration open_hand_spread_by(const HandModel& hand, double share) {

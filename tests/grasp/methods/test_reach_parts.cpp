@@ -9,6 +9,7 @@
 #include "fitting/surface_posture.hpp"
 #include "grasp/fitting_scene.hpp"
 #include "graspfit/base/random.hpp"
+#include "graspfit/geometry/angle.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -81,8 +82,8 @@ TEST_CASE("A pair of pads from the table is as far apart and leans as it was ask
     ++num_found;
     const Vector3d line = b.points_H.col(pair->second) - a.points_H.col(pair->first);
     CHECK(std::abs(line.norm() - distance) <= 0.005);
-    CHECK(std::abs(internal::angle_between(a.normals_H.col(pair->first), line) - lean_a) <= kClass);
-    CHECK(std::abs(internal::angle_between(b.normals_H.col(pair->second), -line) - lean_b) <=
+    CHECK(std::abs(geometry::angle_between(a.normals_H.col(pair->first), line) - lean_a) <= kClass);
+    CHECK(std::abs(geometry::angle_between(b.normals_H.col(pair->second), -line) - lean_b) <=
           kClass);
   }
   CHECK(num_found > 100);
@@ -120,6 +121,12 @@ TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
     different.insert(grip.parts);
   }
   CHECK(different.size() == all.size());
+  // Two fingers alone cannot close: with the palm, or with one of three further ones.
+  rule = {.may_add_finger = true, .may_add_palm = true};
+  for (const internal::HandGrips::Grip& grip : grips({{0, 1}}, rule)) CHECK(grip.parts.size() == 3);
+  CHECK(grips({{0, 1}}, rule).size() == 1 + 3);
+  CHECK(grips({{0, 1}}, {}).front().parts == Parts{0, 1});
+  rule.may_exchange = true;
   // At most six parts: all five fingers, and with the palm.
   const auto most = grips({{0, 1, 2, 3, 4}}, rule);
   REQUIRE(most.size() == 2);
@@ -134,6 +141,7 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
   const std::vector<int> pads = requested_pads(scene.hand, scene.parts);
   base::Random random(1);
   int num_laid = 0;
+  int num_lifted = 0;
   constexpr int kTrials = 40;
   for (int trial = 0; trial < kTrials; ++trial) {
     // Above the object, fingers half closed around it, turned and shifted a little.
@@ -156,6 +164,21 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
     REQUIRE(posture.patches.size() == pads.size());
     if (posture.largest_gap > 0.5 * scene.voxel_size() || posture.largest_depth > 0.002) continue;
     ++num_laid;
+    // Lifted by half a voxel, pads and links are so much farther off.
+    const double lift = 0.5 * scene.voxel_size();
+    const internal::SurfacePosture lifted = search.lay(pads, posture.configuration, lift);
+    if (lifted.largest_gap <= 0.25 * scene.voxel_size()) {
+      ++num_lifted;
+      CHECK(lifted.largest_depth <= std::max(0.0, posture.largest_depth));
+      for (const int pad : pads) {
+        const auto gap = [&](const internal::SurfacePosture& at) {
+          return geometry::nearest_points(scene.object.query, scene.fitting_hand.pad_surface(pad),
+                                          at.X_OL[scene.hand.pads[pad].link], 1.0, {})
+              ->distance;
+        };
+        CHECK(gap(lifted) > gap(posture) - 0.25 * scene.voxel_size());
+      }
+    }
     // By the true meshes: every pad is near the surface.
     for (const int pad : pads) {
       const auto distance =
@@ -166,6 +189,7 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
     }
   }
   CHECK(num_laid >= kTrials / 8);
+  CHECK(num_lifted >= num_laid / 2);
 }
 
 }  // namespace test_reach_parts

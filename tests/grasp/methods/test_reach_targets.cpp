@@ -9,13 +9,16 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/grasp/object_file.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
+#include "support/skip.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/test_data.hpp"
 #include "support/wide_finger_hand.hpp"
 
 namespace test_reach_targets {
@@ -77,6 +80,36 @@ TEST_CASE("Hands meet the targets that are chosen by their reach, and touch with
                      all.end());
     CHECK(all[all.size() / 2] <= 0.010);
   }
+}
+
+TEST_CASE("Postures from which grasps by reach are refined are clear of the object",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const hands::HandCollision collision(hand);
+  const PlannerOptions options = reach_options(GraspStyle::Auto, 12);
+  const ObjectModel object = prepare_object(geometry::torus(0.04, 0.02), hand, options);
+  int num_starts = 0;
+  int num_clear = 0;
+  int num_closed = 0;
+  PlanningRun run;
+  run.num_threads = 1;
+  run.tried_start = [&](const TriedStart& tried) {
+    REQUIRE(tried.start.posture);
+    ++num_starts;
+    num_closed += tried.grasp && tried.grasp->is_closed() ? 1 : 0;
+    const auto X_OL = hands::forward_kinematics(hand, *tried.start.posture);
+    bool is_clear = !collision.against_self(X_OL).intersects;
+    for (std::size_t link = 0; link < X_OL.size(); ++link) {
+      is_clear =
+          is_clear && !collision.link_intersects(object.query, static_cast<int>(link), X_OL[link]);
+    }
+    num_clear += is_clear ? 1 : 0;
+  };
+  plan_grasps(object, hand, options, {}, run);
+  CHECK(num_starts >= 12);
+  CHECK(num_clear >= num_starts - num_starts / 10);
+  // Only such are tried as are expected to close.
+  CHECK(num_closed >= num_starts / 2);
 }
 
 TEST_CASE("Targets by reach are the same for any number of threads", "[grasp][reach_targets]") {
@@ -180,6 +213,29 @@ TEST_CASE("Fingers that would cross as they straighten reach around a small ball
     CHECK_FALSE(hands::HandCollision(hand)
                     .against_self(hands::forward_kinematics(hand, grasp.configuration))
                     .intersects);
+  }
+}
+
+TEST_CASE("Wide fingertips reach around small everyday shapes", "[grasp][reach_targets]") {
+  const testing::TemporaryFolder folder;
+  const hands::HandModel hand =
+      hands::read_hand_model(folder.write("hand.urdf", testing::wide_finger_hand_urdf()));
+  for (const char* name : {"duck", "mug"}) {
+    const auto path = testing::find_data("meshes/paper/" + std::string(name) + ".obj");
+    if (!path) GRASPFIT_SKIP_TEST("meshes/paper is not there; set GRASPFIT_DATA");
+    CAPTURE(name);
+    ObjectReadOptions reading;
+    reading.longest_extent = 0.06;
+    const ObjectFile file = read_object_file(*path, reading);
+    const PlannerOptions options = reach_options(GraspStyle::Auto, 8);
+    const ObjectModel object = prepare_object(file.mesh, hand, options);
+    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 2});
+    CHECK(result.statistics.attempts == 8);
+    CHECK(result.grasps.size() >= 6);
+    for (const Grasp& grasp : result.grasps) {
+      CHECK(grasp.is_valid());
+      CHECK(largest_penetration(grasp) == 0.0);
+    }
   }
 }
 

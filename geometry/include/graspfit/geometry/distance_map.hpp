@@ -33,7 +33,11 @@ struct SignedDistanceMap {
   /// value is that of c.
   /// @throws InvalidInput for a point with a coordinate that is no number.
   float at(const Eigen::Vector3d& point) const {
-    const Eigen::Vector3d position = (point - lattice.origin) / lattice.voxel_size;
+    return at_position((point - lattice.origin) / lattice.voxel_size);
+  }
+
+  /// The same for a position from the lattice's origin [voxels].
+  float at_position(const Eigen::Vector3d& position) const {
     // This is the hot path of the fitting loop. Inside the lattice truncation rounds down.
     const bool is_inside = position[0] >= 0.0 && position[0] < lattice.counts[0] &&
                            position[1] >= 0.0 && position[1] < lattice.counts[1] &&

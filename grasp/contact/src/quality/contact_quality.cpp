@@ -7,6 +7,7 @@
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/geometry/angle.hpp"
 #include "quality/contact_hull.hpp"
 
 namespace graspfit::contact {
@@ -147,11 +148,8 @@ std::optional<double> stable_pair_angle(const Vector3d& point_a, const Vector3d&
   // The angle comes from its tangent, not its cosine: acos loses half the digits near 0, where the
   // best pairs are. The lengths of the vectors do not matter, so nothing is rounded by scaling and
   // 45° comes out as the double π/4.
-  const auto angle = [](const Vector3d& u, const Vector3d& v) {
-    return std::atan2(u.cross(v).norm(), u.dot(v));
-  };
-  const double angle_a = angle(inward_normal_a, a_to_b);
-  const double angle_b = angle(inward_normal_b, -a_to_b);
+  const double angle_a = geometry::angle_between(inward_normal_a, a_to_b);
+  const double angle_b = geometry::angle_between(inward_normal_b, -a_to_b);
   if (!(angle_a < theta_max && angle_b < theta_max)) return std::nullopt;
   return 0.5 * (angle_a + angle_b);
 }

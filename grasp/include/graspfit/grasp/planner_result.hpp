@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "graspfit/grasp/grasp.hpp"
@@ -41,6 +42,11 @@ enum class AttemptOutcome {
   PoorShape,  ///< M3 ≤ 0, or M1 = 0.
 };
 const char* outcome_name(AttemptOutcome outcome);
+
+/// What two fingertips of the hand can pinch squarely at `PlannerOptions::friction`, from the
+/// narrowest to the widest: names in `PlannerStatistics::guidance` of a search by reach.
+inline constexpr std::string_view kNarrowestPinch = "narrowest square pinch (mm)";
+inline constexpr std::string_view kWidestPinch = "widest square pinch (mm)";
 
 /// Counters of a run. `attempts` is the sum of the outcomes.
 struct PlannerStatistics {

@@ -29,8 +29,9 @@ enum class TargetSearch {
   Random,  ///< The paper's randomized greedy search.
   Ranked,  ///< Best first and complete: every feasible set of the pool, each once [R].
   /// Sets that the hand can meet: where pads lie in postures of the hand on the object, those first
-  /// whose contacts withstand most [R]. Targets are points of the pool, some pair is stable, and
-  /// they are `min_separation` apart; equal edges and a near centroid are not asked for.
+  /// whose contacts withstand most [R]. Targets are points of the pool, and some pair is stable;
+  /// equal edges and a near centroid are not asked for, nor `min_separation` but of proposals, of
+  /// places that face the same way: where pads lie next to each other, links are kept apart.
   Reach,
 };
 

@@ -1,0 +1,210 @@
+#include "methods/hand_proposals.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "graspfit/geometry/angle.hpp"
+
+namespace graspfit::grasp::internal {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+constexpr double kMostProposedLean = std::numbers::pi / 3;  // of a pad on its point
+constexpr int kRollDraws = 6;                               // about the line between two points
+constexpr double kMostTilt = std::numbers::pi / 6;          // of the palm on its point
+constexpr double kLeanLever = 0.03;                         // [m/rad]: a lean beside a gap
+
+/// Where a pad is and where it faces: of a sample in H, or as a point of the pool in O.
+struct Facing {
+  Vector3d point;
+  Vector3d normal;
+};
+
+Facing facing(const hands::PadSamples& samples, std::int32_t sample) {
+  return {samples.points_H.col(sample), samples.normals_H.col(sample)};
+}
+Facing facing(const PoolPoint& point) { return {point.point_O, point.inward_normal_O}; }
+
+/// What it costs to place a pad so far from a point and facing so: a length.
+double cost(double gap, const Vector3d& pad_normal, const Vector3d& inward_normal) {
+  const double cosine = pad_normal.dot(inward_normal);
+  return gap + kLeanLever * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+/// The palm pose in which pads a and b lie on two points as squarely as they can; where their pads
+/// leave the turn about the line open, it is drawn. Empty if a pad leans too much.
+std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, const Facing& a_O,
+                                      const Facing& b_O, base::Random& random) {
+  const Vector3d line_O = (b_O.point - a_O.point).normalized();
+  const Matrix3d onto =
+      Eigen::Quaterniond::FromTwoVectors(b_H.point - a_H.point, line_O).toRotationMatrix();
+  const Vector3d normal_a = onto * a_H.normal;
+  const Vector3d normal_b = onto * b_H.normal;
+  const auto lean = [&](double turn) {
+    const Eigen::AngleAxisd roll(turn, line_O);
+    return std::max(geometry::angle_between(roll * normal_a, a_O.normal),
+                    geometry::angle_between(roll * normal_b, b_O.normal));
+  };
+  std::optional<double> turn;
+  for (int draw = 0; draw < kRollDraws && !turn; ++draw) {
+    const double drawn = random.uniform(-std::numbers::pi, std::numbers::pi);
+    if (lean(drawn) <= kMostProposedLean) turn = drawn;
+  }
+  if (!turn) {
+    // Both normals' parts across the line turned onto those of the surface, as nearly as possible.
+    double sine = 0.0;
+    double cosine = 0.0;
+    const auto add = [&](const Vector3d& from, const Vector3d& to) {
+      const Vector3d u = from - from.dot(line_O) * line_O;
+      const Vector3d v = to - to.dot(line_O) * line_O;
+      sine += line_O.dot(u.cross(v));
+      cosine += u.dot(v);
+    };
+    add(normal_a, a_O.normal);
+    add(normal_b, b_O.normal);
+    turn = std::atan2(sine, cosine);
+    if (lean(*turn) > kMostProposedLean) return std::nullopt;
+  }
+  RigidTransform X_OH = RigidTransform::Identity();
+  X_OH.linear() = Eigen::AngleAxisd(*turn, line_O).toRotationMatrix() * onto;
+  X_OH.translation() =
+      0.5 * (a_O.point + b_O.point) - X_OH.linear() * (0.5 * (a_H.point + b_H.point));
+  return X_OH;
+}
+
+}  // namespace
+
+HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& object,
+                             const TargetRules& rules, const HandGrips& grips,
+                             const NearestPatches& places)
+    : hand_(hand), object_(object), rules_(rules), grips_(grips), places_(places) {}
+
+std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
+                                                base::Random& random) const {
+  if (grip.has_palm) return palm_first(grip, random);
+  return pinch(grip, random);
+}
+
+void HandProposals::complete(const HandGrips::Grip& grip, HandProposal& proposal) const {
+  for (const std::size_t part : grip.parts) {
+    if (!proposal.patches[part]) complete(part, proposal);
+  }
+}
+
+/// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
+std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
+                                                 base::Random& random) const {
+  const std::vector<PoolPoint>& pool = rules_.pool();
+  const HandGrips::Pinch& pinch = grips_.pinches()[grip.pinches[random.index(grip.pinches.size())]];
+  const PoolPoint& a = pool[random.index(pool.size())];
+  const PoolPoint& b = pool[random.index(pool.size())];
+  const Facing a_O = facing(a);
+  const Facing b_O = facing(b);
+  const Vector3d line = b_O.point - a_O.point;
+  if (!(line.norm() > 0.0) || line.norm() < rules_.options().min_separation) return std::nullopt;
+  const auto samples = pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
+                                        geometry::angle_between(b_O.normal, -line), random);
+  if (!samples) return std::nullopt;
+  const std::optional<RigidTransform> X_OH =
+      aligned(facing(grips_.parts()[pinch.part_a].samples, samples->first),
+              facing(grips_.parts()[pinch.part_b].samples, samples->second), a_O, b_O, random);
+  if (!X_OH) return std::nullopt;
+  HandProposal proposal = proposal_at(*X_OH);
+  set(pinch.part_a, samples->first, *a.patch, proposal);
+  set(pinch.part_b, samples->second, *b.patch, proposal);
+  const auto charge = [&](std::size_t part, std::int32_t sample, const Facing& place_O) {
+    const Facing pad_H = facing(grips_.parts()[part].samples, sample);
+    const double gap = (*X_OH * pad_H.point - place_O.point).norm();
+    proposal.largest_cost =
+        std::max(proposal.largest_cost, cost(gap, X_OH->linear() * pad_H.normal, place_O.normal));
+  };
+  charge(pinch.part_a, samples->first, a_O);
+  charge(pinch.part_b, samples->second, b_O);
+  return proposal;
+}
+
+/// The palm on a point of the pool, leaning a little, turned anyhow.
+HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random& random) const {
+  const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
+  const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
+  const auto sample = static_cast<std::int32_t>(random.index(palm.size()));
+  const Facing pad = facing(palm, sample);
+  const Eigen::AngleAxisd roll(random.uniform(-std::numbers::pi, std::numbers::pi),
+                               point.inward_normal_O);
+  const double around = random.uniform(-std::numbers::pi, std::numbers::pi);
+  const double lean = random.uniform(0.0, kMostTilt);
+  const Vector3d across = point.inward_normal_O.unitOrthogonal();
+  const Eigen::AngleAxisd tilt(lean, Eigen::AngleAxisd(around, point.inward_normal_O) * across);
+  RigidTransform X_OH = RigidTransform::Identity();
+  X_OH.linear() =
+      (tilt * roll).toRotationMatrix() *
+      Eigen::Quaterniond::FromTwoVectors(pad.normal, point.inward_normal_O).toRotationMatrix();
+  X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
+  HandProposal proposal = proposal_at(X_OH);
+  set(grip.parts.back(), sample, *point.patch, proposal);
+  return proposal;
+}
+
+HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
+  HandProposal proposal;
+  proposal.configuration = hands::open_configuration(hand_);
+  proposal.configuration.X_OH = X_OH;
+  proposal.is_fixed.resize(hand_.joints.size(), false);
+  proposal.patches.resize(grips_.parts().size());
+  return proposal;
+}
+
+void HandProposals::set(std::size_t part, std::int32_t sample, std::int32_t patch,
+                        HandProposal& proposal) const {
+  const hands::PadSamples& samples = grips_.parts()[part].samples;
+  for (std::size_t j = 0; j < samples.joints.size(); ++j) {
+    proposal.configuration.q[samples.joints[j]] = samples.positions(static_cast<Index>(j), sample);
+    proposal.is_fixed[static_cast<std::size_t>(samples.joints[j])] = true;
+  }
+  proposal.patches[part] = patch;
+}
+
+/// Places a part by the sample that is nearest to the surface and leans least there.
+void HandProposals::complete(std::size_t part, HandProposal& proposal) const {
+  const hands::PadSamples& samples = grips_.parts()[part].samples;
+  const RigidTransform& X_OH = proposal.configuration.X_OH;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = 0;
+  std::int32_t best_patch = 0;
+  for (std::size_t from = 0; from < samples.size(); from += samples.range_size) {
+    bool fits = true;
+    for (std::size_t j = samples.joints.size() - samples.num_shared;
+         j < samples.joints.size() && fits; ++j) {
+      const int joint = samples.joints[j];
+      fits = !proposal.is_fixed[static_cast<std::size_t>(joint)] ||
+             proposal.configuration.q[joint] ==
+                 samples.positions(static_cast<Index>(j), static_cast<Index>(from));
+    }
+    if (!fits) continue;
+    for (std::size_t number = from; number < from + samples.range_size; ++number) {
+      const auto sample = static_cast<Index>(number);
+      const Vector3d point = X_OH * samples.points_H.col(sample);
+      const std::int32_t index = places_.at(point);
+      const geometry::SurfacePatch& patch = object_.patches[index];
+      const double gap = (point - patch.centroid).norm();
+      if (gap >= least) continue;
+      const double its_cost =
+          cost(gap, X_OH.linear() * samples.normals_H.col(sample), -patch.outward_normal);
+      if (its_cost >= least) continue;
+      least = its_cost;
+      best = number;
+      best_patch = index;
+    }
+  }
+  set(part, static_cast<std::int32_t>(best), best_patch, proposal);
+  proposal.largest_cost = std::max(proposal.largest_cost, least);
+}
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "graspfit/base/random.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+#include "methods/hand_grips.hpp"
+#include "object/nearest_patches.hpp"
+#include "targets/target_feasibility.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// A hand at the object, not yet laid onto it.
+struct HandProposal {
+  hands::HandConfiguration configuration;
+  std::vector<bool> is_fixed;  ///< Per joint: a sample set its position.
+  /// Per part of the hand; empty: it is not placed.
+  std::vector<std::optional<std::int32_t>> patches;
+  double largest_cost = 0.0;  ///< Of placing a part where it is [m].
+};
+
+/// Hands whose pads are about on points of the pool: two of them, or the palm, by drawing points,
+/// the others by looking where they can be then.
+class HandProposals {
+ public:
+  /// Refers to all of them. `places` are the pool's.
+  HandProposals(const hands::HandModel& hand, const ObjectModel& object, const TargetRules& rules,
+                const HandGrips& grips, const NearestPatches& places);
+
+  /// With the palm of the grip on a point, or two of its fingers on two points; empty where the
+  /// hand's tables do not know that they can be there. Most draws are.
+  std::optional<HandProposal> draw(const HandGrips::Grip& grip, base::Random& random) const;
+
+  /// Places the other parts of the grip.
+  void complete(const HandGrips::Grip& grip, HandProposal& proposal) const;
+
+ private:
+  std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
+  HandProposal palm_first(const HandGrips::Grip& grip, base::Random& random) const;
+  HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
+  void set(std::size_t part, std::int32_t sample, std::int32_t patch, HandProposal& proposal) const;
+  void complete(std::size_t part, HandProposal& proposal) const;
+
+  const hands::HandModel& hand_;
+  const ObjectModel& object_;
+  const TargetRules& rules_;
+  const HandGrips& grips_;
+  const NearestPatches& places_;
+};
+
+}  // namespace graspfit::grasp::internal

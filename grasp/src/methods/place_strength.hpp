@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "graspfit/contact/wrench_convention.hpp"
+#include "graspfit/grasp/object_model.hpp"
+#include "targets/target_feasibility.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// How strong grasps with contacts on some patches of an object would be, for comparing them by the
+/// thousand: `contact::epsilon_bound` of point contacts at the patches' centroids.
+///
+/// Of two contacts, which cannot close, it is how far their line is within both cones: the friction
+/// less the tangent of the larger lean; of more than a right angle, less the lean [rad].
+class PlaceStrength {
+ public:
+  /// Of patches in the pool.
+  PlaceStrength(const ObjectModel& object, const std::vector<PoolPoint>& pool, double friction);
+
+  /// Pads come to touch beside the places that they are meant for, where the surface may face
+  /// elsewhere: the mean over contacts that lie on patches about these (the same ones for the same
+  /// patches), but no more than that of the patches themselves. The latter alone where it is no
+  /// more than `least`: no candidate that is to be stronger.
+  double expected(const std::vector<std::int32_t>& patches, double least) const;
+
+ private:
+  double nominal(const std::vector<std::int32_t>& patches) const;
+
+  const ObjectModel& object_;
+  const contact::WrenchObject wrench_object_;
+  const double friction_;
+  /// Per patch: those about it that face about the same way, itself among them; empty for one that
+  /// is not in the pool.
+  std::vector<std::vector<std::int32_t>> around_;
+};
+
+}  // namespace graspfit::grasp::internal

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "grasp/fitting_scene.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "methods/place_strength.hpp"
+#include "support/catch.hpp"
+
+namespace test_place_strength {
+
+namespace {
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::vector<internal::PoolPoint> all_patches(const ObjectModel& object) {
+  std::vector<internal::PoolPoint> pool;
+  for (std::size_t i = 0; i < object.patches.size(); ++i) {
+    if (!object.patches[i].has_normal) continue;
+    pool.push_back({object.patches[i].centroid, -object.patches[i].outward_normal,
+                    static_cast<std::int32_t>(i)});
+  }
+  return pool;
+}
+
+/// The pool's patch that is nearest to a point and faces about so.
+std::int32_t patch_at(const std::vector<internal::PoolPoint>& pool, const Vector3d& point,
+                      const Vector3d& outward) {
+  std::int32_t best = -1;
+  double least = kInfinity;
+  for (const internal::PoolPoint& candidate : pool) {
+    const double distance = (candidate.point_O - point).norm();
+    if (-candidate.inward_normal_O.dot(outward) < 0.99 || distance >= least) continue;
+    least = distance;
+    best = *candidate.patch;
+  }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("Contacts beside two opposite places lean by no more than their shifts",
+          "[grasp][place_strength]") {
+  constexpr double kWidth = 0.06;
+  constexpr double kFriction = 0.3;
+  const testing::Scene scene(geometry::box(Vector3d(kWidth, 0.09, 0.12)));
+  const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
+  const internal::PlaceStrength strength(scene.object, pool, kFriction);
+  const Vector3d side(0.5 * kWidth, 0.0, 0.0);
+  const std::vector<std::int32_t> patches = {patch_at(pool, side, Vector3d::UnitX()),
+                                             patch_at(pool, -side, -Vector3d::UnitX())};
+  const double nominal = strength.expected(patches, kInfinity);
+  CHECK(nominal == Approx(kFriction).margin(scene.voxel_size() / kWidth));
+  // Patches about a place are at most 1.6 voxels from it: the line leans by twice that at most.
+  const double expected = strength.expected(patches, -kInfinity);
+  CHECK(expected < nominal);
+  CHECK(expected >= nominal - 3.2 * scene.voxel_size() / kWidth);
+  CHECK(strength.expected(patches, -kInfinity) == expected);
+  CHECK(strength.expected(patches, nominal) == nominal);
+}
+
+TEST_CASE("Places where the surface turns count for less than flat ones",
+          "[grasp][place_strength]") {
+  // Three faces of a hexagonal prism: in their middles, and nearer to the edges, where patches
+  // about them face 60 degrees elsewhere.
+  const double inner = 0.03 * std::cos(std::acos(-1.0) / 6.0);
+  const testing::Scene scene(geometry::cylinder(0.03, 0.10, 6));
+  const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
+  const internal::PlaceStrength strength(scene.object, pool, 0.9);
+  const auto places = [&](double beside) {
+    std::vector<std::int32_t> patches;
+    for (int k = 0; k < 3; ++k) {
+      const double angle = std::acos(-1.0) * (1.0 / 6.0 + 2.0 * k / 3.0);
+      const Vector3d out(std::cos(angle), std::sin(angle), 0.0);
+      const Vector3d along(-out.y(), out.x(), 0.0);
+      patches.push_back(patch_at(pool, inner * out + (k == 0 ? beside : 0.0) * along, out));
+    }
+    return patches;
+  };
+  const auto share_left = [&](const std::vector<std::int32_t>& patches) {
+    REQUIRE(std::all_of(patches.begin(), patches.end(), [](std::int32_t p) { return p >= 0; }));
+    const double nominal = strength.expected(patches, kInfinity);
+    REQUIRE(nominal > 0.0);
+    return strength.expected(patches, -kInfinity) / nominal;
+  };
+  const double in_middles = share_left(places(0.0));
+  CHECK(in_middles > 0.6);
+  CHECK(share_left(places(0.013)) < in_middles);
+}
+
+TEST_CASE("The strength of places is that of point contacts there", "[grasp][place_strength]") {
+  const testing::Scene scene(geometry::capsule(0.03, 0.06));
+  const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
+  const internal::PlaceStrength strength(scene.object, pool, 0.4);
+  const contact::WrenchObject object =
+      contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass);
+  base::Random random(2);
+  int num_closed = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<std::int32_t> patches;
+    std::vector<contact::Contact> contacts;
+    for (int i = 0; i < 4; ++i) {
+      const internal::PoolPoint& point = pool[random.index(pool.size())];
+      patches.push_back(*point.patch);
+      contact::Contact& contact = contacts.emplace_back();
+      contact.point_O = point.point_O;
+      contact.inward_normal_O = point.inward_normal_O;
+    }
+    const double nominal = strength.expected(patches, kInfinity);
+    const double epsilon = contact::signed_epsilon(contacts, object, 0.4);
+    if (epsilon > 0.0) {
+      ++num_closed;
+      CHECK(nominal >= epsilon - 1e-9);
+      CHECK(nominal <= 1.5 * epsilon + 1e-3);
+    } else {
+      CHECK(nominal <= 1e-9);
+    }
+    CHECK(strength.expected(patches, -kInfinity) <= nominal);
+  }
+  CHECK(num_closed > 5);
+}
+
+}  // namespace test_place_strength
