@@ -34,6 +34,7 @@ from vtk_picture import (  # noqa: E402
 )
 
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
+ROUNDED_EPSILON = 1e-9  # Contacts that are opposite each other but for rounding close with less.
 
 
 # ------------------------------------------------------------------------------------------- input
@@ -97,10 +98,13 @@ def read_grasps(path):
             if not isinstance(value, (int, float)):
                 raise BadInput(f"{path}: {where}/{name} is {json.dumps(value)}, not a number")
         wrench = item.get("wrench")
+        if wrench:
+            wrench = {"epsilon": entry(wrench, "epsilon"),
+                      "closes": bool(wrench.get("is_force_closure", True))}
         grasps.append(
             {
                 "number": i + 1,
-                "epsilon": entry(wrench, "epsilon") if wrench else None,
+                "wrench": wrench,
                 "motions": pre_grasp_motions(item, entry, vector, where),
                 "contacts": contacts,
                 "stable_pairs": pairs,
@@ -270,6 +274,20 @@ def pre_grasp_parts(grasp, parts):
 # ------------------------------------------------------------------------------------------ picture
 
 
+def measures_text(grasp):
+    """Returns the line below a picture's title."""
+    text = f"M {grasp['m']:.3f}   (M1 {grasp['m1']:.3f}, M2 {grasp['m2']:.3f}, M3 {grasp['m3']:.3f})"
+    wrench = grasp["wrench"]
+    if wrench:
+        # Whatever a convention gives then, it is no strength.
+        closes = wrench["closes"] and wrench["epsilon"] > ROUNDED_EPSILON
+        text += f"   epsilon {wrench['epsilon']:.3f}" if closes else "   no force closure"
+    text += f"   {grasp['state']}"
+    if grasp["penetration"] > 0.0:
+        text += f"   penetration {1000 * grasp['penetration']:.2f} mm"
+    return text
+
+
 class Painter(Canvas):
     """Draws grasps into pictures of one size."""
 
@@ -381,14 +399,7 @@ class Painter(Canvas):
         top = self.renderer(window, (0.0, 0.9, 1.0, 1.0), 0)
         scene = self.scene
         title = f"{scene['object_name']}, {scene['hand_name']} hand, grasp {grasp['number']}"
-        measures = (
-            f"M {grasp['m']:.3f}   (M1 {grasp['m1']:.3f}, M2 {grasp['m2']:.3f}, M3 {grasp['m3']:.3f})"
-        )
-        if grasp["epsilon"] is not None:
-            measures += f"   epsilon {grasp['epsilon']:.3f}"
-        measures += f"   {grasp['state']}"
-        if grasp["penetration"] > 0.0:
-            measures += f"   penetration {1000 * grasp['penetration']:.2f} mm"
+        measures = measures_text(grasp)
         self.text(top, title, 24 * s, 40 * s, 19, COLORS["ink"], bold=True)
         self.text(top, measures, 24 * s, 12 * s, 16, COLORS["ink"])
         if self.note:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Tests of the picture script: test_render_grasps.py RENDER_GRASPS_PY [--keep-pictures FOLDER]."""
 
+import importlib.util
 import json
 import math
 import os
@@ -194,6 +195,19 @@ class RenderGrasps(unittest.TestCase):
         # The direction of view is the same, but the hand is elsewhere.
         self.assertIsNotNone(ImageChops.difference(thirds[0], thirds[2]).getbbox())
         self.assertGreater(share_near(thirds[2], (196, 207, 193), 25), 0.01, "table's color")
+
+    def test_epsilon_is_shown_of_grasps_that_close(self):
+        spec = importlib.util.spec_from_file_location("render_grasps", SCRIPT)
+        script = importlib.util.module_from_spec(spec)
+        sys.path.insert(0, str(pathlib.Path(SCRIPT).parent))
+        spec.loader.exec_module(script)
+        grasp = {"m": 1, "m1": 1, "m2": 1, "m3": 1, "state": "valid", "penetration": 0.0}
+        for wrench, text in ((None, None), ({"epsilon": 0.125, "closes": True}, "epsilon 0.125"),
+                             ({"epsilon": -1.0, "closes": False}, "no force closure"),
+                             ({"epsilon": 1e-17, "closes": True}, "no force closure")):
+            shown = script.measures_text({**grasp, "wrench": wrench})
+            self.assertIn(text or "M3 1.000)   valid", shown)
+            self.assertEqual("epsilon" in shown, text == "epsilon 0.125")
 
     def test_missing_obstacle(self):
         self.change(

@@ -2,6 +2,9 @@
 
 // Contacts that are opposite each other but for rounding close exactly as rounded, with less ε.
 const kRoundedEpsilon = 1e-9;
+function closes(grasp) {
+  return grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
+}
 
 const kRamp = ['#c8392b', '#e8803a', '#f3cf5b', '#9cc45b', '#2f8f4e'];
 function rampColor(score) {
@@ -371,7 +374,8 @@ function makeList() {
         badge(grasp),
         element('span', {className: 'parts'},
                 `M1 ${fixed(m1, 3)}   M2 ${fixed(m2, 3)}   M3 ${fixed(m3, 3)}` +
-                    (grasp.wrench ? `   ε ${fixed(grasp.wrench.epsilon, 3)}` : '')));
+                    (grasp.wrench ? `   ε ${closes(grasp) ? fixed(grasp.wrench.epsilon, 3) : 'open'}`
+                                  : '')));
     row.setAttribute('role', 'option');
     row.addEventListener('click', () => select(position));
     list.append(row);
@@ -475,8 +479,7 @@ function showMeasures() {
       measureRow('D as in M3', 'in the units chosen for the measure', fixed(quality.scaled_centroid_distance, 4)),
       measureRow('M of the targets', 'what the planner aimed for', fixed(grasp.ideal_m, 4)));
   if (grasp.wrench) {
-    const closes = grasp.wrench.is_force_closure && grasp.wrench.epsilon > kRoundedEpsilon;
-    const row = measureRow('ε', closes ? 'force closure' : 'no force closure',
+    const row = measureRow('ε', closes(grasp) ? 'force closure' : 'no force closure',
                            fixed(grasp.wrench.epsilon, 4));
     row.title = grasp.wrench.convention;
     rows.append(row);
