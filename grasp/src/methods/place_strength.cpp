@@ -16,8 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of 400 contacts refined on a bunny half lay within 4 mm of their targets, where normals differ by
-// 10 to 15 degrees: about as much as between patches a voxel apart.
+// Of 75 contacts refined on a bunny, with voxels of 3.8 mm, half lay within 4.2 mm of their
+// targets, and faced within 12 degrees as these do; a tenth more than 34 degrees off. A larger
+// radius, or more draws, were not tried.
 constexpr double kAround = 1.6;  // radius about a patch [voxels]
 constexpr int kDraws = 8;
 
