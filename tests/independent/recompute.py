@@ -264,7 +264,7 @@ class Scene:
         if self.options["contact_pieces"] != "joined":
             raise ValueError("contacts of several pieces are not recomputed")
         counted = self.options["counted_pads"] or (
-            "all" if self.options["style"] == "power" else "tips-and-palm")
+            "tips-and-palm" if self.options["style"] == "precision" else "all")
         tips = {finger["tip_pad"] for finger in self.record["hand"]["fingers"]}
         found = {name: self.contact(pad, X_OL) for name, pad in self.hand.pads.items()
                  if counted == "all" or name in tips or pad.finger == "palm"}

@@ -82,11 +82,11 @@ double largest_deviation(const PlannerOptions& options, const hands::HandModel& 
 
 contact::ContactEstimationOptions contact_estimation(const PlannerOptions& options,
                                                      double clip_thickness) {
-  const bool is_power = options.style == GraspStyle::Power;
+  const bool is_precision = options.style == GraspStyle::Precision;
   return {.clip_thickness = clip_thickness,
           .averaging = options.averaging,
-          .pads = options.counted_pads.value_or(is_power ? contact::CountedPads::All
-                                                         : contact::CountedPads::TipsAndPalm),
+          .pads = options.counted_pads.value_or(is_precision ? contact::CountedPads::TipsAndPalm
+                                                             : contact::CountedPads::All),
           .pieces = options.contact_pieces};
 }
 

@@ -361,8 +361,8 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
       "how the pieces of surface in a voxel or clip volume are averaged", "R", "A6 A34"});
   at(options.counted_pads,
      {"counted_pads", kAny, "counted-pads", "", kTargets,
-      "whose contacts count; without it those of fingertips and palm, in power grasps all", "R",
-      "A35"});
+      "whose contacts count; without it those of fingertips and palm, with style power or auto all",
+      "R", "A35"});
   at(options.contact_pieces,
      {"contact_pieces", kAny, "contact-pieces", "", kTargets,
       "surface in a clip volume that does not hang together is one contact, or several where their "

@@ -118,7 +118,7 @@ struct PlannerOptions {
   std::optional<double> clip_thickness;  ///< [m]; empty: max(0.5 voxel, 1 mm).
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   /// Pads whose contacts count; empty: in power grasps all [P: proximal links are encouraged to
-  /// touch], else those of fingertips and palm [R].
+  /// touch], and with `GraspStyle::Auto`, else those of fingertips and palm [R].
   std::optional<contact::CountedPads> counted_pads;
   contact::ContactPieces contact_pieces = contact::ContactPieces::Joined;
   ScoreOptions score;
