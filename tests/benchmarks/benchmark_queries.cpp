@@ -1,6 +1,7 @@
 // What it measures: questions about meshes and points beside the same questions to CGAL, on the
-// bunny (75 408 faces) of 0.15 m: nearest points, containment, rays, boxes, collisions with a body
-// of a finger's size, crossing faces; then hulls in space and the union of two balls.
+// bunny (75 408 faces) of 0.15 m: nearest points, containment, rays, boxes, distance from and
+// collisions with a body of a finger's size, crossing faces; then hulls in space and the union of
+// two balls.
 //
 // How to read it: times are processor times per question, medians of repetitions that are
 // interleaved, so that whatever else the machine does hits both sides. "ratio" is ours over CGAL's,
@@ -9,7 +10,8 @@
 // names the first of equally near faces, sorts hits and says how they cross, gives hulls whose form
 // does not depend on memory, rounds a union from exact points, and `analyze` counts more than
 // crossing faces; CGAL's tree decides for a box which triangles meet it, ours which boxes of
-// triangles do.
+// triangles do; the distance of two surfaces, which CGAL does not have, is beside those of one's
+// corners from the other, which bound it from above.
 //
 // Run: build/unity/bin/graspfit_benchmarks "[queries]".
 #include <algorithm>
@@ -17,6 +19,7 @@
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -31,6 +34,7 @@
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
+#include "graspfit/geometry/surface_proximity.hpp"
 #include "queries_by_cgal.hpp"
 #include "support/catch.hpp"
 #include "support/skip.hpp"
@@ -267,6 +271,53 @@ void compare_collisions(const TriangleMesh& mesh, base::Random& random) {
   }
 }
 
+/// CGAL has no distance of two surfaces. The distances of one's corners from the other bound it
+/// from above.
+void compare_distances(const TriangleMesh& mesh, base::Random& random) {
+  const TriangleMesh finger = geometry::capsule(0.008, 0.03);
+  const MeshQuery a(mesh);
+  const MeshQuery b(finger);
+  testing::QueriesByCgal cgal(mesh);
+  cgal.build_tree(mesh, true);
+  for (const double gap : {1e-3, 5e-3}) {
+    const std::vector<RigidTransform> poses = poses_near_touch(random, a, b, gap, 200);
+    std::vector<geometry::ProximitySeed> seeds;
+    for (RigidTransform X : poses) {
+      X.translation() += drawn_point(random, cube_around(Vector3d::Zero(), 1e-3));
+      const auto before =
+          geometry::nearest_points(a, b, X, std::numeric_limits<double>::infinity());
+      seeds.push_back({before->face_a, before->face_b});
+    }
+    for (const bool is_seeded : {false, true}) {
+      const Sums distances = compare(
+          std::string("nearest_points, a finger ") + (gap < 2e-3 ? "1" : "5") + " mm off" +
+              (is_seeded ? ", seeded" : ""),
+          poses.size(),
+          [&] {
+            double sum = 0.0;
+            for (std::size_t i = 0; i < poses.size(); ++i) {
+              sum +=
+                  geometry::nearest_points(a, b, poses[i], std::numeric_limits<double>::infinity(),
+                                           is_seeded ? seeds[i] : geometry::ProximitySeed())
+                      ->distance;
+            }
+            return sum;
+          },
+          [&] {
+            return sum_over(poses, [&](const RigidTransform& X) {
+              double least = std::numeric_limits<double>::infinity();
+              for (const Vector3d& vertex : finger.vertices) {
+                least = std::min(least, cgal.distance(X * vertex));
+              }
+              return least;
+            });
+          });
+      CHECK(distances.ours <= distances.theirs);
+      CHECK(distances.ours >= 0.5 * distances.theirs);
+    }
+  }
+}
+
 void compare_hulls(base::Random& random) {
   for (const std::size_t size : {16, 200}) {
     std::vector<std::vector<Vector3d>> sets(400);
@@ -320,6 +371,7 @@ TEST_CASE("Questions about meshes and points beside CGAL", "[!benchmark][queries
               mesh.faces.size());
   std::printf("  %-44s %15s %15s %7s %12s\n", "", "ours", "CGAL's", "ratio", "by wall time");
   compare_questions_to_tree(mesh, random);
+  compare_distances(mesh, random);
   compare_collisions(mesh, random);
   compare_hulls(random);
   compare_unions();

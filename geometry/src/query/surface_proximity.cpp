@@ -150,8 +150,38 @@ struct Heights {
                         ///< triangle crosses the plane, or may do so.
 };
 
+/// A unit direction in A, and half of the length along it of boxes along the axes of A and of B,
+/// per half of the boxes' edges.
+struct Direction {
+  Direction(const Vector3d& along_A, const RigidTransform& X_AB)
+      : of_A(along_A.normalized()),
+        of_B(X_AB.linear().transpose() * of_A),
+        origin_B(of_A.dot(X_AB.translation())),
+        per_half_A(of_A.cwiseAbs()),
+        per_half_B(of_B.cwiseAbs()) {}
+
+  double lowest_A(const Corners& of) const { return -highest(of, -of_A); }
+  /// Of corners in B.
+  double highest_B(const Corners& of) const { return highest(of, of_B) + origin_B; }
+
+  Vector3d of_A;
+  Vector3d of_B;    ///< What a step in B is along it.
+  double origin_B;  ///< Where B's origin is along it.
+  Vector3d per_half_A;
+  Vector3d per_half_B;
+
+ private:
+  static double highest(const Corners& of, const Vector3d& direction) {
+    return std::max({direction.dot(of[0]), direction.dot(of[1]), direction.dot(of[2])});
+  }
+};
+
 /// One search for nearest points, depth first, the nearer children first. Pairs of nodes and of
 /// triangles that are surely no nearer than `share` times the best distance are left out.
+///
+/// What is farther apart is seen by boxes, and along one more direction: that between the nearest
+/// points that are known. Surfaces that lie side by side are apart along it nearly everywhere,
+/// where boxes at an angle to them overlap.
 class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
@@ -166,18 +196,16 @@ class Search {
         squared_enough_(enough * enough),
         squared_share_(share * share),
         squared_near_enough_(near_enough < 0.0 ? -1.0 : near_enough * near_enough),
+        noise_(kNoise * (largest_coordinate(tree_a_) + largest_coordinate(tree_b_) +
+                         X_AB.translation().lpNorm<Eigen::Infinity>())),
         squared_best_(squared_enough_),
         squared_limit_(squared_enough_) {}
 
   void run(const ProximitySeed& seed) {
-    if (seed.face_a >= 0 && seed.face_b >= 0) {
-      const auto face_a = static_cast<std::size_t>(seed.face_a);
-      const auto face_b = static_cast<std::size_t>(seed.face_b);
-      improve(corners(a_.mesh, face_a), seed.face_a, mapped(corners(b_.mesh, face_b)), seed.face_b);
-    }
+    if (seed.face_a >= 0 && seed.face_b >= 0) start_from(seed);
     std::vector<Pair> open;
     open.reserve(64);
-    push(open, 0, 0);
+    push(open, 0, box_of_a(0), 0, box_of_b(0));
     while (!open.empty() && !is_done()) {
       const Pair pair = open.back();
       open.pop_back();
@@ -198,6 +226,49 @@ class Search {
     std::int32_t node_b;
   };
 
+  // Along the direction more than this is wanted, of the distance and of the coordinates: pairs
+  // that rounding would let seem nearer than the best ones are looked at.
+  static constexpr double kMargin = 1e-9;
+  static constexpr double kNoise = 1e-12;
+
+  static double largest_coordinate(const BoxTree& tree) {
+    const BoxTree::Node& root = tree.nodes.front();
+    return root.lower.cwiseAbs().cwiseMax(root.upper.cwiseAbs()).maxCoeff();
+  }
+
+  struct BoxOfA {
+    Vector3d center;
+    Vector3d half;
+  };
+  struct BoxOfB {
+    Vector3d center_A;
+    Vector3d half;    ///< Along the axes of B.
+    Vector3d half_A;  ///< Of the box along the axes of A about it.
+  };
+  static BoxOfA box_of_a(const BoxTree::Node& node) {
+    return {0.5 * (node.lower + node.upper), 0.5 * (node.upper - node.lower)};
+  }
+  BoxOfA box_of_a(std::int32_t i) const {
+    return box_of_a(tree_a_.nodes[static_cast<std::size_t>(i)]);
+  }
+  BoxOfB box_of_b(std::int32_t j) const {
+    const BoxTree::Node& node = tree_b_.nodes[static_cast<std::size_t>(j)];
+    const Vector3d half = 0.5 * (node.upper - node.lower);
+    return {X_AB_ * Vector3d(0.5 * (node.lower + node.upper)), half, turn_ * half};
+  }
+
+  /// The seed's faces are the best ones if they are near enough, and give the direction even if
+  /// not.
+  void start_from(const ProximitySeed& seed) {
+    squared_best_ = std::numeric_limits<double>::infinity();
+    improve(corners(a_.mesh, static_cast<std::size_t>(seed.face_a)), seed.face_a,
+            mapped(corners(b_.mesh, static_cast<std::size_t>(seed.face_b))), seed.face_b);
+    if (squared_best_ < squared_enough_) return;
+    best_.reset();
+    squared_best_ = squared_enough_;
+    set_limit(squared_enough_);
+  }
+
   bool is_done() const {
     return squared_best_ == 0.0 || (best_ && squared_best_ <= squared_near_enough_);
   }
@@ -206,22 +277,28 @@ class Search {
 
   /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B:
   /// seen from one frame alone turned boxes grow, and with them the number of pairs looked at.
-  double squared_gap(std::int32_t i, std::int32_t j) const {
-    const BoxTree::Node& node_a = tree_a_.nodes[i];
-    const BoxTree::Node& node_b = tree_b_.nodes[j];
-    const Vector3d center_b = 0.5 * (node_b.lower + node_b.upper);
-    const Vector3d half_b = 0.5 * (node_b.upper - node_b.lower);
-    const Vector3d center_a = 0.5 * (node_a.lower + node_a.upper);
-    const Vector3d half_a = 0.5 * (node_a.upper - node_a.lower);
-    const Vector3d between_A = X_AB_ * center_b - center_a;
-    const double in_a =
-        (between_A.cwiseAbs() - half_a - turn_ * half_b).cwiseMax(0.0).squaredNorm();
+  double squared_gap(const BoxOfA& a, const BoxOfB& b) const {
+    const Vector3d between_A = b.center_A - a.center;
+    const double in_a = (between_A.cwiseAbs() - a.half - b.half_A).cwiseMax(0.0).squaredNorm();
     if (in_a >= squared_limit_) return in_a;
     if (!is_rotation_) return in_a;
     const Vector3d between_B = X_AB_.linear().transpose() * between_A;
     return std::max(
         in_a,
-        (between_B.cwiseAbs() - half_b - turn_.transpose() * half_a).cwiseMax(0.0).squaredNorm());
+        (between_B.cwiseAbs() - b.half - turn_.transpose() * a.half).cwiseMax(0.0).squaredNorm());
+  }
+
+  /// Whether two boxes need not be looked at, as they are apart along the direction.
+  bool is_left_out_along(const BoxOfA& a, const BoxOfB& b) {
+    if (!direction_) return false;
+    return is_left_out_along(direction_->of_A.dot(a.center - b.center_A) -
+                             direction_->per_half_A.dot(a.half) -
+                             direction_->per_half_B.dot(b.half));
+  }
+  bool is_left_out_along(double gap) {
+    if (!(gap > limit_along_)) return false;
+    squared_left_out_ = std::min(squared_left_out_, gap * gap);
+    return true;
   }
 
   /// Whether nodes or triangles that are so far apart at least need not be looked at.
@@ -231,8 +308,10 @@ class Search {
     return true;
   }
 
-  void push(std::vector<Pair>& open, std::int32_t i, std::int32_t j) {
-    const double gap = squared_gap(i, j);
+  void push(std::vector<Pair>& open, std::int32_t i, const BoxOfA& a, std::int32_t j,
+            const BoxOfB& b) {
+    if (is_left_out_along(a, b)) return;
+    const double gap = squared_gap(a, b);
     if (!is_left_out(gap)) open.push_back({gap, i, j});
   }
 
@@ -248,11 +327,15 @@ class Search {
                                                       (node_b.upper - node_b.lower).squaredNorm());
     const std::size_t size = open.size();
     if (splits_a) {
-      push(open, pair.node_a + 1, pair.node_b);
-      push(open, node_a.first, pair.node_b);
+      const BoxOfB b = box_of_b(pair.node_b);
+      for (const std::int32_t i : {pair.node_a + 1, node_a.first}) {
+        push(open, i, box_of_a(i), pair.node_b, b);
+      }
     } else {
-      push(open, pair.node_a, pair.node_b + 1);
-      push(open, pair.node_a, node_b.first);
+      const BoxOfA a = box_of_a(pair.node_a);
+      for (const std::int32_t j : {pair.node_b + 1, node_b.first}) {
+        push(open, pair.node_a, a, j, box_of_b(j));
+      }
     }
     // The last pair of the list is visited first.
     if (open.size() == size + 2 && open[size].squared_gap < open[size + 1].squared_gap) {
@@ -265,13 +348,22 @@ class Search {
     const auto squared_apart = [](const Box& a, const Box& b) {
       return (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0).squaredNorm();
     };
+    const BoxOfA leaf_a = box_of_a(node_a);
     for (std::int32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
       const internal::IndexedTriangle& of_b = tree_b_.triangles[t];
+      // Whatever is found meanwhile, this direction stays one.
+      const std::optional<Direction> direction = direction_;
+      const double highest_b = direction ? direction->highest_B(of_b.corners) : 0.0;
+      if (direction && is_left_out_along(direction->of_A.dot(leaf_a.center) -
+                                         direction->per_half_A.dot(leaf_a.half) - highest_b)) {
+        continue;
+      }
       const Corners corners_b = mapped(of_b.corners);
       const Box box_b = internal::box_of(corners_b);
       if (is_left_out(squared_apart(Box(node_a.lower, node_a.upper), box_b))) continue;
       for (std::int32_t s = node_a.first; s < node_a.first + node_a.count; ++s) {
         const internal::IndexedTriangle& of_a = tree_a_.triangles[s];
+        if (direction && is_left_out_along(direction->lowest_A(of_a.corners) - highest_b)) continue;
         if (is_left_out(squared_apart(internal::box_of(of_a.corners), box_b))) continue;
         improve(of_a.corners, of_a.face, corners_b, of_b.face);
       }
@@ -282,8 +374,15 @@ class Search {
     const double squared = (on_a - on_b).squaredNorm();
     if (!(squared < squared_best_)) return;
     squared_best_ = squared;
-    squared_limit_ = std::min(squared_enough_, squared_share_ * squared);
     best_ = {std::sqrt(squared), on_a, on_b, face_a, face_b};
+    set_limit(std::min(squared_enough_, squared_share_ * squared));
+    if (squared > 0.0) direction_.emplace(on_a - on_b, X_AB_);
+  }
+
+  void set_limit(double squared_limit) {
+    squared_limit_ = squared_limit;
+    // Not a share of the best: bounds are the better for what is left out so.
+    limit_along_ = std::sqrt(std::min(squared_enough_, squared_best_)) * (1.0 + kMargin) + noise_;
   }
 
   /// Offers the nearest points of two triangles. If the triangles do not cross, these points are on
@@ -330,8 +429,11 @@ class Search {
   const double squared_enough_;
   const double squared_share_;
   const double squared_near_enough_;
+  const double noise_;  ///< [m]
   double squared_best_;
   double squared_limit_;  ///< Nodes and triangles as far apart as this are left out.
+  double limit_along_ = std::numeric_limits<double>::infinity();  ///< The same along the direction.
+  std::optional<Direction> direction_;
   double squared_left_out_ = std::numeric_limits<double>::infinity();
   std::optional<SurfaceProximity> best_;
 };

@@ -65,8 +65,13 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
     REQUIRE(any);
     CHECK(any->distance <= 1.5 * nearest->distance);
     CHECK(any->distance >= nearest->distance - 1e-15);
-    CHECK_FALSE(nearest_points(a, b, X_AB, 0.999 * nearest->distance));
-    CHECK(nearest_points(a, b, X_AB, 1.001 * nearest->distance + 1e-12));
+    // Neither does one that is farther away than the limit.
+    for (const ProximitySeed& seed : {ProximitySeed(), ProximitySeed{i % 100, i % 12}}) {
+      CHECK_FALSE(nearest_points(a, b, X_AB, 0.999 * nearest->distance, seed));
+      const auto limited = nearest_points(a, b, X_AB, 1.001 * nearest->distance + 1e-12, seed);
+      REQUIRE(limited);
+      CHECK(limited->distance == Approx(nearest->distance).margin(1e-15));
+    }
   }
   CHECK(num_apart > 50);
   CHECK(num_crossing > 40);
