@@ -124,7 +124,7 @@ ExitCode run_hand_reach(const std::vector<std::string>& arguments) {
   scene.hand = std::move(reading.model);
   for (const hands::PinchKind kind : hands::kPinchKinds) {
     const SecondsBar seconds(true, viewer::pinch_name(kind) + " of " + scene.hand.name);
-    scene.charts.push_back(hands::pinch_chart(scene.hand, kind, options));
+    scene.charts.push_back(hands::cached_pinch_chart(scene.hand, kind, options));
   }
 
   if (flags.has("csv")) base::write_file_atomically(flags.text("csv"), csv_of(scene));

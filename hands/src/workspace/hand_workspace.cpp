@@ -10,6 +10,7 @@
 
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "workspace/model_key.hpp"
 #include "workspace/tip_pair.hpp"
 
 namespace graspfit::hands {
@@ -23,67 +24,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Overlap of links up to which they count as touching [m].
 constexpr double kTouchDepth = 1e-4;
 
-void append(base::ContentKey& key, const RigidTransform& pose) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 4; ++j) key.number(pose.matrix()(i, j));
-  }
-}
-
-void append(base::ContentKey& key, int value) { key.number(std::int64_t{value}); }
-
-void append(base::ContentKey& key, const Vector3d& vector) {
-  for (int i = 0; i < 3; ++i) key.number(vector[i]);
-}
-
 // The number is raised whenever the same hand and options may give another workspace.
-constexpr const char* kAlgorithm = "hand workspace 1";
+constexpr const char* kAlgorithm = "hand workspace 2";
 constexpr const char* kKind = "hand_workspace";
 
 /// All that `hand_workspace` depends on.
 std::string workspace_key(const HandModel& model, const WorkspaceOptions& options) {
   base::ContentKey key(kAlgorithm);
-  append(key, options.samples_per_joint);
+  key.number(std::int64_t{options.samples_per_joint});
   key.number(options.max_configurations);
   key.number(options.facing_angle);
-  append(key, static_cast<int>(model.links.size()));
-  for (const Link& link : model.links) {
-    append(key, link.parent_link.value_or(-1));
-    append(key, link.parent_joint.value_or(-1));
-    append(key, link.X_PL_fixed);
-    key.list(link.mesh_L.vertices);
-    key.list(link.mesh_L.faces);
-  }
-  append(key, static_cast<int>(model.joints.size()));
-  for (const Joint& joint : model.joints) {
-    append(key, static_cast<int>(joint.type));
-    append(key, joint.X_PJ);
-    append(key, joint.axis_J);
-    key.number(joint.lower);
-    key.number(joint.upper);
-    append(key, joint.closing_sign);
-    append(key, joint.coupling ? joint.coupling->leader : -1);
-    if (joint.coupling) {
-      key.number(joint.coupling->ratio);
-      key.number(joint.coupling->offset);
-      append(key, joint.coupling->breakaway ? 1 : 0);
-    }
-  }
-  append(key, static_cast<int>(model.pads.size()));
-  for (const ContactPad& pad : model.pads) {
-    append(key, pad.link);
-    append(key, pad.X_LC);
-    key.list(pad.outline);
-    key.list(pad.surface);
-  }
-  append(key, static_cast<int>(model.fingers.size()));
-  for (const Finger& finger : model.fingers) append(key, finger.tip_pad.value_or(-1));
-  append(key, model.thumb());
-  append(key, model.palm.center_H);
-  append(key, static_cast<int>(model.exclusions.size()));
-  for (const CollisionExclusion& exclusion : model.exclusions) {
-    append(key, exclusion.link_a);
-    append(key, exclusion.link_b);
-  }
+  internal::append(key, model);
   return key.sha256();
 }
 

@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
@@ -13,6 +16,7 @@
 #include "graspfit/hands/pinch_chart.hpp"
 #include "hands/workspace/planar_hand.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace test_pinch_chart {
 
@@ -227,6 +231,53 @@ TEST_CASE("Pinches bring no links into each other, and are the same each time",
           1e-4));
     }
   }
+}
+
+TEST_CASE("A chart is kept by all that it depends on", "[hands][pinch_chart]") {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const base::ContentCache cache{.folder = folder.path()};
+  const HandModel hand = planar_hand(0.06, {0.08}, 1.0);
+  const hands::PinchChartOptions options{.step = 0.02};
+  const auto num_kept = [&] {
+    return std::distance(fs::directory_iterator(folder.path() / "pinch_chart"), {});
+  };
+  const PinchChart found = hands::pinch_chart(hand, PinchKind::Tips, options);
+  const auto is_found = [&](const PinchChart& chart) {
+    CHECK(chart.kind == found.kind);
+    CHECK(chart.step == found.step);
+    CHECK(chart.num_sets == found.num_sets);
+    REQUIRE(chart.pinches.size() == found.pinches.size());
+    for (std::size_t k = 0; k < found.pinches.size(); ++k) {
+      REQUIRE(chart.pinches[k].has_value() == found.pinches[k].has_value());
+      if (!found.pinches[k]) continue;
+      CHECK(chart.pinches[k]->opening == found.pinches[k]->opening);
+      CHECK(chart.pinches[k]->lean == found.pinches[k]->lean);
+      CHECK(chart.pinches[k]->pads == found.pinches[k]->pads);
+      CHECK(chart.pinches[k]->q == found.pinches[k]->q);
+    }
+  };
+  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
+  REQUIRE(num_kept() == 1);
+  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
+  // Another number of sets, sealed, shows that the entry is what is read; more text is no chart.
+  const std::string key = fs::directory_iterator(folder.path() / "pinch_chart")->path().stem();
+  const std::string text = *cache.read("pinch_chart", key);
+  REQUIRE(text.starts_with("1 "));
+  cache.write("pinch_chart", key, "7" + text.substr(1));
+  CHECK(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache).num_sets == 7);
+  cache.write("pinch_chart", key, text + " 1");
+  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
+  // Names do not matter; kind, options and hand do.
+  HandModel other = hand;
+  other.name = "another";
+  hands::cached_pinch_chart(other, PinchKind::Tips, options, cache);
+  CHECK(num_kept() == 1);
+  hands::cached_pinch_chart(hand, PinchKind::Palm, options, cache);
+  hands::cached_pinch_chart(hand, PinchKind::Tips, {.step = 0.025}, cache);
+  other.joints[0].upper = 1.1;
+  hands::cached_pinch_chart(other, PinchKind::Tips, options, cache);
+  CHECK(num_kept() == 4);
 }
 
 TEST_CASE("Options of a chart are checked", "[hands][pinch_chart]") {

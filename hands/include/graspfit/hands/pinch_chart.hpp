@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "graspfit/base/content_cache.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
 /// \file
@@ -77,6 +78,12 @@ const Pinch* squarest(const PinchChart& chart);
 /// than 2000 classes.
 PinchChart pinch_chart(const HandModel& model, PinchKind kind,
                        const PinchChartOptions& options = {});
+
+/// The result of `pinch_chart`, kept in the user's cache. Its key is made of kind, options, and of
+/// all of the model that a chart depends on (not its name or files).
+PinchChart cached_pinch_chart(const HandModel& model, PinchKind kind,
+                              const PinchChartOptions& options = {},
+                              const base::ContentCache& cache = {});
 
 /// A range of openings [m].
 struct OpeningRange {
