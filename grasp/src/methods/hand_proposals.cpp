@@ -92,10 +92,12 @@ std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
   return pinch(grip, random);
 }
 
-void HandProposals::complete(const HandGrips::Grip& grip, HandProposal& proposal) const {
-  for (const std::size_t part : grip.parts) {
-    if (!proposal.patches[part]) complete(part, proposal);
-  }
+bool HandProposals::complete(const HandGrips::Grip& grip, double most,
+                             HandProposal& proposal) const {
+  if (proposal.largest_cost >= most) return false;
+  return std::all_of(grip.parts.begin(), grip.parts.end(), [&](std::size_t part) {
+    return proposal.patches[part] || complete(part, most, proposal);
+  });
 }
 
 /// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
@@ -171,12 +173,13 @@ void HandProposals::set(std::size_t part, std::int32_t sample, std::int32_t patc
   proposal.patches[part] = patch;
 }
 
-/// Places a part by the sample that is nearest to the surface and leans least there.
-void HandProposals::complete(std::size_t part, HandProposal& proposal) const {
+/// Places a part by the sample that is nearest to the surface and leans least there; false if that
+/// costs no less than `most`.
+bool HandProposals::complete(std::size_t part, double most, HandProposal& proposal) const {
   const hands::PadSamples& samples = grips_.parts()[part].samples;
   const RigidTransform& X_OH = proposal.configuration.X_OH;
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t best = 0;
+  double least = most;
+  std::optional<std::size_t> best;
   std::int32_t best_patch = 0;
   for (std::size_t from = 0; from < samples.size(); from += samples.range_size) {
     bool fits = true;
@@ -195,16 +198,21 @@ void HandProposals::complete(std::size_t part, HandProposal& proposal) const {
       const geometry::SurfacePatch& patch = object_.patches[index];
       const double gap = (point - patch.centroid).norm();
       if (gap >= least) continue;
-      const double its_cost =
-          cost(gap, X_OH.linear() * samples.normals_H.col(sample), -patch.outward_normal);
+      const Vector3d normal = X_OH.linear() * samples.normals_H.col(sample);
+      // An angle is no less than its chord.
+      const double lean_left = (least - gap) / kLeanLever;
+      if (2.0 + 2.0 * normal.dot(patch.outward_normal) >= lean_left * lean_left) continue;
+      const double its_cost = cost(gap, normal, -patch.outward_normal);
       if (its_cost >= least) continue;
       least = its_cost;
       best = number;
       best_patch = index;
     }
   }
-  set(part, static_cast<std::int32_t>(best), best_patch, proposal);
+  if (!best) return false;
+  set(part, static_cast<std::int32_t>(*best), best_patch, proposal);
   proposal.largest_cost = std::max(proposal.largest_cost, least);
+  return true;
 }
 
 }  // namespace graspfit::grasp::internal

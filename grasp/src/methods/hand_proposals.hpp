@@ -34,15 +34,16 @@ class HandProposals {
   /// hand's tables do not know that they can be there. Most draws are.
   std::optional<HandProposal> draw(const HandGrips::Grip& grip, base::Random& random) const;
 
-  /// Places the other parts of the grip.
-  void complete(const HandGrips::Grip& grip, HandProposal& proposal) const;
+  /// Places the other parts of the grip. False if that costs no less than `most`, as soon as that
+  /// is seen.
+  bool complete(const HandGrips::Grip& grip, double most, HandProposal& proposal) const;
 
  private:
   std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal palm_first(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
   void set(std::size_t part, std::int32_t sample, std::int32_t patch, HandProposal& proposal) const;
-  void complete(std::size_t part, HandProposal& proposal) const;
+  bool complete(std::size_t part, double most, HandProposal& proposal) const;
 
   const hands::HandModel& hand_;
   const ObjectModel& object_;

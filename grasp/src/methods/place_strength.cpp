@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -64,7 +65,7 @@ PlaceStrength::PlaceStrength(const ObjectModel& object, const std::vector<PoolPo
       around_(patches_around(object, pool)) {}
 
 double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double least) const {
-  const double of_patches = nominal(patches);
+  const double of_patches = nominal(patches, least);
   if (of_patches <= least) return of_patches;
   base::Random random(1);
   double sum = 0.0;
@@ -74,12 +75,12 @@ double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double 
       const std::vector<std::int32_t>& around = around_[static_cast<std::size_t>(patch)];
       beside.push_back(around[random.index(around.size())]);
     }
-    sum += nominal(beside);
+    sum += nominal(beside, -std::numeric_limits<double>::infinity());
   }
   return std::min(of_patches, sum / kDraws);
 }
 
-double PlaceStrength::nominal(const std::vector<std::int32_t>& patches) const {
+double PlaceStrength::nominal(const std::vector<std::int32_t>& patches, double least) const {
   std::vector<contact::Contact> contacts;
   for (const std::int32_t patch : patches) {
     contact::Contact contact;
@@ -93,9 +94,11 @@ double PlaceStrength::nominal(const std::vector<std::int32_t>& patches) const {
                                  geometry::angle_between(contacts[1].inward_normal_O, -line));
     return lean < 0.5 * std::numbers::pi ? friction_ - std::tan(lean) : -lean;
   }
-  return contact::epsilon_bound(contact::contact_wrenches(
-      contacts, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object_, contacts,
-                                           friction_)));
+  return contact::epsilon_bound(
+      contact::contact_wrenches(
+          contacts, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object_,
+                                               contacts, friction_)),
+      least);
 }
 
 }  // namespace graspfit::grasp::internal

@@ -25,9 +25,11 @@ class PlaceStrength {
   /// more than `least`: no candidate that is to be stronger.
   double expected(const std::vector<std::int32_t>& patches, double least) const;
 
- private:
-  double nominal(const std::vector<std::int32_t>& patches) const;
+  /// That of contacts on the patches themselves; of what is no more than `least` only so much is
+  /// known.
+  double nominal(const std::vector<std::int32_t>& patches, double least) const;
 
+ private:
   const ObjectModel& object_;
   const contact::WrenchObject wrench_object_;
   const double friction_;

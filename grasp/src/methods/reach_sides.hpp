@@ -60,7 +60,8 @@ class ReachSides {
 
   const Grip& drawn_grip(base::Random& random) const;
   std::vector<Candidate> strongest(const Grip* grip, Work work, base::Random& random) const;
-  std::optional<Candidate> drawn(const Grip& grip, base::Random& random, Work& work) const;
+  std::optional<Candidate> drawn(const Grip& grip, double least, base::Random& random,
+                                 Work& work) const;
   std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
   std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, double least,
                                 Work& work) const;

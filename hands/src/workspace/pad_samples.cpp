@@ -11,10 +11,13 @@
 namespace graspfit::hands {
 namespace {
 
-/// Largest n ≥ 2 with nᵏ ≤ most.
+/// Of a joint: steps of two degrees of a finger that closes by 130.
+constexpr int kMostPositions = 64;
+
+/// Largest n ≥ 2 with nᵏ ≤ most, and no more than the most positions of a joint.
 int per_joint(std::size_t num_joints, int most) {
   int n = 2;
-  while (std::pow(n + 1, static_cast<double>(num_joints)) <= most) ++n;
+  while (n < kMostPositions && std::pow(n + 1, static_cast<double>(num_joints)) <= most) ++n;
   return n;
 }
 

@@ -55,9 +55,18 @@ TEST_CASE("The bound of epsilon is never below it, nearly always equal, and has 
     const std::vector<Contact> contacts = random_contacts(random, 3 + round % 3);
     const double friction = random.uniform(0.2, 0.9);
     const double epsilon = signed_epsilon(contacts, object, friction);
-    const double bound = epsilon_bound(contact_wrenches(
-        contacts, wrench_convention(WrenchTool::Graspfit, object, contacts, friction)));
+    const Wrenches wrenches = contact_wrenches(
+        contacts, wrench_convention(WrenchTool::Graspfit, object, contacts, friction));
+    const double bound = epsilon_bound(wrenches);
     CAPTURE(round, friction, epsilon, bound);
+    // A search that may end early says no more than what it was asked for.
+    const double early = epsilon_bound(wrenches, 0.5 * bound + 0.1 * (round % 2));
+    if (bound > 0.5 * bound + 0.1 * (round % 2)) {
+      CHECK(early == bound);
+    } else if (bound > 0.0) {
+      CHECK(early >= bound);
+      CHECK(early <= 0.5 * bound + 0.1 * (round % 2));
+    }
     if (epsilon > 1e-9) {
       ++num_closed;
       CHECK(bound >= epsilon - 1e-9);

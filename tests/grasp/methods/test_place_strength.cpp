@@ -56,7 +56,7 @@ TEST_CASE("Contacts beside two opposite places lean by no more than their shifts
   const Vector3d side(0.5 * kWidth, 0.0, 0.0);
   const std::vector<std::int32_t> patches = {patch_at(pool, side, Vector3d::UnitX()),
                                              patch_at(pool, -side, -Vector3d::UnitX())};
-  const double nominal = strength.expected(patches, kInfinity);
+  const double nominal = strength.nominal(patches, -kInfinity);
   CHECK(nominal == Approx(kFriction).margin(scene.voxel_size() / kWidth));
   // Patches about a place are at most 1.6 voxels from it: the line leans by twice that at most.
   const double expected = strength.expected(patches, -kInfinity);
@@ -86,7 +86,7 @@ TEST_CASE("Places where the surface turns count for less than flat ones",
   };
   const auto share_left = [&](const std::vector<std::int32_t>& patches) {
     REQUIRE(std::all_of(patches.begin(), patches.end(), [](std::int32_t p) { return p >= 0; }));
-    const double nominal = strength.expected(patches, kInfinity);
+    const double nominal = strength.nominal(patches, -kInfinity);
     REQUIRE(nominal > 0.0);
     return strength.expected(patches, -kInfinity) / nominal;
   };
@@ -113,7 +113,7 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
       contact.point_O = point.point_O;
       contact.inward_normal_O = point.inward_normal_O;
     }
-    const double nominal = strength.expected(patches, kInfinity);
+    const double nominal = strength.nominal(patches, -kInfinity);
     const double epsilon = contact::signed_epsilon(contacts, object, 0.4);
     if (epsilon > 0.0) {
       ++num_closed;

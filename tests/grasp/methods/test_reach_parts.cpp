@@ -14,6 +14,7 @@
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "methods/hand_grips.hpp"
+#include "methods/hand_proposals.hpp"
 #include "object/nearest_patches.hpp"
 #include "support/catch.hpp"
 
@@ -91,6 +92,33 @@ TEST_CASE("A pair of pads from the table is as far apart and leans as it was ask
   CHECK_FALSE(pinch.table.draw(0.05, 3.0, 0.0, random));
 }
 
+TEST_CASE("The cheapest hand is found with or without knowing what another costs",
+          "[grasp][hand_proposals]") {
+  const testing::Scene scene(geometry::capsule(0.03, 0.06));
+  std::vector<bool> all(scene.object.patches.size(), true);
+  const internal::NearestPatches places(scene.object, all);
+  const PartDistances distances = part_distances(scene.hand, scene.parts);
+  const internal::TargetRules rules(scene.object, distances, scene.parts, TargetOptions());
+  const internal::HandGrips grips(scene.hand, scene.parts, internal::GripRule());
+  const internal::HandProposals proposals(scene.hand, scene.object, rules, grips, places);
+  const internal::HandGrips::Grip& grip = grips.grips().front();
+  base::Random random(4);
+  int num_drawn = 0;
+  for (int trial = 0; trial < 4000 && num_drawn < 60; ++trial) {
+    const std::optional<internal::HandProposal> drawn = proposals.draw(grip, random);
+    if (!drawn) continue;
+    ++num_drawn;
+    internal::HandProposal whole = *drawn;
+    REQUIRE(proposals.complete(grip, std::numeric_limits<double>::infinity(), whole));
+    internal::HandProposal again = *drawn;
+    CHECK(proposals.complete(grip, whole.largest_cost + 1e-9, again));
+    CHECK(again.configuration.q == whole.configuration.q);
+    CHECK(again.largest_cost == whole.largest_cost);
+    CHECK_FALSE(proposals.complete(grip, whole.largest_cost, again = *drawn));
+  }
+  CHECK(num_drawn == 60);
+}
+
 TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
           "[grasp][hand_grips]") {
   const hands::HandModel hand = hands::find_hand("human_hand");
@@ -162,6 +190,21 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
         0.01 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const internal::SurfacePosture posture = search.lay(pads, start);
     REQUIRE(posture.patches.size() == pads.size());
+    // A judge sees a posture after every step, and it is the same one if it always agrees.
+    int num_judged = 0;
+    const auto whole = search.lay_while(
+        [&](int num_steps, const internal::SurfacePosture& so_far) {
+          CHECK(num_steps == ++num_judged);
+          CHECK(so_far.patches.size() == pads.size());
+          return true;
+        },
+        pads, start);
+    REQUIRE(whole);
+    CHECK(whole->configuration.q == posture.configuration.q);
+    CHECK(whole->configuration.X_OH.matrix() == posture.configuration.X_OH.matrix());
+    CHECK((num_judged == 0 ||
+           !search.lay_while([](int, const internal::SurfacePosture&) { return false; }, pads,
+                             start)));
     if (posture.largest_gap > 0.5 * scene.voxel_size() || posture.largest_depth > 0.002) continue;
     ++num_laid;
     // Lifted by half a voxel, pads and links are so much farther off.

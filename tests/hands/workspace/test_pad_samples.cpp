@@ -49,6 +49,7 @@ TEST_CASE("Samples that agree in shared joints are a range, of the same position
                                  *hand.fingers[2].tip_pad};
   const std::vector<PadSamples> all = hands::pad_samples(hand, pads, 400);
   const int spread = hand.joint_index("finger_1_spread");
+  CHECK(all[2].size() == 64);  // of one joint
   std::vector<std::set<double>> positions;
   for (const PadSamples& samples : all) {
     const auto found = std::find(samples.joints.begin(), samples.joints.end(), spread);

@@ -146,7 +146,7 @@ std::optional<double> distance_outside(const Wrenches& wrenches) {
 
 }  // namespace
 
-double epsilon_bound(const Wrenches& wrenches) {
+double epsilon_bound(const Wrenches& wrenches, double enough) {
   if (wrenches.cols() == 0 || !wrenches.allFinite()) {
     throw base::InvalidInput("epsilon_bound: needs at least one wrench, and finite ones");
   }
@@ -164,6 +164,7 @@ double epsilon_bound(const Wrenches& wrenches) {
       double distance = ray.distance();
       for (int i = 0; i < kMostNormals; ++i) {
         least = std::min(least, distance);
+        if (least * longest <= enough) return least * longest;
         if (!ray.turn()) break;
         const double next = ray.distance();
         if (!(next < distance)) break;

@@ -26,8 +26,8 @@ struct PadSamples {
 };
 
 /// The samples of some pads, at most `max_samples` each (at least two per joint, however many that
-/// is), in the order of `pads`. @throws InvalidInput as the model's `validate`, and for
-/// `max_samples` < 1.
+/// is, and at most 64 per joint), in the order of `pads`. @throws InvalidInput as the model's
+/// `validate`, and for `max_samples` < 1.
 std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<int>& pads,
                                     int max_samples);
 

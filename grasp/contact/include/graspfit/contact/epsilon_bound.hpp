@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "graspfit/contact/grasp_wrench_space.hpp"
 
 namespace graspfit::contact {
@@ -13,7 +15,11 @@ namespace graspfit::contact {
 /// arithmetic: to rounding it is at least ε. Where the origin is outside the hull, or on it, the
 /// result is at most zero: the distance from the origin to a point of the hull near the nearest one
 /// [Gilbert 1966], negative.
+///
+/// The search ends with the first bound that is no more than `enough`, for callers who then need no
+/// better one.
 /// @throws InvalidInput unless there is at least one wrench and all are finite.
-double epsilon_bound(const Wrenches& wrenches);
+double epsilon_bound(const Wrenches& wrenches,
+                     double enough = -std::numeric_limits<double>::infinity());
 
 }  // namespace graspfit::contact
