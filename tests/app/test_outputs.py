@@ -4,7 +4,9 @@ import errno
 import fcntl
 import json
 import os
+import pty
 import random
+import re
 import signal
 import stat
 import subprocess
@@ -185,24 +187,51 @@ class Kills(program.ProgramTest):
 
 class Interrupts(program.ProgramTest):
     def start(self):
+        """Returns the process once its progress shows a grasp, and a function that ends with it and
+        returns what it printed and what its terminal shows."""
+        primary, secondary = pty.openpty()
+        self.addCleanup(os.close, primary)
         process = subprocess.Popen(
             [program.PROGRAM, "plan", str(self.write_torus()), "--count", "3",
              "--max-attempts", "1000000", "--out", str(self.folder / "new/out")],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            stdout=subprocess.PIPE, stderr=secondary, env={**os.environ, "TERM": "xterm"})
         self.addCleanup(process.stdout.close)
-        self.addCleanup(process.stderr.close)
-        time.sleep(3)
+        os.close(secondary)
+        shown = bytearray()
+        has_grasp = threading.Event()
+
+        def read_terminal():
+            try:
+                while block := os.read(primary, 4096):
+                    shown.extend(block)
+                    if re.search(rb"[1-9]\d* grasps", shown):
+                        has_grasp.set()
+            except OSError:  # The program has closed its end.
+                pass
+
+        reader = threading.Thread(target=read_terminal)
+        reader.start()
+        self.addCleanup(reader.join)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.assertTrue(has_grasp.wait(120))
         self.assertIsNone(process.poll())
-        return process
+
+        def ended():
+            said, _ = process.communicate(timeout=120)
+            reader.join()
+            return said.decode(), shown.decode()
+
+        return process, ended
 
     def test_one_interrupt_ends_with_the_grasps_that_were_found(self):
         for interrupt in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(interrupt.name):
-                process = self.start()
+                process, ended = self.start()
                 process.send_signal(interrupt)
-                said, errors = process.communicate(timeout=30)
+                said, shown = ended()
                 self.assertEqual(process.returncode, 128 + interrupt)
-                self.assertRegex(errors, r"^graspfit plan: interrupted: .*\n$")
+                self.assertEqual(len(re.findall(r"(?m)^graspfit plan: interrupted: ", shown)), 1, shown)
                 self.assertRegex(said, r"grasps in \d+ attempts \(interrupted\)")
                 file = json.loads((self.folder / "new/out/grasps.json").read_text())
                 self.assertEqual(file["results"]["stop"], "interrupted")
@@ -211,14 +240,14 @@ class Interrupts(program.ProgramTest):
                 self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_second_interrupt_ends_at_once_and_leaves_nothing(self):
-        process = self.start()
+        process, _ = self.start()
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(20), 128 + signal.SIGTERM)
         self.assertEqual(self.contents(), ["torus.off"])
 
     def test_a_kill_leaves_nothing(self):
-        process = self.start()
+        process, _ = self.start()
         process.send_signal(signal.SIGKILL)
         self.assertEqual(process.wait(20), -signal.SIGKILL)
         self.assertEqual(self.contents(), ["torus.off"])
