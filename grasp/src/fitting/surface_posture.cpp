@@ -312,19 +312,6 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
 
 SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
                                   const hands::HandConfiguration& start, double lift) const {
-  return *searched(pads, start, lift, {});
-}
-
-std::optional<SurfacePosture> SurfaceSearch::lay_while(
-    const Judge& is_worth_it, const std::vector<int>& pads,
-    const hands::HandConfiguration& start) const {
-  return searched(pads, start, 0.0, is_worth_it);
-}
-
-/// Without a judge never empty.
-std::optional<SurfacePosture> SurfaceSearch::searched(const std::vector<int>& pads,
-                                                      const hands::HandConfiguration& start,
-                                                      double lift, const Judge& is_worth_it) const {
   HandMotion motion = motion_;
   NormalEquations equations(motion.size());
   Evaluated best, trial;
@@ -336,7 +323,6 @@ std::optional<SurfacePosture> SurfaceSearch::searched(const std::vector<int>& pa
   accept();
   double damping = kFirstDamping;
   for (int i = 1; i < kMostEvaluations && damping < kMostDamping; ++i) {
-    if (i > 1 && is_worth_it && !is_worth_it(i - 1, best.posture)) return std::nullopt;
     VectorXd step = equations.solution(damping, motion.bounds(kLongestReach));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;

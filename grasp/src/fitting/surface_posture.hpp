@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -38,13 +37,6 @@ class SurfaceSearch {
   SurfacePosture lay(const std::vector<int>& pads, const hands::HandConfiguration& start,
                      double lift = 0.0) const;
 
-  /// Says of the posture after some steps whether it is worth more of them.
-  using Judge = std::function<bool(int num_steps, const SurfacePosture&)>;
-
-  /// The same, without a lift; empty once the judge gives it up.
-  std::optional<SurfacePosture> lay_while(const Judge& is_worth_it, const std::vector<int>& pads,
-                                          const hands::HandConfiguration& start) const;
-
  private:
   struct Wish;
   struct Evaluated;
@@ -72,9 +64,6 @@ class SurfaceSearch {
   double height(const Eigen::Vector3d& point_O) const;
   DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL, double lift) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
-  std::optional<SurfacePosture> searched(const std::vector<int>& pads,
-                                         const hands::HandConfiguration& start, double lift,
-                                         const Judge& is_worth_it) const;
   void evaluate(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
                 double lift, Evaluated& result) const;
 

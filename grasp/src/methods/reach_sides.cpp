@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -35,15 +34,6 @@ constexpr int kMostProposals = 10000;  // small objects and wide fingertips need
 // Further candidates cost little unless the first ones fail.
 constexpr std::size_t kMostStarts = 3;
 constexpr int kProposals = 4;  // of new candidates, of which one is laid onto the surface
-
-// A posture whose strength after so many steps is below what it must be by more than so much is
-// given up: of 3289 variations 130 were stronger at the end than what they varied, a tenth of these
-// had been so far below, and half of the others.
-struct Checkpoint {
-  int num_steps;
-  double shortfall;
-};
-constexpr std::array<Checkpoint, 2> kCheckpoints = {{{2, 0.03}, {5, 0.01}}};
 
 // A posture that is in the object is lifted off it: refinement closes gaps more often than it frees
 // a hand, and moves contacts less.
@@ -234,19 +224,11 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
                                                       Work& work) const {
   ++work.postures;
   hands::apply_couplings(scene_.hand.model(), start.q);
-  const auto is_worth_it = [&](int num_steps, const SurfacePosture& so_far) {
-    const auto checkpoint =
-        std::find_if(kCheckpoints.begin(), kCheckpoints.end(),
-                     [&](const Checkpoint& other) { return other.num_steps == num_steps; });
-    if (checkpoint == kCheckpoints.end() || std::isinf(least)) return true;
-    const double wanted = least - checkpoint->shortfall;
-    return strength_.nominal(so_far.patches, wanted) > wanted;
-  };
-  std::optional<SurfacePosture> posture = search_.lay_while(is_worth_it, pads_of(grip), start);
-  if (!posture || !is_good(*posture)) return std::nullopt;
-  const double strength = strength_.expected(posture->patches, least);
-  if (!(strength > least) || !clearance_.is_clear_of_itself(posture->X_OL)) return std::nullopt;
-  return Candidate{&grip, std::move(*posture), strength};
+  SurfacePosture posture = search_.lay(pads_of(grip), start);
+  if (!is_good(posture)) return std::nullopt;
+  const double strength = strength_.expected(posture.patches, least);
+  if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
+  return Candidate{&grip, std::move(posture), strength};
 }
 
 /// The candidate, lifted off the object until it is clear of it, exactly; as it is where that takes

@@ -190,21 +190,6 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
         0.01 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const internal::SurfacePosture posture = search.lay(pads, start);
     REQUIRE(posture.patches.size() == pads.size());
-    // A judge sees a posture after every step, and it is the same one if it always agrees.
-    int num_judged = 0;
-    const auto whole = search.lay_while(
-        [&](int num_steps, const internal::SurfacePosture& so_far) {
-          CHECK(num_steps == ++num_judged);
-          CHECK(so_far.patches.size() == pads.size());
-          return true;
-        },
-        pads, start);
-    REQUIRE(whole);
-    CHECK(whole->configuration.q == posture.configuration.q);
-    CHECK(whole->configuration.X_OH.matrix() == posture.configuration.X_OH.matrix());
-    CHECK((num_judged == 0 ||
-           !search.lay_while([](int, const internal::SurfacePosture&) { return false; }, pads,
-                             start)));
     if (posture.largest_gap > 0.5 * scene.voxel_size() || posture.largest_depth > 0.002) continue;
     ++num_laid;
     // Lifted by half a voxel, pads and links are so much farther off.
