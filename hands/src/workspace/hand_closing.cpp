@@ -46,11 +46,10 @@ std::vector<Group> closing_groups(const HandModel& model) {
 /// The model, with all pairs of links excluded that touch while the hand is open.
 HandModel without_open_overlaps(HandModel model) {
   const auto X_HL = forward_kinematics(model, open_configuration(model));
-  while (true) {
-    const HandCollision::Result found = HandCollision(model).against_self(X_HL);
-    if (!found.intersects) return model;
-    model.exclusions.push_back({*found.link_a, *found.link_b});
+  for (const auto& [link_a, link_b] : HandCollision(model).overlapping_pairs(X_HL)) {
+    model.exclusions.push_back({link_a, link_b});
   }
+  return model;
 }
 
 struct Closing {

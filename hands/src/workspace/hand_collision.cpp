@@ -109,6 +109,16 @@ HandCollision::Result HandCollision::against_self(const std::vector<RigidTransfo
   return result;
 }
 
+std::vector<std::pair<int, int>> HandCollision::overlapping_pairs(
+    const std::vector<RigidTransform>& X_OL) const {
+  std::vector<std::pair<int, int>> pairs;
+  for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {
+    if (geometry::do_intersect(*links_[a], *links_[b], X_AB)) pairs.emplace_back(a, b);
+    return true;
+  });
+  return pairs;
+}
+
 bool HandCollision::overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const {
   bool overlaps = false;
   for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {

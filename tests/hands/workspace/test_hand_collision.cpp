@@ -1,5 +1,8 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
@@ -135,6 +138,23 @@ TEST_CASE("Links overlap by more than what their depth says, and by no less",
   CHECK_FALSE(collision().overlaps_self(X_open, 1e-9));
 }
 
+TEST_CASE("The pairs that overlap are those that, left out one after the other, leave nothing",
+          "[hands][hand_collision]") {
+  const auto X_OL = hands::forward_kinematics(barrett(), configuration(pi / 2, 2.0, 2.0, 0));
+  HandModel hand = barrett();
+  std::vector<std::pair<int, int>> deepest_first;
+  while (true) {
+    const HandCollision::Result found = HandCollision(hand).against_self(X_OL);
+    if (!found.intersects) break;
+    deepest_first.emplace_back(*found.link_a, *found.link_b);
+    hand.exclusions.push_back({*found.link_a, *found.link_b});
+  }
+  REQUIRE(deepest_first.size() > 1);
+  std::sort(deepest_first.begin(), deepest_first.end());
+  CHECK(collision().overlapping_pairs(X_OL) == deepest_first);
+  CHECK(HandCollision(hand).overlapping_pairs(X_OL).empty());
+}
+
 TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collision]") {
   HandModel hand = barrett();
   for (hands::Link& link : hand.links) link.mesh_L = {};
@@ -143,7 +163,9 @@ TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collisi
   CHECK_FALSE(nothing.against_self(X_OL).intersects);
   CHECK_FALSE(nothing.against_object(geometry::MeshQuery(geometry::ball(1.0, 1)), X_OL).intersects);
   CHECK_THROWS_AS(nothing.against_self({}), base::InvalidInput);
+  CHECK(nothing.overlapping_pairs(X_OL).empty());
   CHECK_THROWS_AS(nothing.overlaps_self({}, 1e-3), base::InvalidInput);
+  CHECK_THROWS_AS(nothing.overlapping_pairs({}), base::InvalidInput);
 }
 
 }  // namespace
