@@ -119,15 +119,26 @@ std::vector<std::pair<int, int>> HandCollision::overlapping_pairs(
   return pairs;
 }
 
-bool HandCollision::overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const {
-  bool overlaps = false;
-  for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {
-    const geometry::Penetration found = geometry::penetration(
-        *links_[a], *links_[b], X_AB, {.tolerance = 0.5 * depth, .enough = depth});
-    overlaps = found.depth > depth;
-    return !overlaps;
-  });
-  return overlaps;
+bool HandCollision::is_deeper_than(double depth, int a, int b, const RigidTransform& X_AB) const {
+  const geometry::Penetration found = geometry::penetration(
+      *links_[a], *links_[b], X_AB, {.tolerance = 0.5 * depth, .enough = depth});
+  return found.depth > depth;
+}
+
+std::optional<std::pair<int, int>> HandCollision::pair_deeper_than(
+    const std::vector<RigidTransform>& X_OL, double depth,
+    const std::optional<std::pair<int, int>>& likely) const {
+  std::optional<std::pair<int, int>> pair;
+  for (const bool is_likely : {true, false}) {
+    if (pair || (is_likely && !likely)) continue;
+    for_each_near_pair(X_OL, [&](int a, int b, const RigidTransform& X_AB) {
+      if ((likely == std::pair(a, b)) == is_likely && is_deeper_than(depth, a, b, X_AB)) {
+        pair = {a, b};
+      }
+      return !pair;
+    });
+  }
+  return pair;
 }
 
 }  // namespace graspfit::hands

@@ -17,7 +17,6 @@ namespace graspfit::hands {
 namespace {
 
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -118,9 +117,7 @@ HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& opt
   workspace.graspable_diameter.resize(model.fingers.size());
   const internal::SampledHand hand(model);
   const HandCollision collision(model);
-  const auto is_clear = [&](const VectorXd& q) {
-    return !collision.overlaps_self(hand.poses(q), kTouchDepth);
-  };
+  const internal::IsClear is_clear = internal::clear_of_itself(hand, collision, kTouchDepth);
   const int thumb = model.thumb();
   for (std::size_t f = 0; f < model.fingers.size(); ++f) {
     const std::optional<int>& thumb_pad = model.fingers[thumb].tip_pad;

@@ -401,9 +401,8 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
   validate(model);
   const SampledHand hand(model);
   const HandCollision collision(model);
-  const auto is_clear = [&](const VectorXd& q) {
-    return !collision.overlaps_self(hand.poses(q), options.touch_depth);
-  };
+  const internal::IsClear is_clear =
+      internal::clear_of_itself(hand, collision, options.touch_depth);
   std::vector<Pincher> pinchers;
   for (Sides& sides : sides_of(model, kind)) pinchers.emplace_back(hand, std::move(sides), options);
 

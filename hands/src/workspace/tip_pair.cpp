@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
@@ -314,6 +315,16 @@ double SampledHand::speed(std::optional<int> pad, int leader,
 DistanceRange tip_distance_range(const SampledHand& hand, std::optional<int> pad_a,
                                  std::optional<int> pad_b, const WorkspaceOptions& options) {
   return TipPair(hand, pad_a, pad_b, options).distances();
+}
+
+IsClear clear_of_itself(const SampledHand& hand, const HandCollision& collision,
+                        double touch_depth) {
+  std::optional<std::pair<int, int>> last;
+  return [&hand, &collision, touch_depth, last](const VectorXd& q) mutable {
+    const auto found = collision.pair_deeper_than(hand.poses(q), touch_depth, last);
+    if (found) last = found;
+    return !found;
+  };
 }
 
 DistanceRange facing_distance_range(const SampledHand& hand, int pad_a, int pad_b,

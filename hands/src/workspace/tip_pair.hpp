@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_workspace.hpp"
 
@@ -50,6 +51,12 @@ DistanceRange tip_distance_range(const SampledHand& hand, std::optional<int> pad
                                  std::optional<int> pad_b, const WorkspaceOptions& options);
 
 using IsClear = std::function<bool(const Eigen::VectorXd& q)>;
+
+/// Whether no link overlaps another by more than `touch_depth` [m]: `HandCollision::overlaps_self`,
+/// but the pair of links that overlapped last is tested first, since most that overlap overlap
+/// there again. For one thread; `hand` and `collision` must outlive it.
+IsClear clear_of_itself(const SampledHand& hand, const HandCollision& collision,
+                        double touch_depth);
 
 /// Range of the distances at which two pads face each other; `is_clear` is called for as few
 /// configurations as possible.

@@ -155,6 +155,38 @@ TEST_CASE("The pairs that overlap are those that, left out one after the other, 
   CHECK(HandCollision(hand).overlapping_pairs(X_OL).empty());
 }
 
+TEST_CASE("A pair of links that is likely to overlap changes no verdict",
+          "[hands][hand_collision]") {
+  base::Random random(5);
+  int num_deep = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const auto X_OL = hands::forward_kinematics(
+        barrett(), configuration(random.uniform(0, pi), random.uniform(0, 2.4),
+                                 random.uniform(0, 2.4), random.uniform(0, 2.4)));
+    const double depth = 1e-4;
+    const auto first = collision().pair_deeper_than(X_OL, depth);
+    std::vector<std::pair<int, int>> deep;
+    for (const auto& pair : collision().overlapping_pairs(X_OL)) {
+      const auto [a, b] = pair;
+      const geometry::Penetration found = geometry::penetration(
+          *collision().link_solid(a), *collision().link_solid(b), X_OL[a].inverse() * X_OL[b]);
+      if (std::abs(found.depth - depth) < 0.6 * depth) continue;
+      if (found.depth > depth) {
+        deep.push_back(pair);
+        CHECK(collision().pair_deeper_than(X_OL, depth, pair) == pair);
+      } else {
+        CHECK(collision().pair_deeper_than(X_OL, depth, pair) == first);
+      }
+    }
+    num_deep += deep.size() > 1;
+    if (!deep.empty()) REQUIRE(first);
+    CHECK(collision().overlaps_self(X_OL, depth) == first.has_value());
+    CHECK(collision().pair_deeper_than(X_OL, depth, std::pair(0, 1)).has_value() ==
+          first.has_value());
+  }
+  CHECK(num_deep > 5);
+}
+
 TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collision]") {
   HandModel hand = barrett();
   for (hands::Link& link : hand.links) link.mesh_L = {};

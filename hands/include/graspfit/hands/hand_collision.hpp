@@ -58,13 +58,22 @@ class HandCollision {
   /// Whether some link overlaps another by more than `depth` [m] > 0, without the pairs that the
   /// model excludes. True is certain; false may be wrong by half of `depth`. Where links overlap,
   /// this is much cheaper than `against_self`.
-  bool overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const;
+  bool overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const {
+    return pair_deeper_than(X_OL, depth).has_value();
+  }
+
+  /// A pair of links of which `overlaps_self` tells: `likely` if it is one, which is tested before
+  /// all others, else the first in order; empty if there is none.
+  std::optional<std::pair<int, int>> pair_deeper_than(
+      const std::vector<RigidTransform>& X_OL, double depth,
+      const std::optional<std::pair<int, int>>& likely = std::nullopt) const;
 
  private:
   /// Calls `visit(a, b, X_AB)` for the pairs of links whose boxes are not apart, until `visit`
   /// returns false.
   template <class Visit>
   void for_each_near_pair(const std::vector<RigidTransform>& X_OL, const Visit& visit) const;
+  bool is_deeper_than(double depth, int a, int b, const RigidTransform& X_AB) const;
 
   HandModel model_;
   std::vector<std::optional<geometry::MeshQuery>> links_;  ///< Empty for links without faces.
