@@ -401,7 +401,8 @@ Penetration penetration(const MeshQuery& a, const MeshQuery& b, const RigidTrans
   if (!result.intersects) return result;
   DeepestPoint in_a(a, X_AB, options);
   in_a.search(b.indexed().pair_tree());
-  DeepestPoint in_b(b, inverse_of(X_AB), options);
+  // Where one direction is deep enough, the other is bounded, not searched.
+  DeepestPoint in_b(b, inverse_of(X_AB), options, in_a.depth > options.enough ? in_a.depth : 0.0);
   in_b.search(a.indexed().pair_tree());
   const bool is_in_a = in_a.depth >= in_b.depth;
   result.depth = std::max(in_a.depth, in_b.depth);
