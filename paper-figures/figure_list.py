@@ -39,4 +39,5 @@ FIGURES = (
     Listed("everyday_objects", "ours", ("planner_everyday",), False),
     Listed("hold_rates", "ours", ("hold_rates",), False),
     Listed("force_closure", "ours", ("force_closure",), False),
+    Listed("reach_grasps", "ours", ("reach_grasps",), False),
 )
