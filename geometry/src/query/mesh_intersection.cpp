@@ -197,7 +197,7 @@ class DeepestPoint {
   Vector3d point = Vector3d::Zero();  ///< In the solid's frame.
 
   void search(const BoxTree& surface) {
-    push_node(surface, 0);
+    push_node(surface, 0, 0);
     // Equally deep triangles over a wide flat overlap would be cut forever; the bound stays valid
     // when the search ends early.
     constexpr int kLargestWork = 50000;
@@ -208,15 +208,17 @@ class DeepestPoint {
       if (item.node >= 0) {
         const BoxTree::Node& node = surface.nodes[item.node];
         if (node.count == 0) {
-          push_node(surface, item.node + 1);
-          push_node(surface, node.first);
+          push_node(surface, item.node + 1, item.face);
+          push_node(surface, node.first, item.face);
         } else {
           for (std::int32_t t = 0; t < node.count; ++t) {
-            push_triangle(mapped(surface.triangles[node.first + t].corners, X_));
+            push_triangle(mapped(surface.triangles[node.first + t].corners, X_), item.face);
           }
         }
       } else if (!split_along_face(item)) {
-        for (const Corners& quarter : internal::quarters_of(item.corners)) push_triangle(quarter);
+        for (const Corners& quarter : internal::quarters_of(item.corners)) {
+          push_triangle(quarter, item.face);
+        }
       }
     }
     bound = std::max(depth, open_.empty() ? 0.0 : open_.top().bound);
@@ -227,7 +229,7 @@ class DeepestPoint {
     double bound;
     std::int32_t node;  ///< −1 for a triangle.
     Corners corners;    ///< In the solid's frame.
-    std::int32_t face;  ///< Of the solid, nearest to the middle of the triangle.
+    std::int32_t face;  ///< Of the solid, nearest to the middle of the triangle or node.
     bool operator<(const Item& other) const { return bound < other.bound; }
   };
 
@@ -237,7 +239,8 @@ class DeepestPoint {
     if (item_bound > depth) open_.push({item_bound, node, corners, face});
   }
 
-  void push_node(const BoxTree& surface, std::int32_t index) {
+  /// `near_face` is one of the solid that may be near, as for triangles.
+  void push_node(const BoxTree& surface, std::int32_t index, std::int32_t near_face) {
     const BoxTree::Node& node = surface.nodes[index];
     const SeenBox box = seen_from(box_of(node), X_);
     const Eigen::AlignedBox3d& solid_box = solid_.indexed().box;
@@ -246,29 +249,35 @@ class DeepestPoint {
     if (!overlap(solid_box.min() + inset, solid_box.max() - inset, box)) return;
     const Vector3d center = 0.5 * (box.lower + box.upper);
     const double radius = 0.5 * stretch_ * (node.upper - node.lower).norm();
+    const ClosestPoint closest = solid_.closest_point(center, near_face);
+    const double distance = std::sqrt(closest.squared_distance);
     // The distance to a surface is 1-Lipschitz.
-    push(radius - solid_.signed_distance(center), index, kNoCorners, -1);
+    if (radius + distance <= depth) return;
+    const double most =
+        solid_.containment(center) == Containment::Inside ? radius + distance : radius - distance;
+    push(most, index, kNoCorners, closest.face);
   }
 
-  void push_triangle(const Corners& corners) {
+  void push_triangle(const Corners& corners, std::int32_t near_face) {
     const Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
     double radius = 0.0;
     for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
-    const ClosestPoint closest = solid_.closest_point(center);
+    const ClosestPoint closest = solid_.closest_point(center, near_face);
     const double distance = std::sqrt(closest.squared_distance);
     // A point outside is at most `radius` − distance deep anywhere on the triangle.
     if (radius + distance <= depth) return;
-    const bool is_inside = solid_.containment(center) == Containment::Inside;
-    if (is_inside && distance > depth) {
-      depth = distance;
-      point = center;
-    }
     // No point is farther from the surface than from the face nearest to the center, and the
     // distance to this face, which is convex, is largest at a corner.
     const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(closest.face));
     double to_face = 0.0;
     for (const Vector3d& corner : corners) {
       to_face = std::max(to_face, (corner - internal::closest_on_triangle(corner, face)).norm());
+    }
+    if (to_face <= depth) return;
+    const bool is_inside = solid_.containment(center) == Containment::Inside;
+    if (is_inside && distance > depth) {
+      depth = distance;
+      point = center;
     }
     const double most = std::min(to_face, is_inside ? radius + distance : radius - distance);
     if (most > depth + tolerance_ && !is_inside && stays_outside(corners)) return;
@@ -358,7 +367,9 @@ class DeepestPoint {
                          beyond[i] / (beyond[i] - beyond[j]) * (item.corners[j] - item.corners[i]);
         }
       }
-      for (int i = 2; i < size; ++i) push_triangle({part[0], part[i - 1], part[i]});
+      for (int i = 2; i < size; ++i) {
+        push_triangle({part[0], part[i - 1], part[i]}, item.face);
+      }
     }
     return true;
   }

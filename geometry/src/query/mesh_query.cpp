@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/input_check.hpp"
 #include "query/indexed_mesh.hpp"
@@ -231,6 +233,33 @@ TriangleMesh checked(TriangleMesh mesh) {
   return mesh;
 }
 
+/// The nearest point of the surface, where the face `first` is looked at before all others.
+ClosestPoint nearest_point(const internal::IndexedMesh& indexed, const Eigen::Vector3d& point,
+                           std::optional<std::int32_t> first) {
+  ClosestPoint best;
+  best.squared_distance = std::numeric_limits<double>::infinity();
+  const auto offer = [&](const std::array<Eigen::Vector3d, 3>& corners, std::int32_t face) {
+    const internal::TrianglePoint candidate = internal::nearest_on_triangle(point, corners);
+    const double squared = (candidate.point - point).squaredNorm();
+    // Equally near faces: the least index, whatever the order.
+    if (squared < best.squared_distance || (squared == best.squared_distance && face < best.face)) {
+      best = {candidate.point, squared, face, candidate.barycentric};
+    }
+  };
+  if (first) offer(corners(indexed.mesh, static_cast<std::size_t>(*first)), *first);
+  indexed.tree().traverse_by_bound(
+      [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
+      // Each coordinate of a point in its box is at least as far as the box, and so are rounded
+      // differences and squares; only the order of two additions differs: 4 u of 8 u.
+      [&] { return best.squared_distance * (1.0 + 0x1p-50); },
+      [&](const IndexedTriangle& triangle) { offer(triangle.corners, triangle.face); });
+  if (best.face < 0) {
+    throw base::InvalidInput(
+        "MeshQuery::closest_point: the point is not finite, or too far for squared distances");
+  }
+  return best;
+}
+
 }  // namespace
 
 internal::IndexedMesh::IndexedMesh(TriangleMesh the_mesh)
@@ -251,28 +280,14 @@ void MeshQuery::build() const {
 const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }
 
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
-  ClosestPoint best;
-  best.squared_distance = std::numeric_limits<double>::infinity();
-  indexed_->tree().traverse_by_bound(
-      [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
-      // Each coordinate of a point in its box is at least as far as the box, and so are rounded
-      // differences and squares; only the order of two additions differs: 4 u of 8 u.
-      [&] { return best.squared_distance * (1.0 + 0x1p-50); },
-      [&](const IndexedTriangle& triangle) {
-        const internal::TrianglePoint candidate =
-            internal::nearest_on_triangle(point, triangle.corners);
-        const double squared = (candidate.point - point).squaredNorm();
-        // Equally near faces: the least index, whatever the shape of the tree.
-        if (squared < best.squared_distance ||
-            (squared == best.squared_distance && triangle.face < best.face)) {
-          best = {candidate.point, squared, triangle.face, candidate.barycentric};
-        }
-      });
-  if (best.face < 0) {
-    throw base::InvalidInput(
-        "MeshQuery::closest_point: the point is not finite, or too far for squared distances");
-  }
-  return best;
+  return nearest_point(*indexed_, point, std::nullopt);
+}
+
+ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point, std::int32_t first) const {
+  const auto num_faces = static_cast<std::int32_t>(mesh().faces.size());
+  base::require(first >= 0 && first < num_faces, "MeshQuery::closest_point", "first", first,
+                ">= 0 and less than the number of faces");
+  return nearest_point(*indexed_, point, first);
 }
 
 internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {

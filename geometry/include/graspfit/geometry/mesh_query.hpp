@@ -68,6 +68,11 @@ class MeshQuery {
   /// @throws InvalidInput where squared distances overflow, too.
   ClosestPoint closest_point(const Eigen::Vector3d& point) const;
 
+  /// The same answer, sooner where face number `first`, which is looked at first, is among the
+  /// near ones: the face of a point nearby.
+  /// @throws InvalidInput for a face that there is not, too.
+  ClosestPoint closest_point(const Eigen::Vector3d& point, std::int32_t first) const;
+
   /// Exact for closed meshes: inside is where the winding number of the surface is not zero,
   /// counted by the signed crossings of one ray with exact predicates. So parts that overlap are
   /// united, an outward part inside another changes nothing, and an inward part inside an outward

@@ -54,6 +54,7 @@ struct PinchChartOptions {
 
 /// The pinches of least lean, by opening.
 struct PinchChart {
+  static constexpr int kMostClasses = 2000;  ///< Of openings.
   PinchKind kind = PinchKind::Tips;
   double step = 0.0;  ///< [m]
   int num_sets = 0;   ///< Sets of pads looked at; 0: the hand has none for this kind.
@@ -75,7 +76,7 @@ const Pinch* squarest(const PinchChart& chart);
 /// configuration that was found, so the least one is no larger. Deterministic. Cost: some seconds
 /// for a hand with five fingers, and in proportion to the number of classes.
 /// @throws InvalidInput as the options' and the model's `validate`, and where openings have more
-/// than 2000 classes.
+/// than `PinchChart::kMostClasses`.
 PinchChart pinch_chart(const HandModel& model, PinchKind kind,
                        const PinchChartOptions& options = {});
 
