@@ -16,8 +16,15 @@ std::vector<JointGroup> each_alone(const std::vector<int>& joints) {
 
 namespace {
 
+/// Whether the share of a joint's range is counted from its upper limit.
 bool is_reversed(const HandModel& model, const JointGroup& group, int joint) {
-  return group.size() > 1 && model.joints[joint].closing_sign < 0;
+  const Joint& own = model.joints[joint];
+  if (group.size() == 1) return false;
+  if (own.closing_sign != 0) return own.closing_sign < 0;
+  const Joint& first = model.joints[group.front()];
+  const bool is_same = own.lower == first.lower && own.upper == first.upper;
+  const bool is_mirrored = own.lower == -first.upper && own.upper == -first.lower;
+  return first.closing_sign == 0 && is_mirrored && !is_same;
 }
 
 }  // namespace

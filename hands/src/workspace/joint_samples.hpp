@@ -14,7 +14,8 @@
 namespace graspfit::hands::internal {
 
 /// Joints that are moved alike: all to the same share of their ranges. In a group of several the
-/// share is counted from the limit that opens the hand, so that mirrored joints close together.
+/// share is counted from the limit that opens the hand, so that mirrored joints close together;
+/// of joints that swing, whose ranges are mirror images, from limits of opposite signs.
 using JointGroup = std::vector<int>;
 
 /// Moves the joints of a group by a share of their ranges, within their limits.

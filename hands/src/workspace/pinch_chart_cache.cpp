@@ -14,7 +14,7 @@ namespace graspfit::hands {
 namespace {
 
 // The number is raised whenever the same hand and options may give another chart.
-constexpr const char* kChartAlgorithm = "pinch chart 1";
+constexpr const char* kChartAlgorithm = "pinch chart 2";
 constexpr const char* kCacheKind = "pinch_chart";
 
 /// All that a chart depends on.

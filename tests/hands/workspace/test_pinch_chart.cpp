@@ -127,6 +127,34 @@ TEST_CASE("Two fingers close alike, whichever way their joints turn", "[hands][p
   }
 }
 
+TEST_CASE("Two fingers swing alike, also where their joints are written as mirror images",
+          "[hands][pinch_chart]") {
+  // The spread of the Barrett hand as two independent joints, one about a turned axis.
+  const HandModel coupled = hands::find_hand("barrett");
+  HandModel hand = coupled;
+  const int swing = *hand.fingers[1].swing_joint;
+  hands::Joint& joint = hand.joints[swing];
+  REQUIRE(joint.closing_sign == 0);
+  REQUIRE(joint.coupling.has_value());
+  joint.coupling.reset();
+  joint.axis_J = -joint.axis_J;
+  joint.lower = -hand.joints[*hand.fingers[0].swing_joint].upper;
+  joint.upper = 0.0;
+  const PinchChart one = hands::pinch_chart(coupled, PinchKind::TwoFingers, {.step = 0.01});
+  const PinchChart two = hands::pinch_chart(hand, PinchKind::TwoFingers, {.step = 0.01});
+  constexpr std::size_t kFirst = 15;  // where they pinch squarely
+  constexpr std::size_t kEnd = 23;
+  REQUIRE(std::min(one.pinches.size(), two.pinches.size()) >= kEnd);
+  for (std::size_t k = kFirst; k < kEnd; ++k) {
+    CAPTURE(k);
+    REQUIRE(one.pinches[k]);
+    REQUIRE(two.pinches[k]);
+    CHECK(two.pinches[k]->lean == Approx(one.pinches[k]->lean).margin(1.0 * kDegree));
+    CHECK(two.pinches[k]->q[swing] ==
+          Approx(-two.pinches[k]->q[*hand.fingers[0].swing_joint]).margin(1e-12));
+  }
+}
+
 TEST_CASE("Joints that cannot turn cost no samples", "[hands][pinch_chart]") {
   const HandModel hand = planar_hand(0.06, {0.08}, pi);
   HandModel stiff = planar_hand(0.06, {0.04, 0.04}, pi);

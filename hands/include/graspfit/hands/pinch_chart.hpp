@@ -20,7 +20,8 @@ enum class PinchKind {
   Tips,  ///< The thumb's tip pad (`HandModel::thumb`) and that of another finger.
   /// The thumb's tip pad and those of two other fingers, neighbors in the model's order, side by
   /// side: their normals are at most 15° apart. They close alike: their independent joints, counted
-  /// from the tips, stand at the same shares of their ranges, from where these open the hand.
+  /// from the tips, stand at the same shares of their ranges, from where these open the hand;
+  /// swinging joints whose ranges are mirror images ([-a, b] and [-b, a]), at mirrored positions.
   TwoFingers,
   Palm,      ///< The pad of a fingertip and the palm's.
   Proximal,  ///< A pad of the thumb and a pad of another finger, at least one of them no tip's.
