@@ -29,6 +29,8 @@ def draw(source):
     per_grasp = table["attempts"] / table["grasps"]
     attempts.barh(y - 0.2, per_grasp, height=0.38, color=BLUE, label="as found")
     attempts.barh(y + 0.2, table["selected_attempts"] / table["selected_grasps"], height=0.38, color=GREEN, label="selected")
+    attempts.set_xscale("log")
+    attempts.set_xlim(left=0.9)
     attempts.set_xlabel("attempts per grasp")
     for ax in axes[0]:
         ax.set_yticks(y, labels if ax is share else [""] * len(y))
