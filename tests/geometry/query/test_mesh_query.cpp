@@ -142,34 +142,6 @@ TEST_CASE("However thin a triangle is, the distance from it is that in rationals
   }
 }
 
-TEST_CASE("The closest point is the same whichever face is looked at first",
-          "[geometry][mesh_query]") {
-  Random random(39);
-  // Points of a lattice through the cube's planes of symmetry are equally near many faces.
-  for (const TriangleMesh& mesh :
-       {torus(1.0, 0.4, 14, 9), box({2, 2, 2}), whole_soup(random, 60)}) {
-    const MeshQuery query(mesh);
-    for (int i = 0; i < 100; ++i) {
-      const Eigen::Vector3d drawn_point = drawn(random, 2.0);
-      const Eigen::Vector3d point = i % 2 == 0 ? drawn_point : drawn_point.array().round().matrix();
-      const ClosestPoint expected = query.closest_point(point);
-      const auto size = static_cast<std::int32_t>(mesh.faces.size());
-      for (std::int32_t first = 0; first < size; first += 7) {
-        const ClosestPoint found = query.closest_point(point, first);
-        REQUIRE(found.face == expected.face);
-        REQUIRE(found.point == expected.point);
-        REQUIRE(found.barycentric == expected.barycentric);
-        REQUIRE(found.squared_distance == expected.squared_distance);
-      }
-    }
-  }
-  const MeshQuery cube(box({2, 2, 2}));
-  CHECK_THROWS_WITH(cube.closest_point({0, 0, 0}, 12),
-                    "MeshQuery::closest_point: first = 12, must be >= 0 and less than the number "
-                    "of faces");
-  CHECK_THROWS_AS(cube.closest_point({0, 0, 0}, -1), base::InvalidInput);
-}
-
 TEST_CASE("Of equally near faces the closest point names the first", "[geometry][mesh_query]") {
   const MeshQuery cube(box({2, 2, 2}));
   // At a vertex of the mesh all faces around it are equally near.
@@ -610,6 +582,34 @@ TEST_CASE("Crossings count each passage of a closed surface once", "[geometry][m
   const auto hits = MeshQuery(cube).all_hits({-5, 0, 0}, {1, 0, 0});
   CHECK(hits.size() == 4);
   CHECK(std::abs(hits[0].crossing + hits[1].crossing) == 1);
+}
+
+TEST_CASE("The closest point is the same whichever face is looked at first",
+          "[geometry][mesh_query]") {
+  Random random(39);
+  // Points of a lattice through the cube's planes of symmetry are equally near many faces.
+  for (const TriangleMesh& mesh :
+       {torus(1.0, 0.4, 14, 9), box({2, 2, 2}), whole_soup(random, 60)}) {
+    const MeshQuery query(mesh);
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d drawn_point = drawn(random, 2.0);
+      const Eigen::Vector3d point = i % 2 == 0 ? drawn_point : drawn_point.array().round().matrix();
+      const ClosestPoint expected = query.closest_point(point);
+      const auto size = static_cast<std::int32_t>(mesh.faces.size());
+      for (std::int32_t first = 0; first < size; first += 7) {
+        const ClosestPoint found = query.closest_point(point, first);
+        REQUIRE(found.face == expected.face);
+        REQUIRE(found.point == expected.point);
+        REQUIRE(found.barycentric == expected.barycentric);
+        REQUIRE(found.squared_distance == expected.squared_distance);
+      }
+    }
+  }
+  const MeshQuery cube(box({2, 2, 2}));
+  CHECK_THROWS_WITH(cube.closest_point({0, 0, 0}, 12),
+                    "MeshQuery::closest_point: first = 12, must be >= 0 and less than the number "
+                    "of faces");
+  CHECK_THROWS_AS(cube.closest_point({0, 0, 0}, -1), InvalidInput);
 }
 
 TEST_CASE("Closest points have the weights of their face's corners", "[geometry][mesh_query]") {
