@@ -51,17 +51,20 @@ class Plan(program.ProgramTest):
 
     def test_style_auto_says_what_the_hand_can_pinch(self):
         done = self.plan("--target-search", "reach", "--style", "auto")
-        said = re.search(r"^(\d) of 2 grasps press on the palm; two fingertips of barrett pinch "
-                         r"squarely at friction 0.4 what is (\d+) to (\d+) mm wide", done.stdout, re.M)
+        said = re.search(r"^(\d) of 2 grasps press on the palm, (\d) with pads behind fingertips; two "
+                         r"fingertips of barrett pinch squarely at friction 0.4 what is (\d+) to "
+                         r"(\d+) mm wide", done.stdout, re.M)
         self.assertTrue(said, done.stdout)
         file = json.loads((self.folder / "out/grasps.json").read_text())
-        grasps = file["results"]["grasps"]
-        self.assertEqual(int(said[1]), sum(any(target["finger"] == "palm" for target in
-                                               grasp["targets"]["contacts"]) for grasp in grasps))
+        targets = [grasp["targets"]["contacts"] for grasp in file["results"]["grasps"]]
+        self.assertEqual(int(said[1]), sum(any(target["finger"] == "palm" for target in own)
+                                           for own in targets))
+        self.assertEqual(int(said[2]), sum(any("pad" in target for target in own)
+                                           for own in targets))
         # As `graspfit hand reach` has it, to two of its steps of 5 mm.
         table = program.run("hand", "reach", "barrett", "--friction", "0.4").stdout
         tips = re.search(r"fingertips +(\d+) to (\d+) ", table)
-        for width, expected in zip(said.groups()[1:], tips.groups()):
+        for width, expected in zip(said.groups()[2:], tips.groups()):
             self.assertAlmostEqual(int(width), int(expected), delta=10)
         self.assertNotIn("press on the palm", self.plan().stdout)
 

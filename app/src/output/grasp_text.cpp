@@ -13,14 +13,20 @@ std::string epsilon_text(const grasp::Grasp& grasp, int decimals) {
 
 std::string grip_text(const grasp::GraspFile& file) {
   if (file.options.style != grasp::GraspStyle::Auto) return "";
-  const auto num_on_palm =
-      std::count_if(file.grasps.begin(), file.grasps.end(), [](const grasp::Grasp& grasp) {
-        const std::vector<grasp::TargetContact>& targets = grasp.targets.contacts;
-        return std::any_of(targets.begin(), targets.end(),
-                           [](const grasp::TargetContact& target) { return target.is_palm; });
-      });
-  std::string text = std::to_string(num_on_palm) + " of " + std::to_string(file.grasps.size()) +
-                     " grasps press on the palm";
+  const auto num_with = [&](const auto& is_meant) {
+    const auto has_one = [&](const grasp::Grasp& grasp) {
+      const std::vector<grasp::TargetContact>& targets = grasp.targets.contacts;
+      return std::any_of(targets.begin(), targets.end(), is_meant);
+    };
+    return std::to_string(std::count_if(file.grasps.begin(), file.grasps.end(), has_one));
+  };
+  const auto is_palm = [](const grasp::TargetContact& target) { return target.is_palm; };
+  const auto is_behind_tip = [](const grasp::TargetContact& target) {
+    return target.pad.has_value();
+  };
+  std::string text = num_with(is_palm) + " of " + std::to_string(file.grasps.size()) +
+                     " grasps press on the palm, " + num_with(is_behind_tip) +
+                     " with pads behind fingertips";
   const auto& found = file.statistics.guidance;
   const auto narrowest = found.find(std::string(grasp::kNarrowestPinch));
   const auto widest = found.find(std::string(grasp::kWidestPinch));

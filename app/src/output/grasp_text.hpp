@@ -11,8 +11,9 @@ namespace graspfit::app {
 /// than rounding, whatever value the convention gives then. Not for files.
 std::string epsilon_text(const grasp::Grasp& grasp, int decimals);
 
-/// Of a search by reach with style auto, in words: how many grasps press on the palm, and what the
-/// hand can pinch squarely by fingertips alone. Empty of any other search.
+/// Of a search by reach with style auto, in words: how many grasps press on the palm or with pads
+/// behind fingertips, and what the hand can pinch squarely by fingertips alone. Empty of any other
+/// search.
 std::string grip_text(const grasp::GraspFile& file);
 
 }  // namespace graspfit::app

@@ -160,7 +160,7 @@ PostureErrors errors_of(const hands::HandModel& hand, const grasp::TargetContact
       errors.miss = std::max(errors.miss, (palm - target.point_O).norm());
       continue;
     }
-    const int pad = *hand.fingers[*target.finger].tip_pad;
+    const int pad = grasp::pad_for(hand, target);
     const Vector3d point = hands::pad_contact_point(hand, pad, X_OL);
     const Vector3d normal = hands::pad_pose(hand, pad, X_OL).linear().col(2);
     errors.miss = std::max(errors.miss, (point - target.point_O).norm());
@@ -179,9 +179,9 @@ std::vector<contact::Contact> contacts_in(const hands::HandModel& hand,
   std::vector<contact::Contact> contacts = grasp::contacts_at(targets);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const grasp::TargetContact& target = targets.contacts[i];
-    const Vector3d point = target.is_palm ? Vector3d(posture.X_OH * hand.palm.center_H)
-                                          : hands::pad_contact_point(
-                                                hand, *hand.fingers[*target.finger].tip_pad, X_OL);
+    const Vector3d point = target.is_palm
+                               ? Vector3d(posture.X_OH * hand.palm.center_H)
+                               : hands::pad_contact_point(hand, grasp::pad_for(hand, target), X_OL);
     const geometry::ClosestPoint nearest = object.closest_point(point);
     contacts[i].point_O = nearest.point;
     contacts[i].inward_normal_O =

@@ -82,6 +82,10 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
                          std::to_string(num_fingers) + "; call assign_fingers first");
     }
     require_tip_pad("fit_hand", model, *target.finger);
+    if (target.pad) {
+      throw InvalidInput("fit_hand: target " + std::to_string(t) + " is for pad " +
+                         std::to_string(*target.pad) + ", only fingertips' pads can be fitted");
+    }
     requested.fingers.push_back(*target.finger);
   }
   return fitted(

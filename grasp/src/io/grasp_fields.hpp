@@ -111,6 +111,7 @@ constexpr auto penetration_fields = [](auto& at, auto& penetration) {
 
 constexpr auto target_fields = [](auto& at, auto& target) {
   at.part(target, "finger");
+  at.other_pad(target, "pad");
   at(target.point_O, "point_O_m");
   at(target.outward_normal_O, "outward_normal_O");
   at.index(target.patch, "patch");

@@ -54,6 +54,10 @@ class JsonWriter {
     json_[key] = link ? Json(hand_->links[*link].name) : Json(nullptr);
   }
   void pad(int pad, const char* key) { json_[key] = hand_->pads[pad].name; }
+  /// Left out where it is the fingertip's or the palm's.
+  void other_pad(const TargetContact& target, const char* key) {
+    if (target.pad) pad(*target.pad, key);
+  }
   template <class Part>
   void part(const Part& part, const char* key) {
     json_[key] = finger_name(*hand_, part);
@@ -147,6 +151,14 @@ class JsonReader {
     if (node_.at(key).is_null()) return;
     part(target.finger, key);
     target.is_palm = !target.finger;
+  }
+  void other_pad(TargetContact& target, const char* key) const {
+    const std::optional<base::JsonValue> name = node_.find(key);
+    if (!name) return;
+    target.pad = index_by_name(hand_->pads, *name);
+    if (!target.finger || hand_->pads[*target.pad].finger != target.finger) {
+      name->fail("pad \"" + name->text() + "\" is not of the target's finger");
+    }
   }
   /// An empty index is −1.
   void index(std::optional<int>& index, const char* key) const {

@@ -68,6 +68,18 @@ std::vector<std::vector<std::size_t>> sets_with_first(std::size_t count, std::si
   return sets;
 }
 
+/// The pad of a finger on its last link before its tip's that has one; empty if there is none.
+std::optional<int> pad_before_tip(const hands::HandModel& hand, int finger) {
+  const int tip_link = hand.pads[*hand.fingers[finger].tip_pad].link;
+  std::optional<int> last;
+  for (std::size_t p = 0; p < hand.pads.size(); ++p) {
+    const hands::ContactPad& pad = hand.pads[p];
+    if (pad.finger != finger || pad.link >= tip_link) continue;
+    if (!last || pad.link > hand.pads[*last].link) last = static_cast<int>(p);
+  }
+  return last;
+}
+
 }  // namespace
 
 PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
@@ -139,9 +151,18 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   }
   const bool may_add_palm = rule.may_add_palm && hand.palm.pad.has_value() && !requested.palm;
   all.palm = requested.palm || may_add_palm;
-  for (hands::PadSamples& samples :
-       hands::pad_samples(hand, requested_pads(hand, all), kMostSamples)) {
-    parts_.push_back({hand.pads[samples.pad].finger, std::move(samples)});
+  std::vector<int> pads = requested_pads(hand, all);
+  const std::size_t num_usual = pads.size();
+  if (rule.may_use_other_pads) {
+    for (const int finger : requested.fingers) {
+      if (const std::optional<int> pad = pad_before_tip(hand, finger)) pads.push_back(*pad);
+    }
+  }
+  for (hands::PadSamples& samples : hands::pad_samples(hand, pads, kMostSamples)) {
+    Part& part = parts_.emplace_back();
+    part.finger = hand.pads[samples.pad].finger;
+    if (parts_.size() > num_usual) part.other_pad = samples.pad;
+    part.samples = std::move(samples);
   }
   const std::size_t num_asked = requested.fingers.size();
   const std::size_t palm = all.fingers.size();
@@ -164,6 +185,9 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   if (rule.may_add_finger && !requested.palm) {
     for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
   }
+  if (rule.may_use_other_pads) {
+    add_by_other_pads(requested, all.palm ? std::optional(palm) : std::nullopt);
+  }
   if (!rule.may_add_finger && !rule.may_add_palm) return;
   const auto cannot_close = [](const Grip& grip) { return grip.parts.size() == 2; };
   if (!std::all_of(grips_.begin(), grips_.end(), cannot_close)) {
@@ -174,6 +198,7 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
 std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) const {
   std::optional<hands::OpeningRange> range;
   for (const Pinch& pinch : pinches_) {
+    if (parts_[pinch.part_a].other_pad || parts_[pinch.part_b].other_pad) continue;
     const auto own = pinch.table.distances_up_to(std::atan(friction));
     if (!own) continue;
     if (!range) range = own;
@@ -181,6 +206,38 @@ std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) con
     range->largest = std::max(range->largest, own->largest);
   }
   return range;
+}
+
+/// Grips of the requested fingers, which are the first parts, in which the first one, all others,
+/// or with the palm all of them touch by their other pads; fingers that have none by their tips.
+void HandGrips::add_by_other_pads(const RequestedParts& requested,
+                                  std::optional<std::size_t> palm) {
+  const std::size_t num_asked = requested.fingers.size();
+  const auto by_other_pads = [&](std::size_t first, std::size_t end) {
+    std::vector<std::size_t> parts(num_asked);
+    std::iota(parts.begin(), parts.end(), 0);
+    for (std::size_t i = first; i < end; ++i) {
+      const auto other = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
+        return part.other_pad && part.finger == parts_[i].finger;
+      });
+      if (other != parts_.end()) parts[i] = static_cast<std::size_t>(other - parts_.begin());
+    }
+    return parts;
+  };
+  const auto add_if_other = [&](std::vector<std::size_t> parts) {
+    const bool is_other = std::any_of(parts.begin(), parts.end(), [&](std::size_t part) {
+      return parts_[part].other_pad.has_value();
+    });
+    if (is_other) add(std::move(parts));
+  };
+  if (!requested.palm) {
+    add_if_other(by_other_pads(0, 1));
+    add_if_other(by_other_pads(1, num_asked));
+  }
+  if (!palm) return;
+  std::vector<std::size_t> with_palm = by_other_pads(0, num_asked);
+  with_palm.push_back(*palm);
+  add_if_other(std::move(with_palm));
 }
 
 void HandGrips::add(std::vector<std::size_t> parts) {

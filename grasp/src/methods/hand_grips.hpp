@@ -42,14 +42,18 @@ struct GripRule {
   bool may_add_finger = false;
   bool may_add_palm = false;
   bool may_exchange = false;  ///< Other fingers instead of the requested ones but the first.
+  /// Pads behind the requested fingers' tips instead of these: of the first finger, of all others,
+  /// or of all fingers together with the palm.
+  bool may_use_other_pads = false;
 };
 
 /// The parts of a hand that may touch, and the grips: which of them touch together.
 class HandGrips {
  public:
-  /// A part; its samples are those of its tip pad or of the palm's.
+  /// A part that may touch, and where it can be.
   struct Part {
-    std::optional<int> finger;  ///< Empty: the palm.
+    std::optional<int> finger;     ///< Empty: the palm.
+    std::optional<int> other_pad;  ///< Of the finger; empty: its tip's.
     hands::PadSamples samples;
   };
   struct Pinch {
@@ -64,9 +68,10 @@ class HandGrips {
   };
 
   /// Grips of the requested parts, and others that the rule allows where the hand has them with
-  /// pads: with the palm or a finger more, not both, and of no more than `kMostParts` parts. Two
-  /// contacts cannot close, so that where parts may be added there are grips of two only if the
-  /// hand has no others. At least one finger is requested.
+  /// pads: with the palm or a finger more, not both, or by other pads; of no more than `kMostParts`
+  /// parts. A finger's other pad is the last one before its tip's link. Two contacts cannot close,
+  /// so that where parts may be added there are grips of two only if the hand has no others. At
+  /// least one finger is requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
@@ -79,6 +84,7 @@ class HandGrips {
 
  private:
   void add(std::vector<std::size_t> parts);
+  void add_by_other_pads(const RequestedParts& requested, std::optional<std::size_t> palm);
 
   std::vector<Part> parts_;
   std::vector<Pinch> pinches_;

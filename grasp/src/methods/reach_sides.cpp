@@ -83,7 +83,9 @@ GripRule grip_rule(const PlannerOptions& options) {
   if (options.style != GraspStyle::Auto) return {};
   return {.may_add_finger = true,
           .may_add_palm = options.palm.value_or(true),
-          .may_exchange = options.fingers.empty()};
+          .may_exchange = options.fingers.empty(),
+          .may_use_other_pads = options.counted_pads.value_or(contact::CountedPads::All) ==
+                                contact::CountedPads::All};
 }
 
 }  // namespace
@@ -330,7 +332,9 @@ TargetSide ReachSides::side_of(const Candidate& candidate) const {
   side.targets = rules_.as_targets(points, std::nullopt, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     TargetContact& target = side.targets.contacts[i];
-    target.finger = grips_.parts()[candidate.grip->parts[i]].finger;
+    const HandGrips::Part& part = grips_.parts()[candidate.grip->parts[i]];
+    target.finger = part.finger;
+    target.pad = part.other_pad;
     target.is_palm = !target.finger;
   }
   side.goal = candidate.posture.configuration;

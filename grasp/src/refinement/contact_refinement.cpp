@@ -132,11 +132,9 @@ class Refinement {
     request.pad = pad;
     request.link = model_.pads[pad].link;
     if (!targets) return request;
-    const std::optional<int>& finger = model_.pads[pad].finger;
     for (const TargetContact& target : targets->contacts) {
-      const bool is_own = finger ? target.finger == finger && model_.fingers[*finger].tip_pad == pad
-                                 : target.is_palm;
-      if (is_own) request.target = &target;
+      const bool is_assigned = target.finger || target.is_palm;
+      if (is_assigned && pad_for(model_, target) == pad) request.target = &target;
     }
     return request;
   }

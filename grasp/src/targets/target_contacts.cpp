@@ -13,6 +13,11 @@ void TargetOptions::validate() const {
   internal::require_ranges("TargetOptions", *this, internal::target_rows);
 }
 
+int pad_for(const hands::HandModel& hand, const TargetContact& target) {
+  if (target.pad) return *target.pad;
+  return target.finger ? *hand.fingers[*target.finger].tip_pad : *hand.palm.pad;
+}
+
 bool is_for_part_of(const TargetContact& target, const contact::Contact& contact) {
   return contact.finger ? target.finger == contact.finger : target.is_palm;
 }
@@ -55,6 +60,7 @@ std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
     contact.point_O = target.point_O;
     contact.inward_normal_O = -target.outward_normal_O;
     contact.finger = target.finger;
+    contact.pad = target.pad.value_or(contact.pad);
     if (!target.is_palm && !target.finger && contacts.size() < fingers.size()) {
       contact.finger = fingers[contacts.size()];
     }
@@ -77,6 +83,7 @@ RequestedParts parts_of(const TargetContacts& targets) {
   RequestedParts parts;
   for (const TargetContact& target : targets.contacts) {
     if (target.finger) parts.fingers.push_back(*target.finger);
+    if (target.pad) parts.other_pads.push_back(*target.pad);
     parts.palm = parts.palm || target.is_palm;
   }
   return parts;
@@ -84,7 +91,12 @@ RequestedParts parts_of(const TargetContacts& targets) {
 
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested) {
   std::vector<int> pads;
-  for (const int finger : requested.fingers) pads.push_back(*hand.fingers[finger].tip_pad);
+  for (const int finger : requested.fingers) {
+    const auto other = std::find_if(requested.other_pads.begin(), requested.other_pads.end(),
+                                    [&](int pad) { return hand.pads[pad].finger == finger; });
+    const bool is_tip = other == requested.other_pads.end();
+    pads.push_back(is_tip ? *hand.fingers[finger].tip_pad : *other);
+  }
   if (requested.palm) pads.push_back(*hand.palm.pad);
   return pads;
 }

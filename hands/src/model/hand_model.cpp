@@ -303,6 +303,10 @@ int HandModel::link_index(const std::string& link_name) const {
   return index_of(*this, links, link_name, "link");
 }
 
+int HandModel::pad_index(const std::string& pad_name) const {
+  return index_of(*this, pads, pad_name, "pad");
+}
+
 int HandModel::thumb() const {
   for (std::size_t f = 0; f < fingers.size(); ++f) {
     if (fingers[f].is_thumb) return static_cast<int>(f);

@@ -29,18 +29,20 @@ std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<in
   base::require(max_samples >= 1, "pad_samples", "max_samples", max_samples, ">= 1");
   const internal::SampledHand hand(model);
   // A joint is shared if pads of several fingers, or of a finger and the palm, hang from it.
-  std::map<int, int> samples_of;  // by joint
+  std::map<int, int> least_counts;  // by joint
   std::map<int, std::vector<std::optional<int>>> fingers_of;
+  const auto count_of = [&](int joint, const PadSamples& samples) {
+    const bool is_moving = model.joints[joint].upper > model.joints[joint].lower;
+    return is_moving ? per_joint(samples.joints.size(), max_samples) : 1;
+  };
   std::vector<PadSamples> all;
   for (const int pad : pads) {
     PadSamples samples;
     samples.pad = pad;
     samples.joints = leaders_of(model, joints_to(model, model.pads[pad].link));
     for (const int joint : samples.joints) {
-      const int count = model.joints[joint].upper > model.joints[joint].lower
-                            ? per_joint(samples.joints.size(), max_samples)
-                            : 1;
-      const auto [known, is_new] = samples_of.try_emplace(joint, count);
+      const int count = count_of(joint, samples);
+      const auto [known, is_new] = least_counts.try_emplace(joint, count);
       if (!is_new) known->second = std::min(known->second, count);
       fingers_of[joint].push_back(model.pads[pad].finger);
     }
@@ -55,9 +57,12 @@ std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<in
     const auto first_shared = std::stable_partition(samples.joints.begin(), samples.joints.end(),
                                                     [&](int joint) { return !is_shared(joint); });
     samples.num_shared = static_cast<std::size_t>(samples.joints.end() - first_shared);
+    std::vector<int> counts;
     Eigen::Index size = 1;
     for (std::size_t j = 0; j < samples.joints.size(); ++j) {
-      size *= samples_of[samples.joints[j]];
+      const int joint = samples.joints[j];
+      counts.push_back(is_shared(joint) ? least_counts[joint] : count_of(joint, samples));
+      size *= counts.back();
       if (j + samples.num_shared < samples.joints.size()) {
         samples.range_size = static_cast<std::size_t>(size);
       }
@@ -71,7 +76,7 @@ std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<in
       Eigen::Index rest = sample;
       for (std::size_t j = 0; j < samples.joints.size(); ++j) {
         const Joint& joint = model.joints[samples.joints[j]];
-        const int count = samples_of[samples.joints[j]];
+        const int count = counts[j];
         const double share = count == 1 ? 0.0 : static_cast<double>(rest % count) / (count - 1);
         rest /= count;
         q[samples.joints[j]] = joint.lower + share * (joint.upper - joint.lower);

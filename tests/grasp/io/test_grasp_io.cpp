@@ -354,6 +354,27 @@ TEST_CASE("Files of version 4 are read: their one choice was order and choice of
   }
 }
 
+TEST_CASE("The pad that a target is for comes back, and is refused where it is not of its finger",
+          "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  grasp::GraspFile file = sample_file(folder.path() / "ball.off");
+  const fs::path path = folder.path() / "grasps.json";
+  CHECK(grasp::to_json(file).find("\"pad\": \"finger_2_proximal_pad\"") == std::string::npos);
+  grasp::TargetContact& target = file.grasps.front().targets.contacts[1];
+  target.finger = file.hand.finger_index("finger_2");
+  target.pad = file.hand.pad_index("finger_2_proximal_pad");
+  const std::string text = grasp::to_json(file);
+  CHECK(refusal(path, text) == "accepted");
+  const grasp::GraspFile read = grasp::read_grasps(path);
+  CHECK(read.grasps.front().targets.contacts[0].pad == std::nullopt);
+  CHECK(read.grasps.front().targets.contacts[1].pad == target.pad);
+  const std::string wrong = replaced(text, "\"pad\": \"finger_2_proximal_pad\"",
+                                     "\"pad\": \"thumb_proximal_pad\"", "\"targets\"");
+  CHECK_THAT(refusal(path, wrong),
+             Contains("/results/grasps/0/targets/contacts/1/pad: pad \"thumb_proximal_pad\" is not "
+                      "of the target's finger"));
+}
+
 TEST_CASE("A file that is not a grasp file is refused with the place and the reason",
           "[grasp][grasp_io]") {
   const TemporaryFolder folder;

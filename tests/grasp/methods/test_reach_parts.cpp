@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "fitting/surface_posture.hpp"
@@ -159,6 +160,49 @@ TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
   const auto most = grips({{0, 1, 2, 3, 4}}, rule);
   REQUIRE(most.size() == 2);
   CHECK(most.back().parts.size() == 6);
+}
+
+TEST_CASE("Grips by pads behind the tips: of the thumb, of the others, of all with the palm",
+          "[grasp][hand_grips]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const int thumb = hand.thumb();
+  const RequestedParts three{{thumb, hand.finger_index("finger_1"), hand.finger_index("finger_2")}};
+  internal::GripRule rule = {.may_add_palm = true, .may_use_other_pads = true};
+  const internal::HandGrips grips(hand, three, rule);
+  const auto names = [&](const internal::HandGrips::Grip& grip) {
+    std::vector<std::string> pads;
+    for (const std::size_t part : grip.parts) {
+      const internal::HandGrips::Part& own = grips.parts()[part];
+      const hands::ContactPad& pad = hand.pads[own.samples.pad];
+      CHECK(own.finger == pad.finger);
+      const bool is_usual = !own.finger || hand.fingers[*own.finger].tip_pad == own.samples.pad;
+      CHECK(own.other_pad.has_value() == !is_usual);
+      pads.push_back(pad.name);
+    }
+    return pads;
+  };
+  using Names = std::vector<std::string>;
+  REQUIRE(grips.grips().size() == 5);
+  CHECK(names(grips.grips()[0]) ==
+        Names{"thumb_distal_pad", "finger_1_distal_pad", "finger_2_distal_pad"});
+  CHECK(grips.grips()[1].has_palm);
+  CHECK(names(grips.grips()[2]) ==
+        Names{"thumb_proximal_pad", "finger_1_distal_pad", "finger_2_distal_pad"});
+  CHECK(names(grips.grips()[3]) ==
+        Names{"thumb_distal_pad", "finger_1_proximal_pad", "finger_2_proximal_pad"});
+  CHECK(names(grips.grips()[4]) ==
+        Names{"thumb_proximal_pad", "finger_1_proximal_pad", "finger_2_proximal_pad", "palm_pad"});
+  CHECK(grips.grips()[4].has_palm);
+  // What fingertips pinch is what they pinch without the other pads.
+  rule.may_use_other_pads = false;
+  const internal::HandGrips tips(hand, three, rule);
+  CHECK(tips.grips().size() == 2);
+  REQUIRE(grips.square_widths(0.4));
+  CHECK(grips.square_widths(0.4)->smallest == tips.square_widths(0.4)->smallest);
+  CHECK(grips.square_widths(0.4)->largest == tips.square_widths(0.4)->largest);
+  // A gripper has one pad on each finger.
+  const hands::HandModel gripper = hands::find_hand("parallel_gripper");
+  CHECK(internal::HandGrips(gripper, {{0, 1}}, {.may_use_other_pads = true}).grips().size() == 1);
 }
 
 TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface_posture]") {

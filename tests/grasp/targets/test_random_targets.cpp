@@ -236,6 +236,26 @@ TEST_CASE("The centroid of targets is the midpoint, the triangle's centroid, the
   CHECK((targets.centroid() - Vector3d(2, 2, 3)).norm() < 1e-15);
 }
 
+TEST_CASE("A target for another pad than its fingertip's is met by that pad",
+          "[grasp][target_contacts]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const int other = hand.pad_index("finger_1_proximal_pad");
+  grasp::TargetContacts targets;
+  targets.contacts.resize(3);
+  targets.contacts[0].finger = hand.thumb();
+  targets.contacts[1].finger = hand.finger_index("finger_1");
+  targets.contacts[1].pad = other;
+  targets.contacts[2].is_palm = true;
+  const std::vector<int> pads = {*hand.fingers[hand.thumb()].tip_pad, other, *hand.palm.pad};
+  for (std::size_t i = 0; i < pads.size(); ++i) {
+    CHECK(grasp::pad_for(hand, targets.contacts[i]) == pads[i]);
+  }
+  const grasp::RequestedParts parts = grasp::parts_of(targets);
+  CHECK(parts.size() == 3);
+  CHECK(grasp::requested_pads(hand, parts) == pads);
+  CHECK(grasp::contacts_at(targets)[1].pad == other);
+}
+
 /// Returns where the first targets of attempts 0 to 19 are with the paper's method.
 std::vector<Vector3d> first_seeds(const grasp::PlannerOptions& options) {
   const Guided guided(geometry::torus(0.05, 0.02), options);

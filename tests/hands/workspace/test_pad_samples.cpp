@@ -69,4 +69,29 @@ TEST_CASE("Samples that agree in shared joints are a range, of the same position
   CHECK_THROWS_AS(hands::pad_samples(hand, pads, 0), base::InvalidInput);
 }
 
+TEST_CASE("Pads behind a tip are sampled as finely as their own joints allow, and tips as without",
+          "[hands][pad_samples]") {
+  const HandModel hand = hands::find_hand("human_hand");
+  std::vector<int> tips;
+  for (const hands::Finger& finger : hand.fingers) tips.push_back(*finger.tip_pad);
+  std::vector<int> all = tips;
+  for (std::size_t pad = 0; pad < hand.pads.size(); ++pad) {
+    const auto number = static_cast<int>(pad);
+    const bool is_tip = std::count(tips.begin(), tips.end(), number) > 0;
+    if (hand.pads[pad].finger && !is_tip) all.push_back(number);
+  }
+  REQUIRE(all.size() > tips.size());
+  const std::vector<PadSamples> alone = hands::pad_samples(hand, tips, 1024);
+  const std::vector<PadSamples> together = hands::pad_samples(hand, all, 1024);
+  for (std::size_t i = 0; i < tips.size(); ++i) {
+    CHECK(together[i].positions == alone[i].positions);
+    CHECK(together[i].points_H == alone[i].points_H);
+  }
+  for (std::size_t i = tips.size(); i < all.size(); ++i) {
+    const PadSamples own = hands::pad_samples(hand, {all[i]}, 1024).front();
+    if (together[i].num_shared == 0) CHECK(together[i].size() == own.size());
+    CHECK(together[i].size() <= own.size());
+  }
+}
+
 }  // namespace test_pad_samples

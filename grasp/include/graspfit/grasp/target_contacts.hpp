@@ -21,6 +21,9 @@ struct RequestedParts {
   /// them).
   std::vector<int> fingers;
   bool palm = false;
+  /// Pads with which some of these fingers must touch instead of their fingertips' pads, one of a
+  /// finger at most [R].
+  std::vector<int> other_pads = {};
   int size() const { return static_cast<int>(fingers.size()) + (palm ? 1 : 0); }
 };
 
@@ -104,7 +107,14 @@ struct TargetContact {
   bool is_palm = false;  ///< The palm's target.
   /// Assigned finger of the hand; empty: none yet, or the palm's target.
   std::optional<int> finger = {};
+  /// Pad of that finger that is to touch; empty: its fingertip's. Only targets that come with a
+  /// posture have one [R]: `fit_hand` refuses it.
+  std::optional<int> pad = {};
 };
+
+/// The pad that is to touch at a target that is assigned to a finger or the palm's, which must have
+/// one.
+int pad_for(const hands::HandModel& hand, const TargetContact& target);
 
 /// Whether the contact is of the part, finger or palm, that the target is for.
 bool is_for_part_of(const TargetContact& target, const contact::Contact& contact);
@@ -176,7 +186,7 @@ double ideal_m(const ObjectModel& object, const TargetContacts& targets,
 /// The parts that assigned targets are for, in their order.
 RequestedParts parts_of(const TargetContacts& targets);
 
-/// The pads that must touch: the fingers' tip pads, then the palm's.
+/// The pads that must touch: of each finger its tip's or the other one, then the palm's.
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested);
 
 }  // namespace graspfit::grasp

@@ -113,6 +113,7 @@ struct HandModel {
   int finger_index(const std::string& finger_name) const;
   int joint_index(const std::string& joint_name) const;
   int link_index(const std::string& link_name) const;
+  int pad_index(const std::string& pad_name) const;
   /// Index of the thumb; the first finger if none is marked.
   int thumb() const;
   /// True if contacts between the two links are to be ignored (also true for a link and itself).
