@@ -4,11 +4,11 @@ from figure_style import CYCLE, MARKERS, panels
 from object_names import note_for, short_name
 
 COLUMNS = (
-    "object", "size", "hand", "grasps", "attempts", "force_closed_share", "mean_target_distance_m",
+    "object", "size", "hand", "friction", "grasps", "attempts", "force_closed_share", "median_target_distance_m",
 )  # fmt: skip
 ROWS = (
     ("force_closed_share", 1.0, "share that closes", (0.0, 1.05)),
-    ("mean_target_distance_m", 1000.0, "contact to target [mm]", (0.0, None)),
+    ("median_target_distance_m", 1000.0, "contact to target [mm]", (0.0, None)),
     ("attempts_per_grasp", 1.0, "attempts per valid grasp", (0.0, None)),
 )
 
@@ -17,11 +17,12 @@ def draw(source):
     table = source.table("reach_grasps", COLUMNS)
     table["attempts_per_grasp"] = table["attempts"] / table["grasps"]
     table["size_m"] = [float(size.removesuffix("_m")) for size in table["size"]]
+    friction = " and ".join(f"{value:g}" for value in sorted(set(table["friction"])))
     objects = list(dict.fromkeys(table["object"]))
     hands = list(dict.fromkeys(table["hand"]))
     figure, axes = panels(
         f"Targets that the hand can meet: the first {table['grasps'].max():.0f} valid grasps, all attempts counted", len(ROWS), len(objects), 9.0, 6.0,
-        note_for(objects, "Closure by contacts that touch, at friction 0.4 (dotted: 80 %, asked for). Distances: mean over a cell's contacts."),
+        note_for(objects, f"Closure by contacts that touch, at friction {friction} (dotted: 80 %, asked for). Distances: median of a cell's contacts."),
         left=0.07, right=0.98, head=0.75, foot=0.35, wspace=0.08, hspace=0.14,
     )  # fmt: skip
     for i, (column, scale, words, limits) in enumerate(ROWS):

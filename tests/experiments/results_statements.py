@@ -173,9 +173,10 @@ def reach_grasps(tables):
     table["closed"] = (table["force_closed_share"] * table["grasps"]).round().astype(int)
     yield (f"{table['closed'].sum()} of {table['grasps'].sum()} valid grasps close, found in {table['attempts'].sum()} attempts; at least 80 % "
            f"in {(table['force_closed_share'] >= 0.8 - 1e-9).sum()} of {len(table)} cells")
+    yield (f"{table['palm_grasps'].sum()} press on the palm, {table['behind_tip_grasps'].sum()} with pads behind fingertips")
     yield f"{table['num_penetrating'].sum()} grasps penetrate, no contact is farther than {1000 * table['largest_gap_m'].max():.1f} mm from the surface"
     for (name, hand), group in table.groupby(["object", "hand"], sort=False):
-        cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.mean_target_distance_m:.1f}" for row in group.itertuples())
+        cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.median_target_distance_m:.1f}" for row in group.itertuples())
         yield f"| {name} | {hand} | {cells} |"
 
 

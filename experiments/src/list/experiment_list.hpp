@@ -15,6 +15,7 @@ sweep::Experiment guidance_models();
 sweep::Experiment hold_prediction();
 sweep::Experiment hold_rates();
 sweep::Experiment parameter_sweeps();
+sweep::Experiment reach_grasps();
 sweep::Experiment measured_contacts();
 sweep::Experiment object_voxels();
 sweep::Experiment special_cases();

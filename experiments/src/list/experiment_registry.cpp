@@ -33,7 +33,7 @@ std::vector<Experiment> listed_experiments() {
       parameter_sweeps(),
       planner_table_experiment("planner_everyday"),
       planner_table_experiment("planner_paper_objects"),
-      planner_table_experiment("reach_grasps"),
+      reach_grasps(),
       special_cases(),
       method_experiment("table1"),
       method_experiment("table1_all_objects"),

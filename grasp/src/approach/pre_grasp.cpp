@@ -25,6 +25,10 @@ namespace {
 // all links.
 constexpr int kMostSteps = 1000;
 
+// A search ends after so many distances on ways that are not proven free: where links slide along
+// the object with hardly a gap every way takes hundreds, and few such searches find one.
+constexpr int kMostInVain = 8000;
+
 /// A lower bound of a distance, and how far was searched for it: beyond, the bound says no more.
 struct SearchedBound {
   double at_least = 0.0;  ///< [m]
@@ -102,6 +106,7 @@ class PreGraspSearch {
   std::optional<PreGrasp> least_opening(Joints joints) {
     const int num_retreats = static_cast<int>(options_.largest_retreat / options_.retreat_step *
                                               (1.0 + 1e-12));  // 0.1 / 0.01 is 10, not 9.99…
+    num_in_vain_ = 0;
     Eigen::VectorXd tried_q;
     for (int step = 1; step <= options_.opening_steps; ++step) {
       const double opening = static_cast<double>(step) / options_.opening_steps;
@@ -109,6 +114,7 @@ class PreGraspSearch {
       if (tried_q.size() == q.size() && tried_q == q) continue;  // joints that cannot open further
       tried_q = q;
       for (int i = 0; i <= num_retreats; ++i) {
+        if (num_in_vain_ > kMostInVain) return std::nullopt;
         const double retreat = i * options_.retreat_step;
         const HandConfiguration start{retreated(retreat), q};
         const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand_, start);
@@ -203,8 +209,10 @@ class PreGraspSearch {
   bool is_free(const HandConfiguration& start, const std::vector<RigidTransform>& X_OL_start) {
     const internal::StraightWay way(hand_, start, grasp_);
     const auto stays_apart = [&](double speed, SearchedBound& in_grasp, const auto& distance) {
-      return internal::are_apart_on_way(
+      int num_distances = 0;
+      const bool are_apart = internal::are_apart_on_way(
           speed, options_.way_tolerance, [&](double share, double enough) {
+            ++num_distances;
             if (share == 0.0) return std::min(distance(X_OL_start, enough), enough);
             if (share == 1.0) {
               // All ways end there.
@@ -216,6 +224,8 @@ class PreGraspSearch {
             const auto X_OL = hands::forward_kinematics(hand_, interpolated(start, grasp_, share));
             return std::min(distance(X_OL, enough), enough);
           });
+      if (!are_apart) num_in_vain_ += num_distances;
+      return are_apart;
     };
     const auto is_link_free = [&](GuardedLink& guarded) {
       const int link = guarded.link;
@@ -252,6 +262,7 @@ class PreGraspSearch {
   const std::vector<RigidTransform> X_OL_grasp_;
   std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
   std::vector<LinkPair> pairs_;  ///< Pairs that must stay apart; one that failed last comes first.
+  int num_in_vain_ = 0;          ///< Distances on ways that were not proven free, of this search.
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <queue>
 
 namespace graspfit::grasp::internal {
 
@@ -15,6 +15,13 @@ namespace {
 /// Allowance for rounding at the size of a hand [m]: distances are off by 1e-12 of the coordinates,
 /// poses at the end of ten others by 1e-15 of their reach.
 constexpr double kTouching = 1e-8;
+
+/// Shares of a way between which bodies are not yet known to be apart.
+struct Segment {
+  double lower;
+  double upper;
+  bool operator<(const Segment& other) const { return upper - lower < other.upper - other.lower; }
+};
 
 /// Largest distance of a link's frame from its parent's while its joint goes from `from` to `to`:
 /// at one of the ends, for the distance is convex.
@@ -103,17 +110,19 @@ bool are_apart_on_way(double relative_speed, double tolerance, const DistanceOnW
   if (low >= 1.0) return true;
   const double at_end = distance(1.0, relative_speed * (1.0 - low));
   const double high = 1.0 - std::max(covered(at_end), tolerance * share_per_meter);
-  std::vector<std::pair<double, double>> open = {{low, high}};
+  // The widest segment comes first: there bodies that touch are found soonest.
+  std::priority_queue<Segment> open;
+  open.push({low, high});
   for (int count = 2; !open.empty(); ++count) {
-    const auto [lower, upper] = open.back();
-    open.pop_back();
+    const auto [lower, upper] = open.top();
+    open.pop();
     if (lower >= upper) continue;
     if (count >= kMostDistances) return false;
     const double middle = 0.5 * (lower + upper);
     const double d = distance(middle, relative_speed * 0.5 * (upper - lower) + 2.0 * kTouching);
     if (d <= kTouching) return false;
-    open.emplace_back(lower, middle - covered(d));
-    open.emplace_back(middle + covered(d), upper);
+    open.push({lower, middle - covered(d)});
+    open.push({middle + covered(d), upper});
   }
   return true;
 }
