@@ -179,6 +179,35 @@ TEST_CASE("Targets by reach are on the palm only where it may touch", "[grasp][r
   CHECK(with == all);
 }
 
+TEST_CASE("Pads behind fingertips meet targets, unless only those of tips and palm count",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = reach_options(GraspStyle::Auto, 6);
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const auto num_behind_tips = [&] {
+    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+    REQUIRE_FALSE(result.grasps.empty());
+    int num_targets = 0;
+    for (const Grasp& grasp : result.grasps) {
+      for (const TargetContact& target : grasp.targets.contacts) {
+        if (!target.pad) continue;
+        ++num_targets;
+        CHECK(hand.pads[*target.pad].finger == target.finger);
+        CHECK(target.pad != hand.fingers[*target.finger].tip_pad);
+        CHECK(std::any_of(grasp.contacts.begin(), grasp.contacts.end(),
+                          [&](const contact::Contact& contact) {
+                            return contact.is_target && contact.pad == *target.pad &&
+                                   contact.gap <= options.refinement.largest_gap;
+                          }));
+      }
+    }
+    return num_targets;
+  };
+  CHECK(num_behind_tips() > 0);
+  options.counted_pads = contact::CountedPads::TipsAndPalm;
+  CHECK(num_behind_tips() == 0);
+}
+
 TEST_CASE("Two fingers of a gripper meet targets by reach", "[grasp][reach_targets]") {
   const hands::HandModel hand = hands::find_hand("parallel_gripper");
   PlannerOptions options = reach_options(GraspStyle::Precision, 6);
