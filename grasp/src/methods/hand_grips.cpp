@@ -153,7 +153,8 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   all.palm = requested.palm || may_add_palm;
   std::vector<int> pads = requested_pads(hand, all);
   const std::size_t num_usual = pads.size();
-  if (rule.may_use_other_pads) {
+  const bool may_wrap = rule.may_wrap && all.palm;
+  if (may_wrap) {
     for (const int finger : requested.fingers) {
       if (const std::optional<int> pad = pad_before_tip(hand, finger)) pads.push_back(*pad);
     }
@@ -185,8 +186,15 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   if (rule.may_add_finger && !requested.palm) {
     for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
   }
-  if (rule.may_use_other_pads) {
-    add_by_other_pads(requested, all.palm ? std::optional(palm) : std::nullopt);
+  if (may_wrap && parts_.size() > num_usual) {
+    std::vector<std::size_t> wrap = asked;
+    for (std::size_t other = num_usual; other < parts_.size(); ++other) {
+      const auto finger =
+          std::find(requested.fingers.begin(), requested.fingers.end(), *parts_[other].finger);
+      wrap[static_cast<std::size_t>(finger - requested.fingers.begin())] = other;
+    }
+    wrap.push_back(palm);
+    add(std::move(wrap));
   }
   if (!rule.may_add_finger && !rule.may_add_palm) return;
   const auto cannot_close = [](const Grip& grip) { return grip.parts.size() == 2; };
@@ -206,38 +214,6 @@ std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) con
     range->largest = std::max(range->largest, own->largest);
   }
   return range;
-}
-
-/// Grips of the requested fingers, which are the first parts, in which the first one, all others,
-/// or with the palm all of them touch by their other pads; fingers that have none by their tips.
-void HandGrips::add_by_other_pads(const RequestedParts& requested,
-                                  std::optional<std::size_t> palm) {
-  const std::size_t num_asked = requested.fingers.size();
-  const auto by_other_pads = [&](std::size_t first, std::size_t end) {
-    std::vector<std::size_t> parts(num_asked);
-    std::iota(parts.begin(), parts.end(), 0);
-    for (std::size_t i = first; i < end; ++i) {
-      const auto other = std::find_if(parts_.begin(), parts_.end(), [&](const Part& part) {
-        return part.other_pad && part.finger == parts_[i].finger;
-      });
-      if (other != parts_.end()) parts[i] = static_cast<std::size_t>(other - parts_.begin());
-    }
-    return parts;
-  };
-  const auto add_if_other = [&](std::vector<std::size_t> parts) {
-    const bool is_other = std::any_of(parts.begin(), parts.end(), [&](std::size_t part) {
-      return parts_[part].other_pad.has_value();
-    });
-    if (is_other) add(std::move(parts));
-  };
-  if (!requested.palm) {
-    add_if_other(by_other_pads(0, 1));
-    add_if_other(by_other_pads(1, num_asked));
-  }
-  if (!palm) return;
-  std::vector<std::size_t> with_palm = by_other_pads(0, num_asked);
-  with_palm.push_back(*palm);
-  add_if_other(std::move(with_palm));
 }
 
 void HandGrips::add(std::vector<std::size_t> parts) {

@@ -42,9 +42,9 @@ struct GripRule {
   bool may_add_finger = false;
   bool may_add_palm = false;
   bool may_exchange = false;  ///< Other fingers instead of the requested ones but the first.
-  /// Pads behind the requested fingers' tips instead of these: of the first finger, of all others,
-  /// or of all fingers together with the palm.
-  bool may_use_other_pads = false;
+  /// The palm together with the pads behind the requested fingers' tips instead of these, where the
+  /// palm may touch.
+  bool may_wrap = false;
 };
 
 /// The parts of a hand that may touch, and the grips: which of them touch together.
@@ -68,10 +68,10 @@ class HandGrips {
   };
 
   /// Grips of the requested parts, and others that the rule allows where the hand has them with
-  /// pads: with the palm or a finger more, not both, or by other pads; of no more than `kMostParts`
-  /// parts. A finger's other pad is the last one before its tip's link. Two contacts cannot close,
-  /// so that where parts may be added there are grips of two only if the hand has no others. At
-  /// least one finger is requested.
+  /// pads: with the palm or a finger more, not both, or wrapped around the object: with the palm
+  /// and, of each requested finger that has one, the last pad before its tip's link. No more than
+  /// `kMostParts` parts. Two contacts cannot close, so that where parts may be added there are grips
+  /// of two only if the hand has no others. At least one finger is requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
@@ -84,7 +84,6 @@ class HandGrips {
 
  private:
   void add(std::vector<std::size_t> parts);
-  void add_by_other_pads(const RequestedParts& requested, std::optional<std::size_t> palm);
 
   std::vector<Part> parts_;
   std::vector<Pinch> pinches_;

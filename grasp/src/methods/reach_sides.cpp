@@ -84,8 +84,8 @@ GripRule grip_rule(const PlannerOptions& options) {
   return {.may_add_finger = true,
           .may_add_palm = options.palm.value_or(true),
           .may_exchange = options.fingers.empty(),
-          .may_use_other_pads = options.counted_pads.value_or(contact::CountedPads::All) ==
-                                contact::CountedPads::All};
+          .may_wrap = options.counted_pads.value_or(contact::CountedPads::All) ==
+                      contact::CountedPads::All};
 }
 
 }  // namespace

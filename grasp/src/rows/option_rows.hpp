@@ -272,8 +272,9 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                      "where targets go: to the fingertips; power: also to the palm, and links "
                      "behind the tips are closed onto the object; auto, with target-search reach: "
                      "to those of the fingertips, or to them and the palm or one finger more, or "
-                     "to pads behind some tips, by which the grasp is strongest; where no fingers "
-                     "are named, to any; to none where no grasp that closes is expected",
+                     "to the palm and the pads behind the tips, by which the grasp is strongest; "
+                     "where no fingers are named, to any; to none where no grasp that closes is "
+                     "expected",
                      "P; how: R", "A39"});
   at(options.fingers,
      {"fingers", kAny, "fingers", "", kRequest,

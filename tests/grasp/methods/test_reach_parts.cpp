@@ -162,12 +162,11 @@ TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
   CHECK(most.back().parts.size() == 6);
 }
 
-TEST_CASE("Grips by pads behind the tips: of the thumb, of the others, of all with the palm",
-          "[grasp][hand_grips]") {
+TEST_CASE("Wrapped grips touch with the palm and the pads behind the tips", "[grasp][hand_grips]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const int thumb = hand.thumb();
   const RequestedParts three{{thumb, hand.finger_index("finger_1"), hand.finger_index("finger_2")}};
-  internal::GripRule rule = {.may_add_palm = true, .may_use_other_pads = true};
+  internal::GripRule rule = {.may_add_palm = true, .may_wrap = true};
   const internal::HandGrips grips(hand, three, rule);
   const auto names = [&](const internal::HandGrips::Grip& grip) {
     std::vector<std::string> pads;
@@ -182,27 +181,28 @@ TEST_CASE("Grips by pads behind the tips: of the thumb, of the others, of all wi
     return pads;
   };
   using Names = std::vector<std::string>;
-  REQUIRE(grips.grips().size() == 5);
+  REQUIRE(grips.grips().size() == 3);
   CHECK(names(grips.grips()[0]) ==
         Names{"thumb_distal_pad", "finger_1_distal_pad", "finger_2_distal_pad"});
   CHECK(grips.grips()[1].has_palm);
   CHECK(names(grips.grips()[2]) ==
-        Names{"thumb_proximal_pad", "finger_1_distal_pad", "finger_2_distal_pad"});
-  CHECK(names(grips.grips()[3]) ==
-        Names{"thumb_distal_pad", "finger_1_proximal_pad", "finger_2_proximal_pad"});
-  CHECK(names(grips.grips()[4]) ==
         Names{"thumb_proximal_pad", "finger_1_proximal_pad", "finger_2_proximal_pad", "palm_pad"});
-  CHECK(grips.grips()[4].has_palm);
+  CHECK(grips.grips()[2].has_palm);
   // What fingertips pinch is what they pinch without the other pads.
-  rule.may_use_other_pads = false;
+  rule.may_wrap = false;
   const internal::HandGrips tips(hand, three, rule);
   CHECK(tips.grips().size() == 2);
   REQUIRE(grips.square_widths(0.4));
   CHECK(grips.square_widths(0.4)->smallest == tips.square_widths(0.4)->smallest);
   CHECK(grips.square_widths(0.4)->largest == tips.square_widths(0.4)->largest);
+  // Without the palm nothing is wrapped, and with a palm that must touch anyhow it is.
+  CHECK(internal::HandGrips(hand, three, {.may_wrap = true}).grips().size() == 1);
+  RequestedParts with_palm = three;
+  with_palm.palm = true;
+  CHECK(internal::HandGrips(hand, with_palm, {.may_wrap = true}).grips().size() == 2);
   // A gripper has one pad on each finger.
   const hands::HandModel gripper = hands::find_hand("parallel_gripper");
-  CHECK(internal::HandGrips(gripper, {{0, 1}}, {.may_use_other_pads = true}).grips().size() == 1);
+  CHECK(internal::HandGrips(gripper, {{0, 1}, true}, {.may_wrap = true}).grips().size() == 1);
 }
 
 TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface_posture]") {
