@@ -30,7 +30,7 @@ class OutsideDepth {
   VoxelLattice lattice_;
   mutable std::vector<std::int32_t> nearest_faces_;  // one per voxel center; −1: not yet
   std::vector<std::array<Eigen::Vector3d, 3>> face_corners_;
-  std::vector<Eigen::Vector3d> face_normals_;                 // not unit
+  std::vector<Eigen::Vector3d> face_normals_;                 // unit
   std::vector<std::array<Eigen::Vector3d, 3>> edge_normals_;  // edge k from corner k on
   std::vector<Eigen::Vector3d> vertex_normals_;
 };

@@ -12,7 +12,7 @@ struct PieceHull {
   TriangleMesh mesh;         ///< Closed, outward, convex; every vertex one of the points.
   Eigen::Matrix3Xd normals;  ///< Outward unit normal of each face.
   Eigen::VectorXd offsets;   ///< A point of the hull has normal · point ≤ offset.
-  double left_out = 0.0;     ///< No point is farther from the hull [m].
+  double left_out = 0.0;     ///< To rounding no point is farther from the hull [m].
 
   /// Largest signed distance of `point` from the plane of a face [m], > 0 outside.
   double height(const Eigen::Vector3d& point) const {

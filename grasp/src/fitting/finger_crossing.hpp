@@ -12,7 +12,7 @@
 
 namespace graspfit::grasp::internal {
 
-/// Whether the solids of two links share a point. Exact; false for a link without a solid.
+/// Whether the solids of two links meet; exact for rotations to 1e-9. False without a solid.
 bool do_links_meet(const FittingHand& hand, int link_a, int link_b,
                    const geometry::RigidTransform& X_AB);
 

@@ -32,7 +32,7 @@ struct ConvexDecomposition {
                                      ///< [m], proven up to rounding. It exceeds the true value by
                                      ///< at most 5 % of that value or of largest_deviation, but is
                                      ///< never below half of largest_deviation; it is 0 where the
-                                     ///< pieces together have the solid's volume.
+                                     ///< pieces together have the solid's volume to 1e-12.
   double inward_deviation = 0.0;  ///< Upper bound of the distance of any point of the surface from
                                   ///< the nearest piece [m]; see `convex_decomposition`.
   double volume_error = 0.0;  ///< (Volume of the union of pieces − volume of the solid) / volume of
@@ -49,7 +49,7 @@ struct ConvexDecomposition {
 /// is cut by the plane that separates most of what makes its hull deep: segments between points of
 /// the part's surface, and faces of the hull, weighted by the square of how far outside the solid
 /// they pass. Candidates are planes of about forty directions and the planes of the mesh's faces.
-/// Parts are cut at the true surface, so that their hulls cover the solid and none leaves the
+/// Parts are cut at the true surface, to 1e-9 of its extent: hulls cover the solid, none leaves the
 /// convex hull of the part that it covers. Cutting ends when no part that a cut still improves has
 /// too deep a hull, or when there are three times as many parts as pieces are allowed. Then the
 /// parts whose common hull is the least deep are united, as long as that hull is shallow enough or

@@ -79,7 +79,7 @@ class MeshQuery {
   /// one is a cavity. For an open mesh the answer depends on the ray.
   Containment containment(const Eigen::Vector3d& point) const;
 
-  /// Distance to the surface, negative inside; sign exact, magnitude as that of `closest_point`.
+  /// As `closest_point`, negative inside: the sign is exact, but a distance may round to zero.
   double signed_distance(const Eigen::Vector3d& point) const;
 
   /// First hit from `origin` along `direction` (need not be unit; zero throws InvalidInput): the

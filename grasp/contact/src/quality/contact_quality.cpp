@@ -167,7 +167,7 @@ bool StablePairTest::operator()(const Vector3d& point_a, const Vector3d& inward_
   const double doubt = kCosineDoubt * a_to_b.norm();
   const double least = std::min(inward_normal_a.dot(a_to_b), -inward_normal_b.dot(a_to_b));
   if (least < limit - doubt) return false;
-  // Equal points have no line; the exact function says so.
+  // Equal points have no line; the whole function says so.
   if (least > limit + doubt && a_to_b.squaredNorm() > 1e-12) return true;
   return stable_pair_angle(point_a, inward_normal_a, point_b, inward_normal_b, theta_max_)
       .has_value();

@@ -49,8 +49,8 @@ class SurroundingsCollision {
                const hands::RigidTransform& X_OL) const;
 
   /// Distance of one link from the surroundings, where it is at most `enough` [m] ≥ 0; infinite
-  /// where it is more. Approximate, to rounding; zero exactly where `touches`. Of equal distances
-  /// the table counts first, then obstacles in order.
+  /// where it is more. Approximate, to rounding; zero where `touches`, and where it rounds to zero.
+  /// Of equal distances the table counts first, then obstacles in order.
   SurroundingsDistance distance(const hands::HandCollision& collision, int link,
                                 const hands::RigidTransform& X_OL, double enough) const;
 

@@ -56,8 +56,8 @@ class HandCollision {
   std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<RigidTransform>& X_OL) const;
 
   /// Whether some link overlaps another by more than `depth` [m] > 0, without the pairs that the
-  /// model excludes. True is certain; false may be wrong by half of `depth`. Where links overlap,
-  /// this is much cheaper than `against_self`.
+  /// model excludes. True is certain; false may be wrong by half of `depth`, or by more where
+  /// `penetration` ends after its most steps. Much cheaper than `against_self` where links overlap.
   bool overlaps_self(const std::vector<RigidTransform>& X_OL, double depth) const {
     return pair_deeper_than(X_OL, depth).has_value();
   }

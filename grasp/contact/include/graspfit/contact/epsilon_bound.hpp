@@ -12,9 +12,9 @@ namespace graspfit::contact {
 /// From the origin rays are shot at the hull of the wrenches, about along the six axes, both ways,
 /// each by a linear program, and from the facet that a ray meets along its normal, until that
 /// leads to no nearer facet: the result is the distance of the nearest facet found. In double
-/// arithmetic: to rounding it is at least ε. Where the origin is outside the hull, or on it, the
-/// result is at most zero: the distance from the origin to a point of the hull near the nearest one
-/// [Gilbert 1966], negative.
+/// arithmetic: to rounding it is at least ε, but 0 where a ray's program does not end. Where the
+/// origin is outside the hull, or on it, the result is at most zero: the distance from the origin
+/// to a point of the hull near the nearest one [Gilbert 1966], negative.
 ///
 /// The search ends with the first bound that is no more than `enough`, for callers who then need no
 /// better one.
