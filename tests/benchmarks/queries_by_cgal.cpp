@@ -126,27 +126,34 @@ bool CollisionByCgal::do_intersect(const geometry::RigidTransform& X_AB) {
 }
 
 struct UnionByCgal::Impl {
-  Graph a;
-  Graph b;
-  Graph both;
+  std::vector<Graph> parts;
+  Graph all;
 };
 
-UnionByCgal::UnionByCgal(const geometry::TriangleMesh& a, const geometry::TriangleMesh& b)
-    : impl_(std::make_unique<Impl>(Impl{adapter::face_graph(a), adapter::face_graph(b), {}})) {}
+UnionByCgal::UnionByCgal(std::span<const geometry::TriangleMesh> parts)
+    : impl_(std::make_unique<Impl>()) {
+  if (parts.empty()) throw base::InvalidInput("a union needs parts");
+  for (const geometry::TriangleMesh& part : parts) {
+    impl_->parts.push_back(adapter::face_graph(part));
+  }
+}
 
 UnionByCgal::~UnionByCgal() = default;
 
 std::size_t UnionByCgal::unite() {
-  Graph a = impl_->a;
-  Graph b = impl_->b;
-  impl_->both.clear();
-  if (!pmp::corefine_and_compute_union(a, b, impl_->both)) {
-    throw base::DegenerateGeometry("CGAL finds no manifold union");
+  impl_->all = impl_->parts.front();
+  for (std::size_t i = 1; i < impl_->parts.size(); ++i) {
+    Graph part = impl_->parts[i];
+    Graph both;
+    if (!pmp::corefine_and_compute_union(impl_->all, part, both)) {
+      throw base::DegenerateGeometry("CGAL finds no manifold union");
+    }
+    impl_->all = std::move(both);
   }
-  return impl_->both.number_of_faces();
+  return impl_->all.number_of_faces();
 }
 
-double UnionByCgal::volume() const { return CGAL::to_double(pmp::volume(impl_->both)); }
+double UnionByCgal::volume() const { return CGAL::to_double(pmp::volume(impl_->all)); }
 
 std::size_t num_hull_facets_by_cgal(std::span<const Eigen::Vector3d> points) {
   std::vector<Kernel::Point_3> given;

@@ -54,15 +54,18 @@ class CollisionByCgal {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The union of two closed meshes by `corefine_and_compute_union`, with points rounded to doubles.
+/// The union of closed meshes by `corefine_and_compute_union`, one after the other, with points
+/// rounded to doubles.
 class UnionByCgal {
  public:
-  UnionByCgal(const geometry::TriangleMesh& a, const geometry::TriangleMesh& b);
+  /// @throws InvalidInput without parts.
+  explicit UnionByCgal(std::span<const geometry::TriangleMesh> parts);
   ~UnionByCgal();
   UnionByCgal(const UnionByCgal&) = delete;
   UnionByCgal& operator=(const UnionByCgal&) = delete;
 
-  /// Unites copies of both, since the inputs are changed. Returns the number of faces.
+  /// Unites copies of them, since the inputs are changed. Returns the number of faces.
+  /// @throws DegenerateGeometry if CGAL refuses.
   std::size_t unite();
 
   /// Volume of the last union [m³].
