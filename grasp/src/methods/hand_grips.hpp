@@ -70,8 +70,8 @@ class HandGrips {
   /// Grips of the requested parts, and others that the rule allows where the hand has them with
   /// pads: with the palm or a finger more, not both, or wrapped around the object: with the palm
   /// and, of each requested finger that has one, the last pad before its tip's link. No more than
-  /// `kMostParts` parts. Two contacts cannot close, so that where parts may be added there are grips
-  /// of two only if the hand has no others. At least one finger is requested.
+  /// `kMostParts` parts. Two contacts cannot close, so that where parts may be added there are
+  /// grips of two only if the hand has no others. At least one finger is requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
