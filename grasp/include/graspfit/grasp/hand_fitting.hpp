@@ -15,9 +15,9 @@ enum class GraspStyle {
   Power,      ///< Targets go to the fingertips and the palm; the palm is brought to the surface
               ///< first and links behind the tips are closed onto it.
   Auto,       ///< Targets go to fingertips alone, to them and the palm, or to one finger more, of
-              ///< any fingers beside the thumb unless they are named, or to pads behind the tips of
-              ///< the thumb, of the others, or of all with the palm: where the strongest posture is
-              ///< found [R]; with `TargetSearch::Reach` only.
+              ///< any fingers beside the thumb unless they are named, or to the palm and the pads
+              ///< behind the tips: where the strongest posture is found [R]; with
+              ///< `TargetSearch::Reach` only.
 };
 
 /// Which motions of the hand the guard refuses (paper section 9).
