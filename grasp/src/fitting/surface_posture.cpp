@@ -29,6 +29,7 @@ constexpr int kMostEvaluations = 14;
 constexpr int kHopefulFor = 2;             // steps
 constexpr double kLastHopefulGap = 0.003;  // [m]
 constexpr double kGapPerStep = 0.001;      // [m]
+constexpr int kStepsToPlaces = 3;          // after these it is asked whether patches are worth it
 constexpr double kLongestStep = 0.02;      // of every entry of a motion [m]
 constexpr double kLongestReach = 0.1;      // of every entry before a step is shortened [m]
 // A step is worth it if by this share of the sum of squares it lowers it, or promises to.
@@ -144,12 +145,22 @@ class SurfaceSearch::NormalEquations {
   std::vector<Index> entries_;  ///< Of the row at hand that are not zero.
 };
 
+CoarseDistances::CoarseDistances(const geometry::SignedDistanceMap& map)
+    : last_voxel_((map.lattice.counts.array() - 1).cast<float>()),
+      strides_(1, map.lattice.counts[0], map.lattice.counts[0] * map.lattice.counts[1]) {
+  values_.reserve(map.values.size());
+  for (const float value : map.values) {
+    values_.push_back(static_cast<std::uint8_t>(std::clamp(value, 0.0F, 255.0F)));
+  }
+}
+
 SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
                              const NearestPatches& nearest, const NearestPatches& places)
     : hand_(hand),
       object_(object),
       nearest_(nearest),
       places_(places),
+      distances_(object.distance),
       motion_(hand.model(), true, true, HandMotion::Breakaway::Beyond) {
   for (const geometry::SurfacePatch& patch : object.patches) {
     planes_.push_back({patch.outward_normal.cast<float>(),
@@ -209,9 +220,10 @@ std::optional<SurfaceSearch::Wish> SurfaceSearch::overlap(
       return;
     }
     for (const PointGroup& group : groups_[static_cast<std::size_t>(inner)]) {
-      if (box.exteriorDistance(Vector3d(X * group.center_L)) > group.radius) continue;
-      for (const Vector3d& point_L : group.points_L) {
-        const Vector3d point = X * point_L;
+      const Vector3d center = X * group.center_L.cast<double>();
+      if (box.exteriorDistance(center) > group.radius) continue;
+      for (const Eigen::Vector3f& point_L : group.points_L) {
+        const Vector3d point = X * point_L.cast<double>();
         const Vector3d above = point - box.min();
         const Vector3d below = box.max() - point;
         Index low = 0;
@@ -250,11 +262,11 @@ std::vector<SurfaceSearch::PointGroup> SurfaceSearch::groups_of(
     PointGroup& group = groups.emplace_back();
     Eigen::AlignedBox3d box;
     for (const auto& [cell, point] : points) {
-      group.points_L.push_back(point);
+      group.points_L.push_back(point.cast<float>());
       box.extend(point);
     }
-    group.center_L = box.center();
-    group.radius = 0.5 * box.diagonal().norm();
+    group.center_L = box.center().cast<float>();
+    group.radius = static_cast<float>(0.5 * box.diagonal().norm());
   }
   return groups;
 }
@@ -273,14 +285,19 @@ SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link, const Ri
   const double near = lift * voxels_per_meter;
   DeepPoint deepest;
   // From points of the link to positions in the lattice.
-  const Eigen::Matrix3d turn = voxels_per_meter * X_OL.linear();
-  const Vector3d shift = voxels_per_meter * (X_OL.translation() - lattice.origin);
+  const Eigen::Matrix3f turn = (voxels_per_meter * X_OL.linear()).cast<float>();
+  const Eigen::Vector3f shift =
+      (voxels_per_meter * (X_OL.translation() - lattice.origin)).cast<float>();
+  const auto voxels_away = [&](const Eigen::Vector3f& point_L) {
+    return distances_.at((turn * point_L + shift).array());
+  };
   for (const PointGroup& group : groups_[link]) {
     const double far = near + group.radius * voxels_per_meter + std::numbers::sqrt3;
-    if (object_.distance.at_position(turn * group.center_L + shift) > far) continue;
-    for (const Vector3d& point_L : group.points_L) {
-      if (object_.distance.at_position(turn * point_L + shift) > near) continue;
-      const Vector3d point = X_OL * point_L;
+    if (voxels_away(group.center_L) > far) continue;
+    for (const Eigen::Vector3f& point_L : group.points_L) {
+      if (voxels_away(point_L) > near) continue;
+      const Vector3d point = X_OL * point_L.cast<double>();
+      if (object_.distance.at(point) > near) continue;
       const double depth = -height(point);
       if (depth > deepest.depth) deepest = {depth, point};
     }
@@ -311,7 +328,8 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
 }
 
 SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
-                                  const hands::HandConfiguration& start, double lift) const {
+                                  const hands::HandConfiguration& start, double lift,
+                                  const IsWorthIt& is_worth_it) const {
   HandMotion motion = motion_;
   NormalEquations equations(motion.size());
   Evaluated best, trial;
@@ -337,6 +355,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     const bool is_done = trial.sum > (1.0 - kLeastGain) * best.sum;
     std::swap(best, trial);
     if (is_done) break;
+    if (i == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.patches)) break;
     accept();
     damping = std::max(0.25 * damping, 1e-4);
   }

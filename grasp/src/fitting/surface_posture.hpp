@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -23,6 +24,24 @@ struct SurfacePosture {
   double largest_depth = 0.0;         ///< Of a link's point below its patch, 0 if none is [m].
 };
 
+/// Lower bounds of an object's distance map in whole voxels, for many questions: look-ups of bytes.
+class CoarseDistances {
+ public:
+  explicit CoarseDistances(const geometry::SignedDistanceMap& map);
+
+  /// Not above the map's value at a position from the lattice's origin [voxels], but 0 or more; at
+  /// most 255.
+  int at(const Eigen::Array3f& position) const {
+    const Eigen::Array3i voxel = position.max(0.0F).min(last_voxel_).cast<int>();
+    return values_[static_cast<std::size_t>((voxel * strides_).sum())];
+  }
+
+ private:
+  Eigen::Array3f last_voxel_;
+  Eigen::Array3i strides_;
+  std::vector<std::uint8_t> values_;
+};
+
 /// Lays the contact points of `pads` onto the surface near where they are at `start`, and the pads
 /// flat there, while links leave the object: damped Gauss-Newton steps of palm and joints on the
 /// object's patches and its distance map. Approximate: to a fraction of a voxel; nothing is decided
@@ -33,9 +52,13 @@ class SurfaceSearch {
   SurfaceSearch(const FittingHand& hand, const ObjectModel& object, const NearestPatches& nearest,
                 const NearestPatches& places);
 
-  /// By `lift` [m], at most about a voxel, pads and links are kept farther off.
+  /// Whether pads on these patches would be worth the work.
+  using IsWorthIt = std::function<bool(const std::vector<std::int32_t>& patches)>;
+
+  /// By `lift` [m], at most about a voxel, pads and links are kept farther off. A posture is left
+  /// as it is after some steps if its patches are not worth more of them.
   SurfacePosture lay(const std::vector<int>& pads, const hands::HandConfiguration& start,
-                     double lift = 0.0) const;
+                     double lift = 0.0, const IsWorthIt& is_worth_it = {}) const;
 
  private:
   struct Wish;
@@ -48,9 +71,9 @@ class SurfaceSearch {
   };
   /// Points of a link that lie near each other.
   struct PointGroup {
-    Eigen::Vector3d center_L = Eigen::Vector3d::Zero();
-    double radius = 0.0;  ///< [m]
-    std::vector<Eigen::Vector3d> points_L;
+    Eigen::Vector3f center_L = Eigen::Vector3f::Zero();
+    float radius = 0.0F;  ///< [m]
+    std::vector<Eigen::Vector3f> points_L;
   };
   struct DeepPoint {
     double depth = -std::numeric_limits<double>::infinity();  ///< [m]
@@ -71,6 +94,7 @@ class SurfaceSearch {
   const ObjectModel& object_;
   const NearestPatches& nearest_;  ///< Of all patches with a normal.
   const NearestPatches& places_;   ///< Of those on which pads may lie.
+  const CoarseDistances distances_;
   const HandMotion motion_;
   std::vector<Plane> planes_;                               ///< Per patch.
   std::vector<std::vector<Eigen::Vector3d>> pad_points_L_;  ///< Per pad.

@@ -221,6 +221,8 @@ void HandGrips::add(std::vector<std::size_t> parts) {
   Grip grip;
   grip.parts = std::move(parts);
   grip.has_palm = !parts_[grip.parts.back()].finger;
+  grip.wraps = std::any_of(grip.parts.begin(), grip.parts.end(),
+                           [&](std::size_t part) { return parts_[part].other_pad.has_value(); });
   const std::size_t first = grip.parts.front();
   for (const std::size_t other : grip.parts) {
     if (other == first || grip.has_palm) continue;

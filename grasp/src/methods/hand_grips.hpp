@@ -65,6 +65,7 @@ class HandGrips {
     std::vector<std::size_t> parts;    ///< In the order of the targets: fingers, then the palm.
     std::vector<std::size_t> pinches;  ///< Of the first finger with the others; none with the palm.
     bool has_palm = false;
+    bool wraps = false;  ///< With pads behind tips.
   };
 
   /// Grips of the requested parts, and others that the rule allows where the hand has them with

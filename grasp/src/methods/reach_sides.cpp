@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -27,7 +28,7 @@ struct Aim {
   int postures;
   double strength;
 };
-constexpr std::array<Aim, 3> kAims = {{{90, 0.05}, {200, 0.02}, {1000, 0.005}}};
+constexpr std::array<Aim, 3> kAims = {{{30, 0.05}, {150, 0.02}, {1000, 0.005}}};
 constexpr int kMostPostures = kAims.back().postures;  // large and small objects need some of them
 constexpr int kMostPairs = 500000;                    // of points, or points for the palm
 constexpr int kMostProposals = 10000;  // small objects and wide fingertips need most of them
@@ -40,9 +41,14 @@ constexpr int kProposals = 4;  // of new candidates, of which one is laid onto t
 constexpr double kLiftStep = 0.2;  // [voxels]
 constexpr int kMostLifts = 6;
 
-// Grips are drawn by the squares of the strengths that a short search finds for each.
-constexpr int kPosturesOfGrip = 12;
-constexpr int kProposalsOfGrip = 500;
+// Grips are drawn by the squares of the strengths that short searches find for each, where none
+// counts for more than is asked for at first: their mean, as a single search finds a strong
+// candidate or none by chance. Few places let a hand wrap an object: drawn oftener, grasps are
+// alike.
+constexpr int kPosturesOfSearch = 50;
+constexpr int kProposalsOfSearch = 2000;
+constexpr int kPosturesOfAllGrips = 900;
+constexpr double kShareOfWraps = 0.25;
 constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
@@ -50,6 +56,10 @@ constexpr double kShareVaried = 0.6;  // of all postures
 constexpr double kLeastScale = 0.1;   // of a variation; drawn, as small and large ones help
 constexpr double kMostShift = 0.012;  // of the palm [m]
 constexpr double kMostTurn = 0.24;    // of the palm and of joints [rad; m of prismatic ones]
+
+// A posture is given up on its way if its places are weaker by more than this share than what it is
+// to exceed.
+constexpr double kLeastHope = 0.1;
 
 // Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
 // it frees a hand that is in the object.
@@ -110,13 +120,22 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
   if (num_grips == 1 || rules.pool().size() < 2) return;
+  const auto num_searches = std::max<std::size_t>(
+      1, static_cast<std::size_t>(kPosturesOfAllGrips / kPosturesOfSearch) / num_grips);
+  const double asked = kAims.front().strength;
   for (std::size_t i = 0; i < num_grips; ++i) {
+    const Grip& grip = grips_.grips()[i];
     base::Random random(1);
-    const std::vector<Candidate> best =
-        strongest(&grips_.grips()[i],
-                  {.most_proposals = kProposalsOfGrip, .most_postures = kPosturesOfGrip}, random);
-    const double strength = best.empty() ? 0.0 : std::max(0.0, best.front().strength);
-    shares_[i] = strength * strength;
+    double sum = 0.0;
+    for (std::size_t search = 0; search < num_searches; ++search) {
+      const std::vector<Candidate> best = strongest(&grip,
+                                                    {.most_proposals = kProposalsOfSearch,
+                                                     .most_postures = kPosturesOfSearch,
+                                                     .enough = asked},
+                                                    random);
+      if (!best.empty()) sum += std::clamp(best.front().strength, 0.0, asked);
+    }
+    shares_[i] = (grip.wraps ? kShareOfWraps : 1.0) * sum * sum;
   }
   const double most = *std::max_element(shares_.begin(), shares_.end());
   for (double& share : shares_) share = most > 0.0 ? std::max(share, kLeastShare * most) : 1.0;
@@ -130,7 +149,9 @@ std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   if (rules_.pool().size() < 2) return {};
   std::vector<TargetSide> sides;
   for (const Candidate& candidate : strongest(
-           nullptr, {.most_proposals = kMostProposals, .most_postures = kMostPostures}, random)) {
+           nullptr,
+           {.most_proposals = kMostProposals, .most_postures = kMostPostures, .enough = kEnough},
+           random)) {
     const bool is_to_close = scene_.options.style == GraspStyle::Auto;
     if (is_to_close && !(candidate.strength > 0.0)) continue;
     sides.push_back(side_of(cleared(candidate)));
@@ -144,7 +165,7 @@ std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, Work 
   std::vector<Candidate> best;
   const auto is_enough = [&] {
     if (best.empty()) return false;
-    return best.front().strength >= wanted_strength(work.postures);
+    return best.front().strength >= std::min(work.enough, wanted_strength(work.postures));
   };
   while (!work.is_done() && !is_enough()) {
     if (!best.empty() && random.uniform() < kShareVaried) {
@@ -226,7 +247,12 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
                                                       Work& work) const {
   ++work.postures;
   hands::apply_couplings(scene_.hand.model(), start.q);
-  SurfacePosture posture = search_.lay(pads_of(grip), start);
+  const double hopeless = least - kLeastHope * std::abs(least);
+  const auto is_hopeful = [&](const std::vector<std::int32_t>& patches) {
+    return strength_.nominal(patches, hopeless) > hopeless;
+  };
+  SurfacePosture posture = std::isfinite(least) ? search_.lay(pads_of(grip), start, 0.0, is_hopeful)
+                                                : search_.lay(pads_of(grip), start);
   if (!is_good(posture)) return std::nullopt;
   const double strength = strength_.expected(posture.patches, least);
   if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;

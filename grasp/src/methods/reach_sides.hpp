@@ -55,6 +55,7 @@ class ReachSides {
     int postures = 0;
     int most_proposals = 0;
     int most_postures = 0;
+    double enough = 0.0;  ///< Strength of a candidate with which it may end at any time.
     bool is_done() const;
   };
 

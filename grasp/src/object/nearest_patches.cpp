@@ -11,27 +11,28 @@ using Eigen::Vector3i;
 /// Sweeps of the lattice, forth and back on each axis, in which a voxel takes over the patch of a
 /// neighbor if that is nearer than its own.
 NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool>& is_meant)
-    : object_(object), patch_of_voxel_(object.patch_of_voxel) {
+    : lattice_(object.grid.lattice),
+      last_voxel_((lattice_.counts.array() - 1).cast<double>()),
+      patch_of_voxel_(object.patch_of_voxel) {
   for (std::int32_t& patch : patch_of_voxel_) {
     if (patch >= 0 && !is_meant[static_cast<std::size_t>(patch)]) patch = -1;
   }
-  const geometry::VoxelLattice& lattice = object.grid.lattice;
   std::vector<float> squared(patch_of_voxel_.size(), std::numeric_limits<float>::infinity());
   const auto distance = [&](const Vector3i& voxel, std::int32_t patch) {
     const Vector3d center =
-        lattice.origin + lattice.voxel_size * (voxel.cast<double>().array() + 0.5).matrix();
+        lattice_.origin + lattice_.voxel_size * (voxel.cast<double>().array() + 0.5).matrix();
     return static_cast<float>((center - object.patches[patch].centroid).squaredNorm());
   };
   const auto visit = [&](const Vector3i& voxel) {
-    const auto index = static_cast<std::size_t>(lattice.index(voxel));
+    const auto index = static_cast<std::size_t>(lattice_.index(voxel));
     if (patch_of_voxel_[index] >= 0 && squared[index] == 0.0F) return;
     for (int axis = 0; axis < 3; ++axis) {
       for (const int step : {-1, 1}) {
         Vector3i neighbor = voxel;
         neighbor[axis] += step;
-        if (neighbor[axis] < 0 || neighbor[axis] >= lattice.counts[axis]) continue;
+        if (neighbor[axis] < 0 || neighbor[axis] >= lattice_.counts[axis]) continue;
         const std::int32_t patch =
-            patch_of_voxel_[static_cast<std::size_t>(lattice.index(neighbor))];
+            patch_of_voxel_[static_cast<std::size_t>(lattice_.index(neighbor))];
         if (patch < 0) continue;
         const float candidate = distance(voxel, patch);
         if (!(candidate < squared[index])) continue;
@@ -43,7 +44,7 @@ NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool
   for (std::size_t i = 0; i < squared.size(); ++i) {
     if (patch_of_voxel_[i] >= 0) squared[i] = 0.0F;  // a partial voxel keeps its own
   }
-  const Vector3i n = lattice.counts;
+  const Vector3i n = lattice_.counts;
   const auto sweep = [&](bool is_back) {
     for (int a = 0; a < n[0]; ++a) {
       for (int b = 0; b < n[1]; ++b) {
@@ -57,14 +58,6 @@ NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool
     sweep(false);
     sweep(true);
   }
-}
-
-std::int32_t NearestPatches::at(const Vector3d& point_O) const {
-  const geometry::VoxelLattice& lattice = object_.grid.lattice;
-  const Vector3d position = (point_O - lattice.origin) / lattice.voxel_size;
-  const Vector3d last = (lattice.counts.array() - 1).cast<double>();
-  const Vector3i voxel = position.cwiseMax(0.0).cwiseMin(last).cast<int>();
-  return patch_of_voxel_[static_cast<std::size_t>(lattice.index(voxel))];
 }
 
 }  // namespace graspfit::grasp::internal

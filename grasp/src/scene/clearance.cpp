@@ -77,9 +77,11 @@ std::optional<SurfaceProximity> Clearance::nearest(Known& known, const geometry:
 /// A lower bound of the distance of the object from a ball in O, which need not be the distance.
 double Clearance::object_bound(const Vector3d& center_O, double radius, double enough) const {
   // The point and the nearest surface are within half a diagonal of their voxels' centers.
-  const double by_map = (std::abs(object_.distance.at(center_O)) - std::numbers::sqrt3) *
-                        object_.grid.lattice.voxel_size;
-  if (by_map - radius > enough) return by_map - radius;
+  const double voxel_size = object_.grid.lattice.voxel_size;
+  const double by_map = std::abs(object_.distance.at(center_O)) * voxel_size - radius;
+  const double rounding = std::numbers::sqrt3 * voxel_size;
+  // The bound is enough, or none is.
+  if (by_map - rounding > enough || by_map + rounding <= enough) return by_map - rounding;
   const double distance = std::sqrt(object_.query.closest_point(center_O).squared_distance);
   return distance - kRounding * (1.0 + distance) - radius;
 }

@@ -185,6 +185,8 @@ TEST_CASE("Wrapped grips touch with the palm and the pads behind the tips", "[gr
   CHECK(names(grips.grips()[0]) ==
         Names{"thumb_distal_pad", "finger_1_distal_pad", "finger_2_distal_pad"});
   CHECK(grips.grips()[1].has_palm);
+  CHECK(!grips.grips()[1].wraps);
+  CHECK(grips.grips()[2].wraps);
   CHECK(names(grips.grips()[2]) ==
         Names{"thumb_proximal_pad", "finger_1_proximal_pad", "finger_2_proximal_pad", "palm_pad"});
   CHECK(grips.grips()[2].has_palm);
@@ -205,6 +207,28 @@ TEST_CASE("Wrapped grips touch with the palm and the pads behind the tips", "[gr
   CHECK(internal::HandGrips(gripper, {{0, 1}, true}, {.may_wrap = true}).grips().size() == 1);
 }
 
+TEST_CASE("Coarse distances are those of the map, rounded down", "[grasp][surface_posture]") {
+  const testing::Scene scene(geometry::capsule(0.03, 0.06));
+  const geometry::SignedDistanceMap& map = scene.object.distance;
+  const internal::CoarseDistances coarse(map);
+  const Eigen::Array3d counts = map.lattice.counts.array().cast<double>();
+  base::Random random(4);
+  for (int trial = 0; trial < 5000; ++trial) {
+    // Beyond the lattice, too; not near the planes between voxels, where positions are rounded.
+    Eigen::Array3d position;
+    for (int axis = 0; axis < 3; ++axis) {
+      position[axis] = std::floor(random.uniform(-0.5, 1.5) * counts[axis]) + 0.5;
+    }
+    const float value = map.at_position(position.matrix());
+    const int bound = coarse.at(position.cast<float>());
+    CHECK(bound >= 0);
+    CHECK(static_cast<float>(bound) <= std::max(value, 0.0F));
+    if ((position > 0.0).all() && (position < counts).all()) {
+      CHECK(static_cast<float>(bound) + 1.0F > value);
+    }
+  }
+}
+
 TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface_posture]") {
   const testing::Scene scene(geometry::capsule(0.04, 0.08));
   const std::vector<bool> all(scene.object.patches.size(), true);
@@ -214,7 +238,8 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
   base::Random random(1);
   int num_laid = 0;
   int num_lifted = 0;
-  constexpr int kTrials = 40;
+  int num_left = 0;
+  constexpr int kTrials = 400;
   for (int trial = 0; trial < kTrials; ++trial) {
     // Above the object, fingers half closed around it, turned and shifted a little.
     hands::HandConfiguration start = hands::open_configuration(scene.hand);
@@ -234,6 +259,26 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
         0.01 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const internal::SurfacePosture posture = search.lay(pads, start);
     REQUIRE(posture.patches.size() == pads.size());
+    // What is worth the work is laid as without being asked, what is not is left on the way.
+    int num_asked = 0;
+    const auto is_worth_it = [&](bool answer) {
+      return [&num_asked, &pads, answer](const std::vector<std::int32_t>& patches) {
+        ++num_asked;
+        CHECK(patches.size() == pads.size());
+        return answer;
+      };
+    };
+    const auto is_as_laid = [&](const internal::SurfacePosture& other) {
+      return other.configuration.q == posture.configuration.q &&
+             other.configuration.X_OH.matrix() == posture.configuration.X_OH.matrix();
+    };
+    CHECK(is_as_laid(search.lay(pads, start, 0.0, is_worth_it(true))));
+    const int num_asked_once = num_asked;
+    CHECK(num_asked_once <= 1);
+    const internal::SurfacePosture left = search.lay(pads, start, 0.0, is_worth_it(false));
+    CHECK(num_asked == 2 * num_asked_once);
+    if (num_asked_once > 0) ++num_left;
+    if (num_asked_once == 0) CHECK(is_as_laid(left));
     if (posture.largest_gap > 0.5 * scene.voxel_size() || posture.largest_depth > 0.002) continue;
     ++num_laid;
     // Lifted by half a voxel, pads and links are so much farther off.
@@ -260,6 +305,7 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
       CHECK(distance->distance <= 1.5 * scene.voxel_size());
     }
   }
+  CHECK(num_left > 0);
   CHECK(num_laid >= kTrials / 8);
   CHECK(num_lifted >= num_laid / 2);
 }

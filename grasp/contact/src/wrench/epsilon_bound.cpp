@@ -1,8 +1,7 @@
 #include "graspfit/contact/epsilon_bound.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -30,24 +29,27 @@ class Ray {
  public:
   /// All entries of the direction differ from zero.
   Ray(const Wrenches& wrenches, const Wrench& direction) : wrenches_(wrenches) {
-    Basis basis = Basis::Zero();
+    // The corners s_i e_i, with s_i the sign of d_i. The basis is (S, -d; 1, 0), with S = diag(s):
+    // t is (1 - s w) / |d|_1 of its product with (w, 1), the share of corner i s_i w_i + |d_i| t.
+    Eigen::Matrix<double, 1, 7> share_of_t;
+    for (Index i = 0; i < 6; ++i) share_of_t[i] = direction[i] > 0.0 ? -1.0 : 1.0;
+    share_of_t[6] = 1.0;
+    share_of_t /= direction.lpNorm<1>();
     for (Index i = 0; i < 6; ++i) {
-      basis(i, i) = direction[i] > 0.0 ? 1.0 : -1.0;
-      basis(6, i) = 1.0;
+      inverse_.row(i) = std::abs(direction[i]) * share_of_t;
+      inverse_(i, i) += direction[i] > 0.0 ? 1.0 : -1.0;
       penalty_[i] = -kPenalty;
     }
-    basis.topRightCorner<6, 1>() = -direction;
-    inverse_ = basis.inverse();
+    inverse_.row(6) = share_of_t;
   }
 
   /// Pivots until no wrench is beyond the facet. False if the ray leaves the hull nowhere.
   bool shoot() {
     for (int pivot = 0; pivot < kMostPivots; ++pivot) {
       const Facet facet = this->facet();
-      Index most = 0;
-      const double height = (facet.normal.transpose() * wrenches_).maxCoeff(&most);
-      if (height - facet.offset <= kTolerance) return is_of_wrenches();
-      const Column entering = inverse_ * column(most);
+      const Support support = this->support(facet.normal);
+      if (support.height - facet.offset <= kTolerance) return is_of_wrenches();
+      const Column entering = inverse_ * column(support.wrench);
       std::optional<Index> leaving;
       double least = std::numeric_limits<double>::infinity();
       for (Index i = 0; i < 6; ++i) {
@@ -92,10 +94,7 @@ class Ray {
   }
 
   /// The distance from the origin to the plane along the facet's normal that no wrench is beyond.
-  double distance() const {
-    const Wrench normal = facet().normal.normalized();
-    return (normal.transpose() * wrenches_).maxCoeff();
-  }
+  double distance() const { return support(facet().normal.normalized()).height; }
 
  private:
   /// normal · w ≤ offset, with equality at the basic corners, but for their penalties.
@@ -107,6 +106,19 @@ class Ray {
     Eigen::Matrix<double, 1, 7> dual = inverse_.row(6);
     for (Index i = 0; i < 6; ++i) dual += penalty_[i] * inverse_.row(i);
     return {-dual.head<6>().transpose(), dual[6]};
+  }
+  /// The wrench that is farthest along a direction, and how far.
+  struct Support {
+    Index wrench = 0;
+    double height = -std::numeric_limits<double>::infinity();
+  };
+  Support support(const Wrench& direction) const {
+    Support farthest;
+    for (Index k = 0; k < wrenches_.cols(); ++k) {
+      const double height = direction.dot(wrenches_.col(k));
+      if (height > farthest.height) farthest = {k, height};
+    }
+    return farthest;
   }
   Column column(Index wrench) const {
     Column result;
