@@ -28,7 +28,7 @@ struct Aim {
   int postures;
   double strength;
 };
-constexpr std::array<Aim, 3> kAims = {{{30, 0.05}, {150, 0.02}, {1000, 0.005}}};
+constexpr std::array<Aim, 3> kAims = {{{90, 0.05}, {200, 0.02}, {1000, 0.005}}};
 constexpr int kMostPostures = kAims.back().postures;  // large and small objects need some of them
 constexpr int kMostPairs = 500000;                    // of points, or points for the palm
 constexpr int kMostProposals = 10000;  // small objects and wide fingertips need most of them
