@@ -10,6 +10,8 @@ namespace {
 
 constexpr std::int32_t kLeafSize = 4;
 constexpr int kNumBins = 16;
+// Slabs not thinner than this tell bodies apart too seldom for what looking at them costs.
+constexpr double kFlat = 0.2;  // of the box along the slab's normal
 
 struct Item {
   Eigen::Vector3d lower;
@@ -35,7 +37,8 @@ struct Bounds {
 
 class Builder {
  public:
-  Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes) : nodes_(nodes) {
+  Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes)
+      : mesh_(mesh), nodes_(nodes) {
     items_.reserve(mesh.faces.size());
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
       const auto [a, b, c] = corners(mesh, face);
@@ -53,7 +56,8 @@ class Builder {
   const std::vector<Item>& items() const { return items_; }
 
  private:
-  void build(std::int32_t begin, std::int32_t end, int depth) {
+  /// Adds the nodes of some items; returns the sum of their triangles' normals by area.
+  Eigen::Vector3d build(std::int32_t begin, std::int32_t end, int depth) {
     const std::size_t index = nodes_.size();
     nodes_.emplace_back();
     Bounds box;
@@ -67,12 +71,39 @@ class Builder {
     if (end - begin <= kLeafSize) {
       nodes_[index].first = begin;
       nodes_[index].count = end - begin;
-      return;
+      Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+      for (std::int32_t i = begin; i < end; ++i) {
+        const auto [a, b, c] = corners(mesh_, static_cast<std::size_t>(items_[i].face));
+        normals += (b - a).cross(c - a);
+      }
+      set_slab(index, begin, end, normals);
+      return normals;
     }
     const std::int32_t middle = split(begin, end, middles, depth);
-    build(begin, middle, depth + 1);
+    Eigen::Vector3d normals = build(begin, middle, depth + 1);
     nodes_[index].first = static_cast<std::int32_t>(nodes_.size());
-    build(middle, end, depth + 1);
+    normals += build(middle, end, depth + 1);
+    set_slab(index, begin, end, normals);
+    return normals;
+  }
+
+  void set_slab(std::size_t index, std::int32_t begin, std::int32_t end,
+                const Eigen::Vector3d& normals) {
+    BoxTree::Node& node = nodes_[index];
+    const double length = normals.norm();
+    node.normal = length > 0.0 ? Eigen::Vector3d(normals / length) : Eigen::Vector3d::UnitZ();
+    node.low = std::numeric_limits<double>::infinity();
+    node.high = -std::numeric_limits<double>::infinity();
+    for (std::int32_t i = begin; i < end; ++i) {
+      for (const Eigen::Vector3d& corner :
+           corners(mesh_, static_cast<std::size_t>(items_[i].face))) {
+        const double height = node.normal.dot(corner);
+        node.low = std::min(node.low, height);
+        node.high = std::max(node.high, height);
+      }
+    }
+    const double of_box = node.normal.cwiseAbs().dot(node.upper - node.lower);
+    node.is_flat = node.high - node.low < kFlat * of_box;
   }
 
   // Splits where the surface area heuristic is least among equal bins of the longest axis; halves
@@ -128,6 +159,7 @@ class Builder {
     return half;
   }
 
+  const TriangleMesh& mesh_;
   std::vector<BoxTree::Node>& nodes_;
   std::vector<Item> items_;
 };

@@ -6,21 +6,23 @@
 
 namespace graspfit::geometry::internal {
 
+/// Of a triangle.
+using Corners = std::array<Eigen::Vector3d, 3>;
+
 /// A face of a mesh with copies of its corners.
 struct IndexedTriangle {
-  std::array<Eigen::Vector3d, 3> corners;
+  Corners corners;
   std::int32_t face = -1;
 };
 
 /// Box of a triangle. Exact.
-inline Eigen::AlignedBox3d box_of(const std::array<Eigen::Vector3d, 3>& corners) {
+inline Eigen::AlignedBox3d box_of(const Corners& corners) {
   const auto& [a, b, c] = corners;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
 /// A triangle cut at the middles of its edges.
-inline std::array<std::array<Eigen::Vector3d, 3>, 4> quarters_of(
-    const std::array<Eigen::Vector3d, 3>& corners) {
+inline std::array<Corners, 4> quarters_of(const Corners& corners) {
   const auto& [a, b, c] = corners;
   const Eigen::Vector3d ab = 0.5 * (a + b);
   const Eigen::Vector3d bc = 0.5 * (b + c);

@@ -24,8 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::BoxTree;
+using internal::Corners;
 using internal::IndexedTriangle;
-using Corners = std::array<Vector3d, 3>;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// A box in frame A that holds a node of B's tree, rounding included.

@@ -13,7 +13,6 @@ namespace internal {
 namespace {
 
 using Eigen::Vector3d;
-using Corners = std::array<Vector3d, 3>;
 
 class Search {
  public:

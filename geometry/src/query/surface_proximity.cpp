@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -13,142 +12,15 @@
 #include "mesh/input_check.hpp"
 #include "query/box_tree.hpp"
 #include "query/indexed_mesh.hpp"
+#include "query/triangle_pair.hpp"
 
 namespace graspfit::geometry {
 namespace {
 
 using Eigen::Vector3d;
 using internal::BoxTree;
-using Corners = std::array<Vector3d, 3>;
-
-/// Nearest points of two segments [Ericson 2005, 5.1.9].
-///
-/// Between lines at an angle φ the place on the first is off by some u = 2^-53 of the lengths over
-/// φ², as two differences of products cancel, but over φ only if they are had from cross products;
-/// the distance is off by φ times that. So up to an angle of 0.1 cross products are taken, and the
-/// distance is off by less than 400 u (5e-14) of the segments and of the way between them.
-std::pair<Vector3d, Vector3d> closest_on_segments(const Vector3d& p0, const Vector3d& p1,
-                                                  const Vector3d& q0, const Vector3d& q1) {
-  const Vector3d u = p1 - p0;
-  const Vector3d v = q1 - q0;
-  const Vector3d w = p0 - q0;
-  const double a = u.squaredNorm();
-  const double b = u.dot(v);
-  const double c = v.squaredNorm();
-  const double d = u.dot(w);
-  const double e = v.dot(w);
-  double numerator = b * e - c * d;
-  double denominator = a * c - b * b;
-  if (!(denominator > 1e-2 * (a * c))) {
-    const Vector3d normal = u.cross(v);
-    numerator = normal.dot(v.cross(w));
-    denominator = normal.squaredNorm();
-  }
-  double s = denominator > 0.0 ? std::clamp(numerator / denominator, 0.0, 1.0) : 0.0;
-  double t = c > 0.0 ? (b * s + e) / c : 0.0;
-  if (t < 0.0 || t > 1.0) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = a > 0.0 ? std::clamp((b * t - d) / a, 0.0, 1.0) : 0.0;
-  }
-  return {p0 + s * u, q0 + t * v};
-}
-
-/// A vector at right angles to a triangle, up to some u = 2^-53 of its edges at its corners. A
-/// cross product of two edges is not, where the triangle is a sliver with a height of h on its
-/// longest edge L: it leans by u L / h. Of that edge and the height on it, it leans across the edge
-/// only.
-Vector3d normal_of(const Corners& triangle) {
-  const Vector3d ab = triangle[1] - triangle[0];
-  const Vector3d ac = triangle[2] - triangle[0];
-  const Vector3d normal = ab.cross(ac);
-  const double squared_edge = std::max(ab.squaredNorm(), ac.squaredNorm());
-  if (normal.squaredNorm() > 1e-4 * squared_edge * squared_edge) return normal;
-  const std::array<Vector3d, 3> edges = {ab, triangle[2] - triangle[1], -ac};
-  const auto longest = std::max_element(
-      edges.begin(), edges.end(),
-      [](const Vector3d& e, const Vector3d& f) { return e.squaredNorm() < f.squaredNorm(); });
-  // From the end of the longest edge on to the corner opposite to it.
-  const Vector3d& next = edges[static_cast<std::size_t>(longest - edges.begin() + 1) % 3];
-  return longest->cross(next - next.dot(*longest) / longest->squaredNorm() * *longest);
-}
-
-double largest_coordinate(const Corners& c) {
-  return c[0].cwiseAbs().cwiseMax(c[1].cwiseAbs()).cwiseMax(c[2].cwiseAbs()).maxCoeff();
-}
-
-/// The point where an edge of `a` passes through `b`, if one does, in rounded numbers.
-std::optional<Vector3d> piercing(const Corners& a, const Corners& b) {
-  const Vector3d normal = normal_of(b);
-  const std::array<double, 3> side = {normal.dot(a[0] - b[0]), normal.dot(a[1] - b[0]),
-                                      normal.dot(a[2] - b[0])};
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    if (!(side[i] * side[j] < 0.0)) continue;
-    const Vector3d point = a[i] + side[i] / (side[i] - side[j]) * (a[j] - a[i]);
-    bool is_inside = true;
-    for (int k = 0; k < 3 && is_inside; ++k) {
-      const Vector3d& from = b[k];
-      is_inside = (b[(k + 1) % 3] - from).cross(point - from).dot(normal) >= 0.0;
-    }
-    if (!is_inside) continue;
-    // Beyond the tip of a needle rounding hides on which side of its edges a point is.
-    const double rounding = 1e-13 * std::max(largest_coordinate(a), largest_coordinate(b));
-    if ((internal::closest_on_triangle(point, b) - point).norm() <= rounding) return point;
-  }
-  return std::nullopt;
-}
-
-/// Heights of a triangle's corners over the plane of another triangle, times the length of that
-/// plane's normal.
-///
-/// With A and B the largest coordinates of the two edges whose cross product is the normal, and D
-/// the sum of those of a corner's way from their common end: each coordinate of the normal is off
-/// by 8 u A B, a height by 16 u A B D. A bound that is less than D, times the length of the normal,
-/// is off by 23 u A B D at most. All heights are lowered by `noise`, 64 u A B D, so that what is
-/// farther than a bound surely is.
-struct Heights {
-  Heights(const Corners& plane, const Corners& points) {
-    const Vector3d ab = plane[1] - plane[0];
-    const Vector3d ac = plane[2] - plane[0];
-    const Vector3d normal = ab.cross(ac);
-    squared_normal = normal.squaredNorm();
-    double farthest = 0.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vector3d from_plane = points[i] - plane[0];
-      of[i] = normal.dot(from_plane);
-      farthest = std::max(farthest, from_plane.lpNorm<1>());
-    }
-    noise = 0x1p-47 * ab.lpNorm<Eigen::Infinity>() * ac.lpNorm<Eigen::Infinity>() * farthest;
-    const double lowest = std::min({of[0], of[1], of[2]});
-    const double highest = std::max({of[0], of[1], of[2]});
-    beyond = std::max({lowest - noise, -highest - noise, 0.0});
-  }
-  // The comparisons are such that a triangle without area, whose plane tells nothing, counts as
-  // near even where there is no bound yet and 0 times infinity is not a number.
-  /// Whether the whole triangle is farther from the plane than the bound.
-  bool are_beyond(double squared_bound) const {
-    return beyond * beyond > squared_bound * squared_normal;
-  }
-  bool is_corner_near(std::size_t i, double squared_bound) const {
-    return is_near(std::abs(of[i]), squared_bound);
-  }
-  bool is_edge_near(std::size_t i, double squared_bound) const {
-    const double from = of[i];
-    const double to = of[(i + 1) % 3];
-    if ((from < 0.0) != (to < 0.0)) return true;
-    return is_near(std::min(std::abs(from), std::abs(to)), squared_bound);
-  }
-  bool is_near(double height, double squared_bound) const {
-    const double least = height - noise;
-    return !(least > 0.0 && least * least > squared_bound * squared_normal);
-  }
-
-  double squared_normal = 0.0;
-  double noise = 0.0;
-  std::array<double, 3> of{};
-  double beyond = 0.0;  ///< Distance of the nearest point of the triangle from the plane; 0 if the
-                        ///< triangle crosses the plane, or may do so.
-};
+using internal::Corners;
+using internal::Heights;
 
 /// A unit direction in A, and half of the length along it of boxes along the axes of A and of B,
 /// per half of the boxes' edges.
@@ -179,9 +51,9 @@ struct Direction {
 /// One search for nearest points, depth first, the nearer children first. Pairs of nodes and of
 /// triangles that are surely no nearer than `share` times the best distance are left out.
 ///
-/// What is farther apart is seen by boxes, and along one more direction: that between the nearest
-/// points that are known. Surfaces that lie side by side are apart along it nearly everywhere,
-/// where boxes at an angle to them overlap.
+/// What is farther apart is seen by boxes, by the slabs of parts that are nearly flat, and along
+/// one more direction: that between the nearest points that are known. Surfaces that lie side by
+/// side are apart along it nearly everywhere, where boxes at an angle to them overlap.
 class Search {
  public:
   Search(const MeshQuery& a, const MeshQuery& b, const RigidTransform& X_AB, double enough,
@@ -236,25 +108,27 @@ class Search {
     return root.lower.cwiseAbs().cwiseMax(root.upper.cwiseAbs()).maxCoeff();
   }
 
+  static Vector3d center(const BoxTree::Node& node) { return 0.5 * (node.lower + node.upper); }
+  static Vector3d half(const BoxTree::Node& node) { return 0.5 * (node.upper - node.lower); }
   struct BoxOfA {
+    const BoxTree::Node& node;
     Vector3d center;
     Vector3d half;
   };
   struct BoxOfB {
+    const BoxTree::Node& node;
     Vector3d center_A;
     Vector3d half;    ///< Along the axes of B.
     Vector3d half_A;  ///< Of the box along the axes of A about it.
   };
-  static BoxOfA box_of_a(const BoxTree::Node& node) {
-    return {0.5 * (node.lower + node.upper), 0.5 * (node.upper - node.lower)};
-  }
+  static BoxOfA box_of_a(const BoxTree::Node& node) { return {node, center(node), half(node)}; }
   BoxOfA box_of_a(std::int32_t i) const {
     return box_of_a(tree_a_.nodes[static_cast<std::size_t>(i)]);
   }
   BoxOfB box_of_b(std::int32_t j) const {
     const BoxTree::Node& node = tree_b_.nodes[static_cast<std::size_t>(j)];
-    const Vector3d half = 0.5 * (node.upper - node.lower);
-    return {X_AB_ * Vector3d(0.5 * (node.lower + node.upper)), half, turn_ * half};
+    const Vector3d half_B = half(node);
+    return {node, X_AB_ * center(node), half_B, turn_ * half_B};
   }
 
   /// The seed's faces are the best ones if they are near enough, and give the direction even if
@@ -275,25 +149,59 @@ class Search {
 
   Corners mapped(const Corners& c) const { return {X_AB_ * c[0], X_AB_ * c[1], X_AB_ * c[2]}; }
 
-  /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B:
-  /// seen from one frame alone turned boxes grow, and with them the number of pairs looked at.
+  /// A lower bound of the distance of two nodes, by boxes along the axes of A and along those of B,
+  /// and by slabs where these leave the nodes near: seen from one frame alone turned boxes grow,
+  /// and with them the number of pairs looked at.
   double squared_gap(const BoxOfA& a, const BoxOfB& b) const {
     const Vector3d between_A = b.center_A - a.center;
-    const double in_a = (between_A.cwiseAbs() - a.half - b.half_A).cwiseMax(0.0).squaredNorm();
-    if (in_a >= squared_limit_) return in_a;
-    if (!is_rotation_) return in_a;
-    const Vector3d between_B = X_AB_.linear().transpose() * between_A;
-    return std::max(
-        in_a,
+    double squared = (between_A.cwiseAbs() - a.half - b.half_A).cwiseMax(0.0).squaredNorm();
+    if (squared >= squared_limit_ || !is_rotation_) return squared;
+    const auto turned = X_AB_.linear().transpose();
+    const Vector3d between_B = turned * between_A;
+    squared = std::max(
+        squared,
         (between_B.cwiseAbs() - b.half - turn_.transpose() * a.half).cwiseMax(0.0).squaredNorm());
+    if (a.node.is_flat && squared < squared_limit_) {
+      const Vector3d& normal = a.node.normal;
+      squared = std::max(squared, squared_gap(a.node, normal.dot(b.center_A),
+                                              (turned * normal).cwiseAbs().dot(b.half)));
+    }
+    if (b.node.is_flat && squared < squared_limit_) {
+      const Vector3d normal_A = X_AB_.linear() * b.node.normal;
+      squared = std::max(squared, squared_gap(b.node, normal_A.dot(a.center - X_AB_.translation()),
+                                              normal_A.cwiseAbs().dot(a.half)));
+    }
+    return squared;
+  }
+  /// A lower bound of the squared distance of a node's slab from a box whose center is at this
+  /// height, and which reaches so far up and down from there.
+  double squared_gap(const BoxTree::Node& slab, double height, double reach) const {
+    const double away = std::max(height - slab.high, slab.low - height);
+    const double gap = std::max(away - reach - noise_, 0.0);
+    return gap * gap;
   }
 
-  /// Whether two boxes need not be looked at, as they are apart along the direction.
+  /// Whether two nodes need not be looked at, as they are apart along the direction.
   bool is_left_out_along(const BoxOfA& a, const BoxOfB& b) {
     if (!direction_) return false;
-    return is_left_out_along(direction_->of_A.dot(a.center - b.center_A) -
-                             direction_->per_half_A.dot(a.half) -
-                             direction_->per_half_B.dot(b.half));
+    const Vector3d& of_A = direction_->of_A;
+    double lowest_a = of_A.dot(a.center) - direction_->per_half_A.dot(a.half);
+    double highest_b = of_A.dot(b.center_A) + direction_->per_half_B.dot(b.half);
+    if (is_left_out_along(lowest_a - highest_b)) return true;
+    if (!a.node.is_flat && !b.node.is_flat) return false;
+    if (a.node.is_flat) lowest_a = std::max(lowest_a, lowest_in(a.node, of_A));
+    if (b.node.is_flat) {
+      highest_b = std::min(highest_b, direction_->origin_B - lowest_in(b.node, -direction_->of_B));
+    }
+    return is_left_out_along(lowest_a - highest_b);
+  }
+  /// A lower bound of d · p for points p in a node's box and slab: of the part of d that is along
+  /// the slab's normal by the slab, of the rest by the box.
+  static double lowest_in(const BoxTree::Node& node, const Vector3d& d) {
+    const double along = d.dot(node.normal);
+    const Vector3d rest = d - along * node.normal;
+    return std::min(along * node.low, along * node.high) + rest.dot(center(node)) -
+           rest.cwiseAbs().dot(half(node));
   }
   bool is_left_out_along(double gap) {
     if (!(gap > limit_along_)) return false;
@@ -395,7 +303,7 @@ class Search {
     if (of_a.are_beyond(squared_best_)) return;
     if (of_a.beyond == 0.0 && of_b.beyond == 0.0) {
       for (const auto& [first, second] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-        if (const std::optional<Vector3d> point = piercing(*first, *second)) {
+        if (const std::optional<Vector3d> point = internal::piercing(*first, *second)) {
           offer(*point, *point, face_a, face_b);
           return;
         }
@@ -413,7 +321,8 @@ class Search {
       if (!of_a.is_edge_near(i, squared_best_)) continue;
       for (std::size_t j = 0; j < 3; ++j) {
         if (!of_b.is_edge_near(j, squared_best_)) continue;
-        const auto [on_a, on_b] = closest_on_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
+        const auto [on_a, on_b] =
+            internal::closest_on_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]);
         offer(on_a, on_b, face_a, face_b);
       }
     }

@@ -1,8 +1,12 @@
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/squared_distance_3.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "geometry/rational_distance.hpp"
 #include "graspfit/base/random.hpp"
@@ -75,6 +79,85 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
   }
   CHECK(num_apart > 50);
   CHECK(num_crossing > 40);
+}
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// A face as CGAL's triangle, and a ball about it.
+struct Face {
+  Kernel::Triangle_3 triangle;
+  Eigen::Vector3d center;
+  double radius = 0.0;
+};
+
+std::vector<Face> faces_of(const TriangleMesh& mesh, const RigidTransform& X) {
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Face face;
+    std::array<Kernel::Point_3, 3> points;
+    const std::array<Eigen::Vector3d, 3> corners_B = corners(mesh, f);
+    face.center = X * Eigen::Vector3d((corners_B[0] + corners_B[1] + corners_B[2]) / 3.0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d corner = X * corners_B[i];
+      points[i] = {corner.x(), corner.y(), corner.z()};
+      face.radius = std::max(face.radius, (corner - face.center).norm());
+    }
+    face.triangle = {points[0], points[1], points[2]};
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+/// The distance of two surfaces, from all pairs of their faces.
+double distance_of_all_pairs(const TriangleMesh& a, const TriangleMesh& b,
+                             const RigidTransform& X_AB) {
+  const std::vector<Face> faces_a = faces_of(a, RigidTransform::Identity());
+  const std::vector<Face> faces_b = faces_of(b, X_AB);
+  double least = kNoLimit;
+  for (const Face& f : faces_a) {
+    for (const Face& g : faces_b) {
+      if ((f.center - g.center).norm() - f.radius - g.radius > least) continue;
+      least = std::min(least, std::sqrt(CGAL::squared_distance(f.triangle, g.triangle)));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("Round surfaces that nearly touch anywhere are as far apart as all pairs of their faces",
+          "[geometry][surface_proximity]") {
+  // Most small parts of fine meshes are nearly flat, at all angles to the axes.
+  const MeshQuery a(torus(1.0, 0.3, 64, 32));
+  const MeshQuery b(ball(0.4, 3));
+  Random random(8);
+  int num_near = 0;
+  for (int i = 0; i < 80; ++i) {
+    RigidTransform X_AB = drawn_pose(random, 1.2);
+    if (do_intersect(a, b, X_AB)) continue;
+    const auto away = nearest_points(a, b, X_AB, kNoLimit);
+    REQUIRE(away);
+    const Eigen::Vector3d way = away->point_on_a_A - away->point_on_b_A;
+    X_AB.pretranslate((1.0 - 1e-3 / away->distance) * way);
+    if (do_intersect(a, b, X_AB)) continue;
+    ++num_near;
+    const double expected = distance_of_all_pairs(a.mesh(), b.mesh(), X_AB);
+    CHECK(expected <= 1.001e-3);
+    for (const ProximitySeed& seed : {ProximitySeed(), ProximitySeed{away->face_a, away->face_b}}) {
+      const auto nearest = nearest_points(a, b, X_AB, kNoLimit, seed);
+      REQUIRE(nearest);
+      CHECK(nearest->distance == Approx(expected).margin(1e-13));
+      CHECK(surface_clearance(a, b, X_AB, kNoLimit, 1.0, seed).at_least ==
+            Approx(expected).margin(1e-11));
+      const double half = surface_clearance(a, b, X_AB, kNoLimit, 0.5, seed).at_least;
+      CHECK(half <= expected + 1e-11);
+      CHECK(half >= 0.5 * expected);
+      CHECK_FALSE(nearest_points(a, b, X_AB, 0.999 * expected, seed));
+    }
+  }
+  CHECK(num_near > 30);
 }
 
 TEST_CASE("A pose written with three digits gives the distance of the mesh moved by it",
