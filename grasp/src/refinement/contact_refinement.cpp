@@ -40,11 +40,14 @@ constexpr double kSlideWeight = 1.0;
 constexpr double kShortestSlide = 1e-4;  // [m]; below it the rest is not worth the work
 
 // Long steps need fewer iterations, but distances are linear over short ones only, so that long
-// steps are shortened again, at the cost of a query of all distances each time.
-constexpr double kLongestStep = 4e-3;  // of every entry of a motion [m]
+// steps are shortened again, at the cost of a query of all distances each time. What closes small
+// gaps begins with shorter ones.
+constexpr double kLongestStep = 4e-3;   // of every entry of a motion [m]
+constexpr double kFirstPerGap = 3.0;    // the longest first step, of the largest gap
+constexpr double kLeastLongest = 1e-3;  // [m]; of first steps, and after those that were taken
 // Bodies within so many times the step length are rows of the problem: a larger value makes the
 // problem larger, with a smaller one bodies without a row are met and shorten the step.
-constexpr double kNearPerStep = 2.0;
+constexpr double kNearPerStep = 0.8;
 constexpr double kShortestStep = 2e-6;  // [m]; below it nothing is gained
 // Clearance from everything while gaps are large: more lets fingers pass obstacles in longer steps,
 // less ends nearer to the surface.
@@ -54,13 +57,14 @@ constexpr double kMostClearance = 3e-4;   // [m]
 // separates them sooner, at the cost of the step's other aims.
 constexpr double kPartingShare = 0.3;
 constexpr int kMostHalvings = 5;          // more save steps of blocked hands, a query each
-constexpr double kTrustGrowth = 2.0;      // of the longest step, after one that was taken whole
+constexpr double kTrustGrowth = 2.0;      // the next longest step, of one that was taken whole
 constexpr double kLeastTrust = 0.1;       // of the longest step, after one that was not taken
 constexpr double kLeastSlideTrust = 0.3;  // the same while sliding
 constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 are rounded so far
 // The gaps must shrink to this share within so many steps: less patience saves the steps of hands
 // that are blocked, and loses those that get there slowly.
 constexpr int kPatience = 8;
+constexpr int kNearPadPatience = 2;  // of further pads, most of which the others hold off
 constexpr double kLeastProgress = 0.85;
 
 // A start that penetrates something is opened in steps that grow, 3 cm in all. A smaller first step
@@ -104,7 +108,7 @@ class Refinement {
     result.stop = make_clear();
     if (result.stop == RefinementStop::Contact) {
       const HandConfiguration clear = configuration_;
-      result.stop = approach(result.iterations, options_.max_iterations);
+      result.stop = approach(result.iterations, options_.max_iterations, kPatience);
       if (result.stop == RefinementStop::Contact && options_.slide_steps > 0) {
         const HandConfiguration touching = configuration_;
         slide(result.iterations);
@@ -248,14 +252,15 @@ class Refinement {
            });
   }
 
-  /// Closes the gaps from a clear start, in at most `max_iterations` steps.
-  RefinementStop approach(int& iterations, int max_iterations) {
+  /// Closes the gaps from a clear start, in at most `max_iterations` steps, of which so many in
+  /// sequence as `patience` says may hardly shrink them.
+  RefinementStop approach(int& iterations, int max_iterations, int patience) {
     if (!measure_gaps() || largest_gap() > options_.reach) return RefinementStop::OutOfReach;
-    double trust = kLongestStep;
+    double trust = std::clamp(kFirstPerGap * largest_gap(), kLeastLongest, kLongestStep);
     std::vector<double> sums = {sum_of_gaps()};
     bool has_moved = true;
     while (!all_touch()) {
-      if (is_stuck(sums) || trust < kShortestStep) return RefinementStop::GapLeft;
+      if (is_stuck(sums, patience) || trust < kShortestStep) return RefinementStop::GapLeft;
       if (iterations == max_iterations) return RefinementStop::IterationLimit;
       ++iterations;
       if (has_moved) {
@@ -264,10 +269,11 @@ class Refinement {
         std::erase_if(near_,
                       [&](const NearPoints& near) { return near.distance > kNearPerStep * trust; });
       }
-      const double share = step(trust);
-      has_moved = share > 0.0;
-      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
-                           : trust * std::max(share, kLeastTrust);
+      const Step taken = step(trust);
+      has_moved = taken.share > 0.0;
+      trust = taken.share < 1.0 ? trust * std::max(taken.share, kLeastTrust)
+                                : std::clamp(kTrustGrowth * taken.longest,
+                                             std::min(trust, kLeastLongest), kLongestStep);
       if (has_moved) measure_gaps();
       sums.push_back(sum_of_gaps());
     }
@@ -284,7 +290,7 @@ class Refinement {
       const HandConfiguration touching = configuration_;
       requests_.push_back(pad);
       int steps = 0;
-      const RefinementStop stop = approach(steps, options_.near_pad_steps);
+      const RefinementStop stop = approach(steps, options_.near_pad_steps, kNearPadPatience);
       iterations += steps;
       if (stop == RefinementStop::Contact && is_clear()) continue;
       requests_.pop_back();
@@ -345,9 +351,9 @@ class Refinement {
     for (int i = 0; i < options_.slide_steps && trust > kShortestSlide; ++i) {
       ++iterations;
       near_ = clearance_.find(X_OL_, kNearPerStep * trust);
-      const double share = step(trust);
-      trust = share == 1.0 ? std::min(kTrustGrowth * trust, kLongestStep)
-                           : trust * std::max(share, kLeastSlideTrust);
+      const double share = step(trust).share;
+      trust = share < 1.0 ? trust * std::max(share, kLeastSlideTrust)
+                          : std::min(kTrustGrowth * trust, kLongestStep);
       if (share > 0.0) measure_gaps();
       const double miss = squared_miss();
       if (miss >= best_miss || !all_touch()) continue;
@@ -358,15 +364,21 @@ class Refinement {
     measure_gaps();
   }
 
-  /// Whether the last steps have hardly shrunk the gaps, given their sums after each step.
-  static bool is_stuck(const std::vector<double>& sums) {
-    return static_cast<int>(sums.size()) > kPatience &&
-           sums.back() > kLeastProgress * sums[sums.size() - 1 - kPatience];
+  /// Whether the last `patience` steps have hardly shrunk the gaps, given their sums after each
+  /// step.
+  static bool is_stuck(const std::vector<double>& sums, int patience) {
+    const auto steps = static_cast<std::size_t>(patience);
+    return sums.size() > steps && sums.back() > kLeastProgress * sums[sums.size() - 1 - steps];
   }
 
-  /// Takes one step, shortened until clear; returns the share of it taken, 0 for none.
-  double step(double trust) {
+  struct Step {
+    double share = 0.0;    ///< Of the wanted motion, 0 if none was taken.
+    double longest = 0.0;  ///< Entry of the wanted motion [m], at most what it was allowed.
+  };
+  /// Takes one step, shortened until clear.
+  Step step(double trust) {
     const VectorXd motion = wanted_motion(trust);
+    const double longest = motion.cwiseAbs().maxCoeff();
     double share = 1.0;
     for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
       const HandConfiguration candidate = motion_.moved(share * motion);
@@ -375,9 +387,9 @@ class Refinement {
       if (!clearance_.is_apart(X_OL, least_)) continue;
       configuration_ = candidate;
       X_OL_ = X_OL;
-      return share;
+      return {share, longest};
     }
-    return 0.0;
+    return {0.0, longest};
   }
 
   VectorXd wanted_motion(double trust) {
