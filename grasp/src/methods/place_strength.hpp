@@ -21,8 +21,9 @@ class PlaceStrength {
 
   /// Pads come to touch beside the places that they are meant for, where the surface may face
   /// elsewhere: the mean over contacts that lie on patches about these (the same ones for the same
-  /// patches), but no more than that of the patches themselves. The latter alone where it is no
-  /// more than `least`: no candidate that is to be stronger.
+  /// patches), but no more than that of the patches themselves. Of what is no more than `least`, a
+  /// candidate that is not wanted then, only so much is known: draws after which the mean would
+  /// hardly exceed it are left out.
   double expected(const std::vector<std::int32_t>& patches, double least) const;
 
   /// That of contacts on the patches themselves; of what is no more than `least` only so much is

@@ -58,8 +58,9 @@ constexpr double kMostShift = 0.012;  // of the palm [m]
 constexpr double kMostTurn = 0.24;    // of the palm and of joints [rad; m of prismatic ones]
 
 // A posture is given up on its way if its places are weaker by more than this share than what it is
-// to exceed.
+// to exceed, unless that is weak: there, on a mug, many become stronger late.
 constexpr double kLeastHope = 0.1;
+constexpr double kWeak = 0.02;
 
 // Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
 // it frees a hand that is in the object.
@@ -247,12 +248,12 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
                                                       Work& work) const {
   ++work.postures;
   hands::apply_couplings(scene_.hand.model(), start.q);
-  const double hopeless = least - kLeastHope * std::abs(least);
+  const double hopeless = (1.0 - kLeastHope) * least;
   const auto is_hopeful = [&](const std::vector<std::int32_t>& patches) {
     return strength_.nominal(patches, hopeless) > hopeless;
   };
-  SurfacePosture posture = std::isfinite(least) ? search_.lay(pads_of(grip), start, 0.0, is_hopeful)
-                                                : search_.lay(pads_of(grip), start);
+  SurfacePosture posture = least > kWeak ? search_.lay(pads_of(grip), start, 0.0, is_hopeful)
+                                         : search_.lay(pads_of(grip), start);
   if (!is_good(posture)) return std::nullopt;
   const double strength = strength_.expected(posture.patches, least);
   if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;

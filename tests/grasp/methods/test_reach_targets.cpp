@@ -227,45 +227,69 @@ TEST_CASE("Two fingers of a gripper meet targets by reach", "[grasp][reach_targe
   }
 }
 
-TEST_CASE("Fingers that would cross as they straighten reach around a small ball",
-          "[grasp][reach_targets]") {
+namespace {
+
+/// How many of some attempts of a hand with wide fingertips are valid, by themselves and with a way
+/// in; all of them are looked at.
+int num_valid(const geometry::TriangleMesh& mesh, int num_attempts, std::uint64_t seed) {
   const testing::TemporaryFolder folder;
   const hands::HandModel hand =
       hands::read_hand_model(folder.write("hand.urdf", testing::wide_finger_hand_urdf()));
-  const PlannerOptions options = reach_options(GraspStyle::Auto, 8);
-  const ObjectModel object = prepare_object(geometry::ball(0.03, 4), hand, options);
+  PlannerOptions options = reach_options(GraspStyle::Auto, num_attempts);
+  options.distinct = {.translation = 0.0, .rotation = 0.0, .joints = 0.0};
+  options.seed = seed;
+  const ObjectModel object = prepare_object(mesh, hand, options);
   const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 2});
-  CHECK(result.statistics.attempts == 8);
-  CHECK(result.grasps.size() >= 6);
+  CHECK(result.statistics.attempts == num_attempts);
+  const hands::HandCollision collision(hand);
   for (const Grasp& grasp : result.grasps) {
     CHECK(grasp.is_valid());
     CHECK(grasp.pre_grasp);
-    CHECK_FALSE(hands::HandCollision(hand)
-                    .against_self(hands::forward_kinematics(hand, grasp.configuration))
-                    .intersects);
+    CHECK(largest_penetration(grasp) == 0.0);
+    CHECK_FALSE(
+        collision.against_self(hands::forward_kinematics(hand, grasp.configuration)).intersects);
   }
+  return static_cast<int>(result.grasps.size());
+}
+
+std::optional<geometry::TriangleMesh> small_paper_mesh(const std::string& name) {
+  const auto path = testing::find_data("meshes/paper/" + name + ".obj");
+  if (!path) return std::nullopt;
+  ObjectReadOptions reading;
+  reading.longest_extent = 0.06;
+  return read_object_file(*path, reading).mesh;
+}
+
+}  // namespace
+
+TEST_CASE("Fingers that would cross as they straighten reach around a small ball",
+          "[grasp][reach_targets]") {
+  CHECK(num_valid(geometry::ball(0.03, 4), 24, 1) >= 19);
 }
 
 TEST_CASE("Wide fingertips reach around small everyday shapes", "[grasp][reach_targets]") {
-  const testing::TemporaryFolder folder;
-  const hands::HandModel hand =
-      hands::read_hand_model(folder.write("hand.urdf", testing::wide_finger_hand_urdf()));
+  const auto duck = small_paper_mesh("duck");
+  const auto mug = small_paper_mesh("mug");
+  if (!duck || !mug) GRASPFIT_SKIP_TEST("meshes/paper is not there; set GRASPFIT_DATA");
+  CHECK(num_valid(*duck, 24, 1) >= 19);
+  // Three in four are valid; the rate itself is asked of many attempts, below.
+  CHECK(num_valid(*mug, 24, 1) >= 14);
+}
+
+TEST_CASE("Of hundreds of attempts of a hand with wide fingertips 70 in 100 are valid",
+          "[grasp][reach_targets][full]") {
+  const auto rate = [](const geometry::TriangleMesh& mesh) {
+    int valid = 0;
+    for (const std::uint64_t seed : {1, 2, 3}) valid += num_valid(mesh, 100, seed);
+    WARN(valid << " of 300");
+    return valid / 300.0;
+  };
+  CHECK(rate(geometry::ball(0.03, 4)) >= 0.7);
   for (const char* name : {"duck", "mug"}) {
-    const auto path = testing::find_data("meshes/paper/" + std::string(name) + ".obj");
-    if (!path) GRASPFIT_SKIP_TEST("meshes/paper is not there; set GRASPFIT_DATA");
     CAPTURE(name);
-    ObjectReadOptions reading;
-    reading.longest_extent = 0.06;
-    const ObjectFile file = read_object_file(*path, reading);
-    const PlannerOptions options = reach_options(GraspStyle::Auto, 8);
-    const ObjectModel object = prepare_object(file.mesh, hand, options);
-    const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 2});
-    CHECK(result.statistics.attempts == 8);
-    CHECK(result.grasps.size() >= 6);
-    for (const Grasp& grasp : result.grasps) {
-      CHECK(grasp.is_valid());
-      CHECK(largest_penetration(grasp) == 0.0);
-    }
+    const auto mesh = small_paper_mesh(name);
+    if (!mesh) GRASPFIT_SKIP_TEST("meshes/paper is not there; set GRASPFIT_DATA");
+    CHECK(rate(*mesh) >= 0.7);
   }
 }
 
