@@ -48,7 +48,7 @@ constexpr int kMostLifts = 6;
 constexpr int kPosturesOfSearch = 50;
 constexpr int kProposalsOfSearch = 2000;
 constexpr int kPosturesOfAllGrips = 900;
-constexpr double kShareOfWraps = 0.25;
+constexpr double kShareOfWraps = 0.6;
 constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
