@@ -185,12 +185,15 @@ def check_wrench(scene, stored, contacts, found):
     space = measures.wrench_space(measures.contact_wrenches(
         contacts, scene.center_of_mass, scene.largest_radius, scene.options["friction"], 8))
     epsilon = space.epsilon
-    if epsilon < -TOLERANCE["epsilon"]:
-        epsilon = {"zero": 0.0, "minus-one": -1.0}[convention["outside"]]
+    outside = {"zero": 0.0, "minus-one": -1.0}[convention["outside"]]
+    # Nearer to the border rounding decides on which side of it the origin is.
+    is_on_border = abs(epsilon) <= TOLERANCE["epsilon"]
+    if epsilon < -TOLERANCE["epsilon"] or (is_on_border and stored["epsilon"] == outside):
+        epsilon = outside
     found.equal("epsilon", "epsilon", epsilon, stored["epsilon"])
     found.equal("wrench volume", "wrench volume", space.volume, stored["volume"],
                 1e-6 * abs(space.volume) + 1e-15)
-    if abs(epsilon) > TOLERANCE["epsilon"]:  # Nearer to the border rounding decides.
+    if not is_on_border:
         found.require(f"is_force_closure, epsilon {epsilon}",
                       stored["is_force_closure"] == (epsilon > 0))
         found.require(f"rank: recomputed {space.rank}", stored["rank"] == space.rank)
