@@ -1,6 +1,7 @@
 #include "output/grasp_text.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "graspfit/base/number_text.hpp"
 #include "output/text_table.hpp"
@@ -13,19 +14,12 @@ std::string epsilon_text(const grasp::Grasp& grasp, int decimals) {
 
 std::string grip_text(const grasp::GraspFile& file) {
   if (file.options.style != grasp::GraspStyle::Auto) return "";
-  const auto num_with = [&](const auto& is_meant) {
-    const auto has_one = [&](const grasp::Grasp& grasp) {
-      const std::vector<grasp::TargetContact>& targets = grasp.targets.contacts;
-      return std::any_of(targets.begin(), targets.end(), is_meant);
-    };
-    return std::to_string(std::count_if(file.grasps.begin(), file.grasps.end(), has_one));
+  const auto num_with = [&](bool (grasp::Grasp::*has)() const) {
+    return std::to_string(std::count_if(file.grasps.begin(), file.grasps.end(), std::mem_fn(has)));
   };
-  const auto is_palm = [](const grasp::TargetContact& target) { return target.is_palm; };
-  const auto is_behind_tip = [](const grasp::TargetContact& target) {
-    return target.pad.has_value();
-  };
-  std::string text = num_with(is_palm) + " of " + std::to_string(file.grasps.size()) +
-                     " grasps press on the palm, " + num_with(is_behind_tip) +
+  std::string text = num_with(&grasp::Grasp::has_palm_target) + " of " +
+                     std::to_string(file.grasps.size()) + " grasps press on the palm, " +
+                     num_with(&grasp::Grasp::has_target_behind_tip) +
                      " with pads behind fingertips";
   const auto& found = file.statistics.guidance;
   const auto narrowest = found.find(std::string(grasp::kNarrowestPinch));

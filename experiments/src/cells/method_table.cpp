@@ -17,7 +17,6 @@ namespace graspfit::experiments::internal {
 namespace method_table_parts {
 namespace {
 
-constexpr std::size_t kGraspsKept = 10;
 constexpr const char* kSeedSetting = "planner-seed";
 
 std::vector<sweep::Column> own_settings() {

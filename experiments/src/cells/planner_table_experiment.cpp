@@ -1,32 +1,25 @@
 #include "cells/planner_table_experiment.hpp"
 
-#include "cells/planning_table.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 
 namespace graspfit::experiments::internal {
-namespace planner_table_experiment_parts {
-namespace {
 
-constexpr std::size_t kGraspsKept = 10;  // Per cell; the goals of these tables are about so many.
-
-sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& folder) {
-  const Planned planned = plan(planning_settings(cell));
-  sweep::CellResult result{sweep::ResultRow(planning_columns()),
-                           sweep::ResultRow(planning_timings())};
-  fill_planning_columns(planned, result.row);
-  fill_planning_timings(planned, result.timings);
-  write_best_grasps(folder, planned, kGraspsKept);
-  return result;
-}
-
-}  // namespace
-}  // namespace planner_table_experiment_parts
-
-sweep::Experiment planner_table_experiment(const std::string& slug) {
-  using namespace planner_table_experiment_parts;
+sweep::Experiment planner_table_experiment(const std::string& slug, const OwnColumns& own) {
+  std::vector<sweep::Column> columns = own.columns;
+  for (sweep::Column& column : planning_columns()) columns.push_back(std::move(column));
+  const auto run = [columns, fill_own = own.fill](const sweep::Cell& cell,
+                                                  const std::filesystem::path& folder) {
+    const Planned planned = plan(planning_settings(cell));
+    sweep::CellResult result{sweep::ResultRow(columns), sweep::ResultRow(planning_timings())};
+    if (fill_own) fill_own(planned, result.row);
+    fill_planning_columns(planned, result.row);
+    fill_planning_timings(planned, result.timings);
+    write_best_grasps(folder, planned, kGraspsKept);
+    return result;
+  };
   return {
       .slug = slug,
-      .columns = planning_columns(),
+      .columns = columns,
       .timings = planning_timings(),
       .check = [](const sweep::Cell& cell) { planning_settings(cell); },
       .run = run,

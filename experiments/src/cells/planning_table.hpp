@@ -55,6 +55,10 @@ std::optional<double> standard_deviation(const std::vector<double>& values);
 sweep::Value field(const std::optional<double>& value);
 sweep::Value field(std::size_t count);
 
+/// Grasps kept of a cell where its experiment asks for no other number: the goals of the planner's
+/// tables are about so many.
+inline constexpr std::size_t kGraspsKept = 10;
+
 /// Writes `<folder>/grasps.json` with the best `count` grasps, if there are any. Nothing is written
 /// for a shape, which comes from no file: its grasps could not be read back.
 void write_best_grasps(const std::filesystem::path& folder, const Planned& planned,
