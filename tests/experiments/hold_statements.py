@@ -1,4 +1,4 @@
-"""What docs/hold-results.md says of published tables, written from notebooks-data/*.csv.
+"""What docs/hold-results.md, and README.md at its top, say of published tables, written from notebooks-data/*.csv.
 
 One function per section yields sentences and rows of tables, each as it must stand in the page.
 """
@@ -152,3 +152,17 @@ def hold_choices(tables):
 
 def counts(cell):
     return f"{cell['valid']}, {cell['normal_held']}, {cell['hard_held']}"
+
+
+def at_a_glance(tables):
+    """Yields what README.md says."""
+    for name, sentence in (("planner_paper_objects", "{} of {} attempts end in a valid grasp"), ("planner_everyday", "({} of {}:")):
+        rows = tables.table(name)
+        yield sentence.format(percent(rows["valid"].sum() / rows["attempts"].sum()), int(rows["attempts"].sum()))
+    rows = tables.table("hold_rates")[lambda table: table["grip"] == "allegro_precision"]
+    attempts = int(rows["attempts"].sum())
+    yield f"{percent(rows['normal_held'].sum() / attempts)} of {attempts} attempts end in a fingertip grasp of the Allegro hand"
+    yield f"{percent(rows['hard_held'].sum() / attempts)} under Dexonomy's hard mode"
+    summary = tables.table("hold_prediction.summary").set_index(["grip", "target", "scope", "measure"])["value"].sort_index()
+    area = summary.loc[("all", "normal_held", "all")]
+    yield f"an area under the ROC curve of {area['m']:.2f}, ε with {area['epsilon']:.2f}"

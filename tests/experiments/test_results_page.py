@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The numbers of REPRODUCTION.md, docs/paper-results.md and docs/hold-results.md are those of the published tables:
+"""The numbers of README.md, REPRODUCTION.md, docs/paper-results.md and docs/hold-results.md are those of the published tables:
 test_results_page.py SOURCE_DIR.
 
 Sentences and rows of tables are written by results_statements.py and hold_statements.py and must stand in the pages, and in
@@ -31,6 +31,10 @@ NAMES = (r"\bA\d+\b", r"\bM[123]?\b", r"[Ss]ection \d+(\.\d)?", r"Figs?\. \d+")
 FIRST_OF_PAPER = "## Results: the tables and what made them"
 PROTOCOLS = (r"`dexgraspbench-100g`", r"`multidex-0\.05g`", r"64 per grip")
 SECTIONS = {
+    "# graspfit": (
+        hold_statements.at_a_glance,
+        (r"Computer, 2018", r"C\+\+20", r"0\.1 mm", r"M > 0", r"(22|32|12) objects", r"15 cm", r"with 100 g"),
+    ),
     "## How many hold": (
         hold_statements.hold_rates,
         (*PROTOCOLS, r"32 objects, 2 attempts each", r"20 N", r"coefficient 0\.2", r"24 sides", r"lost without any load|0 where it is", r"95 %",
@@ -69,9 +73,9 @@ def flat(text):
 
 
 def pages():
-    """Returns the hold test's, then the paper's tables, then the verdicts that rest on them."""
+    """Returns the first page, the hold test's, then the paper's tables, then the verdicts that rest on them."""
     return "\n".join((SOURCE / name).read_text(encoding="utf-8")
-                     for name in ("docs/hold-results.md", "docs/paper-results.md", "REPRODUCTION.md"))
+                     for name in ("README.md", "docs/hold-results.md", "docs/paper-results.md", "REPRODUCTION.md"))
 
 
 def section_of(page, heading):
