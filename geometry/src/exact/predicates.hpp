@@ -37,9 +37,9 @@ bool is_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                     const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 /// Vector area of (a, b, c): the vector along the triangle's normal whose length is the triangle's
-/// area, with an error of at most 2^-42 of that length. Unlike for a cross product in doubles this
-/// bound also holds for slivers, which are computed in rationals. The vector is never zero unless
-/// the corners are collinear.
+/// area, with an error of at most 2^-42 of that length, where it is above 1e-290. Unlike for a
+/// cross product in doubles this bound also holds for slivers, which are computed in rationals. The
+/// vector is never zero unless the corners are collinear.
 Eigen::Vector3d accurate_vector_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                      const Eigen::Vector3d& c);
 

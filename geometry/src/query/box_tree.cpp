@@ -12,6 +12,8 @@ constexpr std::int32_t kLeafSize = 4;
 constexpr int kNumBins = 16;
 // Slabs not thinner than this tell bodies apart too seldom for what looking at them costs.
 constexpr double kFlat = 0.2;  // of the box along the slab's normal
+constexpr double kLeastNormal =
+    1e-140;  // sum of faces' normals [m²]: its square does not underflow
 
 struct Item {
   Eigen::Vector3d lower;
@@ -91,7 +93,8 @@ class Builder {
                 const Eigen::Vector3d& normals) {
     BoxTree::Node& node = nodes_[index];
     const double length = normals.norm();
-    node.normal = length > 0.0 ? Eigen::Vector3d(normals / length) : Eigen::Vector3d::UnitZ();
+    node.normal =
+        length > kLeastNormal ? Eigen::Vector3d(normals / length) : Eigen::Vector3d::UnitZ();
     node.low = std::numeric_limits<double>::infinity();
     node.high = -std::numeric_limits<double>::infinity();
     for (std::int32_t i = begin; i < end; ++i) {

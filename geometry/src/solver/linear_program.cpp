@@ -7,6 +7,7 @@
 #include <CGAL/QP_models.h>
 #include <CGAL/QP_options.h>
 
+#include <limits>
 #include <string>
 
 #include "graspfit/base/errors.hpp"
@@ -42,6 +43,10 @@ LinearProgramSolution maximize_linear(const Eigen::Ref<const Eigen::VectorXd>& o
   if (!solved.is_optimal()) return solution;
   solution.outcome = LinearProgramOutcome::Optimal;
   solution.value = -CGAL::to_double(solved.objective_value());
+  if (solution.value == 0.0) {  // perhaps by underflow
+    solution.value = -std::numeric_limits<double>::denorm_min() *
+                     static_cast<int>(CGAL::sign(solved.objective_value()));
+  }
   solution.x.resize(objective.size());
   Index j = 0;
   for (auto value = solved.variable_values_begin(); value != solved.variable_values_end();

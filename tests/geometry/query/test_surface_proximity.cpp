@@ -207,6 +207,27 @@ TEST_CASE("A matrix that is nearly a rotation lengthens no lower bound",
   CHECK(found.at_least >= distance - 1e-12);
 }
 
+TEST_CASE("A sliver whose area is nearly zero hides no nearest point",
+          "[geometry][surface_proximity]") {
+  // The squares of its cross product's components, about 1.5e-162, underflow: divided by the root
+  // of their sum it would be a fifth too long, and so would heights above it.
+  const Eigen::Vector3d normal = Eigen::Vector3d(1.5, 1.5, 1.6).normalized();
+  const Eigen::Vector3d along(0.1, -0.1, 0);
+  const Eigen::Vector3d point = 0.5 * along + 0.01 * normal;
+  TriangleMesh slivers;
+  slivers.vertices = {Eigen::Vector3d::Zero(), along, 5e-161 * Eigen::Vector3d(0.16, 0.16, -0.3),
+                      point + Eigen::Vector3d(0, 0, 0.011)};
+  slivers.faces = {{0, 1, 2}, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}, {3, 3, 3}, {3, 3, 3}};
+  TriangleMesh other;
+  other.vertices = {point};
+  other.faces = {{0, 0, 0}};
+  const RigidTransform at = RigidTransform::Identity();
+  const auto nearest = nearest_points(MeshQuery(other), MeshQuery(slivers), at, kNoLimit);
+  REQUIRE(nearest);
+  CHECK(nearest->distance == Approx(0.01).margin(1e-14));
+  CHECK(nearest->face_b < 4);
+}
+
 TEST_CASE("A surface inside another has a distance from it", "[geometry][surface_proximity]") {
   const MeshQuery outer(box({2, 2, 2}));
   const MeshQuery inner(box({1, 1, 1}));

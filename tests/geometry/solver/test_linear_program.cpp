@@ -110,6 +110,11 @@ TEST_CASE("Signs and outcomes are exact", "[geometry][linear_program]") {
   CHECK(solution.outcome == LinearProgramOutcome::Optimal);
   CHECK(solution.value == 0.0);
 
+  // An optimum of 1e-400, or minus that, is no double, but has a sign.
+  const VectorXd tiny = VectorXd::Constant(1, 1e-200);
+  CHECK(maximize_linear(tiny, MatrixXd::Ones(1, 1), tiny).value > 0.0);
+  CHECK(maximize_linear(-tiny, MatrixXd::Ones(1, 1), tiny).value < 0.0);
+
   // The constraint x − y = 0 lets both grow.
   a << 1.0, -1.0;
   solution = maximize_linear(VectorXd::Ones(2), a, VectorXd::Zero(1));

@@ -31,8 +31,9 @@ struct ConvexDecomposition {
   double outward_deviation = 0.0;    ///< Upper bound of how far any piece reaches out of the solid
                                      ///< [m], proven up to rounding. It exceeds the true value by
                                      ///< at most 5 % of that value or of largest_deviation, but is
-                                     ///< never below half of largest_deviation; it is 0 where the
-                                     ///< pieces together have the solid's volume to 1e-12.
+                                     ///< never below half of largest_deviation; it is set to 0,
+                                     ///< which is not proven, where the volumes of the pieces add
+                                     ///< up to the solid's to 1e-12.
   double inward_deviation = 0.0;  ///< Upper bound of the distance of any point of the surface from
                                   ///< the nearest piece [m]; see `convex_decomposition`.
   double volume_error = 0.0;  ///< (Volume of the union of pieces − volume of the solid) / volume of

@@ -15,8 +15,9 @@ struct PolytopeData;
 /// The convex hull of points in 2 to 6 dimensions: rank, extreme points, facets, volume, and
 /// questions about other points.
 ///
-/// Rank, extreme points, the set of facets, `containment` and the sign of `inradius` are exact:
-/// they are the answer of real arithmetic on the given doubles. Normals, offsets, volume and
+/// Rank, extreme points, the set of facets, `containment` and the sign of `inradius` are exact (the
+/// last for points that are larger than 1e-300): they are the answer of real arithmetic on the
+/// given doubles. Normals, offsets, volume and
 /// distances are rounded, to about 1e-15 in ordinary cases and 1e-10 relative in any.
 ///
 /// Points that span less than the space have a hull within their affine span, and everything here

@@ -17,6 +17,7 @@ using geometry::ConvexPolytope;
 /// Rounding error of a product of two vectors of six, relative to the product of their lengths: 6
 /// roundings of 2^-53, and 2 to spare.
 constexpr double kProductError = 8.0 * 0x1p-53;
+constexpr double kLeastProduct = 0x1p-1000;  ///< Smaller ones may be off by underflow.
 
 bool has_origin_inside(const ConvexPolytope& hull) {
   return hull.containment(Wrench::Zero()) == Containment::Inside;
@@ -102,7 +103,8 @@ bool is_surely_no_force_closure(const Wrenches& wrenches) {
   const double longest = wrenches.colwise().norm().maxCoeff();
   return internal::near_wrench(wrenches,
                                [&](const Wrench& point, double product) {
-                                 return product > kProductError * point.norm() * longest;
+                                 return product > kLeastProduct &&
+                                        product > kProductError * point.norm() * longest;
                                })
       .is_enough;
 }
