@@ -12,8 +12,8 @@ constexpr std::int32_t kLeafSize = 4;
 constexpr int kNumBins = 16;
 // Slabs not thinner than this tell bodies apart too seldom for what looking at them costs.
 constexpr double kFlat = 0.2;  // of the box along the slab's normal
-constexpr double kLeastNormal =
-    1e-140;  // sum of faces' normals [m²]: its square does not underflow
+// Squares of a sum of faces' normals below it may underflow [m²].
+constexpr double kLeastNormal = 1e-140;
 
 struct Item {
   Eigen::Vector3d lower;

@@ -25,8 +25,9 @@ namespace {
 // all links.
 constexpr int kMostSteps = 1000;
 
-// A search ends after so many distances on ways that are not proven free: where links slide along
-// the object with hardly a gap every way takes hundreds, and few such searches find one.
+// A search ends after so many distances of bodies that are not proven to stay apart: where links
+// slide along the object with hardly a gap every way takes hundreds, and few such searches find
+// one.
 constexpr int kMostInVain = 8000;
 
 /// A lower bound of a distance, and how far was searched for it: beyond, the bound says no more.
@@ -262,7 +263,7 @@ class PreGraspSearch {
   const std::vector<RigidTransform> X_OL_grasp_;
   std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
   std::vector<LinkPair> pairs_;  ///< Pairs that must stay apart; one that failed last comes first.
-  int num_in_vain_ = 0;          ///< Distances on ways that were not proven free, of this search.
+  int num_in_vain_ = 0;          ///< Distances of bodies not proven to stay apart, of this search.
 };
 
 }  // namespace

@@ -101,6 +101,10 @@ FittingResult close_hand(const GraspScene& scene, GraspStyle style, const Reques
   const hands::HandModel& model = scene.hand.model();
   hands::validate(model, start);
   if (requested.fingers.empty()) throw InvalidInput("close_hand: no finger is requested");
+  if (!requested.other_pads.empty()) {
+    throw InvalidInput("close_hand: pad " + std::to_string(requested.other_pads.front()) +
+                       " is requested, only fingertips' pads are closed onto the object");
+  }
   for (const int finger : requested.fingers) {
     if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
       throw InvalidInput("close_hand: finger " + std::to_string(finger) + " of " +

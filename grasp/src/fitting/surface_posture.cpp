@@ -340,6 +340,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
   evaluate(pads, start, lift, best);
   accept();
   double damping = kFirstDamping;
+  int num_steps = 0;
   for (int i = 1; i < kMostEvaluations && damping < kMostDamping; ++i) {
     VectorXd step = equations.solution(damping, motion.bounds(kLongestReach));
     const double longest = step.cwiseAbs().maxCoeff();
@@ -355,7 +356,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     const bool is_done = trial.sum > (1.0 - kLeastGain) * best.sum;
     std::swap(best, trial);
     if (is_done) break;
-    if (i == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.patches)) break;
+    if (++num_steps == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.patches)) break;
     accept();
     damping = std::max(0.25 * damping, 1e-4);
   }

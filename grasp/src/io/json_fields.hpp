@@ -159,6 +159,7 @@ class JsonReader {
     if (!target.finger || hand_->pads[*target.pad].finger != target.finger) {
       name->fail("pad \"" + name->text() + "\" is not of the target's finger");
     }
+    if (target.pad == hand_->fingers[*target.finger].tip_pad) target.pad.reset();
   }
   /// An empty index is −1.
   void index(std::optional<int>& index, const char* key) const {

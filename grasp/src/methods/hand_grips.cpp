@@ -206,7 +206,6 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
 std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) const {
   std::optional<hands::OpeningRange> range;
   for (const Pinch& pinch : pinches_) {
-    if (parts_[pinch.part_a].other_pad || parts_[pinch.part_b].other_pad) continue;
     const auto own = pinch.table.distances_up_to(std::atan(friction));
     if (!own) continue;
     if (!range) range = own;

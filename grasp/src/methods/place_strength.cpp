@@ -96,6 +96,7 @@ double PlaceStrength::nominal(const std::vector<std::int32_t>& patches, double l
   }
   if (contacts.size() == 2) {
     const Vector3d line = contacts[1].point_O - contacts[0].point_O;
+    if (line.isZero(0.0)) return -std::numeric_limits<double>::infinity();
     const double lean = std::max(geometry::angle_between(contacts[0].inward_normal_O, line),
                                  geometry::angle_between(contacts[1].inward_normal_O, -line));
     return lean < 0.5 * std::numbers::pi ? friction_ - std::tan(lean) : -lean;

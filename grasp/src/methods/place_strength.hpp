@@ -13,7 +13,8 @@ namespace graspfit::grasp::internal {
 /// thousand: `contact::epsilon_bound` of point contacts at the patches' centroids.
 ///
 /// Of two contacts, which cannot close, it is how far their line is within both cones: the friction
-/// less the tangent of the larger lean; of more than a right angle, less the lean [rad].
+/// less the tangent of the larger lean; of more than a right angle, minus the lean [rad]; of one
+/// place twice, minus infinity.
 class PlaceStrength {
  public:
   /// Of patches in the pool.

@@ -42,12 +42,12 @@ constexpr double kLiftStep = 0.2;  // [voxels]
 constexpr int kMostLifts = 6;
 
 // Grips are drawn by the squares of the strengths that short searches find for each, where none
-// counts for more than is asked for at first: their mean, as a single search finds a strong
-// candidate or none by chance. Few places let a hand wrap an object: drawn oftener, grasps are
-// alike.
+// counts for more than is asked for after the first postures: their mean, as a single search finds
+// a strong candidate or none by chance. Few places let a hand wrap an object: drawn oftener, grasps
+// are alike.
 constexpr int kPosturesOfSearch = 50;
 constexpr int kProposalsOfSearch = 2000;
-constexpr int kPosturesOfAllGrips = 900;
+constexpr std::size_t kSearchesOfAllGrips = 18;
 constexpr double kShareOfWraps = 0.6;
 constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
 
@@ -90,13 +90,19 @@ double wanted_strength(int num_postures) {
   return last.strength + share * (next->strength - last.strength);
 }
 
-GripRule grip_rule(const PlannerOptions& options) {
+GripRule grip_rule(const GuidanceScene& scene) {
+  const PlannerOptions& options = scene.options;
   if (options.style != GraspStyle::Auto) return {};
+  // Without refinement hands are fitted, which only fingertips' pads can be.
   return {.may_add_finger = true,
           .may_add_palm = options.palm.value_or(true),
           .may_exchange = options.fingers.empty(),
-          .may_wrap = options.counted_pads.value_or(contact::CountedPads::All) ==
-                      contact::CountedPads::All};
+          .may_wrap = options.refine && scene.contact_options.pads == contact::CountedPads::All};
+}
+
+bool are_different(std::vector<std::int32_t> patches) {
+  std::sort(patches.begin(), patches.end());
+  return std::adjacent_find(patches.begin(), patches.end()) == patches.end();
 }
 
 }  // namespace
@@ -104,7 +110,7 @@ GripRule grip_rule(const PlannerOptions& options) {
 ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
     : scene_(scene),
       rules_(rules),
-      grips_(scene.hand.model(), scene.parts, grip_rule(scene.options)),
+      grips_(scene.hand.model(), scene.parts, grip_rule(scene)),
       nearest_(scene.object, have_normal(scene.object.patches)),
       places_(scene.object, is_in_pool(rules, scene.object.patches.size())),
       search_(scene.hand, scene.object, nearest_, places_),
@@ -121,8 +127,7 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
   if (num_grips == 1 || rules.pool().size() < 2) return;
-  const auto num_searches = std::max<std::size_t>(
-      1, static_cast<std::size_t>(kPosturesOfAllGrips / kPosturesOfSearch) / num_grips);
+  const std::size_t num_searches = std::max<std::size_t>(1, kSearchesOfAllGrips / num_grips);
   const double asked = kAims.front().strength;
   for (std::size_t i = 0; i < num_grips; ++i) {
     const Grip& grip = grips_.grips()[i];
@@ -150,9 +155,7 @@ std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   if (rules_.pool().size() < 2) return {};
   std::vector<TargetSide> sides;
   for (const Candidate& candidate : strongest(
-           nullptr,
-           {.most_proposals = kMostProposals, .most_postures = kMostPostures, .enough = kEnough},
-           random)) {
+           nullptr, {.most_proposals = kMostProposals, .most_postures = kMostPostures}, random)) {
     const bool is_to_close = scene_.options.style == GraspStyle::Auto;
     if (is_to_close && !(candidate.strength > 0.0)) continue;
     sides.push_back(side_of(cleared(candidate)));
@@ -250,10 +253,9 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
   hands::apply_couplings(scene_.hand.model(), start.q);
   const double hopeless = (1.0 - kLeastHope) * least;
   const auto is_hopeful = [&](const std::vector<std::int32_t>& patches) {
-    return strength_.nominal(patches, hopeless) > hopeless;
+    return least <= kWeak || strength_.nominal(patches, hopeless) > hopeless;
   };
-  SurfacePosture posture = least > kWeak ? search_.lay(pads_of(grip), start, 0.0, is_hopeful)
-                                         : search_.lay(pads_of(grip), start);
+  SurfacePosture posture = search_.lay(pads_of(grip), start, 0.0, is_hopeful);
   if (!is_good(posture)) return std::nullopt;
   const double strength = strength_.expected(posture.patches, least);
   if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
@@ -261,14 +263,14 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
 }
 
 /// The candidate, lifted off the object until it is clear of it, exactly; as it is where that takes
-/// too much.
+/// too much, or pads then lie where they should not.
 ReachSides::Candidate ReachSides::cleared(Candidate candidate) const {
   const std::vector<int> pads = pads_of(*candidate.grip);
   const double step = kLiftStep * scene_.object.grid.lattice.voxel_size;
   SurfacePosture posture = candidate.posture;
   for (int i = 1;; ++i) {
     if (clearance_.is_clear_of_world(posture.X_OL) && clearance_.is_clear_of_itself(posture.X_OL)) {
-      candidate.posture = std::move(posture);
+      if (is_good(posture)) candidate.posture = std::move(posture);
       return candidate;
     }
     if (i > kMostLifts) return candidate;
@@ -327,7 +329,7 @@ bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const
 
 bool ReachSides::is_good(const SurfacePosture& posture) const {
   if (posture.largest_gap > kMostGap || posture.largest_lean > kMostLean ||
-      posture.largest_depth > kMostDepth) {
+      posture.largest_depth > kMostDepth || !are_different(posture.patches)) {
     return false;
   }
   if (!is_from_approach(posture.configuration)) return false;

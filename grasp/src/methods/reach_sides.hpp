@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -31,9 +32,9 @@ class ReachSides {
   /// The strongest candidates of an attempt, the strongest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
   /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
-  /// one take turns, at random, until one is strong enough or a budget of work is spent, which is
-  /// larger while none is likely to close. Empty if none was found, or with `GraspStyle::Auto` none
-  /// with a strength above 0.
+  /// one take turns, at random, until one is strong enough, for which less is asked the more
+  /// postures were tried, or a budget of work is spent. Empty if none was found, or with
+  /// `GraspStyle::Auto` none with a strength above 0.
   std::vector<TargetSide> draw(base::Random& random) const;
 
   const HandGrips& grips() const { return grips_; }
@@ -55,7 +56,8 @@ class ReachSides {
     int postures = 0;
     int most_proposals = 0;
     int most_postures = 0;
-    double enough = 0.0;  ///< Strength of a candidate with which it may end at any time.
+    /// Strength of a candidate with which it may end at any time.
+    double enough = std::numeric_limits<double>::infinity();
     bool is_done() const;
   };
 

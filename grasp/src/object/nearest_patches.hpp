@@ -13,7 +13,8 @@ namespace graspfit::grasp::internal {
 /// nanoseconds.
 class NearestPatches {
  public:
-  /// Refers to the object. At least one entry of `is_meant`, parallel to its patches, is true.
+  /// Refers to the object. Unless some entry of `is_meant`, parallel to its patches, is true,
+  /// nothing may be asked.
   NearestPatches(const ObjectModel& object, const std::vector<bool>& is_meant);
 
   /// Index of the patch for the voxel that holds `point_O`, or for the lattice's voxel nearest to

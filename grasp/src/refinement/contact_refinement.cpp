@@ -57,7 +57,7 @@ constexpr double kMostClearance = 3e-4;   // [m]
 // separates them sooner, at the cost of the step's other aims.
 constexpr double kPartingShare = 0.3;
 constexpr int kMostHalvings = 5;          // more save steps of blocked hands, a query each
-constexpr double kTrustGrowth = 2.0;      // the next longest step, of one that was taken whole
+constexpr double kTrustGrowth = 2.0;      // the next longest step, of one taken whole, or allowed
 constexpr double kLeastTrust = 0.1;       // of the longest step, after one that was not taken
 constexpr double kLeastSlideTrust = 0.3;  // the same while sliding
 constexpr double kTurnRounding = 1e-7;    // [rad]; angles of matrices near 1 are rounded so far

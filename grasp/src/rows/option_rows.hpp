@@ -190,8 +190,8 @@ constexpr auto refinement_rows = [](auto& at, auto& refinement) {
                               "more work; 8 is a good number, 0: not"});
   at(refinement.near_pad_steps,
      {"near_pad_steps", between(0, kMostSteps), "near-pad-steps", "1", kContacts,
-      "in which each further pad that nearly touches is brought to touch where all others keep "
-      "touching; 0: it stays"});
+      "at most, in which each further pad that nearly touches is brought to touch where all others "
+      "keep touching; 0: it stays"});
   at(refinement.reach, {"reach_m", above(0)});
   at(refinement.largest_shift, {"largest_shift_m", at_least(0), "largest-shift-mm", "mm", kContacts,
                                 "of the palm while contacts are refined; 0: it stays"});
@@ -268,14 +268,15 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                        "the method that guides the hand: the paper's own, or one of those that its "
                        "Table 1 compares with, as far as they are known; all else is the same",
                        "R"});
-  at(options.style, {"style", kAny, "style", "", kRequest,
-                     "where targets go: to the fingertips; power: also to the palm, and links "
-                     "behind the tips are closed onto the object; auto, with target-search reach: "
-                     "to those of the fingertips, or to them and the palm or one finger more, or "
-                     "to the palm and the pads behind the tips, by which the grasp is strongest; "
-                     "where no fingers are named, to any; to none where no grasp that closes is "
-                     "expected",
-                     "P; how: R", "A39"});
+  at(options.style,
+     {"style", kAny, "style", "", kRequest,
+      "where targets go: to the fingertips; power: also to the palm, and links "
+      "behind the tips are closed onto the object; auto, with target-search reach: "
+      "to those of the fingertips, or to them and the palm or one finger more, or "
+      "to the palm and the pads behind the tips, the oftener the stronger such grips are; "
+      "where no fingers are named, to any; to none where no grasp that closes is "
+      "expected",
+      "P; how: R", "A39"});
   at(options.fingers,
      {"fingers", kAny, "fingers", "", kRequest,
       "the fingers that must touch, by the hand's names (Barrett: finger_1, finger_2, thumb)"});

@@ -210,6 +210,9 @@ TEST_CASE("Closing a hand refuses what makes no sense", "[grasp][hand_closing]")
   };
   CHECK(unsaid(message({}, {}), "finger", "no") == "");
   CHECK(unsaid(message({{7}, false}, {}), "finger", "7") == "");
+  grasp::RequestedParts other = scene.parts;
+  other.other_pads = {scene.hand.pad_index("finger_1_proximal_pad")};
+  CHECK(unsaid(message(other, {}), "pad", "only fingertips") == "");
   CHECK(unsaid(message(scene.parts, {.step = 0.0}), "step", "0") == "");
   CHECK(unsaid(message(scene.parts, {.most_steps = -2}), "steps", "-2") == "");
 }

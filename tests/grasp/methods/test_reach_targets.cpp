@@ -112,6 +112,18 @@ TEST_CASE("Postures from which grasps by reach are refined are clear of the obje
   CHECK(num_closed >= num_starts / 2);
 }
 
+TEST_CASE("Grips by reach wrap nothing where hands are fitted at the level of voxels",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = reach_options(GraspStyle::Auto, 12);
+  options.refine = false;
+  options.acceptance = Acceptance::Usable;
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const PlannerResult result = plan_grasps(object, hand, options, {}, {.num_threads = 1});
+  REQUIRE_FALSE(result.grasps.empty());
+  for (const Grasp& grasp : result.grasps) CHECK_FALSE(grasp.has_target_behind_tip());
+}
+
 TEST_CASE("Targets by reach are the same for any number of threads", "[grasp][reach_targets]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const PlannerOptions options = reach_options(GraspStyle::Auto, 6);

@@ -256,6 +256,35 @@ TEST_CASE("A target for another pad than its fingertip's is met by that pad",
   CHECK(grasp::contacts_at(targets)[1].pad == other);
 }
 
+TEST_CASE("Parts and pads that a hand does not have are refused", "[grasp][target_contacts]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const auto message = [&](const grasp::RequestedParts& parts, const hands::HandModel& of) {
+    try {
+      grasp::requested_pads(of, parts);
+    } catch (const base::InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing thrown");
+  };
+  CHECK(message({{7}}, hand) == "finger 7 of hand barrett, which has 3");
+  CHECK(message({{0, 1}, false, {99}}, hand) ==
+        "pad 99 of hand barrett, which has " + std::to_string(hand.pads.size()));
+  const int palm = *hand.palm.pad;
+  CHECK(message({{0, 1}, false, {palm}}, hand) ==
+        "pad " + hand.pads[palm].name + " is of no requested finger");
+  hands::HandModel bare = hand;
+  bare.palm.pad.reset();
+  bare.fingers[1].tip_pad.reset();
+  CHECK(message({{0}, true}, bare) == "the palm of hand barrett has no pad");
+  CHECK(message({{0, 1}}, bare) == "finger " + hand.fingers[1].name + " has no fingertip pad");
+  grasp::TargetContact target;
+  target.finger = -1;
+  CHECK_THROWS_AS(grasp::pad_for(hand, target), base::InvalidInput);
+  target = {};
+  target.is_palm = true;
+  CHECK_THROWS_AS(grasp::pad_for(bare, target), base::InvalidInput);
+}
+
 /// Returns where the first targets of attempts 0 to 19 are with the paper's method.
 std::vector<Vector3d> first_seeds(const grasp::PlannerOptions& options) {
   const Guided guided(geometry::torus(0.05, 0.02), options);

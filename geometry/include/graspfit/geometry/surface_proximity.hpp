@@ -53,7 +53,8 @@ struct SurfaceClearance {
 /// Whether one body encloses the other is not tested.
 ///
 /// `share` in (0, 1] is the share of the distance that suffices; 1 asks for the distance itself.
-/// The function is cheaper than `nearest_points`: boxes alone bound the pairs of faces that remain.
+/// The function is cheaper than `nearest_points`: bounds of parts of the surfaces suffice for the
+/// pairs of faces that remain.
 /// @throws InvalidInput as `nearest_points`, and for another `share`.
 SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,

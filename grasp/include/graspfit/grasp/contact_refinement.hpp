@@ -22,9 +22,10 @@ struct RefinementOptions {
   /// [0, kMostSteps]; 0: they stay where they first touch. Sliding gives a larger M at the cost of
   /// more work.
   int slide_steps = 0;
-  /// Number of steps in which each further pad that nearly touches (its clip volume holds surface)
-  /// is then brought into contact too, provided that all others keep touching, in [0, kMostSteps];
-  /// 0: such pads are left as they are.
+  /// Number of steps, at most, in which each further pad that nearly touches (its clip volume holds
+  /// surface) is then brought into contact too, provided that all others keep touching, in
+  /// [0, kMostSteps]; it is given up after two that hardly shrink the gaps. 0: such pads are left
+  /// as they are.
   int near_pad_steps = 12;
   double reach = 0.03;  ///< Pads farther from the object than this at the start are given up [m].
   double largest_shift = 0.03;  ///< Of the palm from where it started [m], ≥ 0; 0: it stays.

@@ -152,7 +152,8 @@ struct RetreatRule {
 /// all) close joint by joint, proximal to distal, under the same guard, contact tests and budget as
 /// in `fit_hand`, until each touches, is stopped or is at its limits.
 ///
-/// @throws InvalidInput for options out of range, no finger, or one without a fingertip pad.
+/// @throws InvalidInput for options out of range, no finger, one without a fingertip pad, or other
+/// pads.
 FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
                          const hands::HandConfiguration& start, const RetreatRule& retreat,
                          const FittingOptions& options);

@@ -52,7 +52,8 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// abduction) stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`.
 /// Every combination is tried in that order, then, with `open_neutral`, every one again with
 /// neutral joints opened by the same share; the result is empty if none of them is a pre-grasp.
-/// Either round ends, too, once it has asked for 8000 distances on paths that were not proven free.
+/// Either round ends, too, once it has asked for more than 8000 distances of bodies that were not
+/// proven to stay apart.
 ///
 /// That the path is free is proven, not sampled, by conservative advancement: two bodies at a
 /// distance cannot meet before the fastest points of both have together moved by that distance.

@@ -112,8 +112,8 @@ struct TargetContact {
   std::optional<int> pad = {};
 };
 
-/// The pad that is to touch at a target that is assigned to a finger or the palm's, which must have
-/// one.
+/// The pad that is to touch at a target that is assigned to a finger or the palm's. @throws
+/// InvalidInput if the hand has no such finger or pad.
 int pad_for(const hands::HandModel& hand, const TargetContact& target);
 
 /// Whether the contact is of the part, finger or palm, that the target is for.
@@ -186,7 +186,8 @@ double ideal_m(const ObjectModel& object, const TargetContacts& targets,
 /// The parts that assigned targets are for, in their order.
 RequestedParts parts_of(const TargetContacts& targets);
 
-/// The pads that must touch: of each finger its tip's or the other one, then the palm's.
+/// The pads that must touch: of each finger its tip's or the other one, then the palm's. @throws
+/// InvalidInput if the hand has no such finger or pad, or another pad is of no requested finger.
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested);
 
 }  // namespace graspfit::grasp
