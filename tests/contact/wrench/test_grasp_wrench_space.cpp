@@ -257,15 +257,6 @@ TEST_CASE("The early no to closure is never wrong and often given",
   CHECK(is_surely_no_force_closure(Wrenches(6, 0)));
 }
 
-TEST_CASE("The early no to closure is not given where products of wrenches underflow",
-          "[contact][grasp_wrench_space]") {
-  const Wrenches closed = space_of(on_cube(), 0.2).wrenches;
-  for (int exponent = -500; exponent >= -560; --exponent) {
-    INFO("2^" << exponent);
-    CHECK_FALSE(is_surely_no_force_closure(std::ldexp(1.0, exponent) * closed));
-  }
-}
-
 TEST_CASE("Force scaling, limit and the value outside are as chosen",
           "[contact][grasp_wrench_space]") {
   const double mu = 0.5;
