@@ -63,10 +63,12 @@ constexpr double kLeastHope = 0.1;
 constexpr double kWeak = 0.02;
 
 // Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
-// it frees a hand that is in the object.
+// it frees a hand that is in the object, above all one whose links lie around it: lifted off on one
+// side, they leave gaps on another.
 constexpr double kMostLean = 65 * kDegree;
-constexpr double kMostGap = 0.003;    // [m]
-constexpr double kMostDepth = 0.003;  // [m]
+constexpr double kMostGap = 0.003;           // [m]
+constexpr double kMostDepth = 0.003;         // [m]
+constexpr double kMostDepthOfWraps = 0.001;  // [m]
 
 std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) {
   std::vector<bool> is_in(num_patches, false);
@@ -257,6 +259,7 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
   };
   SurfacePosture posture = search_.lay(pads_of(grip), start, 0.0, is_hopeful);
   if (!is_good(posture)) return std::nullopt;
+  if (grip.wraps && posture.largest_depth > kMostDepthOfWraps) return std::nullopt;
   const double strength = strength_.expected(posture.patches, least);
   if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
   return Candidate{&grip, std::move(posture), strength};
