@@ -21,14 +21,7 @@ void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t 
     throw InvalidInput("fit_hand: target " + std::to_string(target) +
                        " is the palm's, which must be the last after a finger's");
   }
-  if (!hand.palm.pad) {
-    throw InvalidInput("fit_hand: the palm of hand " + hand.name + " has no pad");
-  }
-}
-
-void require_tip_pad(const std::string& where, const hands::HandModel& hand, int finger) {
-  if (hand.fingers[finger].tip_pad) return;
-  throw InvalidInput(where + ": finger " + hand.fingers[finger].name + " has no fingertip pad");
+  hand.palm_pad();
 }
 
 /// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand that
@@ -75,13 +68,11 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
       requested.palm = true;
       continue;
     }
-    const auto num_fingers = static_cast<int>(model.fingers.size());
-    if (!target.finger || *target.finger < 0 || *target.finger >= num_fingers) {
-      throw InvalidInput("fit_hand: a target is assigned to finger " +
-                         (target.finger ? std::to_string(*target.finger) : "none") + " of " +
-                         std::to_string(num_fingers) + "; call assign_fingers first");
+    if (!target.finger) {
+      throw InvalidInput("fit_hand: target " + std::to_string(t) +
+                         " is for no finger; call assign_fingers first");
     }
-    require_tip_pad("fit_hand", model, *target.finger);
+    model.tip_pad_of(*target.finger);
     if (target.pad) {
       throw InvalidInput("fit_hand: target " + std::to_string(t) + " is for pad " +
                          std::to_string(*target.pad) + ", only fingertips' pads can be fitted");
@@ -105,16 +96,8 @@ FittingResult close_hand(const GraspScene& scene, GraspStyle style, const Reques
     throw InvalidInput("close_hand: pad " + std::to_string(requested.other_pads.front()) +
                        " is requested, only fingertips' pads are closed onto the object");
   }
-  for (const int finger : requested.fingers) {
-    if (finger < 0 || finger >= static_cast<int>(model.fingers.size())) {
-      throw InvalidInput("close_hand: finger " + std::to_string(finger) + " of " +
-                         std::to_string(model.fingers.size()));
-    }
-    require_tip_pad("close_hand", model, finger);
-  }
-  if (requested.palm && !model.palm.pad) {
-    throw InvalidInput("close_hand: the palm of hand " + model.name + " has no pad");
-  }
+  for (const int finger : requested.fingers) model.tip_pad_of(finger);
+  if (requested.palm) model.palm_pad();
   if (const double step = retreat.step.value_or(1.0); !(step > 0.0 && std::isfinite(step))) {
     throw InvalidInput("close_hand: retreat step = " + shortest_decimal(step) +
                        ", must be finite and > 0 m");

@@ -126,12 +126,7 @@ RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOption
       fingers.push_back(finger);
     }
   }
-  for (const int finger : fingers) {
-    if (!hand.fingers[finger].tip_pad) {
-      throw InvalidInput("finger " + hand.fingers[finger].name + " of hand " + hand.name +
-                         " has no fingertip pad");
-    }
-  }
+  for (const int finger : fingers) hand.tip_pad_of(finger);
   const auto thumb = std::find(fingers.begin(), fingers.end(), hand.thumb());
   if (thumb != fingers.end()) std::rotate(fingers.begin(), thumb, thumb + 1);
   return parts;

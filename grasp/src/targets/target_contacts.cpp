@@ -13,22 +13,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-void require_index(const char* what, int index, std::size_t size, const hands::HandModel& hand) {
-  if (index >= 0 && static_cast<std::size_t>(index) < size) return;
-  throw base::InvalidInput(std::string(what) + ' ' + std::to_string(index) + " of hand " +
-                           hand.name + ", which has " + std::to_string(size));
-}
-
-int tip_pad_of(const hands::HandModel& hand, int finger) {
-  require_index("finger", finger, hand.fingers.size(), hand);
-  const std::optional<int>& pad = hand.fingers[finger].tip_pad;
-  if (pad) return *pad;
-  throw base::InvalidInput("finger " + hand.fingers[finger].name + " has no fingertip pad");
-}
-
-int palm_pad_of(const hands::HandModel& hand) {
-  if (hand.palm.pad) return *hand.palm.pad;
-  throw base::InvalidInput("the palm of hand " + hand.name + " has no pad");
+void require_pad(const hands::HandModel& hand, int pad) {
+  if (pad >= 0 && static_cast<std::size_t>(pad) < hand.pads.size()) return;
+  throw base::InvalidInput("pad " + std::to_string(pad) + " of hand " + hand.name + ", which has " +
+                           std::to_string(hand.pads.size()));
 }
 
 }  // namespace
@@ -39,10 +27,10 @@ void TargetOptions::validate() const {
 
 int pad_for(const hands::HandModel& hand, const TargetContact& target) {
   if (target.pad) {
-    require_index("pad", *target.pad, hand.pads.size(), hand);
+    require_pad(hand, *target.pad);
     return *target.pad;
   }
-  return target.finger ? tip_pad_of(hand, *target.finger) : palm_pad_of(hand);
+  return target.finger ? hand.tip_pad_of(*target.finger) : hand.palm_pad();
 }
 
 bool is_for_part_of(const TargetContact& target, const contact::Contact& contact) {
@@ -119,7 +107,7 @@ RequestedParts parts_of(const TargetContacts& targets) {
 std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedParts& requested) {
   const std::vector<int>& fingers = requested.fingers;
   for (const int pad : requested.other_pads) {
-    require_index("pad", pad, hand.pads.size(), hand);
+    require_pad(hand, pad);
     const std::optional<int>& finger = hand.pads[pad].finger;
     if (finger && std::find(fingers.begin(), fingers.end(), *finger) != fingers.end()) continue;
     throw base::InvalidInput("pad " + hand.pads[pad].name + " is of no requested finger");
@@ -128,9 +116,9 @@ std::vector<int> requested_pads(const hands::HandModel& hand, const RequestedPar
   for (const int finger : fingers) {
     const auto other = std::find_if(requested.other_pads.begin(), requested.other_pads.end(),
                                     [&](int pad) { return hand.pads[pad].finger == finger; });
-    pads.push_back(other == requested.other_pads.end() ? tip_pad_of(hand, finger) : *other);
+    pads.push_back(other == requested.other_pads.end() ? hand.tip_pad_of(finger) : *other);
   }
-  if (requested.palm) pads.push_back(palm_pad_of(hand));
+  if (requested.palm) pads.push_back(hand.palm_pad());
   return pads;
 }
 

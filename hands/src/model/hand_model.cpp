@@ -307,6 +307,21 @@ int HandModel::pad_index(const std::string& pad_name) const {
   return index_of(*this, pads, pad_name, "pad");
 }
 
+int HandModel::tip_pad_of(int finger) const {
+  if (finger < 0 || finger >= static_cast<int>(fingers.size())) {
+    throw InvalidInput("finger " + std::to_string(finger) + " of hand " + name + ", which has " +
+                       std::to_string(fingers.size()));
+  }
+  if (const std::optional<int>& pad = fingers[finger].tip_pad) return *pad;
+  throw InvalidInput("finger " + fingers[finger].name + " of hand " + name +
+                     " has no fingertip pad");
+}
+
+int HandModel::palm_pad() const {
+  if (palm.pad) return *palm.pad;
+  throw InvalidInput("the palm of hand " + name + " has no pad");
+}
+
 int HandModel::thumb() const {
   for (std::size_t f = 0; f < fingers.size(); ++f) {
     if (fingers[f].is_thumb) return static_cast<int>(f);

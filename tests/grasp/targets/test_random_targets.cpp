@@ -276,7 +276,8 @@ TEST_CASE("Parts and pads that a hand does not have are refused", "[grasp][targe
   bare.palm.pad.reset();
   bare.fingers[1].tip_pad.reset();
   CHECK(message({{0}, true}, bare) == "the palm of hand barrett has no pad");
-  CHECK(message({{0, 1}}, bare) == "finger " + hand.fingers[1].name + " has no fingertip pad");
+  CHECK(message({{0, 1}}, bare) ==
+        "finger " + hand.fingers[1].name + " of hand barrett has no fingertip pad");
   grasp::TargetContact target;
   target.finger = -1;
   CHECK_THROWS_AS(grasp::pad_for(hand, target), base::InvalidInput);
