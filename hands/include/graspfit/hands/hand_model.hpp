@@ -114,8 +114,8 @@ struct HandModel {
   int joint_index(const std::string& joint_name) const;
   int link_index(const std::string& link_name) const;
   int pad_index(const std::string& pad_name) const;
-  /// Index of the pad at a finger's tip, and of the palm's. @throws InvalidInput if there is no such
-  /// finger, or it has none.
+  /// Index of the pad at a finger's tip, and of the palm's. @throws InvalidInput if there is no
+  /// such finger, or it has none.
   int tip_pad_of(int finger) const;
   int palm_pad() const;
   /// Index of the thumb; the first finger if none is marked.
