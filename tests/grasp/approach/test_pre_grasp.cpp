@@ -245,6 +245,9 @@ TEST_CASE("A way is proven free by distances alone, and only if it is", "[grasp]
   CHECK_FALSE(proven(1e-5, [](double) { return 1e-7; }));
   CHECK(num_asked <= 500);
   CHECK(proven(1e-5, [](double) { return 0.01; }));
+  // A touch is found soon: the ends and three middles of what is widest, not everything before it.
+  CHECK_FALSE(proven(1e-5, [](double x) { return std::abs(x - 0.75) < 1e-3 ? 0.0 : 1e-3; }));
+  CHECK(num_asked <= 5);
   // A body that does not move stays where it is.
   CHECK(are_apart_on_way(0.0, 1e-5, [](double, double) { return 0.0; }));
   // Without a tolerance it has to be apart there, and rounding is no motion.
@@ -332,6 +335,41 @@ TEST_CASE("A palm in touch is drawn back", "[grasp][pre_grasp]") {
   REQUIRE(found);
   CHECK(found->retreat == Approx(0.01));  // It is the first that clears the palm by 5 mm.
   CHECK_FALSE(scene.find({.largest_retreat = 0.0}));
+}
+
+TEST_CASE("A search ends where many ways cannot be proven, though a later one could be",
+          "[grasp][pre_grasp]") {
+  // A block slides 0.1 m, the first quarter of it 0.2 um above a bar, more if the palm retreats:
+  // 500 distances prove a way of 5 mm upward free, but none of one of 1 mm.
+  HandModel hand;
+  hand.name = "slide";
+  hand.links.resize(2);
+  hand.palm.link = 0;
+  hand.palm.direction_H = -Vector3d::UnitY();
+  hands::Joint joint;
+  joint.name = "slide";
+  joint.type = hands::JointType::Prismatic;
+  joint.parent_link = 0;
+  joint.child_link = 1;
+  joint.axis_J = Vector3d::UnitX();
+  joint.lower = -0.05;
+  joint.upper = 0.05;
+  joint.closing_sign = 1;
+  hand.joints.push_back(joint);
+  hand.links[1].parent_link = 0;
+  hand.links[1].parent_joint = 0;
+  hand.links[1].mesh_L = geometry::box({0.01, 0.01, 0.01});
+  const MeshQuery object(box_at({0.03, 0.01, 0.01}, {0.045, -0.01 - 2e-7, 0.0}));
+  const HandConfiguration grasp{RigidTransform::Identity(), VectorXd::Constant(1, 0.05)};
+  const auto find = [&](double retreat_step) {
+    return find_pre_grasp(
+        hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}), grasp,
+        {.largest_retreat = 0.005, .retreat_step = retreat_step, .opening_steps = 1});
+  };
+  const auto found = find(0.005);
+  REQUIRE(found);
+  CHECK(found->retreat == Approx(0.005));
+  CHECK_FALSE(find(5e-5));  // The same way is among these, the 101st.
 }
 
 TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]") {

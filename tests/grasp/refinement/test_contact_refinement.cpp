@@ -205,6 +205,36 @@ TEST_CASE("A gripper whose palm must stay leaves the gap that its one joint cann
   CHECK(result.largest_gap <= 2 * aside + 4e-4);
 }
 
+TEST_CASE("A further pad that nearly touches is brought to touch, or given up soon",
+          "[grasp][contact_refinement]") {
+  const Scene scene(hands::find_hand("parallel_gripper"), geometry::box({0.03, 0.03, 0.03}));
+  const HandConfiguration start = around_box(scene.hand, 0.0005, 0.001);
+  const auto pads = scene.tip_pads();
+  // The jaw that is nearer is asked for; the other is left a millimeter away.
+  const std::vector<int> asked = {
+      sampled_gap(scene, pads[0], start) < sampled_gap(scene, pads[1], start) ? pads[0] : pads[1]};
+  const int further = asked[0] == pads[0] ? pads[1] : pads[0];
+  RefinementOptions options;
+  const auto refined = [&](int near_pad_steps) {
+    options.near_pad_steps = near_pad_steps;
+    const RefinementResult result = scene.refine(start, asked, options);
+    REQUIRE(result.stop == RefinementStop::Contact);
+    check_promises(scene, start, asked, options, result);
+    return result;
+  };
+  const double largest = options.largest_gap + 3e-5;  // `sampled_gap` is an upper bound.
+  CHECK(sampled_gap(scene, further, refined(0).configuration) > largest);
+  CHECK(sampled_gap(scene, further, refined(12).configuration) <= largest);
+  // A palm that must stay lets one joint not close both gaps: after few steps that hardly gain
+  // anything, not all twelve, the hand is where it was before them.
+  options.largest_shift = options.largest_turn = 0.0;
+  const RefinementResult without = refined(0);
+  const RefinementResult with = refined(12);
+  CHECK(with.iterations > without.iterations);
+  CHECK(with.iterations <= without.iterations + 4);
+  CHECK(same_bytes(with.configuration.q, without.configuration.q));
+}
+
 TEST_CASE("Pads that touch slide along a box to their targets, and stay without sliding",
           "[grasp][contact_refinement]") {
   const Scene scene(hands::find_hand("parallel_gripper"), geometry::box({0.03, 0.03, 0.03}));
