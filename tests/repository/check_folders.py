@@ -1,5 +1,6 @@
 """Checks that folders of sources are each of one topic: one uses those before it in its module's
-FOLDERS and none after it, and holds no more than 25 files, its public headers included.
+FOLDERS and none after it, and holds no more than 25 files, its public headers included. And that no
+source outside tests is longer than 500 lines.
 
   check_folders.py SOURCE_DIR
 """
@@ -10,6 +11,7 @@ import sys
 
 SOURCE = pathlib.Path(sys.argv[1])
 MOST_FILES = 25
+MOST_LINES = 500
 
 faults = []
 num_modules = 0
@@ -76,5 +78,12 @@ for module in sorted(path for path in (SOURCE / "tests").rglob("*") if path.is_d
     if number > MOST_FILES:
         faults.append("%s holds %d files, more than %d"
                       % (module.relative_to(SOURCE), number, MOST_FILES))
+for file in sorted(SOURCE.glob("*/**/*")):
+    top = file.relative_to(SOURCE).parts[0]
+    if top in ("tests", "build") or file.suffix not in (".cpp", ".hpp", ".py", ".js"):
+        continue
+    number = len(file.read_text().splitlines())
+    if number > MOST_LINES:
+        faults.append("%s: %d lines, more than %d" % (file.relative_to(SOURCE), number, MOST_LINES))
 print("\n".join(faults) or "%d modules, no arrow back" % num_modules)
 sys.exit(bool(faults))

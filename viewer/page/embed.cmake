@@ -1,9 +1,10 @@
 # Writes OUTPUT, a C++ source that holds PAGE_DIR's files as string literals.
 set(content "// Written by viewer/page/embed.cmake from viewer/page/; edit those.\n")
 string(APPEND content "#include \"page_template.hpp\"\n\nnamespace graspfit::viewer::internal {\n")
-foreach(file IN ITEMS page.html page.css stage.js grasps.js hand.js player.js replay.js motion.js)
+foreach(file IN ITEMS page.html page.css shapes.js stage.js controls.js grasp_scene.js grasps.js hand.js player.js
+        replay.js motion.js)
   file(READ ${PAGE_DIR}/${file} text)
-  string(REPLACE "." ";" words ${file})
+  string(REGEX REPLACE "[._]" ";" words ${file})
   set(name "k")
   foreach(word IN LISTS words)
     string(SUBSTRING ${word} 0 1 first)

@@ -1,4 +1,4 @@
-// The page of a hand: joints move by sliders, links follow. After stage.js; frame H, the palm's.
+// The page of a hand: joints move by sliders, links follow. After controls.js; frame H, the palm's.
 
 const {hand, poses, plates} = data;
 let q = poses[0].q.slice();

@@ -1,4 +1,4 @@
-// What pages that play frames share. Stands between stage.js and replay.js or motion.js, which have
+// What pages that play frames share. Stands between controls.js and replay.js or motion.js, which have
 //   numFramesNow()   how many frames there are to play
 //   timeOf(frame)    in seconds
 //   updateNow()      puts what is said of the frame in its places

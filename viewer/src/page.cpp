@@ -7,8 +7,9 @@
 namespace graspfit::viewer {
 
 std::string page_html(const PageInput& input) {
-  return internal::filled_page(
-      {input.title, std::string(internal::kGraspsJs), internal::page_data(input)});
+  return internal::filled_page({input.title,
+                                std::string(internal::kGraspSceneJs).append(internal::kGraspsJs),
+                                internal::page_data(input)});
 }
 
 void write_page(const std::filesystem::path& file, const PageInput& input) {

@@ -64,7 +64,9 @@ std::string filled_page(const PageParts& parts) {
   const std::string title = escaped_for_html(parts.title);
   return filled(kPageHtml, {{"{{title}}", title},
                             {"{{style}}", kPageCss},
+                            {"{{shapes}}", kShapesJs},
                             {"{{stage}}", kStageJs},
+                            {"{{controls}}", kControlsJs},
                             {"{{script}}", parts.script},
                             {"{{data}}", parts.data}});
 }

@@ -6,11 +6,14 @@
 namespace graspfit::viewer::internal {
 
 // The files of viewer/page/, compiled in by viewer/page/embed.cmake: the template of a page with
-// the placeholders {{title}}, {{style}}, {{stage}}, {{script}} and {{data}}, and the texts that
-// replace them.
+// the placeholders {{title}}, {{style}}, {{shapes}}, {{stage}}, {{controls}}, {{script}} and
+// {{data}}, and the texts that replace them.
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
-extern const std::string_view kStageJs;  // before a page's own script
+extern const std::string_view kShapesJs;  // this and the next two stand before a page's own script
+extern const std::string_view kStageJs;
+extern const std::string_view kControlsJs;
+extern const std::string_view kGraspSceneJs;  // before what the page of grasps says
 extern const std::string_view kGraspsJs;
 extern const std::string_view kHandJs;
 extern const std::string_view kPlayerJs;  // before the script of a page that plays frames
@@ -20,7 +23,7 @@ extern const std::string_view kMotionJs;
 // The parts in which pages differ.
 struct PageParts {
   std::string_view title;  // plain text
-  std::string script;      // after stage.js, in one function with it
+  std::string script;      // after controls.js, in one function with it
   std::string_view data;   // JSON without "<"
 };
 
