@@ -129,7 +129,7 @@ class PreGraspSearch {
   const geometry::MeshQuery& solid(int link) const { return *collision_.link_solid(link); }
 
   static RigidTransform between(const std::vector<RigidTransform>& X_OL, int a, int b) {
-    return X_OL[a].inverse() * X_OL[b];
+    return geometry::relative_pose(X_OL[a], X_OL[b]);
   }
 
   Eigen::VectorXd opened(double opening, Joints joints) const {

@@ -236,6 +236,9 @@ TEST_CASE("Closure is exact where epsilon is 1e-18, zero and below",
     CHECK(is_force_closure(wrenches) == (gap > 0.0));
     CHECK(ConvexPolytope(wrenches).inradius(Wrench::Zero()) == gap);
   }
+  Wrenches bad = Wrenches::Zero(6, 3);
+  bad(4, 1) = std::nan("");
+  CHECK_THROWS_AS(is_force_closure(bad), InvalidInput);
 }
 
 TEST_CASE("The early no to closure is never wrong and often given",

@@ -12,8 +12,8 @@ namespace graspfit::geometry {
 /// O object, H hand base (palm), L link, C contact. Lengths in meters.
 ///
 /// `inverse()` takes the transpose of the matrix, which is its inverse only for a rotation. Poses
-/// that people write with few digits are none; what decides exactly about a mesh in a pose does not
-/// rely on it (`is_rotation`).
+/// that people write with few digits are none: where a mesh in a pose is decided about, `inverted`
+/// and `relative_pose` are used.
 using RigidTransform = Eigen::Isometry3d;
 
 /// Whether the matrix of a pose is orthogonal up to rounding: the entries of its product with its
@@ -22,6 +22,21 @@ using RigidTransform = Eigen::Isometry3d;
 /// the other frame is as far apart as it is to 5e-13 of the coordinates.
 inline bool is_rotation(const RigidTransform& X) {
   return (X.linear().transpose() * X.linear()).isIdentity(5e-14);
+}
+
+/// The inverse of a pose: the transpose of its matrix if that `is_rotation`, else the matrix's own
+/// inverse. Rounded.
+inline RigidTransform inverted(const RigidTransform& X) {
+  if (is_rotation(X)) return X.inverse();
+  RigidTransform inverse = RigidTransform::Identity();
+  inverse.linear() = X.linear().inverse();
+  inverse.translation() = -(inverse.linear() * X.translation());
+  return inverse;
+}
+
+/// X_AB, the pose of frame B in frame A, of two poses in one frame. Rounded.
+inline RigidTransform relative_pose(const RigidTransform& X_OA, const RigidTransform& X_OB) {
+  return inverted(X_OA) * X_OB;
 }
 
 }  // namespace graspfit::geometry

@@ -94,6 +94,7 @@ double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& obj
 bool is_force_closure(const GraspWrenchSpace& space) { return has_origin_inside(space.hull); }
 
 bool is_force_closure(const Wrenches& wrenches) {
+  if (!wrenches.allFinite()) throw base::InvalidInput("is_force_closure: a wrench is not finite");
   return wrenches.cols() > 6 && !is_surely_no_force_closure(wrenches) &&
          has_origin_inside(ConvexPolytope(wrenches));
 }

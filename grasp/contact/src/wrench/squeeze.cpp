@@ -46,8 +46,8 @@ VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfigurati
   MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const hands::RigidTransform& X = X_OL[contacts[i].link];
-    const MatrixXd jacobian =
-        hands::point_jacobian(hand, grasp, contacts[i].link, X.inverse() * contacts[i].point_O);
+    const MatrixXd jacobian = hands::point_jacobian(hand, grasp, contacts[i].link,
+                                                    geometry::inverted(X) * contacts[i].point_O);
     per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
   }
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
