@@ -18,7 +18,8 @@ namespace graspfit::geometry::internal {
 namespace {
 
 using Eigen::Vector3d;
-using ExactPoint = CGAL::Exact_predicates_exact_constructions_kernel::Point_3;
+using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
+using ExactPoint = Exact::Point_3;
 using Graph = CGAL::Surface_mesh<ExactPoint>;
 using Coordinates = std::array<double, 3>;
 
@@ -81,8 +82,15 @@ std::vector<Graph> graphs_of(const TriangleMesh& mesh, const std::vector<std::in
   return are_outward ? std::move(graphs) : std::vector<Graph>{};
 }
 
+/// Exact numbers are asked for only where the interval is not a double already, as that of a point
+/// which was given.
+double rounded(const Exact::FT& number) {
+  const auto [low, high] = CGAL::to_interval(number);
+  return low == high ? low : nearest_double(CGAL::exact(number));
+}
+
 /// The graph with the vertices of `mesh`, then new ones.
-TriangleMesh rounded(const Graph& graph, const TriangleMesh& mesh) {
+TriangleMesh rounded_mesh(const Graph& graph, const TriangleMesh& mesh) {
   TriangleMesh result{mesh.vertices, {}};
   std::map<Coordinates, std::int32_t> known;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -92,8 +100,7 @@ TriangleMesh rounded(const Graph& graph, const TriangleMesh& mesh) {
   std::vector<std::pair<Coordinates, std::size_t>> added;
   for (const Graph::Vertex_index vertex : graph.vertices()) {
     const ExactPoint& p = graph.point(vertex);
-    Coordinates nearest;
-    for (int axis = 0; axis < 3; ++axis) nearest[axis] = nearest_double(CGAL::exact(p[axis]));
+    const Coordinates nearest = {rounded(p.x()), rounded(p.y()), rounded(p.z())};
     const auto at = known.find(nearest);
     const bool is_known = at != known.end() && p == ExactPoint(nearest[0], nearest[1], nearest[2]);
     if (is_known) {
@@ -155,7 +162,7 @@ std::optional<TriangleMesh> union_by_corefinement(const TriangleMesh& mesh,
     }
     graphs[0] = std::move(united);
   }
-  return rounded(graphs[0], mesh);
+  return rounded_mesh(graphs[0], mesh);
 }
 
 }  // namespace graspfit::geometry::internal
