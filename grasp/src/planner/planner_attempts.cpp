@@ -358,8 +358,8 @@ void PlannerAttempts::add_squeeze(Grasp& grasp, AttemptResult& result) const {
       scene_.bearing_gap);
 }
 
-/// Completes a grasp by its pre-grasp, without which it fails where one is required, and by its
-/// squeeze.
+/// Completes a grasp by its pre-grasp, without which it fails where one is required, and, if it is
+/// accepted, by its squeeze.
 void PlannerAttempts::find_way_in(AttemptResult& result) const {
   result.is_way_in_open_question = false;
   Grasp& grasp = *result.grasp;
@@ -377,7 +377,7 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
     result.grasp.reset();
     return;
   }
-  if (!grasp.squeeze) add_squeeze(grasp, result);
+  if (result.is_accepted && !grasp.squeeze) add_squeeze(grasp, result);
 }
 
 /// Angle between the palm's direction and the one asked for [rad]; 0 if none is asked for.
