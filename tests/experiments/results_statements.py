@@ -163,9 +163,15 @@ def special_cases(tables):
 
 
 def force_closure(tables):
-    for row in tables.table("force_closure").itertuples():
+    rows = tables.table("force_closure").merge(tables.table("force_closure.timing")[["grip", "grasps_cpu_s", "prepare_s"]], on="grip")
+    rows["closed"] = (rows["closed_share"] * rows["grasps"]).round().astype(int)
+    for row in rows.itertuples():
         yield (f"| `{row.grip}` | {row.attempts} | {row.grasps} | {percent(row.closed_share)} "
-               f"| {max(row.median_epsilon, 0.0):.3f} |")
+               f"| {max(row.median_epsilon, 0.0):.3f} | {row.grasps_cpu_s / row.closed:.2f} |")
+    reach = rows.set_index("grip").loc["auto_reach"]
+    yield (f"{reach['grasps_cpu_s'] / reach['closed']:.2f} s of processor time per closed grasp, {reach['grasps_cpu_s']:.2f} s for "
+           f"{reach['closed']} in {reach['attempts']} attempts")
+    yield f"preparing the object took {reach['prepare_s']:.2f} s"
 
 
 #: What is known of a candidate before it is fitted, as columns of candidate_prediction end.
@@ -247,6 +253,10 @@ def reach_grasps(tables):
            f"in {(table['force_closed_share'] >= 0.8 - 1e-9).sum()} of {len(table)} cells")
     yield (f"{table['palm_grasps'].sum()} press on the palm, {table['behind_tip_grasps'].sum()} with pads behind fingertips")
     yield f"{table['num_penetrating'].sum()} grasps penetrate, no contact is farther than {1000 * table['largest_gap_m'].max():.1f} mm from the surface"
+    bunny = table[table["object"] == "bunny"]
+    closed, attempts, grasps = bunny["closed"].sum(), bunny["attempts"].sum(), bunny["grasps"].sum()
+    yield (f"In the {len(bunny)} cells of the bunny {percent(closed / attempts)} of the attempts end with a closed grasp ({closed} of {attempts}), and "
+           f"{percent(closed / grasps)} of the valid grasps close ({closed} of {grasps})")
     for (name, hand), group in table.groupby(["object", "hand"], sort=False):
         cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.median_target_distance_m:.1f}" for row in group.itertuples())
         yield f"| {name} | {hand} | {cells} |"
