@@ -290,14 +290,6 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point, std::int32_t
   return nearest_point(*indexed_, point, first);
 }
 
-internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
-  Winding winding(point);
-  query.indexed().tree().traverse(
-      [&](const Eigen::AlignedBox3d& box) { return winding.may_meet(box.min(), box.max()); },
-      [&](const IndexedTriangle& triangle) { winding.add(triangle.corners); });
-  return winding;
-}
-
 Containment MeshQuery::containment(const Eigen::Vector3d& point) const {
   if (!point.allFinite()) {
     throw base::InvalidInput("MeshQuery::containment: the point is not finite");

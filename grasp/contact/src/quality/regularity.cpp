@@ -1,3 +1,5 @@
+#include "quality/regularity.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,7 +14,6 @@
 
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/option_check.hpp"
-#include "quality/contact_hull.hpp"
 
 namespace graspfit::contact {
 namespace internal {
@@ -22,8 +23,6 @@ using Eigen::Vector3d;
 using Polygon = std::vector<Vector3d>;
 
 constexpr double kSmallestRegularity = 1e-3;              // R stays in (0, 1]: collinear contacts
-constexpr double kCollinearRel = 1e-3;                    // second over first singular value
-constexpr double kPlanarRel = 0.1;                        // thickness over extent
 constexpr double kCoplanarAngle = std::numbers::pi / 36;  // 5°: hull triangles of one face
 // A triangle this much thinner than long has a normal made of rounding errors.
 constexpr double kSliverRel = 1e-9;
@@ -234,35 +233,6 @@ double combined(const RegularityTerms& terms, Regularity definition) {
 }
 
 }  // namespace
-
-ContactHull contact_hull(std::span<const Vector3d> contacts, double merge_distance) {
-  base::DisjointSets sets(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
-      if ((contacts[i] - contacts[j]).norm() < merge_distance) {
-        sets.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
-      }
-    }
-  }
-  const std::vector<std::int32_t> set_of = sets.numbered();
-  ContactHull result;
-  result.num_contacts = contacts.size();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    // Each set has become a point where its first contact was met.
-    if (set_of[i] < static_cast<std::int32_t>(result.points.size())) continue;
-    Vector3d sum = Vector3d::Zero();
-    int count = 0;
-    for (std::size_t j = i; j < contacts.size(); ++j) {
-      if (set_of[j] != set_of[i]) continue;
-      sum += contacts[j];
-      ++count;
-    }
-    result.points.push_back(count == 1 ? contacts[i] : Vector3d(sum / count));
-  }
-  result.hull = geometry::convex_hull(result.points,
-                                      {.collinear_rel = kCollinearRel, .planar_rel = kPlanarRel});
-  return result;
-}
 
 double regularity(const ContactHull& contacts, Regularity definition) {
   if (contacts.num_contacts < 2) return 0.0;
