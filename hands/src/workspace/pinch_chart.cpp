@@ -12,6 +12,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/base/units.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
 #include "workspace/joint_samples.hpp"
@@ -29,7 +30,7 @@ using internal::Tip;
 
 // Of each class of openings a configuration is kept per so much lean, so that where the squarest
 // one brings links into each other there is another.
-constexpr double kLeanStep = 4.0 * std::numbers::pi / 180.0;
+constexpr double kLeanStep = 4.0 * base::kRadiansPerDegree;
 constexpr std::size_t kLeanClasses = 20;  // to 80 degrees
 // Most positions of one side, whose kinematics are computed one by one.
 constexpr double kMostPoses = 1 << 14;
@@ -46,7 +47,7 @@ constexpr double kCosSideBySide = 0.96592582628906831;
 constexpr int kDrawnPerGroup = 2;
 constexpr double kFinest = 0.02;
 // By so much a class's pinch must be squarer for its neighbor to be improved from it [rad].
-constexpr double kWorthTrying = 0.3 * std::numbers::pi / 180.0;
+constexpr double kWorthTrying = 0.3 * base::kRadiansPerDegree;
 
 /// Two sides that press against each other: the pads of each.
 struct Sides {

@@ -9,6 +9,7 @@
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/angle.hpp"
 #include "quality/contact_hull.hpp"
+#include "quality/regularity.hpp"
 
 namespace graspfit::contact {
 namespace {
