@@ -1,6 +1,7 @@
 """Checks that folders of sources are each of one topic: one uses those before it in its module's
-FOLDERS and none after it, and holds no more than 25 files, its public headers included. And that no
-source outside tests is longer than 500 lines.
+FOLDERS and none after it, and holds no more than 25 files, its public headers included. The folders
+of tests, too, use those before them in tests/CMakeLists.txt and none after them. And no source
+outside tests is longer than 500 lines.
 
   check_folders.py SOURCE_DIR
 """
@@ -69,10 +70,28 @@ def check_module(module):
                               % (file.relative_to(SOURCE), folder, include, used))
 
 
+def check_tests():
+    """Checks what the folders of tests include of one another. Other projects (tests/consumer) have
+    no place among them and include none."""
+    tests = SOURCE / "tests"
+    listing = (tests / "CMakeLists.txt").read_text()
+    order = ["support"] + re.findall(r"^\s*add_subdirectory\((\w+)\)", listing, re.M)
+    assert len(order) > 12, "the folders of tests were not understood"
+    place = {folder: i for i, folder in enumerate(order)}
+    for file in sorted(tests.rglob("*.[ch]pp")):
+        folder = file.relative_to(tests).parts[0]
+        for include in includes(file):
+            used = include.split("/")[0]
+            if (tests / include).is_file() and place.get(used, 0) > place.get(folder, -1):
+                faults.append("%s: tests/%s includes %s of tests/%s, which comes after it"
+                              % (file.relative_to(SOURCE), folder, include, used))
+
+
 for listing in sorted(SOURCE.glob("*/CMakeLists.txt")) + sorted(SOURCE.glob("*/*/CMakeLists.txt")):
     if (listing.parent / "src").is_dir() and listing.parts[len(SOURCE.parts)] != "tests":
         check_module(listing.parent)
 assert num_modules > 8, "no modules were found"
+check_tests()
 for module in sorted(path for path in (SOURCE / "tests").rglob("*") if path.is_dir()):
     number = len([file for file in module.iterdir() if file.suffix in (".cpp", ".hpp", ".py")])
     if number > MOST_FILES:
