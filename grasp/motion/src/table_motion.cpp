@@ -322,7 +322,7 @@ MotionState state_at(const TableScene& scene, const MotionSegment& segment, doub
   const HandConfiguration pivot =
       grasp::interpolated({segment.X_WO_from * center, Eigen::VectorXd()},
                           {segment.X_WO_to * center, Eigen::VectorXd()}, share);
-  MotionState state{segment.from, pivot.X_OH * geometry::inverted(center)};
+  MotionState state{segment.from, pivot.X_OH * center.inverse()};
   state.hand.X_OH = state.X_WO * geometry::relative_pose(segment.X_WO_from, segment.from.X_OH);
   return state;
 }
