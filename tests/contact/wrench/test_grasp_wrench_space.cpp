@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "contact/known_grasps.hpp"
 #include "contact/random_contacts.hpp"
-#include "grasp/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grasp/known_grasps.hpp"
+#include "contact/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/contact/epsilon_linf.hpp"
 #include "graspfit/contact/grasp_matrix_quality.hpp"
