@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +29,9 @@ struct WrenchSpaceOptions {
   int num_cone_edges = 8;  ///< Edges per friction cone, ≥ 3. Eight lose at most 7.6 % of μ in some
                            ///< direction; four up to 29 %.
   double friction = 1.0;  ///< Coulomb's μ of all contacts, ≥ 0. The paper's cone of 45°.
-  /// Length that divides torques [m], > 0. Required: ε depends on it.
-  double torque_scale = std::numeric_limits<double>::quiet_NaN();
+  /// Length that divides torques [m], > 0. Required, since ε depends on it: `validate` refuses
+  /// options without one.
+  std::optional<double> torque_scale = std::nullopt;
   ForceScaling force_scaling = ForceScaling::UnitNormal;
   double force_limit = 1.0;  ///< Factor on all forces, > 0.
   OutsideValue outside = OutsideValue::Zero;
