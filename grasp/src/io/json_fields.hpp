@@ -41,6 +41,8 @@ class JsonWriter {
       json_[key] = json_of(value);
     }
   }
+  /// A field that has the same text in every file.
+  void constant(std::string_view text, const char* key) { json_[key] = std::string(text); }
   /// JSON has no infinity: it is a text.
   void open_number(double value, const char* key) {
     json_[key] = std::isinf(value) ? Json("infinity") : Json(value);
@@ -133,6 +135,10 @@ class JsonReader {
     } else {
       read(node_.at(key), value);
     }
+  }
+  void constant(std::string_view text, const char* key) const {
+    const base::JsonValue node = node_.at(key);
+    if (node.text() != text) node.refuse("must be one of " + std::string(text));
   }
   void open_number(double& value, const char* key) const { read_open(node_.at(key), value); }
   void counts(std::map<std::string, std::int64_t>& counts, const char* key) const {

@@ -202,7 +202,7 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
       contact.inward_normal_O = about_x * contact.inward_normal_O;
     }
     WrenchSpaceOptions scaled = options;
-    scaled.torque_scale *= 2.5;
+    scaled.torque_scale.value() *= 2.5;
     const WrenchQuality again =
         wrench_quality(grasp_wrench_space(moved, 2.5 * (about_x * com) + shift, scaled));
     CHECK(again.epsilon == Approx(quality.epsilon).epsilon(1e-9).margin(1e-14));

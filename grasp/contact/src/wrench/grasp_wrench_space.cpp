@@ -39,7 +39,7 @@ Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvent
     const Eigen::Matrix3Xd edges = cone_edges(cone, options.num_cone_edges);
     for (const auto& edge : edges.colwise()) {
       wrenches.col(column++) = wrench(normal_force * edge, contact.point_O,
-                                      convention.reference_point_O, options.torque_scale);
+                                      convention.reference_point_O, *options.torque_scale);
     }
   }
   if (wrenches.cols() == 0) return wrenches;

@@ -132,8 +132,6 @@ inline constexpr std::array kNames<contact::WrenchTool> = {
     NamedValue{contact::WrenchTool::Frogger, "frogger"},
     NamedValue{contact::WrenchTool::DexGraspBench, "dexgraspbench"}};
 template <>
-inline constexpr std::array kNames<contact::ForceNorm> = {NamedValue{contact::ForceNorm::L1, "l1"}};
-template <>
 inline constexpr std::array kNames<contact::ForceScaling> = {
     NamedValue{contact::ForceScaling::UnitNormal, "unit-normal"},
     NamedValue{contact::ForceScaling::UnitEdge, "unit-edge"}};
