@@ -9,7 +9,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "graspfit/grasp/planner_result.hpp"
-#include "io/recorded_hand.hpp"
+#include "graspfit/hands/hand_io.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -29,7 +29,7 @@ GraspFile empty_file(const grasp::ObjectFile& object, const hands::HandModel& ha
   GraspFile file;
   file.object = object.record;
   file.hand = hand;
-  file.link_mesh_sha256 = grasp::internal::link_mesh_hashes(hand);
+  file.link_mesh_sha256 = hands::link_mesh_hashes(hand);
   file.options = options;
   const grasp::RequestedParts requested = grasp::requested_parts(hand, options);
   if (requested.palm && !hand.palm.pad) {

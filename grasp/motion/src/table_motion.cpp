@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -16,7 +17,6 @@
 #include "graspfit/geometry/used_vertices.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "scene/infinity.hpp"
 #include "scene/straight_way.hpp"
 
 namespace graspfit::motion {
@@ -26,6 +26,8 @@ using geometry::RigidTransform;
 using hands::HandConfiguration;
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Depth to which an object that rests on the table may be in it [m]: rounding of its pose.
 constexpr double kRestTolerance = 1e-9;
@@ -287,7 +289,7 @@ double TableScene::height_of_link(int link, const RigidTransform& X_WL, double e
 }
 
 double TableScene::height_of_object(int object, const RigidTransform& X_WO) const {
-  double lowest = grasp::internal::kInfinity;
+  double lowest = kInfinity;
   for (const Vector3d& corner : hull_O(object).vertices) {
     lowest = std::min(lowest, (X_WO * corner).z());
   }
@@ -341,7 +343,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
                              const MotionSegment& segment, double share) {
   const Posed at = posed(scene, segment, share);
   const bool carries = is_carrying(segment.phase);
-  MotionClearance nearest{grasp::internal::kInfinity, grasp::internal::kInfinity};
+  MotionClearance nearest{kInfinity, kInfinity};
   const std::vector<int> links = solid_links(scene);
   for (const int link : links) {
     const RigidTransform& X_WL = at.X_WL[link];

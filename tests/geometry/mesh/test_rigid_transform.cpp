@@ -1,4 +1,7 @@
 #include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
@@ -27,6 +30,20 @@ RigidTransform random_pose(Random& random) {
   return pose;
 }
 
+RigidTransform turned(double angle, const Vector3d& axis) {
+  return RigidTransform(AngleAxisd(angle, axis));
+}
+
+using Quaternion = std::array<double, 4>;
+
+/// Checks four numbers to rounding: each is a sine, a cosine or a root away from the matrix.
+void check_same(const Quaternion& found, const Quaternion& expected) {
+  for (int i = 0; i < 4; ++i) {
+    CAPTURE(i, found[i], expected[i]);
+    CHECK(std::abs(found[i] - expected[i]) < 1e-15);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("Poses written with few digits are inverted as they are", "[geometry][rigid_transform]") {
@@ -46,6 +63,40 @@ TEST_CASE("Poses written with few digits are inverted as they are", "[geometry][
     CHECK((inverted(written) * written).matrix().isIdentity(1e-14));
     CHECK_FALSE((written.inverse() * written).matrix().isIdentity(1e-9));
   }
+}
+
+TEST_CASE("Of the two quaternions of a rotation one is stated, without negative zeros",
+          "[geometry][rigid_transform]") {
+  check_same(rotation_wxyz(RigidTransform::Identity()), {1, 0, 0, 0});
+  // By 200° about x the scalar of the half angle is negative: it is a turn by 160° the other way.
+  const double half = 80.0 * std::numbers::pi / 180.0;
+  check_same(rotation_wxyz(turned(200.0 * std::numbers::pi / 180.0, Vector3d::UnitX())),
+             {std::cos(half), -std::sin(half), 0, 0});
+  // A half turn about (-0.6, 0.8, 0) is one about its negative. Its matrix is 2 n nᵀ - 1.
+  const Vector3d n(-0.6, 0.8, 0.0);
+  RigidTransform half_turn = RigidTransform::Identity();
+  half_turn.linear() = 2.0 * n * n.transpose() - Eigen::Matrix3d::Identity();
+  const Quaternion of_half_turn = rotation_wxyz(half_turn);
+  check_same(of_half_turn, {0, 0.6, -0.8, 0});
+  CHECK_FALSE(std::signbit(of_half_turn[0]));
+  CHECK_FALSE(std::signbit(of_half_turn[3]));
+}
+
+TEST_CASE("A pose comes back from its translation and its quaternion",
+          "[geometry][rigid_transform]") {
+  Random random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    const RigidTransform X_AB = random_pose(random);
+    const Quaternion wxyz = rotation_wxyz(X_AB);
+    const RigidTransform again = rigid_transform(X_AB.translation(), wxyz);
+    CHECK(again.translation() == X_AB.translation());
+    CHECK((again.linear() - X_AB.linear()).norm() < 1e-14);
+    CHECK(is_rotation(again));
+    // A quaternion of any length is the rotation of the unit one.
+    const Quaternion twice = {2 * wxyz[0], 2 * wxyz[1], 2 * wxyz[2], 2 * wxyz[3]};
+    CHECK((rigid_transform(X_AB.translation(), twice).matrix() - again.matrix()).norm() < 1e-14);
+  }
+  CHECK(rigid_transform({1, 2, 3}, {0, 0, 0, 0}).linear() == Eigen::Matrix3d::Identity());
 }
 
 }  // namespace test_rigid_transform

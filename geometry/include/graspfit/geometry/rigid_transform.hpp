@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "graspfit/base/floating_point.hpp"
 
@@ -38,5 +39,16 @@ inline RigidTransform inverted(const RigidTransform& X) {
 inline RigidTransform relative_pose(const RigidTransform& X_OA, const RigidTransform& X_OB) {
   return inverted(X_OA) * X_OB;
 }
+
+/// The rotation of a pose as files state it: a unit quaternion (w, x, y, z) with w ≥ 0; of the two
+/// with w = 0, the one whose first nonzero component is positive. No component is a negative zero
+/// or, for rounding, beyond one. Rounded. Precondition: `is_rotation`, or nearly so.
+std::array<double, 4> rotation_wxyz(const RigidTransform& X_AB);
+
+/// The pose of a translation and a quaternion (w, x, y, z). The quaternion is normalized, so that
+/// one with few digits gives a rotation; the zero quaternion does not turn. Rounded. Numbers are
+/// taken as they are: those that are not finite are in the pose, too.
+RigidTransform rigid_transform(const Eigen::Vector3d& translation,
+                               const std::array<double, 4>& rotation_wxyz);
 
 }  // namespace graspfit::geometry
