@@ -25,8 +25,9 @@ PRIVATE_HEADERS = {
     # One place loads models of MuJoCo and turns its errors into exceptions. Public headers do not
     # show MuJoCo's types, and a build without MuJoCo has none.
     ("grasp/hold_test", "hands"): {"import/mujoco_model.hpp"},
-    # Motion files write poses as grasp files do, and a motion is proven free as a way to a grasp is.
-    ("grasp/motion", "grasp"): {"io/json_text.hpp", "io/record_json.hpp", "scene/straight_way.hpp"},
+    # Motion files write poses as grasp files do; a motion is proven free as the way to a grasp is.
+    ("grasp/motion", "grasp"): {"io/json_text.hpp", "io/record_json.hpp",
+                                "scene/straight_way.hpp"},
 }
 
 faults = []
@@ -92,7 +93,7 @@ def check_private_headers():
         listing = (module / "CMakeLists.txt").read_text()
         for owner in re.findall(r"\{PROJECT_SOURCE_DIR\}/([a-z_/]+)/src\b", listing):
             used.setdefault((name, owner), set())
-        for file in sorted(module.glob("src/**/*.[ch]pp")) + sorted(module.glob("include/**/*.hpp")):
+        for file in sorted([*module.glob("src/**/*.[ch]pp"), *module.glob("include/**/*.hpp")]):
             for include in includes(file):
                 if (module / "src" / include).is_file() or (file.parent / include).is_file():
                     continue

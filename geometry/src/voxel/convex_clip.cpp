@@ -6,6 +6,7 @@
 
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "query/indexed_triangle.hpp"
 #include "voxel/triangle_clip.hpp"
 
