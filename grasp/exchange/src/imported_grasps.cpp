@@ -66,9 +66,11 @@ class Completion {
   void add_to(Grasp& grasp, const ImportedGrasp& imported, std::vector<std::string>& notes) const {
     if (options_.pre_grasps) add_pre_grasp(grasp, imported, notes);
     if (grasp.contacts.empty()) return;
-    grasp.squeeze =
-        contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
-                                       torque_scale_, options_.squeeze_friction, options_.squeeze);
+    grasp.squeeze = contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts,
+                                                   {.center_of_mass_O = center_of_mass_,
+                                                    .torque_scale = torque_scale_,
+                                                    .friction = options_.squeeze_friction},
+                                                   options_.squeeze);
   }
 
  private:
