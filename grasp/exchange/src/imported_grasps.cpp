@@ -80,15 +80,14 @@ class Completion {
       notes.push_back(imported.name + ": no pre-grasp, as the grasp itself cuts something");
       return;
     }
+    const grasp::PreGraspScene scene{hand_, collision_, object_, surroundings_};
     if (imported.pre_grasp_q) {
-      grasp.pre_grasp =
-          grasp::internal::checked_pre_grasp(hand_, collision_, object_, surroundings_,
-                                             {grasp.configuration.X_OH, *imported.pre_grasp_q},
-                                             grasp.configuration, options_.pre_grasp);
+      grasp.pre_grasp = grasp::internal::checked_pre_grasp(
+          scene, {grasp.configuration.X_OH, *imported.pre_grasp_q}, grasp.configuration,
+          options_.pre_grasp);
       if (grasp.pre_grasp) return;
     }
-    grasp.pre_grasp = grasp::find_pre_grasp(hand_, collision_, object_, surroundings_,
-                                            grasp.configuration, options_.pre_grasp);
+    grasp.pre_grasp = grasp::find_pre_grasp(scene, grasp.configuration, options_.pre_grasp);
     const std::string instead = grasp.pre_grasp ? "another one was found" : "none was found";
     notes.push_back(imported.name +
                     (imported.pre_grasp_q ? ": its pre-grasp is not clear of the object or has no "

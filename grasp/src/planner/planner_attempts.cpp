@@ -371,8 +371,9 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
     PreGraspOptions pre_grasp = options_.pre_grasp;
     // Targets by reach are met by whatever the joints can do.
     if (options_.targets.search == TargetSearch::Reach) pre_grasp.open_neutral = true;
-    grasp.pre_grasp = find_pre_grasp(hand_, fitting_hand_.collision(), object_.query, surroundings_,
-                                     grasp.configuration, pre_grasp);
+    grasp.pre_grasp =
+        find_pre_grasp({hand_, fitting_hand_.collision(), object_.query, surroundings_},
+                       grasp.configuration, pre_grasp);
   }
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;
