@@ -66,9 +66,11 @@ class Completion {
   void add_to(Grasp& grasp, const ImportedGrasp& imported, std::vector<std::string>& notes) const {
     if (options_.pre_grasps) add_pre_grasp(grasp, imported, notes);
     if (grasp.contacts.empty()) return;
-    grasp.squeeze =
-        contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
-                                       torque_scale_, options_.squeeze_friction, options_.squeeze);
+    grasp.squeeze = contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts,
+                                                   {.center_of_mass_O = center_of_mass_,
+                                                    .torque_scale = torque_scale_,
+                                                    .friction = options_.squeeze_friction},
+                                                   options_.squeeze);
   }
 
  private:
@@ -78,15 +80,14 @@ class Completion {
       notes.push_back(imported.name + ": no pre-grasp, as the grasp itself cuts something");
       return;
     }
+    const grasp::PreGraspScene scene{hand_, collision_, object_, surroundings_};
     if (imported.pre_grasp_q) {
-      grasp.pre_grasp =
-          grasp::internal::checked_pre_grasp(hand_, collision_, object_, surroundings_,
-                                             {grasp.configuration.X_OH, *imported.pre_grasp_q},
-                                             grasp.configuration, options_.pre_grasp);
+      grasp.pre_grasp = grasp::internal::checked_pre_grasp(
+          scene, {grasp.configuration.X_OH, *imported.pre_grasp_q}, grasp.configuration,
+          options_.pre_grasp);
       if (grasp.pre_grasp) return;
     }
-    grasp.pre_grasp = grasp::find_pre_grasp(hand_, collision_, object_, surroundings_,
-                                            grasp.configuration, options_.pre_grasp);
+    grasp.pre_grasp = grasp::find_pre_grasp(scene, grasp.configuration, options_.pre_grasp);
     const std::string instead = grasp.pre_grasp ? "another one was found" : "none was found";
     notes.push_back(imported.name +
                     (imported.pre_grasp_q ? ": its pre-grasp is not clear of the object or has no "

@@ -204,7 +204,7 @@ class Pincher {
   /// The squarest pinch that local search finds in a class of openings from `q`, which may be of
   /// another class. Empty if it does not get into the class.
   template <class IsClear>
-  std::optional<Pinch> improved(VectorXd q, double smallest, double largest,
+  std::optional<Pinch> improved(const VectorXd& q, double smallest, double largest,
                                 const IsClear& is_clear) const {
     // Openings outside the class are worse than any lean in it, the more so the farther outside.
     const auto value_of = [&](const Facing& facing) {
@@ -219,13 +219,15 @@ class Pincher {
       if (!facing || !(value_of(*facing) > best) || !is_clear(trial)) return std::nullopt;
       return value_of(*facing);
     };
-    const double share = has_grid_ ? 1.0 / (per_group_ - 1) : 0.5;
-    const int num_drawn = kDrawnPerGroup * static_cast<int>(joints_.all.size());
-    internal::move_on(hand_.model(), joints_.all, share, num_drawn, kFinest, value_of(*start), q,
-                      value);
-    const Facing end = *facing_at(q);
+    const internal::SearchSteps steps{
+        .first_share = has_grid_ ? 1.0 / (per_group_ - 1) : 0.5,
+        .finest = kFinest,
+        .num_drawn = kDrawnPerGroup * static_cast<int>(joints_.all.size())};
+    const VectorXd squarest =
+        internal::move_on(hand_.model(), joints_.all, steps, {value_of(*start), q}, value).q;
+    const Facing end = *facing_at(squarest);
     if (end.opening < smallest || end.opening >= largest) return std::nullopt;
-    return Pinch{end.opening, end.lean, pads(), q};
+    return Pinch{end.opening, end.lean, pads(), squarest};
   }
 
   std::vector<int> pads() const {
