@@ -12,6 +12,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/shapes.hpp"
 
 namespace graspfit::hands::internal {

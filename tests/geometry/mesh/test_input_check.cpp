@@ -17,6 +17,7 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/rest_pose.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"

@@ -8,6 +8,7 @@
 
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 namespace graspfit::grasp {

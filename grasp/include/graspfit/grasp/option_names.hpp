@@ -9,7 +9,7 @@
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/contact/wrench_convention.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/grasp/contact_score_map.hpp"
 #include "graspfit/grasp/planner_options.hpp"
