@@ -60,9 +60,13 @@ class JsonWriter {
   void other_pad(const TargetContact& target, const char* key) {
     if (target.pad) pad(*target.pad, key);
   }
-  template <class Part>
-  void part(const Part& part, const char* key) {
-    json_[key] = finger_name(*hand_, part);
+  void part(const std::optional<int>& finger, const char* key) {
+    json_[key] = hand_->part_name(finger);
+  }
+  /// Null where the target is not assigned.
+  void part(const TargetContact& target, const char* key) {
+    json_[key] =
+        target.is_palm || target.finger ? Json(hand_->part_name(target.finger)) : Json(nullptr);
   }
   /// An empty index is −1.
   void index(const std::optional<int>& index, const char* key) { json_[key] = index.value_or(-1); }
