@@ -21,7 +21,7 @@ PRIVATE_HEADERS = {
     # The pre-grasp of another tool is checked as ours are; users ask find_pre_grasp for one.
     ("grasp/exchange", "grasp"): {"approach/checked_pre_grasp.hpp"},
     # The report of a hold test is text of the same form as grasp files.
-    ("grasp/hold_test", "grasp"): {"io/json_text.hpp"},
+    ("grasp/hold_test", "grasp"): {"io/json_text.hpp", "io/record_json.hpp"},
     # One place loads models of MuJoCo and turns its errors into exceptions. Public headers do not
     # show MuJoCo's types, and a build without MuJoCo has none.
     ("grasp/hold_test", "hands"): {"import/mujoco_model.hpp"},
