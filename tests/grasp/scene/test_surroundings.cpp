@@ -198,7 +198,6 @@ TEST_CASE("Nothing around touches nothing; what makes no sense is refused",
   CHECK_THROWS_WITH(SurroundingsCollision(hand, {{}, {closed, MeshQuery(open)}}),
                     testing::Contains("obstacle 1 is not closed (3 boundary edges"));
   CHECK_THROWS_AS(SurroundingsCollision(hand, {{}, {MeshQuery(open)}}), InvalidInput);
-  const hands::HandCollision collision(hand);
   for (const Surroundings& around : {with_table(0.0), Surroundings{{}, {closed}}}) {
     const SurroundingsCollision surroundings(hand, around);
     RigidTransform X = RigidTransform::Identity();
