@@ -41,6 +41,11 @@ class JsonWriter {
       json_[key] = json_of(value);
     }
   }
+  /// A value that no file is without.
+  template <class Value>
+  void required(const std::optional<Value>& value, const char* key) {
+    json_[key] = json_of(value);
+  }
   /// A field that has the same text in every file.
   void constant(std::string_view text, const char* key) { json_[key] = std::string(text); }
   /// JSON has no infinity: it is a text.
@@ -139,6 +144,10 @@ class JsonReader {
     } else {
       read(node_.at(key), value);
     }
+  }
+  template <class Value>
+  void required(std::optional<Value>& value, const char* key) const {
+    read(node_.at(key), value.emplace());
   }
   void constant(std::string_view text, const char* key) const {
     const base::JsonValue node = node_.at(key);
