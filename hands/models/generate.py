@@ -4,8 +4,8 @@
     generate.py [--out FOLDER]      default: the folder of this script
 
 One module of `generator` per hand. Every number comes from the table of its hand there, each with
-its source; shapes are built from those numbers and nothing else, so that running it twice gives the
-same bytes.
+its source; shapes are built from those numbers and nothing else, so that running it twice with the
+same Python on the same processor gives the same bytes.
 """
 
 import argparse

@@ -67,6 +67,9 @@ class Plan(program.ProgramTest):
         for width, expected in zip(said.groups()[2:], tips.groups()):
             self.assertAlmostEqual(int(width), int(expected), delta=10)
         self.assertNotIn("press on the palm", self.plan().stdout)
+        # Without friction pads may not lean at all, and those of the Barrett hand always do.
+        done = self.plan("--target-search", "reach", "--style", "auto", "--friction", "0")
+        self.assertIn("two fingertips of barrett pinch nothing squarely at friction 0\n", done.stdout)
 
     def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
         def options(*flags):

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "graspfit/geometry/distance_map.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/grasp/contact_score_map.hpp"
 #include "graspfit/hands/hand_library.hpp"

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"

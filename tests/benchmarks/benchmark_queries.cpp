@@ -39,6 +39,7 @@
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"

@@ -163,9 +163,87 @@ def special_cases(tables):
 
 
 def force_closure(tables):
-    for row in tables.table("force_closure").itertuples():
+    rows = tables.table("force_closure").merge(tables.table("force_closure.timing")[["grip", "grasps_cpu_s", "prepare_s"]], on="grip")
+    rows["closed"] = (rows["closed_share"] * rows["grasps"]).round().astype(int)
+    for row in rows.itertuples():
         yield (f"| `{row.grip}` | {row.attempts} | {row.grasps} | {percent(row.closed_share)} "
-               f"| {max(row.median_epsilon, 0.0):.3f} |")
+               f"| {max(row.median_epsilon, 0.0):.3f} | {row.grasps_cpu_s / row.closed:.2f} |")
+    reach = rows.set_index("grip").loc["auto_reach"]
+    yield (f"{reach['grasps_cpu_s'] / reach['closed']:.2f} s of processor time per closed grasp, {reach['grasps_cpu_s']:.2f} s for "
+           f"{reach['closed']} in {reach['attempts']} attempts")
+    yield f"preparing the object took {reach['prepare_s']:.2f} s"
+
+
+#: What is known of a candidate before it is fitted, as columns of candidate_prediction end.
+PREDICTORS = ("targets", "posture", "reach")
+#: Stages of an attempt, as columns of the timings and in words.
+STAGES = {
+    "targets_s": "target contacts took", "fitting_s": "the adjustment loop", "refinement_s": "refinement",
+    "measure_s": "contacts, measures and exact tests", "pre_grasp_s": "ways in and squeezes",
+}
+#: Ends of the classes of distances between contacts and their targets [m].
+NEARNESS = (0.008, 0.015, 0.030)
+
+
+def median_and_range(values, form):
+    """Returns a median, in brackets smallest and largest, each as `form` writes it, without a zero's sign."""
+    middle, least, most = (format(round(value, 4) + 0.0, form) for value in (values.median(), values.min(), values.max()))
+    return f"{middle} ({least} to {most})"
+
+
+def candidate_rows(cells):
+    """Yields a row per hand, size and object, and one of all cells: medians and ranges over cells."""
+    groups = [("all", cells)]
+    for axis in ("hand", "size", "object"):
+        groups += [(str(value).replace("_", " "), group) for value, group in cells.groupby(axis, sort=False)]
+    for name, group in groups:
+        correlations = " | ".join(median_and_range(group[f"rank_correlation_by_{by}"], ".2f") for by in PREDICTORS)
+        yield (f"| {name} | {median_and_range(group['valid'], 'g')} | {median_and_range(group['closed'], 'g')} "
+               f"| {median_and_range(1000 * group['distance'], '.1f')} | {median_and_range(100 * group['reach_square_share'], '.1f')} | {correlations} |")
+
+
+def candidate_prediction(tables):
+    keys = ["object", "size", "hand"]
+    details = tables.table("candidate_prediction.details")
+    valid = details[details["closed"].notna()]
+    cells = tables.table("candidate_prediction").merge(
+        valid.groupby(keys)["target_distance_m"].median().rename("distance").reset_index(), on=keys)
+    manifest = json.loads((tables.folder / "candidate_prediction.manifest.json").read_text(encoding="utf-8"))
+    yield f"the program is {manifest['commit'][:7]}"
+    attempts, candidates = cells["attempts"].unique().item(), cells["candidates"].unique().item()
+    yield (f"{len(cells)} cells of {attempts} attempts, each of which fits {candidates // attempts} candidates: {len(details)} in all, "
+           f"of which {len(valid)} are valid and {int(valid['closed'].sum())} close")
+    yield from candidate_rows(cells)
+
+    with_both = cells[[f"auc_by_{by}" for by in PREDICTORS]].dropna()
+    yield ("{:.2f} for targets, {:.2f} for posture, {:.2f} for reach".format(*with_both.median())
+           + f" in the median of the {len(with_both)} cells with both kinds")
+    shares = [percent(cells[f"best_quarter_closed_by_{by}"].mean()) for by in PREDICTORS]
+    yield "{}, {} and {} close in the quarter that is best by each".format(*shares) + f", {percent(valid['closed'].sum() / len(details))} of all"
+    by_hand = 1000 * valid.groupby("hand")["target_distance_m"].median()
+    yield f"{1000 * valid['target_distance_m'].median():.0f} mm in the median ({by_hand.min():.0f} to {by_hand.max():.0f} mm by hand)"
+    classes = valid.groupby(numpy.digitize(valid["target_distance_m"], NEARNESS))
+    ranks = [round(group["targets_epsilon"].corr(group["epsilon"], method="spearman"), 2) + 0.0 for _, group in classes]
+    closures = [percent(group["closed"].mean()) for _, group in classes]
+    ends = [f"{1000 * end:.0f} mm" for end in NEARNESS]
+    yield (f"is {ranks[0]:.2f} where contacts are less than {ends[0]} from them ({len(classes.get_group(0))} candidates, {closures[0]} closed), "
+           f"{ranks[1]:.2f} up to {ends[1]}, {ranks[2]:.2f} up to {ends[2]} and {ranks[3]:.2f} beyond ({closures[3]} closed)")
+
+    sides = cells["reach_sides"].unique().item()
+    square = cells["reach_square_share"] * sides
+    yield (f"{square.sum():.0f} of {sides * len(cells)} are reached squarely, none in {(square == 0).sum()} of {len(cells)} cells")
+    yield f"{square[cells['hand'] == 'human'].sum():.0f} by the human hand, {square[cells['hand'] == 'barrett'].sum():.0f} by the Barrett hand"
+    yield (f"misses by {1000 * cells['reach_median_miss_m'].median():.1f} mm and leans by "
+           f"{numpy.degrees(cells['reach_median_lean_rad'].median()):.0f}°")
+
+    timing = tables.table("candidate_prediction.timing")
+    total = timing["plan_s"].sum()
+    shares = {stage: timing[stage].sum() / total for stage in STAGES}
+    yield (f"Of the {total:.0f} s that the planner took, " + ", ".join(f"{words} {100 * shares[stage]:.1f} %" for stage, words in STAGES.items()))
+    yield f"The other {100 * (1 - sum(shares.values())):.1f} %"
+    loop = timing.groupby("size", sort=False)[["fitting_s", "plan_s"]].sum()
+    loop = (100 * loop["fitting_s"] / loop["plan_s"]).round()
+    yield f"the loop's share falls from {loop.iloc[0]:.0f} % at 0.08 m to {loop.iloc[-1]:.0f} % at 0.20 m"
 
 
 def reach_grasps(tables):
@@ -175,6 +253,10 @@ def reach_grasps(tables):
            f"in {(table['force_closed_share'] >= 0.8 - 1e-9).sum()} of {len(table)} cells")
     yield (f"{table['palm_grasps'].sum()} press on the palm, {table['behind_tip_grasps'].sum()} with pads behind fingertips")
     yield f"{table['num_penetrating'].sum()} grasps penetrate, no contact is farther than {1000 * table['largest_gap_m'].max():.1f} mm from the surface"
+    bunny = table[table["object"] == "bunny"]
+    closed, attempts, grasps = bunny["closed"].sum(), bunny["attempts"].sum(), bunny["grasps"].sum()
+    yield (f"In the {len(bunny)} cells of the bunny {percent(closed / attempts)} of the attempts end with a closed grasp ({closed} of {attempts}), and "
+           f"{percent(closed / grasps)} of the valid grasps close ({closed} of {grasps})")
     for (name, hand), group in table.groupby(["object", "hand"], sort=False):
         cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.median_target_distance_m:.1f}" for row in group.itertuples())
         yield f"| {name} | {hand} | {cells} |"

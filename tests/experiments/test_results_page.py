@@ -58,6 +58,9 @@ SECTIONS = {
     "### Table 1, other readings": (statements.table1_readings, (*TABLE1_NAMES, PAPER_OF_TABLE1)),
     "### Table 1, refined": (statements.table1_refined, TABLE1_NAMES),
     "### Table 1, all objects": (statements.table1_all_objects, TABLE1_NAMES),
+    "## What is known of a candidate before it is fitted": (
+        statements.candidate_prediction,
+        (r"0\.08, 0\.12 and 0\.20 m", r"seed 1", r"μ = 0\.4", r"5 mm", r"15°", r"\(0\.5: says nothing\)", r"512 per cell", r"valid of 96 \| closed of 96")),
     "## Targets that the hand can meet": (
         statements.reach_grasps, (r"0\.(08|12|15|20|30) m", r"first 20", r"seed 1", r"μ = 0\.4", r"200 attempts")),
     "## Figures, tables and claims": (

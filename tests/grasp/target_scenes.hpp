@@ -98,7 +98,8 @@ inline TargetSelection select(const grasp::ObjectModel& object, const PartDistan
                               const RequestedParts& parts, const TargetOptions& options,
                               std::uint64_t seed) {
   base::Random random(seed);
-  return grasp::TargetSelector(object, distances, parts, options).select(random);
+  return grasp::TargetSelector(object, distances, parts, options, grasp::IdealMeasure{})
+      .select(random);
 }
 
 inline std::vector<int> patches_of(const grasp::TargetContacts& targets) {

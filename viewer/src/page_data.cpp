@@ -15,17 +15,13 @@ namespace {
 using base::InvalidInput;
 using geometry::RigidTransform;
 
-std::string finger_name(const hands::HandModel& hand, const std::optional<int>& finger) {
-  return finger ? hand.fingers[*finger].name : "palm";
-}
-
 Json contacts(const PageInput& input, const grasp::Grasp& grasp) {
   Json list = Json::array();
   for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
     const contact::Contact& contact = grasp.contacts[i];
     Json entry = {{"point", to_json(contact.point_O)},
                   {"normal", to_json(contact.inward_normal_O)},
-                  {"finger", finger_name(input.hand, contact.finger)},
+                  {"finger", input.hand.part_name(contact.finger)},
                   {"link", input.hand.links[contact.link].name},
                   {"gap", contact.gap},
                   {"area", contact.area},
@@ -47,7 +43,7 @@ Json targets(const PageInput& input, const grasp::Grasp& grasp) {
     list.push_back(
         {{"point", to_json(target.point_O)},
          {"normal", to_json(target.outward_normal_O)},
-         {"finger", target.is_palm || target.finger ? finger_name(input.hand, target.finger) : ""},
+         {"finger", target.is_palm || target.finger ? input.hand.part_name(target.finger) : ""},
          {"score", target.score}});
   }
   return list;

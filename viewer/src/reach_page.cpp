@@ -4,11 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/list_text.hpp"
+#include "graspfit/base/units.hpp"
 #include "page_template.hpp"
 
 namespace graspfit::viewer {
@@ -18,8 +18,6 @@ using hands::Pinch;
 using hands::PinchChart;
 using hands::PinchKind;
 using internal::escaped_for_html;
-
-constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 
 // Of the picture [pixels].
 constexpr double kWidth = 760.0;
@@ -77,7 +75,9 @@ class Axes {
     most_mm_ = std::max(tick_, tick_ * std::ceil(1e3 * largest / tick_ - 1e-9));
   }
   double x(double opening) const { return kLeft + (kRight - kLeft) * 1e3 * opening / most_mm_; }
-  double y(double lean) const { return kBottom - (kBottom - kTop) * lean / kDegree / kMostLean; }
+  double y(double lean) const {
+    return kBottom - (kBottom - kTop) * lean / base::kRadiansPerDegree / kMostLean;
+  }
   double most_mm() const { return most_mm_; }
   double tick() const { return tick_; }
 
@@ -101,7 +101,7 @@ std::string frame(const Axes& axes) {
   std::string text;
   const std::string grid = "stroke=\"#e2e4e3\"";
   for (double lean = 0.0; lean <= kMostLean; lean += 20.0) {
-    const double y = axes.y(lean * kDegree);
+    const double y = axes.y(lean * base::kRadiansPerDegree);
     text += line(kLeft, y, kRight, y, grid) + label(kLeft - 8, y + 4, "end", number(lean, 0));
   }
   for (double mm = 0.0; mm <= axes.most_mm() + 1e-9; mm += axes.tick()) {
@@ -165,7 +165,8 @@ std::string chart_element(const ReachScene& scene, const std::string& attributes
                     "\" font-family=\"system-ui, Noto Sans, DejaVu Sans, sans-serif\" "
                     "font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
   svg += frame(axes);
-  const double limit = axes.y(std::min(std::atan(scene.friction), kMostLean * kDegree));
+  const double limit =
+      axes.y(std::min(std::atan(scene.friction), kMostLean * base::kRadiansPerDegree));
   svg += line(kLeft, limit, kRight, limit, "stroke=\"#9a3b34\" stroke-dasharray=\"5 4\"");
   svg += label(kRight, limit - 5, "end", "friction " + number(scene.friction, 2), "#9a3b34");
   double x = kLeft;
@@ -257,7 +258,7 @@ std::string reach_page_html(const ReachScene& scene) {
     const Pinch& best = *hands::squarest(chart);
     html +=
         table_row({pinch_name(chart.kind), square_widths_text(chart, scene.friction),
-                   number(best.lean / kDegree) + "\u00b0",
+                   number(best.lean / base::kRadiansPerDegree) + "\u00b0",
                    number(1e3 * best.opening, 0) + " mm, " + pads_text(scene.hand, best, ", ")});
   }
   html += "</table>\n<table>\n";
@@ -272,7 +273,8 @@ std::string reach_page_html(const ReachScene& scene) {
     std::vector<std::string> cells = {opening_text(charts.front(), k)};
     for (const PinchChart& chart : charts) {
       const bool has_pinch = k < chart.pinches.size() && chart.pinches[k];
-      cells.push_back(has_pinch ? number(chart.pinches[k]->lean / kDegree) + "\u00b0" : "");
+      cells.push_back(
+          has_pinch ? number(chart.pinches[k]->lean / base::kRadiansPerDegree) + "\u00b0" : "");
     }
     html += table_row(cells);
   }

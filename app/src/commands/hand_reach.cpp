@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "commands/hand_commands.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/units.hpp"
 #include "graspfit/hands/pinch_chart.hpp"
 #include "graspfit/sweep/result_table.hpp"
 #include "graspfit/viewer/reach_page.hpp"
@@ -24,8 +24,6 @@ namespace {
 
 using hands::Pinch;
 using hands::PinchChart;
-
-constexpr double kDegree = std::numbers::pi / 180.0;  // [rad]
 
 Command reach_command() {
   Command command{
@@ -55,7 +53,7 @@ void print_widths(const viewer::ReachScene& scene) {
     const Pinch* const best = hands::squarest(chart);
     rows.push_back({viewer::pinch_name(chart.kind),
                     viewer::square_widths_text(chart, scene.friction),
-                    best ? fixed_decimal(best->lean / kDegree, 1) : "-",
+                    best ? fixed_decimal(best->lean / base::kRadiansPerDegree, 1) : "-",
                     best ? fixed_decimal(1e3 * best->opening, 0) : "-",
                     best ? viewer::pads_text(scene.hand, *best, ", ") : "-"});
   }
@@ -75,7 +73,8 @@ void print_leans(const viewer::ReachScene& scene) {
     std::vector<std::string> row = {viewer::opening_text(scene.charts.front(), k)};
     for (const PinchChart& chart : scene.charts) {
       const bool has_pinch = k < chart.pinches.size() && chart.pinches[k];
-      row.push_back(has_pinch ? fixed_decimal(chart.pinches[k]->lean / kDegree, 1) : "-");
+      row.push_back(has_pinch ? fixed_decimal(chart.pinches[k]->lean / base::kRadiansPerDegree, 1)
+                              : "-");
     }
     rows.push_back(std::move(row));
   }
@@ -132,7 +131,7 @@ ExitCode run_hand_reach(const std::vector<std::string>& arguments) {
   if (flags.has("html")) viewer::write_reach_page(flags.text("html"), scene);
   std::printf("%s at friction %s: pads may lean by %s degrees; the thumb is %s\n",
               scene.hand.name.c_str(), base::shortest_decimal(scene.friction).c_str(),
-              fixed_decimal(std::atan(scene.friction) / kDegree, 1).c_str(),
+              fixed_decimal(std::atan(scene.friction) / base::kRadiansPerDegree, 1).c_str(),
               scene.hand.fingers[scene.hand.thumb()].name.c_str());
   print_widths(scene);
   print_leans(scene);

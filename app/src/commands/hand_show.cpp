@@ -128,8 +128,8 @@ void print_pads(const HandModel& hand) {
   std::vector<std::vector<std::string>> rows = {
       {"pad", "finger", "link", "area_mm2", "inradius_mm", "height_mm", "clip_mm"}};
   for (const hands::ContactPad& pad : hand.pads) {
-    rows.push_back({pad.name, pad.finger ? name_or_dash(hand.fingers, pad.finger) : "palm",
-                    name_or_dash(hand.links, pad.link), fixed_decimal(1e6 * pad_area(pad), 1),
+    rows.push_back({pad.name, hand.part_name(pad.finger), name_or_dash(hand.links, pad.link),
+                    fixed_decimal(1e6 * pad_area(pad), 1),
                     fixed_decimal(1e3 * largest_boundary_distance(pad), 2),
                     fixed_decimal(1e3 * pad_height(pad), 2),
                     pad.clip_thickness ? fixed_decimal(1e3 * *pad.clip_thickness, 2) : "-"});

@@ -16,6 +16,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/sha256.hpp"
+#include "graspfit/base/units.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "graspfit/grasp/object_difference.hpp"
 #include "graspfit/hold_test/hold_batch.hpp"
@@ -37,8 +38,6 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using base::shortest_decimal;
 using hold_test::TestedGrasp;
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 Command hold_command() {
   const geometry::ConvexDecompositionOptions pieces;
@@ -167,7 +166,7 @@ std::string table_of(const hold_test::HoldReport& report) {
     rows.push_back({std::to_string(tested.index + 1), hold_test::name_of(tested.verdict.stage),
                     std::to_string(held) + '/' + std::to_string(loads.size()),
                     first_failure(tested.verdict, loads), fixed_decimal(1000.0 * shift, 1),
-                    fixed_decimal(kDegreesPerRadian * turn, 1),
+                    fixed_decimal(base::kDegreesPerRadian * turn, 1),
                     tested.margin ? fixed_decimal(tested.margin->force, 2) : "-",
                     tested.margin ? fixed_decimal(tested.margin->torque, 4) : "-"});
   }

@@ -119,7 +119,8 @@ po::options_description planner_options() {
   add_flags(request, groups::kRequest);
   po::options_description search = flags_of(groups::kSearch);
   add_option(search, "seed", "INTEGER", std::to_string(PlannerOptions{}.seed),
-             "of the random numbers; same seed, same grasps");
+             "of the random numbers; same seed, same grasps, by one build "
+             "on one processor");
   add_option(search, "threads", "INTEGER", "0",
              "attempts side by side; 0: as many as the machine has; the grasps do not depend on "
              "it");

@@ -68,7 +68,7 @@ bool parts_touch(std::span<const contact::Contact> contacts, const hands::HandMo
   std::set<std::string> touching;
   for (const contact::Contact& contact : contacts) {
     if (contact.gap > largest_gap) continue;
-    touching.insert(contact.finger ? hand.fingers[*contact.finger].name : "palm");
+    touching.insert(hand.part_name(contact.finger));
   }
   const std::set<std::string> wanted(parts.begin(), parts.end());
   if (touching.empty()) return false;

@@ -57,9 +57,12 @@ struct Measures {
 /// grasp's own squeeze may be for another friction.
 bool is_balanced(const Planned& planned, const grasp::Grasp& grasp, double torque_scale) {
   const grasp::PlannerOptions& options = planned.settings.options;
-  return contact::squeeze_configuration(
-             *planned.hand, grasp.configuration, grasp.contacts, planned.object.mass.center_of_mass,
-             torque_scale, options.friction, options.squeeze, grasp::bearing_gap(options))
+  return contact::squeeze_configuration(*planned.hand, grasp.configuration, grasp.contacts,
+                                        {.center_of_mass_O = planned.object.mass.center_of_mass,
+                                         .torque_scale = torque_scale,
+                                         .friction = options.friction,
+                                         .bearing_gap = grasp::bearing_gap(options)},
+                                        options.squeeze)
       .is_balanced;
 }
 

@@ -13,13 +13,13 @@
 // from all sides, none of which is fitted.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cells/planning_table.hpp"
 #include "cells/prediction_statistics.hpp"
+#include "graspfit/base/units.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/geometry/angle.hpp"
@@ -35,8 +35,8 @@ namespace {
 using Eigen::Vector3d;
 
 // A finger reaches a target squarely that it does not miss and on which its pad hardly leans.
-constexpr double kSquareMiss = 0.005;                            // [m]
-constexpr double kSquareLean = 15.0 * std::numbers::pi / 180.0;  // [rad]
+constexpr double kSquareMiss = 0.005;                           // [m]
+constexpr double kSquareLean = 15.0 * base::kRadiansPerDegree;  // [rad]
 // A distance that counts as a radian, as where the planner chooses among sides [m].
 constexpr double kMissPerRadian = 0.015;
 

@@ -126,9 +126,10 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   const ContactSet set = contact_set(cell);
   const std::shared_ptr<const hands::HandModel> hand = load_hand(set.hand);
   const std::vector<contact::Contact> contacts = contacts_on_pads(set, *hand);
-  const Eigen::Vector3d box = Eigen::Vector3d::Constant(2.0 * set.radius);
+  const Eigen::Vector3d corner = Eigen::Vector3d::Constant(set.radius);
   const contact::ContactQuality quality = contact::contact_quality(
-      contacts, {.normalizing_radius = 0.5 * box.norm(), .hand = hand.get()});
+      contacts,
+      {.normalizing_radius = contact::normalizing_radius({-corner, corner}), .hand = hand.get()});
 
   sweep::CellResult result{sweep::ResultRow(columns()),
                            sweep::ResultRow(std::vector<sweep::Column>())};

@@ -94,8 +94,7 @@ std::string contacts_text(const grasp::Grasp& grasp, const hands::HandModel& han
   constexpr double kHundredthsOfMillimeter = 1e5;
   std::string text;
   for (const contact::Contact& contact : grasp.contacts) {
-    const std::string part = contact.finger ? hand.fingers[*contact.finger].name : "palm";
-    text += (text.empty() ? "" : "; ") + part + ' ' +
+    text += (text.empty() ? "" : "; ") + hand.part_name(contact.finger) + ' ' +
             sweep::csv_field(std::round(contact.gap * kHundredthsOfMillimeter) / 100.0);
   }
   return text;

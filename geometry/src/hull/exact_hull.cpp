@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "exact/predicates.hpp"
-#include "mesh/disjoint_sets.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -99,7 +99,7 @@ class SolidHull {
  private:
   /// A facet is the set of coplanar triangles that hang together.
   void find_facets() {
-    DisjointSets sets(mesh_.number_of_faces());
+    base::DisjointSets sets(mesh_.number_of_faces());
     for (const Mesh::Edge_index edge : mesh_.edges()) {
       const Mesh::Halfedge_index side = mesh_.halfedge(edge);
       const Mesh::Halfedge_index other = mesh_.opposite(side);

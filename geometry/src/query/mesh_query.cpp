@@ -10,9 +10,9 @@
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/input_check.hpp"
 #include "query/indexed_mesh.hpp"
 #include "query/winding.hpp"
@@ -23,7 +23,7 @@ namespace {
 using internal::IndexedTriangle;
 
 std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
-  internal::DisjointSets sets(mesh.vertices.size());
+  base::DisjointSets sets(mesh.vertices.size());
   std::vector<char> is_used(mesh.vertices.size(), 0);
   for (const Face& f : mesh.faces) {
     for (int i = 0; i < 3; ++i) {
@@ -288,14 +288,6 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point, std::int32_t
   base::require(first >= 0 && first < num_faces, "MeshQuery::closest_point", "first", first,
                 ">= 0 and less than the number of faces");
   return nearest_point(*indexed_, point, first);
-}
-
-internal::Winding internal::winding_around(const MeshQuery& query, const Eigen::Vector3d& point) {
-  Winding winding(point);
-  query.indexed().tree().traverse(
-      [&](const Eigen::AlignedBox3d& box) { return winding.may_meet(box.min(), box.max()); },
-      [&](const IndexedTriangle& triangle) { winding.add(triangle.corners); });
-  return winding;
 }
 
 Containment MeshQuery::containment(const Eigen::Vector3d& point) const {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "graspfit/base/units.hpp"
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "shapes/implicit_surface.hpp"
 #include "shapes/shape_dimensions.hpp"
@@ -96,8 +97,8 @@ std::array<Hole, 3> holes(const BowlingBallDimensions& d) {
 // An octopus' arm in the half-plane (distance from the z axis, z): an arc of a circle,
 // parameterized by its heading above the horizontal.
 struct Arm {
-  static constexpr double kFirst = -55.0 * pi / 180.0;
-  static constexpr double kLast = 35.0 * pi / 180.0;
+  static constexpr double kFirst = -55.0 * base::kRadiansPerDegree;
+  static constexpr double kLast = 35.0 * base::kRadiansPerDegree;
   double start;  // distance of the first point from the z axis
   double root_radius;
   double tip_radius;

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "voxel/block.hpp"
 
 namespace graspfit::geometry::internal {
@@ -220,7 +220,7 @@ Neighbors neighbors(const Polygons& polygons, std::size_t num_vertices) {
 }
 
 bool is_one_part(const QuadMesh& net) {
-  DisjointSets parts(net.vertices.size());
+  base::DisjointSets parts(net.vertices.size());
   for (const auto& quad : net.quads) {
     for (std::size_t i = 1; i < quad.size(); ++i) parts.unite(quad[0], quad[i]);
   }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/input_check.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "solid/mesh_edges.hpp"
@@ -45,7 +45,7 @@ Moments moments(const TriangleMesh& mesh) {
 
 /// Whether the boxes of any two parts meet. Exact, about the cost of the sums.
 bool has_parts_that_may_overlap(const TriangleMesh& mesh) {
-  internal::DisjointSets vertices(mesh.vertices.size());
+  base::DisjointSets vertices(mesh.vertices.size());
   for (const Face& face : mesh.faces) {
     vertices.unite(face[0], face[1]);
     vertices.unite(face[1], face[2]);

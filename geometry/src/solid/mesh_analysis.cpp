@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/geometry/used_vertices.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/input_check.hpp"
 #include "query/face_tree.hpp"
 #include "query/overlapping_boxes.hpp"
@@ -14,7 +14,7 @@
 namespace graspfit::geometry {
 namespace {
 
-using internal::DisjointSets;
+using base::DisjointSets;
 using internal::FaceSide;
 
 /// Faces beyond the first with the same three vertices, in whatever order.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "mesh/disjoint_sets.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 #include "query/face_tree.hpp"
 #include "query/overlapping_boxes.hpp"
 #include "query/winding.hpp"
@@ -83,7 +83,7 @@ std::vector<FaceSide> sorted_sides(const TriangleMesh& mesh) {
 
 std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
                                          const std::vector<FaceSide>& sides) {
-  DisjointSets sets(mesh.faces.size());
+  base::DisjointSets sets(mesh.faces.size());
   for_each_edge(sides, [&](auto first, auto last) {
     for (auto other = first + 1; other < last; ++other) sets.unite(first->face, other->face);
   });

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "exact/predicates.hpp"
-#include "mesh/disjoint_sets.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 #include "mesh/vertex_welding.hpp"
 #include "solid/mesh_edges.hpp"
 
@@ -210,7 +210,7 @@ std::size_t make_consistent(TriangleMesh& mesh) {
 
 std::size_t split_nonmanifold(TriangleMesh& mesh) {
   const std::vector<FaceSide> sides = sorted_sides(mesh);
-  DisjointSets fans(3 * mesh.faces.size());
+  base::DisjointSets fans(3 * mesh.faces.size());
   const auto join = [&](const FaceSide& a, const FaceSide& b) {
     for (const std::int32_t vertex : {a.low(), a.high()}) {
       fans.unite(a.corner_at(vertex), b.corner_at(vertex));

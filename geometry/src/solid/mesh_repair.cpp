@@ -1,3 +1,5 @@
+#include "graspfit/geometry/mesh_repair.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -11,7 +13,6 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "mesh/input_check.hpp"

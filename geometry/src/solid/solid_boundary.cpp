@@ -18,8 +18,8 @@
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/input_check.hpp"
 #include "query/face_tree.hpp"
 #include "solid/crossing_faces.hpp"
@@ -221,7 +221,7 @@ class Builder {
   /// Adds the faces that cross nothing and bound the solid. The sides of such faces are the same
   /// throughout a set of them that is connected by edges with two faces.
   void add_whole_faces(const std::vector<Crossings>& met) {
-    internal::DisjointSets regions(mesh_.faces.size());
+    base::DisjointSets regions(mesh_.faces.size());
     internal::for_each_edge(internal::sorted_sides(mesh_), [&](auto first, auto last) {
       if (last - first == 2 && met[first->face].empty() && met[(first + 1)->face].empty()) {
         regions.unite(first->face, (first + 1)->face);

@@ -6,6 +6,7 @@
 
 #include "exact/predicates.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "query/indexed_triangle.hpp"
 #include "voxel/triangle_clip.hpp"
 
@@ -90,6 +91,9 @@ std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::in
 
 Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& point) {
   const std::vector<Eigen::Vector3d>& corners = piece.polygon;
+  base::require(!corners.empty(), "closest_point", "number of the piece's corners", 0,
+                "at least 1");
+  if (!point.allFinite()) throw base::InvalidInput("closest_point: the point is not finite");
   Eigen::Vector3d closest = corners.front();
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Eigen::Vector3d candidate =

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <queue>
 
-#include "mesh/disjoint_sets.hpp"
+#include "graspfit/base/disjoint_sets.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -53,7 +53,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   }
   first_of_row.push_back(runs.size());
 
-  DisjointSets sets(runs.size());
+  base::DisjointSets sets(runs.size());
   const auto unite_rows = [&](std::size_t row, std::size_t other) {
     std::size_t b = first_of_row[other];
     for (std::size_t a = first_of_row[row]; a < first_of_row[row + 1]; ++a) {

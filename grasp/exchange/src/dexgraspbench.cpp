@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/pose_numbers.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "npz.hpp"
 
 namespace graspfit::exchange {
@@ -19,7 +19,7 @@ void append_qpos(const hands::HandConfiguration* configuration, std::size_t num_
     return;
   }
   const Eigen::Vector3d p = configuration->X_OH.translation();
-  const auto wxyz = grasp::internal::rotation_wxyz(configuration->X_OH);
+  const auto wxyz = geometry::rotation_wxyz(configuration->X_OH);
   values.insert(values.end(), p.begin(), p.end());
   values.insert(values.end(), wxyz.begin(), wxyz.end());
   values.insert(values.end(), configuration->q.begin(), configuration->q.end());

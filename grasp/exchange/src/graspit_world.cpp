@@ -9,8 +9,8 @@
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "graspit_robot_file.hpp"
-#include "io/pose_numbers.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -29,7 +29,7 @@ double in_graspit_units(const hands::Joint& joint, double position) {
 }
 
 std::string full_transform(const geometry::RigidTransform& X) {
-  const auto [w, x, y, z] = grasp::internal::rotation_wxyz(X);
+  const auto [w, x, y, z] = geometry::rotation_wxyz(X);
   const Eigen::Vector3d p = kMillimetersPerMeter * X.translation();
   return '(' + shortest_decimal(w) + ' ' + shortest_decimal(x) + ' ' + shortest_decimal(y) + ' ' +
          shortest_decimal(z) + ")[" + shortest_decimal(p.x()) + ' ' + shortest_decimal(p.y()) +

@@ -9,7 +9,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "graspfit/grasp/planner_result.hpp"
-#include "io/recorded_hand.hpp"
+#include "graspfit/hands/hand_io.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -29,7 +29,7 @@ GraspFile empty_file(const grasp::ObjectFile& object, const hands::HandModel& ha
   GraspFile file;
   file.object = object.record;
   file.hand = hand;
-  file.link_mesh_sha256 = grasp::internal::link_mesh_hashes(hand);
+  file.link_mesh_sha256 = hands::link_mesh_hashes(hand);
   file.options = options;
   const grasp::RequestedParts requested = grasp::requested_parts(hand, options);
   if (requested.palm && !hand.palm.pad) {
@@ -66,9 +66,11 @@ class Completion {
   void add_to(Grasp& grasp, const ImportedGrasp& imported, std::vector<std::string>& notes) const {
     if (options_.pre_grasps) add_pre_grasp(grasp, imported, notes);
     if (grasp.contacts.empty()) return;
-    grasp.squeeze =
-        contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts, center_of_mass_,
-                                       torque_scale_, options_.squeeze_friction, options_.squeeze);
+    grasp.squeeze = contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts,
+                                                   {.center_of_mass_O = center_of_mass_,
+                                                    .torque_scale = torque_scale_,
+                                                    .friction = options_.squeeze_friction},
+                                                   options_.squeeze);
   }
 
  private:
@@ -78,15 +80,14 @@ class Completion {
       notes.push_back(imported.name + ": no pre-grasp, as the grasp itself cuts something");
       return;
     }
+    const grasp::PreGraspScene scene{hand_, collision_, object_, surroundings_};
     if (imported.pre_grasp_q) {
-      grasp.pre_grasp =
-          grasp::internal::checked_pre_grasp(hand_, collision_, object_, surroundings_,
-                                             {grasp.configuration.X_OH, *imported.pre_grasp_q},
-                                             grasp.configuration, options_.pre_grasp);
+      grasp.pre_grasp = grasp::internal::checked_pre_grasp(
+          scene, {grasp.configuration.X_OH, *imported.pre_grasp_q}, grasp.configuration,
+          options_.pre_grasp);
       if (grasp.pre_grasp) return;
     }
-    grasp.pre_grasp = grasp::find_pre_grasp(hand_, collision_, object_, surroundings_,
-                                            grasp.configuration, options_.pre_grasp);
+    grasp.pre_grasp = grasp::find_pre_grasp(scene, grasp.configuration, options_.pre_grasp);
     const std::string instead = grasp.pre_grasp ? "another one was found" : "none was found";
     notes.push_back(imported.name +
                     (imported.pre_grasp_q ? ": its pre-grasp is not clear of the object or has no "

@@ -9,7 +9,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
-#include "io/pose_numbers.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "yaml_node.hpp"
 
 namespace graspfit::exchange {
@@ -44,7 +44,7 @@ class Reader {
     if (!(std::abs(norm - 1.0) <= options_.largest_norm_error)) {
       orientation.fail("is no unit quaternion, its norm is " + shortest_decimal(norm));
     }
-    grasp.configuration.X_OH = grasp::internal::pose(node.at("position").vector3(), wxyz);
+    grasp.configuration.X_OH = geometry::rigid_transform(node.at("position").vector3(), wxyz);
     grasp.configuration.q = joints(node.at("cspace_position"));
     if (const auto before = node.find("pregrasp_cspace_position")) {
       grasp.pre_grasp_q = joints(*before);

@@ -1,6 +1,6 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
-#include "io/pose_numbers.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "yaml_text.hpp"
 
 namespace graspfit::exchange {
@@ -37,7 +37,7 @@ std::string isaac_grasp_yaml(const grasp::GraspFile& file) {
   for (std::size_t i = 0; i < file.grasps.size(); ++i) {
     const grasp::Grasp& grasp = file.grasps[i];
     const geometry::RigidTransform& X_OH = grasp.configuration.X_OH;
-    const auto [w, x, y, z] = grasp::internal::rotation_wxyz(X_OH);
+    const auto [w, x, y, z] = geometry::rotation_wxyz(X_OH);
     text += "  " + in_quotes("grasp_" + std::to_string(i)) +
             ":\n    confidence: " + yaml_number(grasp.quality.m / (1.0 + grasp.quality.m)) +
             "\n    position: " + yaml_list(X_OH.translation()) +

@@ -1,6 +1,6 @@
 #include "graspfit/exchange/moveit_grasp.hpp"
 
-#include "io/pose_numbers.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "yaml_text.hpp"
 
 namespace graspfit::exchange {
@@ -48,7 +48,7 @@ std::string message(const grasp::GraspFile& file, std::size_t index) {
   const hands::HandConfiguration* before =
       grasp.pre_grasp ? &grasp.pre_grasp->configuration : nullptr;
   const Eigen::Vector3d position = grasp.configuration.X_OH.translation();
-  const auto [w, x, y, z] = grasp::internal::rotation_wxyz(grasp.configuration.X_OH);
+  const auto [w, x, y, z] = geometry::rotation_wxyz(grasp.configuration.X_OH);
   return "- id: " + in_quotes("grasp_" + std::to_string(index)) + '\n' +
          posture("pre_grasp_posture", hand, base, before ? &before->q : nullptr) +
          posture("grasp_posture", hand, base, &grasp.configuration.q) + "  grasp_pose:\n    " +

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "io/pose_numbers.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -57,7 +57,7 @@ class Document {
   /// A node below the root. Precondition: the mesh has faces.
   void add(const std::string& name, const geometry::TriangleMesh& mesh,
            const geometry::RigidTransform& X_OB, int material) {
-    const auto [w, x, y, z] = grasp::internal::rotation_wxyz(X_OB);
+    const auto [w, x, y, z] = geometry::rotation_wxyz(X_OB);
     const Eigen::Vector3d p = X_OB.translation();
     const int positions = add_positions(mesh);
     const int indices = add_indices(mesh);

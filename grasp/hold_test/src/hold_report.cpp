@@ -5,14 +5,15 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/hold_test/hold_parameters.hpp"
 #include "io/json_text.hpp"
+#include "io/record_json.hpp"
 
 namespace graspfit::hold_test {
 namespace {
 
 using base::shortest_decimal;
-using Json = nlohmann::ordered_json;
-
-Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+using grasp::internal::Json;
+using grasp::internal::or_null;
+using grasp::internal::to_json;
 
 Json conventions() {
   return {
@@ -74,7 +75,7 @@ Json direction_json(const std::string& name, const DirectionVerdict& direction) 
   return {{"load", name},
           {"direction_O", to_json(direction.direction_O)},
           {"stage", name_of(direction.stage)},
-          {"failed_at_s", direction.failed_at ? Json(*direction.failed_at) : Json(nullptr)},
+          {"failed_at_s", or_null(direction.failed_at)},
           {"largest_shift_m", direction.largest_shift},
           {"largest_turn_rad", direction.largest_turn}};
 }

@@ -63,7 +63,9 @@ int HoldRun::num_steps(double duration) const {
                                std::numeric_limits<int>::max());
 }
 
-RigidTransform HoldRun::X_HB() const { return physics_.hand().X_OH.inverse() * physics_.X_OB(); }
+RigidTransform HoldRun::X_HB() const {
+  return geometry::relative_pose(physics_.hand().X_OH, physics_.X_OB());
+}
 
 HoldRun::Motion HoldRun::motion(const RigidTransform& before, const RigidTransform& now) const {
   const Eigen::Vector3d& center = object_.center_of_mass_O;

@@ -99,8 +99,8 @@ void require_possible(const JsonValue& end, const MotionSegment& segment) {
   if (!are_same(segment.from.q, segment.to.q)) {
     end.at("q").fail("is not as before, and joints do not move in phase " + phase);
   }
-  if (!are_same(segment.X_WO_from.inverse() * segment.from.X_OH,
-                segment.X_WO_to.inverse() * segment.to.X_OH)) {
+  if (!are_same(geometry::relative_pose(segment.X_WO_from, segment.from.X_OH),
+                geometry::relative_pose(segment.X_WO_to, segment.to.X_OH))) {
     end.at("X_WH").fail("is not the hand's place against the object, which it keeps in phase " +
                         phase);
   }

@@ -91,7 +91,7 @@ class MoveSearch {
     for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
       if (other == object_) continue;
       const SceneObject& standing = scene_.object(other);
-      const RigidTransform X_SO = X_WO_[other].inverse() * X_WO_goal_;
+      const RigidTransform X_SO = geometry::relative_pose(X_WO_[other], X_WO_goal_);
       if (geometry::do_intersect(standing.surface_O, moved.surface_O, X_SO)) {
         ++attempt_.failures["the goal is taken by " + standing.name];
       }
@@ -113,7 +113,7 @@ class MoveSearch {
   grasp::Surroundings surroundings_at_both_ends() const {
     grasp::Surroundings around;
     around.table_z_O = 0.0;
-    const RigidTransform X_from_goal = X_WO_start_ * X_WO_goal_.inverse();
+    const RigidTransform X_from_goal = X_WO_start_ * geometry::inverted(X_WO_goal_);
     const bool turns_over = X_from_goal.linear()(2, 2) < 1.0 - 1e-12;
     constexpr double kLevel = 1e-9;  // [m] start and goal on one table, but for rounding
     if (turns_over) {
@@ -182,7 +182,7 @@ class MoveSearch {
 
   /// The grasp seen from an object that has moved to `X_WO`.
   HandConfiguration carried(const HandConfiguration& at_start, const RigidTransform& X_WO) const {
-    return {X_WO * (X_WO_start_.inverse() * at_start.X_OH), at_start.q};
+    return {X_WO * geometry::relative_pose(X_WO_start_, at_start.X_OH), at_start.q};
   }
 
   MotionSegment free_hand(MotionPhase phase, const HandConfiguration& from,

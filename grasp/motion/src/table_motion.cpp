@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -16,7 +17,6 @@
 #include "graspfit/geometry/used_vertices.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "scene/infinity.hpp"
 #include "scene/straight_way.hpp"
 
 namespace graspfit::motion {
@@ -26,6 +26,8 @@ using geometry::RigidTransform;
 using hands::HandConfiguration;
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Depth to which an object that rests on the table may be in it [m]: rounding of its pose.
 constexpr double kRestTolerance = 1e-9;
@@ -84,7 +86,7 @@ class Travel {
     const auto X_WL = hands::forward_kinematics(scene.hand(), segment.from);
     const Vector3d pivot_W = segment.X_WO_from * pivot_O;
     for (std::size_t link = 0; link < num_links; ++link) {
-      const Vector3d pivot_L = X_WL[link].inverse() * pivot_W;
+      const Vector3d pivot_L = geometry::inverted(X_WL[link]) * pivot_W;
       links_.push_back(path +
                        turn * geometry::largest_radius(scene.hand().links[link].mesh_L, pivot_L));
     }
@@ -210,7 +212,7 @@ class SegmentProof {
     const bool is_handled = other == segment_.object;
     if (is_handled && is_carrying(segment_.phase)) return std::nullopt;
     const auto index = static_cast<std::size_t>(other);
-    const RigidTransform X_OW = (is_handled ? segment_.X_WO_from : X_WO_[index]).inverse();
+    const RigidTransform X_OW = geometry::inverted(is_handled ? segment_.X_WO_from : X_WO_[index]);
     const SceneObject& object = scene_.object(other);
     const double tolerance = is_handled && is_touching(segment_.phase) ? kTouchTolerance : 0.0;
     const auto is_apart = [&](const geometry::MeshQuery& body, double travel, const auto& X_WB) {
@@ -248,8 +250,8 @@ class SegmentProof {
           const RigidTransform& X_WA = at.X_WL[a];
           const RigidTransform& X_WB = at.X_WL[b];
           return surface_distance(*scene_.collision().link_solid(a),
-                                  *scene_.collision().link_solid(b), X_WA.inverse() * X_WB, enough,
-                                  0.0, seed);
+                                  *scene_.collision().link_solid(b),
+                                  geometry::relative_pose(X_WA, X_WB), enough, 0.0, seed);
         });
         if (!is_apart) return Collision{link_name(scene_, a), link_name(scene_, b)};
       }
@@ -287,7 +289,7 @@ double TableScene::height_of_link(int link, const RigidTransform& X_WL, double e
 }
 
 double TableScene::height_of_object(int object, const RigidTransform& X_WO) const {
-  double lowest = grasp::internal::kInfinity;
+  double lowest = kInfinity;
   for (const Vector3d& corner : hull_O(object).vertices) {
     lowest = std::min(lowest, (X_WO * corner).z());
   }
@@ -323,7 +325,7 @@ MotionState state_at(const TableScene& scene, const MotionSegment& segment, doub
       grasp::interpolated({segment.X_WO_from * center, Eigen::VectorXd()},
                           {segment.X_WO_to * center, Eigen::VectorXd()}, share);
   MotionState state{segment.from, pivot.X_OH * center.inverse()};
-  state.hand.X_OH = state.X_WO * (segment.X_WO_from.inverse() * segment.from.X_OH);
+  state.hand.X_OH = state.X_WO * geometry::relative_pose(segment.X_WO_from, segment.from.X_OH);
   return state;
 }
 
@@ -341,7 +343,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
                              const MotionSegment& segment, double share) {
   const Posed at = posed(scene, segment, share);
   const bool carries = is_carrying(segment.phase);
-  MotionClearance nearest{grasp::internal::kInfinity, grasp::internal::kInfinity};
+  MotionClearance nearest{kInfinity, kInfinity};
   const std::vector<int> links = solid_links(scene);
   for (const int link : links) {
     const RigidTransform& X_WL = at.X_WL[link];
@@ -354,7 +356,7 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
     const bool is_handled = static_cast<int>(other) == segment.object;
     if (is_handled && (carries || is_touching(segment.phase))) continue;
     const geometry::MeshQuery& surface = scene.objects()[other].surface_O;
-    const RigidTransform X_OW = (is_handled ? segment.X_WO_from : X_WO[other]).inverse();
+    const RigidTransform X_OW = geometry::inverted(is_handled ? segment.X_WO_from : X_WO[other]);
     const auto approach = [&](const geometry::MeshQuery& body, const RigidTransform& X_WB,
                               double& least) {
       const RigidTransform X_OB = X_OW * X_WB;
@@ -383,7 +385,7 @@ std::optional<Collision> find_overlap(const TableScene& scene, std::span<const R
     for (const int b : links) {
       if (b <= a || scene.hand().is_excluded(a, b)) continue;
       if (geometry::do_intersect(*scene.collision().link_solid(a), *scene.collision().link_solid(b),
-                                 X_WB(a).inverse() * X_WB(b))) {
+                                 geometry::relative_pose(X_WB(a), X_WB(b)))) {
         return Collision{link_name(scene, a), link_name(scene, b)};
       }
     }
@@ -394,7 +396,7 @@ std::optional<Collision> find_overlap(const TableScene& scene, std::span<const R
   for (std::size_t other = 0; other < scene.objects().size(); ++other) {
     const bool is_handled = static_cast<int>(other) == segment.object;
     const SceneObject& object = scene.objects()[other];
-    const RigidTransform X_OW = (is_handled ? at.state.X_WO : X_WO[other]).inverse();
+    const RigidTransform X_OW = geometry::inverted(is_handled ? at.state.X_WO : X_WO[other]);
     for (const int link : links) {
       if (scene.collision().link_intersects(object.surface_O, link, X_OW * X_WB(link))) {
         return Collision{link_name(scene, link), object.name};

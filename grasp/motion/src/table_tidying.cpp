@@ -207,7 +207,7 @@ TidyingResult tidy_table(const TableScene& scene, const std::vector<RigidTransfo
     }
     for (std::size_t b = 0; b < a; ++b) {
       if (geometry::do_intersect(scene.objects()[b].surface_O, object.surface_O,
-                                 X_WO_start[b].inverse() * X_WO_start[a])) {
+                                 geometry::relative_pose(X_WO_start[b], X_WO_start[a]))) {
         throw base::InvalidInput("tidy_table: " + scene.objects()[b].name + " and " + object.name +
                                  " start inside each other");
       }

@@ -12,10 +12,7 @@ namespace graspfit::grasp::internal {
 /// opens; its `retreat` is the distance that the palm is withdrawn against its direction, 0 if the
 /// palm is advanced instead.
 /// @throws as `find_pre_grasp`.
-std::optional<PreGrasp> checked_pre_grasp(const hands::HandModel& hand,
-                                          const hands::HandCollision& collision,
-                                          const geometry::MeshQuery& object,
-                                          const SurroundingsCollision& surroundings,
+std::optional<PreGrasp> checked_pre_grasp(const PreGraspScene& scene,
                                           const hands::HandConfiguration& start,
                                           const hands::HandConfiguration& grasp,
                                           const PreGraspOptions& options);

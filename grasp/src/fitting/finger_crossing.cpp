@@ -28,7 +28,7 @@ int num_meeting(const FittingHand& hand, const std::vector<int>& links,
   for (const int a : links) {
     for (const int b : others) {
       if (a == b || hand.model().is_excluded(a, b)) continue;
-      count += do_links_meet(hand, a, b, X_OL[a].inverse() * X_OL[b]) ? 1 : 0;
+      count += do_links_meet(hand, a, b, geometry::relative_pose(X_OL[a], X_OL[b])) ? 1 : 0;
     }
   }
   return count;
@@ -95,7 +95,7 @@ bool do_fingers_cross(const FittingHand& hand, const HandConfiguration& goal) {
   for (int a = 0; a < num_links; ++a) {
     for (int b = a + 1; b < num_links; ++b) {
       if (model.is_excluded(a, b)) continue;
-      if (do_links_meet(hand, a, b, X_OL[a].inverse() * X_OL[b])) return true;
+      if (do_links_meet(hand, a, b, geometry::relative_pose(X_OL[a], X_OL[b]))) return true;
     }
   }
   return false;

@@ -188,8 +188,8 @@ bool GuardedHand::meets_itself(const std::vector<int>& moved) {
   for (const auto& [a, b] : pairs_) {
     const bool is_b_moved = is_moved(b);
     if (!is_b_moved && !is_moved(a)) continue;
-    const RigidTransform X_AB = trial_X_OL_[a].inverse() * trial_X_OL_[b];
-    const RigidTransform before = X_OL_[a].inverse() * X_OL_[b];
+    const RigidTransform X_AB = geometry::relative_pose(trial_X_OL_[a], trial_X_OL_[b]);
+    const RigidTransform before = geometry::relative_pose(X_OL_[a], X_OL_[b]);
     if ((X_AB.matrix() - before.matrix()).cwiseAbs().maxCoeff() < kRounding) continue;
     if (!do_links_meet(hand_, a, b, X_AB) || do_links_meet(hand_, a, b, before)) continue;
     blocking_link_ = is_b_moved ? b : a;

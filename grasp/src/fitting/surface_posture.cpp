@@ -213,7 +213,7 @@ std::optional<SurfaceSearch::Wish> SurfaceSearch::overlap(
     Eigen::AlignedBox3d box = hand_.collision().link_solid(outer)->box();
     box.min().array() -= kSelfMargin;
     box.max().array() += kSelfMargin;
-    const RigidTransform X = X_OL[outer].inverse() * X_OL[inner];
+    const RigidTransform X = geometry::relative_pose(X_OL[outer], X_OL[inner]);
     const Eigen::AlignedBox3d& inner_box = hand_.collision().link_solid(inner)->box();
     if (box.exteriorDistance(Vector3d(X * inner_box.center())) >
         0.5 * inner_box.diagonal().norm()) {

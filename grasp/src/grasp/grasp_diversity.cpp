@@ -2,38 +2,17 @@
 
 #include <Eigen/SVD>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/option_check.hpp"
 
 namespace graspfit::grasp {
 namespace {
 
 using Configurations = std::span<const hands::HandConfiguration>;
-
-/// Sets of items, each named by one of them.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-  }
-  std::size_t name_of_set(std::size_t item) {
-    while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
-    return item;
-  }
-  /// Whether two sets became one.
-  bool join(std::size_t a, std::size_t b) {
-    a = name_of_set(a);
-    b = name_of_set(b);
-    parents_[a] = b;
-    return a != b;
-  }
-
- private:
-  std::vector<std::size_t> parents_;
-};
 
 /// A grasp as a point, with the coordinates that `grasp_diversity` describes.
 Eigen::VectorXd point_of(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
@@ -66,11 +45,11 @@ GraspDiversity grasp_diversity(const hands::HandModel& hand, Configurations conf
   diversity.num_grasps = diversity.num_clusters = static_cast<int>(configurations.size());
   if (configurations.empty()) return diversity;
   configuration_distance(hand, configurations[0], configurations[0], options.slide_scale);
-  DisjointSets clusters(configurations.size());
+  base::DisjointSets clusters(configurations.size());
   for (std::size_t i = 1; i < configurations.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!are_distinct(hand, configurations[i], configurations[j], options) &&
-          clusters.join(i, j)) {
+          clusters.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j))) {
         --diversity.num_clusters;
       }
     }

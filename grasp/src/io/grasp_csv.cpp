@@ -1,6 +1,6 @@
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
-#include "io/pose_numbers.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -42,7 +42,7 @@ std::string joint_cells(const Eigen::VectorXd& q) {
 std::string pose_cells(const RigidTransform& X_OH) {
   std::string cells;
   for (int axis = 0; axis < 3; ++axis) cells += ',' + shortest_decimal(X_OH.translation()[axis]);
-  for (double value : internal::rotation_wxyz(X_OH)) cells += ',' + shortest_decimal(value);
+  for (double value : geometry::rotation_wxyz(X_OH)) cells += ',' + shortest_decimal(value);
   return cells;
 }
 

@@ -48,10 +48,10 @@ constexpr auto mesh_fields = [](auto& at, auto& mesh) {
 constexpr auto convention_fields = [](auto& at, auto& convention) {
   at(convention.tool, "tool");
   at(convention.reference_point_O, "reference_point_O_m");
-  at(convention.options.torque_scale, "torque_scale_m");
+  at.required(convention.options.torque_scale, "torque_scale_m");
   at(convention.options.friction, "friction");
   at(convention.options.num_cone_edges, "num_cone_edges");
-  at(convention.options.norm, "norm");
+  at.constant("l1", "norm");  // The wrench space of grasp files has no other norm.
   at(convention.options.force_scaling, "force_scaling");
   at(convention.options.force_limit, "force_limit");
   at(convention.options.outside, "outside");

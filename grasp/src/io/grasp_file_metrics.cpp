@@ -9,7 +9,7 @@ GraspFileMetrics::GraspFileMetrics(const GraspFile& file, const geometry::MeshQu
   const geometry::TriangleMesh& mesh = object.mesh();
   const contact::QualityContext context{
       .center_of_mass_O = geometry::mass_properties(mesh).center_of_mass,
-      .normalizing_radius = 0.5 * geometry::bounding_box(mesh).diagonal().norm(),
+      .normalizing_radius = contact::normalizing_radius(geometry::bounding_box(mesh)),
       .hand = &file.hand};
   shared_.object = contact::wrench_object(mesh, context.center_of_mass_O);
   shared_.friction = file.options.friction;

@@ -7,7 +7,7 @@
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
-#include "io/recorded_hand.hpp"
+#include "graspfit/hands/hand_io.hpp"
 
 namespace graspfit::grasp {
 
@@ -24,7 +24,7 @@ GraspFile make_grasp_file(const ObjectRecord& record, const hands::HandModel& ha
   file.object = record;
   file.surroundings = surroundings;
   file.hand = hand;
-  file.link_mesh_sha256 = internal::link_mesh_hashes(hand);
+  file.link_mesh_sha256 = hands::link_mesh_hashes(hand);
   file.options = options;
   const RequestedParts requested = requested_parts(hand, options);
   for (int finger : requested.fingers) file.fingers.push_back(hand.fingers[finger].name);

@@ -50,7 +50,7 @@ Json pad_json(const hands::HandModel& hand, const hands::ContactPad& pad, double
   }
   return {{"name", pad.name},
           {"link", hand.links[pad.link].name},
-          {"finger", finger_name(hand, pad.finger)},
+          {"finger", hand.part_name(pad.finger)},
           {"X_LC", to_json(pad.X_LC)},
           {"outline_C_m", outline},
           {"surface_C_m", surface},

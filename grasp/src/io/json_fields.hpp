@@ -41,6 +41,13 @@ class JsonWriter {
       json_[key] = json_of(value);
     }
   }
+  /// A value that no file is without.
+  template <class Value>
+  void required(const std::optional<Value>& value, const char* key) {
+    json_[key] = json_of(value);
+  }
+  /// A field that has the same text in every file.
+  void constant(std::string_view text, const char* key) { json_[key] = std::string(text); }
   /// JSON has no infinity: it is a text.
   void open_number(double value, const char* key) {
     json_[key] = std::isinf(value) ? Json("infinity") : Json(value);
@@ -58,9 +65,13 @@ class JsonWriter {
   void other_pad(const TargetContact& target, const char* key) {
     if (target.pad) pad(*target.pad, key);
   }
-  template <class Part>
-  void part(const Part& part, const char* key) {
-    json_[key] = finger_name(*hand_, part);
+  void part(const std::optional<int>& finger, const char* key) {
+    json_[key] = hand_->part_name(finger);
+  }
+  /// Null where the target is not assigned.
+  void part(const TargetContact& target, const char* key) {
+    json_[key] =
+        target.is_palm || target.finger ? Json(hand_->part_name(target.finger)) : Json(nullptr);
   }
   /// An empty index is −1.
   void index(const std::optional<int>& index, const char* key) { json_[key] = index.value_or(-1); }
@@ -133,6 +144,14 @@ class JsonReader {
     } else {
       read(node_.at(key), value);
     }
+  }
+  template <class Value>
+  void required(std::optional<Value>& value, const char* key) const {
+    read(node_.at(key), value.emplace());
+  }
+  void constant(std::string_view text, const char* key) const {
+    const base::JsonValue node = node_.at(key);
+    if (node.text() != text) node.refuse("must be one of " + std::string(text));
   }
   void open_number(double& value, const char* key) const { read_open(node_.at(key), value); }
   void counts(std::map<std::string, std::int64_t>& counts, const char* key) const {

@@ -6,6 +6,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/sha256.hpp"
+#include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 
 namespace graspfit::grasp {
@@ -70,7 +71,7 @@ ObjectFile read_object_file(const std::filesystem::path& file, const ObjectReadO
     object.before = repaired.before;
     record.analysis = repaired.after;
     record.repairs = std::move(repaired.steps);
-    record.normalizing_radius = 0.5 * record.analysis.box.diagonal().norm();
+    record.normalizing_radius = contact::normalizing_radius(record.analysis.box);
     // Only `AsIs` lets a mesh through that is not closed; its mass is left at zero.
     if (record.analysis.is_closed && record.analysis.is_outward) {
       const geometry::MassProperties mass = geometry::mass_properties(object.mesh);

@@ -28,16 +28,6 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// What grasp files call the finger of a pad or contact.
-inline Json finger_name(const hands::HandModel& hand, const std::optional<int>& finger) {
-  return finger ? hand.fingers[*finger].name : "palm";
-}
-
-/// What grasp files call the finger of a target; null where the target is not assigned.
-inline Json finger_name(const hands::HandModel& hand, const TargetContact& target) {
-  return target.is_palm || target.finger ? finger_name(hand, target.finger) : Json(nullptr);
-}
-
 /// The parts of a grasp file about the object, the hand and the surroundings.
 Json object_json(const ObjectRecord& object, const std::optional<std::string>& used_mesh_file);
 Json hand_json(const GraspFile& file);

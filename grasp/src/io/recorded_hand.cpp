@@ -40,23 +40,12 @@ void check_hash(const std::string& what, const std::string& found, const std::st
 
 }  // namespace
 
-std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand) {
-  const fs::path folder = fs::weakly_canonical(hand.description_file).parent_path();
-  std::vector<std::string> hashes;
-  for (const hands::Link& link : hand.links) {
-    std::string bytes;
-    for (const std::string& file : link.mesh_files) bytes += base::read_file(folder / file);
-    hashes.push_back(link.mesh_files.empty() ? std::string() : base::sha256_hex(bytes));
-  }
-  return hashes;
-}
-
 hands::HandModel read_recorded_hand(const RecordedHand& record, const fs::path& grasp_folder) {
   hands::HandModel hand = hands::read_hand_model(find_description(record, grasp_folder));
   check_hash(hand.sidecar_file.empty() ? "what is derived from " + hand.description_file
                                        : "the sidecar " + hand.sidecar_file,
              hand.sidecar_sha256, record.sidecar_sha256);
-  const std::vector<std::string> hashes = link_mesh_hashes(hand);
+  const std::vector<std::string> hashes = hands::link_mesh_hashes(hand);
   if (hashes.size() != record.link_mesh_sha256.size()) {
     throw base::IoError("the hand has " + std::to_string(hashes.size()) + " links, the record " +
                         std::to_string(record.link_mesh_sha256.size()));

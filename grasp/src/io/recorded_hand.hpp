@@ -16,10 +16,6 @@ struct RecordedHand {
   std::vector<std::string> link_mesh_sha256;
 };
 
-/// SHA-256 of every link's mesh files, one after the other; empty for links without any. @throws
-/// IoError.
-std::vector<std::string> link_mesh_hashes(const hands::HandModel& hand);
-
 /// Finds and reads the hand of a record: at the recorded path, at that path relative to the grasp
 /// file's folder, beside the grasp file, or the shipped hand whose description has the same name.
 /// @throws IoError if there is none, or any of its files is not the one recorded.

@@ -38,7 +38,7 @@ Grasp RecordedScene::measure(const hands::HandConfiguration& configuration,
   const PlannerOptions& options = file_.options;
   contact::QualityContext context;
   context.center_of_mass_O = geometry::mass_properties(mesh).center_of_mass;
-  context.normalizing_radius = 0.5 * geometry::bounding_box(mesh).diagonal().norm();
+  context.normalizing_radius = contact::normalizing_radius(geometry::bounding_box(mesh));
   context.hand = &file_.hand;
   contact::QualityOptions quality_options = options.quality;
   quality_options.merge_distance = file_.merge_distance;

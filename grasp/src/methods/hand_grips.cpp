@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/units.hpp"
 #include "graspfit/geometry/angle.hpp"
 #include "targets/target_feasibility.hpp"
 
@@ -23,7 +23,7 @@ constexpr std::size_t kMostTableSamples = 512;  // of each pad of a pair
 constexpr std::size_t kMostPerClass = 64;
 constexpr double kDistanceStep = 0.005;  // [m]
 constexpr int kDistanceClasses = 80;
-constexpr double kLeanStep = 9.0 * std::numbers::pi / 180.0;
+constexpr double kLeanStep = 9.0 * base::kRadiansPerDegree;
 constexpr int kLeanClasses = 7;  // to 63 degrees
 
 /// The class of a pair; empty beyond the last ones.

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/units.hpp"
 #include "graspfit/hands/palm_pose.hpp"
 
 namespace graspfit::grasp::internal {
@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 using geometry::RigidTransform;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // An attempt ends with a candidate that is strong enough for the postures that were tried, or after
 // so much work. Nearly all candidates of a strength of 0.035 close; 0.05 costs a twentieth more and
@@ -65,7 +63,7 @@ constexpr double kWeak = 0.02;
 // Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
 // it frees a hand that is in the object, above all one whose links lie around it: lifted off on one
 // side, they leave gaps on another.
-constexpr double kMostLean = 65 * kDegree;
+constexpr double kMostLean = 65 * base::kRadiansPerDegree;
 constexpr double kMostGap = 0.003;           // [m]
 constexpr double kMostDepth = 0.003;         // [m]
 constexpr double kMostDepthOfWraps = 0.001;  // [m]

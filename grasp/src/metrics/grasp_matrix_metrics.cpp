@@ -10,7 +10,7 @@ std::string scaling_of(const GraspMetricInput& input) {
   const auto number = [](double value) { return base::shortest_decimal(value); };
   const Eigen::Vector3d& c = input.convention()->reference_point_O;
   return "forces along unit axes, torques about (" + number(c.x()) + ", " + number(c.y()) + ", " +
-         number(c.z()) + ") m over " + number(input.convention()->options.torque_scale) + " m";
+         number(c.z()) + ") m over " + number(*input.convention()->options.torque_scale) + " m";
 }
 
 GraspMetric of_matrix(std::string name, std::string meaning,
@@ -24,7 +24,7 @@ GraspMetric of_matrix(std::string name, std::string meaning,
             if (!input.convention()) return std::nullopt;
             const contact::WrenchConvention& convention = *input.convention();
             return (contact::grasp_matrix_quality(input.touching(), convention.reference_point_O,
-                                                  convention.options.torque_scale).*
+                                                  *convention.options.torque_scale).*
                     value)();
           },
           .convention = scaling_of};

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/base/units.hpp"
 #include "rows/range_check.hpp"
 
 namespace graspfit::grasp {
@@ -16,8 +16,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 using geometry::SurfacePatch;
-
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// Patches by voxel: a dense array over the box of partial voxels, which is the object alone and
 /// not the margin kept around it for the hand.
@@ -148,7 +146,7 @@ ContactScoreMap contact_score_map(const std::vector<SurfacePatch>& patches,
     if (counts[i] == 0) continue;
     is_scored[i] = true;
     map.mean_plane_distance[i] = std::abs(distances[i]) / counts[i] / lattice.voxel_size;
-    map.mean_normal_angle_deg[i] = angles[i] / counts[i] * kDegreesPerRadian;
+    map.mean_normal_angle_deg[i] = angles[i] / counts[i] * base::kDegreesPerRadian;
     double roughness = map.mean_plane_distance[i] / options.length_voxels +
                        map.mean_normal_angle_deg[i] / options.gamma_deg;
     if (options.normalization != ScoreNormalization::Raw) {

@@ -7,6 +7,7 @@
 
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/stopwatch.hpp"
+#include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/geometry/convex_clip.hpp"
 #include "object/object_parts.hpp"
 
@@ -130,7 +131,7 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
 
   return ObjectModel{.query = std::move(query),
                      .mass = mass,
-                     .normalizing_radius = 0.5 * box.diagonal().norm(),
+                     .normalizing_radius = contact::normalizing_radius(box),
                      .grid = std::move(parts.grid),
                      .patches = std::move(parts.patches),
                      .patch_of_voxel = std::move(patch_of_voxel),

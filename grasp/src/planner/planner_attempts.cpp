@@ -352,14 +352,17 @@ std::optional<AttemptOutcome> PlannerAttempts::refine(const std::vector<int>& pa
 
 void PlannerAttempts::add_squeeze(Grasp& grasp, AttemptResult& result) const {
   const base::Stopwatch watch(result.timings.pre_grasp_s);
-  grasp.squeeze = contact::squeeze_configuration(
-      hand_, grasp.configuration, grasp.contacts, object_.mass.center_of_mass,
-      scene_.wrench_object.largest_radius, options_.squeeze_friction, options_.squeeze,
-      scene_.bearing_gap);
+  grasp.squeeze =
+      contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts,
+                                     {.center_of_mass_O = object_.mass.center_of_mass,
+                                      .torque_scale = scene_.wrench_object.largest_radius,
+                                      .friction = options_.squeeze_friction,
+                                      .bearing_gap = scene_.bearing_gap},
+                                     options_.squeeze);
 }
 
-/// Completes a grasp by its pre-grasp, without which it fails where one is required, and by its
-/// squeeze.
+/// Completes a grasp by its pre-grasp, without which it fails where one is required, and, if it is
+/// accepted, by its squeeze.
 void PlannerAttempts::find_way_in(AttemptResult& result) const {
   result.is_way_in_open_question = false;
   Grasp& grasp = *result.grasp;
@@ -368,8 +371,9 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
     PreGraspOptions pre_grasp = options_.pre_grasp;
     // Targets by reach are met by whatever the joints can do.
     if (options_.targets.search == TargetSearch::Reach) pre_grasp.open_neutral = true;
-    grasp.pre_grasp = find_pre_grasp(hand_, fitting_hand_.collision(), object_.query, surroundings_,
-                                     grasp.configuration, pre_grasp);
+    grasp.pre_grasp =
+        find_pre_grasp({hand_, fitting_hand_.collision(), object_.query, surroundings_},
+                       grasp.configuration, pre_grasp);
   }
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;
@@ -377,7 +381,7 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
     result.grasp.reset();
     return;
   }
-  if (!grasp.squeeze) add_squeeze(grasp, result);
+  if (result.is_accepted && !grasp.squeeze) add_squeeze(grasp, result);
 }
 
 /// Angle between the palm's direction and the one asked for [rad]; 0 if none is asked for.

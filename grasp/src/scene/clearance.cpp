@@ -123,7 +123,7 @@ std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
     const auto [a, b] = pairs_[p];
     const auto index_a = static_cast<std::size_t>(a);
     const auto index_b = static_cast<std::size_t>(b);
-    const RigidTransform X_AB = X_OL[index_a].inverse() * X_OL[index_b];
+    const RigidTransform X_AB = geometry::relative_pose(X_OL[index_a], X_OL[index_b]);
     Known& known = pair_known_[p];
     if ((centers_L_[index_a] - X_AB * centers_L_[index_b]).norm() >
         radii_[index_a] + radii_[index_b] + enough) {
@@ -168,8 +168,8 @@ bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
     const auto a = static_cast<std::size_t>(pairs_[p].first);
     const auto b = static_cast<std::size_t>(pairs_[p].second);
     if (is_near(pair_known_[p], *hand_.collision().link_solid(pairs_[p].first),
-                *hand_.collision().link_solid(pairs_[p].second), X_OL[a].inverse() * X_OL[b],
-                centers_L_[b], radii_[b])) {
+                *hand_.collision().link_solid(pairs_[p].second),
+                geometry::relative_pose(X_OL[a], X_OL[b]), centers_L_[b], radii_[b])) {
       return false;
     }
   }
@@ -188,7 +188,7 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const
     }
   }
   for (const auto& [a, b] : pairs_) {
-    const RigidTransform X_AB = X_OL[a].inverse() * X_OL[b];
+    const RigidTransform X_AB = geometry::relative_pose(X_OL[a], X_OL[b]);
     if (!geometry::nearest_points(*hand_.collision().link_solid(a),
                                   *hand_.collision().link_solid(b), X_AB, least, {}, least)) {
       continue;
@@ -210,7 +210,7 @@ bool Clearance::is_clear_of_world(const LinkPoses& X_OL) const {
 
 bool Clearance::is_clear_of_itself(const LinkPoses& X_OL) const {
   return std::none_of(pairs_.begin(), pairs_.end(), [&](const std::pair<int, int>& pair) {
-    const RigidTransform X_AB = X_OL[pair.first].inverse() * X_OL[pair.second];
+    const RigidTransform X_AB = geometry::relative_pose(X_OL[pair.first], X_OL[pair.second]);
     return geometry::do_intersect(*hand_.collision().link_solid(pair.first),
                                   *hand_.collision().link_solid(pair.second), X_AB);
   });

@@ -80,6 +80,9 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
   if (corners.empty()) return lowest;
   const double table = *surroundings_.table_z_O;
   const Eigen::AlignedBox3d& box = boxes_L_[link];
+  if (!X_OL.matrix().allFinite()) {
+    throw InvalidInput("SurroundingsCollision: the pose of a link is not finite");
+  }
   const double box_height = (X_OL * box.center()).z() -
                             X_OL.linear().row(2).cwiseAbs().dot(0.5 * box.sizes().transpose()) -
                             table;

@@ -25,7 +25,7 @@ struct Surfaces {
 /// Whether two links share a point; their boxes are tested first.
 bool meet(const Surfaces& surfaces, std::size_t a, std::size_t b,
           const std::vector<RigidTransform>& X_HL) {
-  const RigidTransform X_AB = X_HL[a].inverse() * X_HL[b];
+  const RigidTransform X_AB = geometry::relative_pose(X_HL[a], X_HL[b]);
   constexpr double kSlack = 1e-9;  // [m]; far above the rounding of the box
   const Eigen::AlignedBox3d& box_B = surfaces.boxes[b];
   const Eigen::Vector3d center_A = X_AB * box_B.center();

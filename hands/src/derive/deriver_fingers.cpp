@@ -144,7 +144,7 @@ bool Deriver::always_touch(const Chain& a, const Chain& b,
         if (mesh_a.faces.empty() || mesh_b.faces.empty()) continue;
         touch = geometry::do_intersect(
             MeshQuery(mesh_a), MeshQuery(mesh_b),
-            pose_of_body(X_HL, body_a).inverse() * pose_of_body(X_HL, body_b));
+            geometry::relative_pose(pose_of_body(X_HL, body_a), pose_of_body(X_HL, body_b)));
       }
     }
     if (!touch) return false;

@@ -26,8 +26,9 @@ std::vector<SidecarPad> Deriver::pads(const std::vector<SidecarFinger>& fingers)
         std::vector<MeshQuery> others;
         for (const int other : body.links) {
           if (other == link || tree_.links[at(other)].mesh_L.faces.empty()) continue;
-          others.emplace_back(transformed(tree_.links[at(other)].mesh_L,
-                                          X_HL[at(link)].inverse() * X_HL[at(other)]));
+          others.emplace_back(
+              transformed(tree_.links[at(other)].mesh_L,
+                          geometry::relative_pose(X_HL[at(link)], X_HL[at(other)])));
         }
         const Eigen::Matrix3d R_LH = X_HL[at(link)].linear().transpose();
         PadSearch search{R_LH * faces->direction_H, R_LH * faces->along_H, std::nullopt, 0.0};
@@ -88,7 +89,7 @@ bool Deriver::is_shut_in(const FittedPad& pad, int link, const Chain& chain) con
           std::find(own.begin(), own.end(), link) != own.end()) {
         continue;
       }
-      const RigidTransform X_BC = pose_of_body(X_HL, body).inverse() * X_HC;
+      const RigidTransform X_BC = geometry::relative_pose(pose_of_body(X_HL, body), X_HC);
       const auto hit =
           MeshQuery(bodies_[b].mesh)
               .first_hit(X_BC * Vector3d(0.0, 0.0, height + kStart), X_BC.linear().col(2));

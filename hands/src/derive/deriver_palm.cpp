@@ -34,7 +34,7 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   Vector3d end_B = chain.tip_B;
   Vector3d start_B = Vector3d::Zero();
   if (number + 1 < chain.bodies.size()) {
-    end_B = X_HB.inverse() * pose_of_body(X_HL, chain.bodies[number + 1]).translation();
+    end_B = geometry::inverted(X_HB) * pose_of_body(X_HL, chain.bodies[number + 1]).translation();
   }
   if (end_B.norm() < 0.2 * geometry::longest_extent(body.mesh)) {
     // The body's frame is at its end (or both joints are at the same position).

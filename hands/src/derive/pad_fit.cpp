@@ -218,7 +218,7 @@ double deviation_of(const FittedPad& fitted, const RayGrid& grid, const std::vec
   pad.outline = fitted.outline;
   pad.surface = fitted.surface;
   pad.planes = surface_planes(pad);
-  const RigidTransform X_CL = fitted.X_LC.inverse();
+  const RigidTransform X_CL = geometry::inverted(fitted.X_LC);
   double deviation = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i]) continue;
@@ -262,7 +262,7 @@ std::optional<FittedPad> flat_pad(const MeshQuery& link, const RayGrid& grid,
   FittedPad pad;
   pad.X_LC.linear() = axes(R_LS * plane.normal, along);
   pad.X_LC.translation() = lifted_L(centroid_of(outline_S));
-  const RigidTransform X_CL = pad.X_LC.inverse();
+  const RigidTransform X_CL = geometry::inverted(pad.X_LC);
   for (const Vector2d& corner : outline_S) {
     pad.outline.push_back((X_CL * lifted_L(corner)).head<2>());
   }

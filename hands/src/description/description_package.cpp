@@ -57,14 +57,4 @@ std::string outside_text(const fs::path& description_file, const fs::path& file)
          common.string() + (package ? ", where a package of both begins" : " makes one of both");
 }
 
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
-
-bool lies_in(const fs::path& path, const std::vector<fs::path>& folders) {
-  return std::any_of(folders.begin(), folders.end(),
-                     [&](const fs::path& folder) { return lies_in(path, folder); });
-}
-
 }  // namespace graspfit::hands::internal

@@ -22,10 +22,4 @@ std::vector<std::filesystem::path> readable_folders(const std::filesystem::path&
 std::string outside_text(const std::filesystem::path& description_file,
                          const std::filesystem::path& file);
 
-/// Whether a path is `folder` or below it. Only the texts are compared, so both must have their
-/// symbolic links resolved.
-bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
-/// Whether a path is any of several folders, or below one.
-bool lies_in(const std::filesystem::path& path, const std::vector<std::filesystem::path>& folders);
-
 }  // namespace graspfit::hands::internal

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/base/units.hpp"
 #include "import/mesh_borrowing.hpp"
 
 namespace graspfit::hands::internal {
@@ -24,12 +24,12 @@ namespace graspfit::hands::internal {
 namespace {
 
 namespace fs = std::filesystem;
+using base::kMetersPerMillimeter;
+using base::kRadiansPerDegree;
 using base::shortest_decimal;
 using geometry::RigidTransform;
 using tinyxml2::XMLElement;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMillimeter = 1e-3;
 /// Largest norm of R R^T - I of a matrix that is taken for a rotation; entries of three decimals
 /// give 3e-3.
 constexpr double kRotationSlack = 1e-2;
@@ -70,7 +70,7 @@ class Reader : private XmlSource {
   RobotDescription parse(const std::string& text) {
     tinyxml2::XMLDocument document;
     const XMLElement& root = XmlSource::parse(text, "robot", "GraspIt! robot XML", document);
-    description_.meters_per_unit = kMillimeter;
+    description_.meters_per_unit = kMetersPerMillimeter;
     description_.name =
         root.Attribute("DBName") ? text_of(root, "DBName", "robot") : path_.stem().string();
     dofs(root);
@@ -170,7 +170,7 @@ class Reader : private XmlSource {
       const std::string text = content(*part, item);
       if (tag == "translation") {
         const std::vector<double> v = numbers(*part, text, 3, item);
-        X = X * shift(kMillimeter * Eigen::Vector3d(v[0], v[1], v[2]));
+        X = X * shift(kMetersPerMillimeter * Eigen::Vector3d(v[0], v[1], v[2]));
       } else if (tag == "rotation") {
         X = X * rotation(*part, text, item);
       } else if (tag == "rotationMatrix") {
@@ -193,7 +193,7 @@ class Reader : private XmlSource {
       fail(e, item + ": <rotation> \"" + text + "\" does not end in x, y or z");
     }
     const double angle = numbers(e, text.substr(0, text.size() - 1), 1, item)[0];
-    return turn(angle * kDegree, Eigen::Vector3d::Unit(axis - 'x'));
+    return turn(angle * kRadiansPerDegree, Eigen::Vector3d::Unit(axis - 'x'));
   }
 
   /// Reads nine numbers, column by column, and returns the nearest rotation.
@@ -224,7 +224,8 @@ class Reader : private XmlSource {
     if (std::abs(q.norm() - 1.0) > kRotationSlack) {
       fail(e, item + ": <fullTransform> has a quaternion of length " + shortest_decimal(q.norm()));
     }
-    return shift(kMillimeter * Eigen::Vector3d(v[4], v[5], v[6])) * RigidTransform(q.normalized());
+    return shift(kMetersPerMillimeter * Eigen::Vector3d(v[4], v[5], v[6])) *
+           RigidTransform(q.normalized());
   }
 
   /// Reads an expression such as d1, d1*0.33, d1+40 or d1*-1+-2.46; blanks do not count.
@@ -281,15 +282,16 @@ class Reader : private XmlSource {
     const std::string item = "joint " + described.name;
     described.type = is_revolute ? DescribedJoint::Type::Revolute : DescribedJoint::Type::Prismatic;
     described.axis = Eigen::Vector3d::UnitZ();
-    const double unit = is_revolute ? kDegree : kMillimeter;
+    const double unit = is_revolute ? kRadiansPerDegree : kMetersPerMillimeter;
     const RigidTransform offset =
-        is_revolute ? turn(result.value.offset * kDegree, Eigen::Vector3d::UnitZ())
-                    : shift({0, 0, result.value.offset * kMillimeter});
+        is_revolute ? turn(result.value.offset * kRadiansPerDegree, Eigen::Vector3d::UnitZ())
+                    : shift({0, 0, result.value.offset * kMetersPerMillimeter});
     const RigidTransform fixed =
-        is_revolute ? shift({0, 0, value(e, "d", item) * kMillimeter})
-                    : turn(value(e, "theta", item) * kDegree, Eigen::Vector3d::UnitZ());
-    const RigidTransform link = shift({value(e, "a", item) * kMillimeter, 0, 0}) *
-                                turn(value(e, "alpha", item) * kDegree, Eigen::Vector3d::UnitX());
+        is_revolute ? shift({0, 0, value(e, "d", item) * kMetersPerMillimeter})
+                    : turn(value(e, "theta", item) * kRadiansPerDegree, Eigen::Vector3d::UnitZ());
+    const RigidTransform link =
+        shift({value(e, "a", item) * kMetersPerMillimeter, 0, 0}) *
+        turn(value(e, "alpha", item) * kRadiansPerDegree, Eigen::Vector3d::UnitX());
     result.before = is_revolute ? offset : fixed * offset;
     result.after = is_revolute ? fixed * link : link;
     findings_.attempt(
@@ -442,7 +444,7 @@ class Reader : private XmlSource {
       } else {
         DescribedGeometry& added = link.collision.emplace_back();
         added.X_LG = X_LG;
-        added.shape = MeshFileShape{name, Eigen::Vector3d::Constant(kMillimeter)};
+        added.shape = MeshFileShape{name, Eigen::Vector3d::Constant(kMetersPerMillimeter)};
         return;
       }
       break;

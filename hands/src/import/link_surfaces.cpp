@@ -9,9 +9,11 @@
 
 #include "description/description_package.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/lies_in.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/shapes.hpp"
 
 namespace graspfit::hands::internal {
@@ -53,7 +55,7 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
     candidates.push_back({readable, package / rest});
     candidates.push_back({{folder}, folder / rest});
     const fs::path beside = (folder.parent_path() / rest).lexically_normal();
-    if (lies_in(beside, readable)) candidates.push_back({readable, beside});
+    if (base::lies_in(beside, readable)) candidates.push_back({readable, beside});
   } else if (name.find("://") != std::string::npos && name.rfind("file://", 0) != 0) {
     throw InvalidInput(item + ": mesh " + name + ": only files and package:// are read");
   } else {
@@ -64,7 +66,7 @@ fs::path mesh_path(const fs::path& description_file, const std::string& name,
   for (const Candidate& candidate : candidates) {
     const fs::path file = fs::weakly_canonical(candidate.path, error);
     if (error) throw IoError(item + ": mesh " + name + ": " + error.message());
-    if (!lies_in(file, candidate.folders)) {
+    if (!base::lies_in(file, candidate.folders)) {
       throw InvalidInput(item + ": mesh " + name + " " + outside_text(description_file, file));
     }
     if (fs::is_regular_file(file, error)) return file;

@@ -247,7 +247,7 @@ void borrow(const fs::path& file, RobotDescription& description, Findings& findi
     for (const DescribedLink& source : urdf.links) {
       const auto u = static_cast<std::size_t>(their_tree.link_index(source.name));
       if (theirs.above_link(u) != body) continue;
-      const RigidTransform X_LU = X_HL[l].inverse() * X_HU[u];
+      const RigidTransform X_LU = geometry::relative_pose(X_HL[l], X_HU[u]);
       for (DescribedGeometry part : source.collision.empty() ? source.visual : source.collision) {
         part.X_LG = X_LU * part.X_LG;
         names += (names.empty() ? "" : ", ") + name_of(part);

@@ -16,6 +16,7 @@
 #include "description/description_package.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/lies_in.hpp"
 
 namespace graspfit::hands::internal {
 
@@ -80,7 +81,7 @@ class FileChecker {
                    const std::string& name) const {
     const std::string item = file_ + ": <" + element + "> " + name;
     const fs::path file = fs::weakly_canonical(folder_ / path);
-    if (!lies_in(file, readable_)) throw InvalidInput(item + " " + outside_text(file_, file));
+    if (!base::lies_in(file, readable_)) throw InvalidInput(item + " " + outside_text(file_, file));
     std::error_code error;
     if (!fs::is_regular_file(file, error)) {
       throw IoError(item + " is not there: no file " + file.string());

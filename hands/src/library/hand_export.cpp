@@ -171,9 +171,8 @@ internal::Sidecar sidecar_of(const HandModel& model) {
   }
   sidecar.pads.emplace();
   for (const ContactPad& pad : model.pads) {
-    const std::string finger = pad.finger ? model.fingers[*pad.finger].name : "palm";
-    sidecar.pads->push_back({pad.name, link_name(pad.link), finger, pad.X_LC, pad.outline,
-                             pad.surface, pad.clip_thickness});
+    sidecar.pads->push_back({pad.name, link_name(pad.link), model.part_name(pad.finger), pad.X_LC,
+                             pad.outline, pad.surface, pad.clip_thickness});
   }
   sidecar.palm = internal::SidecarPalm{link_name(model.palm.link), model.palm.center_H,
                                        model.palm.direction_H, pad_name(model.palm.pad)};

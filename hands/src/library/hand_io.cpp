@@ -1,5 +1,7 @@
 #include "graspfit/hands/hand_io.hpp"
 
+#include "graspfit/base/atomic_file.hpp"
+#include "graspfit/base/sha256.hpp"
 #include "library/hand_assembly.hpp"
 #include "model/findings.hpp"
 
@@ -30,6 +32,17 @@ std::string derived_sidecar_text(const fs::path& description_file) {
   Findings findings(Findings::AtFault::Throw);
   const internal::HandSources sources = internal::read_sources(description_file, findings);
   return internal::completed_sidecar_text(sources, findings);
+}
+
+std::vector<std::string> link_mesh_hashes(const HandModel& hand) {
+  const fs::path folder = fs::weakly_canonical(hand.description_file).parent_path();
+  std::vector<std::string> hashes;
+  for (const Link& link : hand.links) {
+    std::string bytes;
+    for (const std::string& file : link.mesh_files) bytes += base::read_file(folder / file);
+    hashes.push_back(link.mesh_files.empty() ? std::string() : base::sha256_hex(bytes));
+  }
+  return hashes;
 }
 
 }  // namespace graspfit::hands

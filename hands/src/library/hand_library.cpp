@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <optional>
 
-#include "description/description_package.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/lies_in.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
 #include "graspfit/hands/hand_io.hpp"
@@ -37,7 +37,7 @@ std::vector<fs::path> library_candidates() {
   std::vector<fs::path> candidates;
   if (const fs::path program = program_folder(); !program.empty()) {
     candidates.push_back(program.parent_path() / "share/graspfit/hands");
-    if (internal::lies_in(program, fs::path(GRASPFIT_BUILD_FOLDER)))
+    if (base::lies_in(program, GRASPFIT_BUILD_FOLDER))
       candidates.emplace_back(GRASPFIT_SOURCE_HANDS);
   }
   candidates.emplace_back(GRASPFIT_INSTALLED_HANDS);
@@ -96,8 +96,7 @@ fs::path shipped_hand_file(const std::string& name) {
 fs::path path_in_library(const fs::path& file) {
   const auto folder = found_library_folder();
   if (!folder) return file;
-  const fs::path relative = file.lexically_relative(*folder);
-  return relative.empty() || *relative.begin() == ".." ? file : relative;
+  return base::lies_in(file, *folder) ? file.lexically_relative(*folder) : file;
 }
 
 fs::path find_hand_file(const std::string& name_or_file) {

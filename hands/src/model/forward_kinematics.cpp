@@ -36,6 +36,10 @@ std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                              " joint positions for " + std::to_string(model.joints.size()) +
                              " joints");
   }
+  if (!configuration.q.allFinite() || !configuration.X_OH.matrix().allFinite()) {
+    throw base::InvalidInput("hand " + model.name +
+                             ": palm pose or joint positions are not finite");
+  }
   std::vector<RigidTransform> X_OL(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     X_OL[i] = link_pose(model, static_cast<int>(i), X_OL, configuration);

@@ -22,6 +22,8 @@ using internal::cross;
 using internal::Side;
 using internal::sides;
 
+constexpr const char* kPalmName = "palm";
+
 /// "a, b, c" of the names of some items.
 template <typename Items>
 std::string names_of(const Items& items) {
@@ -148,7 +150,7 @@ class Checker {
     for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
       const Finger& finger = model_.fingers[f];
       const std::string what = "finger " + finger.name;
-      require(finger.name != "palm", what + ": the name palm is taken by the palm");
+      require(finger.name != kPalmName, what + ": the name palm is taken by the palm");
       require(!finger.links.empty(), what + ": no links");
       require(!finger.joints.empty(), what + ": no joints");
       for (std::size_t i = 0; i < finger.links.size(); ++i) {
@@ -305,6 +307,10 @@ int HandModel::link_index(const std::string& link_name) const {
 
 int HandModel::pad_index(const std::string& pad_name) const {
   return index_of(*this, pads, pad_name, "pad");
+}
+
+std::string HandModel::part_name(std::optional<int> finger) const {
+  return finger ? fingers[*finger].name : kPalmName;
 }
 
 int HandModel::tip_pad_of(int finger) const {

@@ -71,7 +71,7 @@ TriangleMesh pad_surface_L(const HandModel& model, int pad_index) {
   }
   const ContactPad& pad = model.pads[pad_index];
   const TriangleMesh& link = model.links[pad.link].mesh_L;
-  const RigidTransform X_CL = pad.X_LC.inverse();
+  const RigidTransform X_CL = geometry::inverted(pad.X_LC);
   Eigen::AlignedBox2d outline;
   for (const Eigen::Vector2d& corner : pad.outline) outline.extend(corner);
   TriangleMesh surface;

@@ -22,9 +22,11 @@ Eigen::AlignedBox3d box_around(const Eigen::AlignedBox3d& box_B, const RigidTran
 }
 
 /// False only if the boxes are apart: the axes of one of the frames separate them. The second frame
-/// is asked only where the inverse of the pose is at hand.
+/// is asked only where the inverse of the pose is at hand. A pose that is not finite is left to
+/// what decides, which refuses it.
 bool may_meet(const Eigen::AlignedBox3d& box_A, const Eigen::AlignedBox3d& box_B,
               const RigidTransform& X_AB) {
+  if (!X_AB.matrix().allFinite()) return true;
   return box_A.intersects(box_around(box_B, X_AB)) &&
          (!geometry::is_rotation(X_AB) || box_B.intersects(box_around(box_A, X_AB.inverse())));
 }
@@ -93,7 +95,7 @@ void HandCollision::for_each_near_pair(const std::vector<RigidTransform>& X_OL,
     if (!links_[a]) continue;
     for (std::size_t b = a + 1; b < links_.size(); ++b) {
       if (!links_[b] || model_.is_excluded(static_cast<int>(a), static_cast<int>(b))) continue;
-      const RigidTransform X_AB = X_OL[a].inverse() * X_OL[b];
+      const RigidTransform X_AB = geometry::relative_pose(X_OL[a], X_OL[b]);
       if (!may_meet(boxes_[a], boxes_[b], X_AB)) continue;
       if (!visit(static_cast<int>(a), static_cast<int>(b), X_AB)) return;
     }

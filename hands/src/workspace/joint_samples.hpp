@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "graspfit/base/random.hpp"
@@ -52,38 +54,51 @@ struct PairJoints {
 
 PairJoints joints_of_pair(const HandModel& model, int link_a, int link_b);
 
+/// Positions of all joints, and their value to a search for the largest one.
+struct ValuedPositions {
+  double value = -std::numeric_limits<double>::infinity();
+  Eigen::VectorXd q;
+};
+
+/// Steps of a local search.
+struct SearchSteps {
+  double first_share;  ///< The first step, as a share of the joints' ranges, > 0.
+  double finest;       ///< The search ends at steps of this share of the first one, > 0.
+  int num_drawn;       ///< Number of random steps in all groups at once, per round, ≥ 0.
+};
+
 /// Local search: improves positions of `groups` as long as their value grows, by steps in one group
-/// at a time, then by `num_drawn` random steps in all groups at once (at the border of the allowed
-/// positions, steps in one group may not help), larger steps first. `value(q, best)` is empty where
-/// q is not allowed or not better than `best`. Deterministic; ends near a local best, whose value
-/// it returns.
+/// at a time, then by random steps in all groups at once (at the border of the allowed positions,
+/// steps in one group may not help), larger steps first. `value(q, best)` is empty where q is not
+/// allowed or not better than `best`. Deterministic; ends near a local best, which it returns.
 template <class Value>
-double move_on(const HandModel& model, const std::vector<JointGroup>& groups, double first_share,
-               int num_drawn, double finest, double best, Eigen::VectorXd& q, const Value& value) {
+ValuedPositions move_on(const HandModel& model, const std::vector<JointGroup>& groups,
+                        const SearchSteps& steps, ValuedPositions start, const Value& value) {
   constexpr int kMostRounds = 2000;
   base::Random random(0);
+  ValuedPositions best = std::move(start);
   const auto takes = [&](const Eigen::VectorXd& trial) {
-    if (trial == q) return false;
-    const std::optional<double> found = value(trial, best);
+    if (trial == best.q) return false;
+    const std::optional<double> found = value(trial, best.value);
     if (!found) return false;
-    best = *found;
-    q = trial;
+    best = {*found, trial};
     return true;
   };
   int rounds = 0;
-  for (double share = first_share; share > first_share * finest && rounds < kMostRounds; ++rounds) {
+  for (double share = steps.first_share;
+       share > steps.first_share * steps.finest && rounds < kMostRounds; ++rounds) {
     bool is_better = false;
     for (const JointGroup& group : groups) {
       for (const double sign : {1.0, -1.0}) {
-        Eigen::VectorXd trial = q;
+        Eigen::VectorXd trial = best.q;
         move_group(model, group, sign * share, trial);
         if (!takes(trial)) continue;
         is_better = true;
         break;
       }
     }
-    for (int i = 0; i < num_drawn && !is_better; ++i) {
-      Eigen::VectorXd trial = q;
+    for (int i = 0; i < steps.num_drawn && !is_better; ++i) {
+      Eigen::VectorXd trial = best.q;
       for (const JointGroup& group : groups) {
         move_group(model, group, share * random.uniform(-1.0, 1.0), trial);
       }

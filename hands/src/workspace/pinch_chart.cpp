@@ -12,6 +12,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/base/units.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
 #include "workspace/joint_samples.hpp"
@@ -29,7 +30,7 @@ using internal::Tip;
 
 // Of each class of openings a configuration is kept per so much lean, so that where the squarest
 // one brings links into each other there is another.
-constexpr double kLeanStep = 4.0 * std::numbers::pi / 180.0;
+constexpr double kLeanStep = 4.0 * base::kRadiansPerDegree;
 constexpr std::size_t kLeanClasses = 20;  // to 80 degrees
 // Most positions of one side, whose kinematics are computed one by one.
 constexpr double kMostPoses = 1 << 14;
@@ -46,7 +47,7 @@ constexpr double kCosSideBySide = 0.96592582628906831;
 constexpr int kDrawnPerGroup = 2;
 constexpr double kFinest = 0.02;
 // By so much a class's pinch must be squarer for its neighbor to be improved from it [rad].
-constexpr double kWorthTrying = 0.3 * std::numbers::pi / 180.0;
+constexpr double kWorthTrying = 0.3 * base::kRadiansPerDegree;
 
 /// Two sides that press against each other: the pads of each.
 struct Sides {
@@ -203,7 +204,7 @@ class Pincher {
   /// The squarest pinch that local search finds in a class of openings from `q`, which may be of
   /// another class. Empty if it does not get into the class.
   template <class IsClear>
-  std::optional<Pinch> improved(VectorXd q, double smallest, double largest,
+  std::optional<Pinch> improved(const VectorXd& q, double smallest, double largest,
                                 const IsClear& is_clear) const {
     // Openings outside the class are worse than any lean in it, the more so the farther outside.
     const auto value_of = [&](const Facing& facing) {
@@ -218,13 +219,15 @@ class Pincher {
       if (!facing || !(value_of(*facing) > best) || !is_clear(trial)) return std::nullopt;
       return value_of(*facing);
     };
-    const double share = has_grid_ ? 1.0 / (per_group_ - 1) : 0.5;
-    const int num_drawn = kDrawnPerGroup * static_cast<int>(joints_.all.size());
-    internal::move_on(hand_.model(), joints_.all, share, num_drawn, kFinest, value_of(*start), q,
-                      value);
-    const Facing end = *facing_at(q);
+    const internal::SearchSteps steps{
+        .first_share = has_grid_ ? 1.0 / (per_group_ - 1) : 0.5,
+        .finest = kFinest,
+        .num_drawn = kDrawnPerGroup * static_cast<int>(joints_.all.size())};
+    const VectorXd squarest =
+        internal::move_on(hand_.model(), joints_.all, steps, {value_of(*start), q}, value).q;
+    const Facing end = *facing_at(squarest);
     if (end.opening < smallest || end.opening >= largest) return std::nullopt;
-    return Pinch{end.opening, end.lean, pads(), q};
+    return Pinch{end.opening, end.lean, pads(), squarest};
   }
 
   std::vector<int> pads() const {

@@ -51,12 +51,6 @@ int grid_of(const PairJoints& joints, const WorkspaceOptions& options) {
   return fits(n) ? n : 0;
 }
 
-/// A configuration from which local search starts, and its value.
-struct Start {
-  double value = -kInfinity;
-  VectorXd q;
-};
-
 /// The few best of many starts; of equal ones the first come first.
 class BestStarts {
  public:
@@ -64,15 +58,16 @@ class BestStarts {
     return starts_.size() < kStarts || value > starts_.back().value;
   }
   void add(double value, const VectorXd& q) {
-    const auto position = std::find_if(starts_.begin(), starts_.end(),
-                                       [&](const Start& start) { return value > start.value; });
+    const auto position =
+        std::find_if(starts_.begin(), starts_.end(),
+                     [&](const ValuedPositions& start) { return value > start.value; });
     starts_.insert(position, {value, q});
     if (starts_.size() > kStarts) starts_.pop_back();
   }
-  const std::vector<Start>& list() const { return starts_; }
+  const std::vector<ValuedPositions>& list() const { return starts_; }
 
  private:
-  std::vector<Start> starts_;
+  std::vector<ValuedPositions> starts_;
 };
 
 /// Two tips that move one against the other.
@@ -117,7 +112,7 @@ class TipPair {
   DistanceRange facing_distances(const IsClear& is_clear) const {
     // For each millimeter of distance, a bin holds the configuration whose pads face each other
     // best.
-    std::vector<Start> bins;
+    std::vector<ValuedPositions> bins;
     for_each_row([&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b,
                      const JointSamples& samples_b) {
       for (std::size_t i = 0; i < all_b.size(); ++i) {
@@ -151,7 +146,8 @@ class TipPair {
           }
           return sign * distance;
         };
-        const double found = moved_on(bin->q, kDrawnPerJoint, sign * distance_at(bin->q), value);
+        const double found =
+            moved_on({sign * distance_at(bin->q), bin->q}, kDrawnPerJoint, value).value;
         best = std::max(best.value_or(-kInfinity), found);
         bin += std::min<std::ptrdiff_t>(kBinsBetweenStarts, finish - bin - 1);
       }
@@ -217,11 +213,12 @@ class TipPair {
   }
 
   template <class Value>
-  double moved_on(VectorXd q, int drawn_per_joint, double best, const Value& value) const {
-    const double step = per_joint_ > 0 ? 1.0 / (per_joint_ - 1) : 0.5;
-    const int num_drawn = drawn_per_joint * static_cast<int>(joints_.all.size());
-    return move_on(hand_.model(), each_alone(joints_.all), step, num_drawn, kFinest, best, q,
-                   value);
+  ValuedPositions moved_on(const ValuedPositions& start, int drawn_per_joint,
+                           const Value& value) const {
+    const SearchSteps steps{.first_share = per_joint_ > 0 ? 1.0 / (per_joint_ - 1) : 0.5,
+                            .finest = kFinest,
+                            .num_drawn = drawn_per_joint * static_cast<int>(joints_.all.size())};
+    return move_on(hand_.model(), each_alone(joints_.all), steps, start, value);
   }
 
   /// The best of some starts, improved by local search where the grid had to be coarser than
@@ -229,12 +226,12 @@ class TipPair {
   double best_of(const BestStarts& starts, double sign) const {
     double best = starts.list().front().value;
     if (per_joint_ == options_.samples_per_joint) return best;
-    for (const Start& start : starts.list()) {
+    for (const ValuedPositions& start : starts.list()) {
       const auto value = [&](const VectorXd& trial, double to_beat) -> std::optional<double> {
         const double found = sign * distance_at(trial);
         return found > to_beat ? std::optional<double>(found) : std::nullopt;
       };
-      best = std::max(best, moved_on(start.q, 0, start.value, value));
+      best = std::max(best, moved_on(start, 0, value).value);
     }
     return best;
   }

@@ -252,6 +252,14 @@ TEST_CASE("M3 subtracts the distance of the hull's centroid from the center of m
   }
 }
 
+TEST_CASE("The normalizing radius is half the diagonal of the box", "[contact][contact_quality]") {
+  // The diagonal of edges of 3, 4 and 12 is √(9 + 16 + 144) = 13.
+  CHECK(normalizing_radius({Vector3d(-1, 2, 0), Vector3d(2, 6, 12)}) == 6.5);
+  const Vector3d point(1, 2, 3);
+  CHECK(normalizing_radius({point, point}) == 0.0);
+  CHECK(std::isinf(normalizing_radius(Eigen::AlignedBox3d())));
+}
+
 TEST_CASE("Pairs form between contacts of different fingers only, the palm being one",
           "[contact][contact_quality]") {
   hands::HandModel hand = pad_hand(2);

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <vector>
 
+#include "contact/known_grasps.hpp"
 #include "contact/random_contacts.hpp"
-#include "grasp/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/contact/epsilon_bound.hpp"

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "grasp/known_grasps.hpp"
+#include "contact/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/contact/epsilon_linf.hpp"

@@ -43,14 +43,15 @@ void check_optimal(const Contacts& contacts, const Vector3d& reference, const Wr
       const double share =
           found.edge_forces[static_cast<Eigen::Index>(i) * options.num_cone_edges + k];
       CHECK(share >= 0.0);
-      const Wrench w = wrench(edges.col(k), contacts[i].point_O, reference, options.torque_scale);
+      const Wrench w =
+          wrench(edges.col(k), contacts[i].point_O, reference, options.torque_scale.value());
       least = std::min(least, w.dot(found.residual));
       on_force += share * w.dot(found.residual);
       force += share * edges.col(k);
       normal_sum += share;
     }
     CHECK((force - found.forces_O.col(static_cast<Eigen::Index>(i))).norm() < 1e-10);
-    total += wrench(force, contacts[i].point_O, reference, options.torque_scale);
+    total += wrench(force, contacts[i].point_O, reference, options.torque_scale.value());
   }
   const double size = 1.0 + load.norm() + options.least_normal_sum;
   CHECK((total - load - found.residual).norm() < 1e-11 * size);
@@ -165,7 +166,8 @@ TEST_CASE("Balances without contacts or sense have documented outcomes",
   const BalanceForces none = balance_forces({}, Vector3d::Zero(), load, options);
   CHECK(none.forces_O.cols() == 0);
   CHECK(none.residual_norm == Approx(3.0));
-  CHECK_THROWS_AS(balance_forces({}, Vector3d::Zero(), load, BalanceOptions{}), InvalidInput);
+  CHECK_THROWS_WITH(balance_forces({}, Vector3d::Zero(), load, BalanceOptions{}),
+                    graspfit::testing::Contains("torque_scale = nan, must be set"));
   CHECK_THROWS_AS(
       balance_forces({}, Vector3d::Zero(), load, {.least_normal_sum = 1.0, .torque_scale = 1.0}),
       InvalidInput);

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "contact/known_grasps.hpp"
 #include "contact/random_contacts.hpp"
-#include "grasp/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
@@ -202,7 +202,7 @@ TEST_CASE("Epsilon and volume do not change with the frame, nor with size at its
       contact.inward_normal_O = about_x * contact.inward_normal_O;
     }
     WrenchSpaceOptions scaled = options;
-    scaled.torque_scale *= 2.5;
+    scaled.torque_scale.value() *= 2.5;
     const WrenchQuality again =
         wrench_quality(grasp_wrench_space(moved, 2.5 * (about_x * com) + shift, scaled));
     CHECK(again.epsilon == Approx(quality.epsilon).epsilon(1e-9).margin(1e-14));
@@ -236,6 +236,9 @@ TEST_CASE("Closure is exact where epsilon is 1e-18, zero and below",
     CHECK(is_force_closure(wrenches) == (gap > 0.0));
     CHECK(ConvexPolytope(wrenches).inradius(Wrench::Zero()) == gap);
   }
+  Wrenches bad = Wrenches::Zero(6, 3);
+  bad(4, 1) = std::nan("");
+  CHECK_THROWS_AS(is_force_closure(bad), InvalidInput);
 }
 
 TEST_CASE("The early no to closure is never wrong and often given",

@@ -2,7 +2,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "grasp/known_grasps.hpp"
+#include "contact/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"

@@ -109,8 +109,8 @@ TEST_CASE("A pad that does not touch is not pressed", "[contact][squeeze]") {
   four.insert(four.begin() + 1, link_contact(0, Vector3d(0, 0, 0.05), Vector3d::UnitZ()));
   four[1].gap = 0.001;
   const Vector3d center(0, 0, 0.1);
-  const Squeeze of_three = squeeze_configuration(hand, grasp, contacts, center, 0.05, 0.4);
-  const Squeeze of_four = squeeze_configuration(hand, grasp, four, center, 0.05, 0.4, {}, 0.0005);
+  const Squeeze of_three = squeeze_configuration(hand, grasp, contacts, {center, 0.05, 0.4});
+  const Squeeze of_four = squeeze_configuration(hand, grasp, four, {center, 0.05, 0.4, 0.0005});
   REQUIRE(of_four.forces_O.cols() == 4);
   CHECK(of_four.forces_O.col(1).norm() == 0.0);
   CHECK(of_four.forces_O.col(0) == of_three.forces_O.col(0));
@@ -118,7 +118,7 @@ TEST_CASE("A pad that does not touch is not pressed", "[contact][squeeze]") {
   CHECK(of_four.configuration.q == of_three.configuration.q);
   CHECK(of_four.residual == of_three.residual);
   four[0].gap = four[2].gap = four[3].gap = 0.001;
-  CHECK_THROWS_AS(squeeze_configuration(hand, grasp, four, center, 0.05, 0.4, {}, 0.0005),
+  CHECK_THROWS_AS(squeeze_configuration(hand, grasp, four, {center, 0.05, 0.4, 0.0005}),
                   InvalidInput);
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[contact
   SECTION("Jaws that move on their own") {
     for (hands::Joint& joint : hand.joints) joint.coupling.reset();
     const Squeeze squeeze =
-        squeeze_configuration(hand, grasp, contacts, center, 0.05, 0.4, options);
+        squeeze_configuration(hand, grasp, contacts, {center, 0.05, 0.4}, options);
     for (const double q : squeeze.configuration.q) {
       CHECK(q == Approx(half - 6.0 / 3000.0).epsilon(1e-12));
     }
@@ -155,13 +155,13 @@ TEST_CASE("Jaws press a box with half of the force each, F / kp deep", "[contact
   }
   SECTION("Coupled jaws: one motor exerts both forces") {
     const Squeeze squeeze =
-        squeeze_configuration(hand, grasp, contacts, center, 0.05, 0.4, options);
+        squeeze_configuration(hand, grasp, contacts, {center, 0.05, 0.4}, options);
     for (const double q : squeeze.configuration.q) {
       CHECK(q == Approx(half - 12.0 / 3000.0).epsilon(1e-12));
     }
   }
   SECTION("What the limits do not leave is said") {
-    const Squeeze squeeze = squeeze_configuration(hand, grasp, contacts, center, 0.05, 0.4,
+    const Squeeze squeeze = squeeze_configuration(hand, grasp, contacts, {center, 0.05, 0.4},
                                                   {.normal_sum = 100.0, .slide_stiffness = 1000.0});
     CHECK(squeeze.is_clamped);
     CHECK(squeeze.configuration.q.isZero(0.0));
@@ -182,7 +182,7 @@ TEST_CASE("Fingers around a ball press alike, with a third of the force times le
           link_contact(i + 1, radius * outward + lever * Vector3d::UnitZ(), -outward));
     }
     const Squeeze squeeze =
-        squeeze_configuration(hand, grasp, contacts, lever * Vector3d::UnitZ(), radius, 0.6,
+        squeeze_configuration(hand, grasp, contacts, {lever * Vector3d::UnitZ(), radius, 0.6},
                               {.normal_sum = 9.0, .stiffness = 4.0});
     for (const double q : squeeze.configuration.q) {
       CHECK(q == Approx(9.0 / count * lever / 4.0).epsilon(1e-6));  // Evenness leaves that much.
@@ -207,7 +207,7 @@ TEST_CASE("Mirrored fingers of the Barrett hand get equal torques", "[contact][s
   for (const auto& [link, outward] : touches) {
     contacts.push_back(finger_contact(hand, link, center + radius * outward, -outward));
   }
-  const Squeeze squeeze = squeeze_configuration(hand, grasp, contacts, center, radius, 0.5);
+  const Squeeze squeeze = squeeze_configuration(hand, grasp, contacts, {center, radius, 0.5});
   const VectorXd change = squeeze.configuration.q - grasp.q;
   const auto of = [&](const char* joint) { return change[hand.joint_index(joint)]; };
   CHECK(of("finger_1_proximal") == Approx(of("finger_2_proximal")).epsilon(1e-6));
@@ -241,7 +241,7 @@ TEST_CASE("Stiffness times displacement is the contact forces' virtual work on e
       // The joints are so stiff that no command reaches a limit.
       const SqueezeOptions options{.normal_sum = 5.0, .stiffness = 100.0};
       const Squeeze squeeze =
-          squeeze_configuration(hand, grasp, contacts, Vector3d::Zero(), 0.05, 0.4, options);
+          squeeze_configuration(hand, grasp, contacts, {Vector3d::Zero(), 0.05, 0.4}, options);
       REQUIRE_FALSE(squeeze.is_clamped);
       num_unbalanced += squeeze.is_balanced ? 0 : 1;
       double pressing = 0.0;
@@ -264,14 +264,14 @@ TEST_CASE("Contacts that cannot balance are said to leave their force over", "[c
   const Contacts one = {link_contact(1, {0.04, 0.0, 0.07}, {-1.0, 0.0, 0.0})};
   // Alone the contact pushes with the whole force, through the center of mass.
   const Squeeze squeeze =
-      squeeze_configuration(hand, grasp, one, {0.0, 0.0, 0.07}, 0.04, 0.0, {.normal_sum = 2.0});
+      squeeze_configuration(hand, grasp, one, {{0.0, 0.0, 0.07}, 0.04, 0.0}, {.normal_sum = 2.0});
   CHECK(squeeze.residual == Approx(1.0));
   CHECK_FALSE(squeeze.is_balanced);
   CHECK(squeeze.configuration.q[0] == Approx(2.0 * 0.07 / 5.0));
   CHECK(squeeze.configuration.q.tail(2).isZero(0.0));
   // A palm contact takes its share and asks nothing of the joints.
   const Contacts with_palm = {one[0], link_contact(0, {-0.04, 0.0, 0.07}, {1.0, 0.0, 0.0})};
-  const Squeeze held = squeeze_configuration(hand, grasp, with_palm, {0.0, 0.0, 0.07}, 0.04, 0.0,
+  const Squeeze held = squeeze_configuration(hand, grasp, with_palm, {{0.0, 0.0, 0.07}, 0.04, 0.0},
                                              {.normal_sum = 2.0});
   CHECK(held.is_balanced);
   CHECK(held.configuration.q[0] == Approx(1.0 * 0.07 / 5.0));
@@ -290,7 +290,7 @@ TEST_CASE("A follower that has broken away neither counts nor moves by itself",
   const Vector3d point = X[static_cast<std::size_t>(link)] * Vector3d(0.03, 0.0, 0.0);
   const Contacts contacts = {link_contact(link, point, Vector3d::UnitY())};
   const Squeeze squeeze =
-      squeeze_configuration(hand, grasp, contacts, point, 0.05, 0.0, {.normal_sum = 1.0});
+      squeeze_configuration(hand, grasp, contacts, {point, 0.05, 0.0}, {.normal_sum = 1.0});
   const auto jacobian =
       hands::point_jacobian(hand, grasp, link, X[static_cast<std::size_t>(link)].inverse() * point);
   CHECK(squeeze.configuration.q[distal] == 0.5);
@@ -303,7 +303,7 @@ TEST_CASE("A squeeze refuses what makes no sense", "[contact][squeeze]") {
   const Contacts contacts = {link_contact(1, {0.04, 0.0, 0.0}, {-1.0, 0.0, 0.0})};
   const auto squeeze = [&](const HandConfiguration& configuration, const Contacts& with,
                            double scale, double friction, const SqueezeOptions& options) {
-    return squeeze_configuration(hand, configuration, with, Vector3d::Zero(), scale, friction,
+    return squeeze_configuration(hand, configuration, with, {Vector3d::Zero(), scale, friction},
                                  options);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -321,6 +321,8 @@ TEST_CASE("A squeeze refuses what makes no sense", "[contact][squeeze]") {
                   InvalidInput);
   CHECK_THROWS_AS(squeeze(grasp, contacts, 0.0, 0.4, {}), InvalidInput);
   CHECK_THROWS_AS(squeeze(grasp, contacts, 0.04, -0.1, {}), InvalidInput);
+  CHECK_THROWS_WITH(squeeze_configuration(hand, grasp, contacts, {.friction = 0.4}),
+                    testing::Contains("torque_scale = nan, must be set"));
   CHECK_THROWS_AS(squeeze({grasp.X_OH, VectorXd::Constant(2, 1.5)}, contacts, 0.04, 0.4, {}),
                   InvalidInput);
 }

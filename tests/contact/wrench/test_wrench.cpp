@@ -102,7 +102,7 @@ TEST_CASE("Each tool's convention has its scale, origin and forces", "[contact][
        }) {
     const WrenchConvention convention = wrench_convention(row.tool, object, contacts, 0.4);
     CHECK(convention.tool == row.tool);
-    CHECK(convention.options.torque_scale == Approx(row.scale).epsilon(1e-14));
+    CHECK(convention.options.torque_scale.value() == Approx(row.scale).epsilon(1e-14));
     CHECK((convention.reference_point_O - row.reference).norm() < 1e-16);
     CHECK(convention.options.force_scaling == row.scaling);
     CHECK(convention.options.outside == row.outside);

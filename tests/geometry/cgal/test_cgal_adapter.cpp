@@ -239,6 +239,12 @@ TEST_CASE("CGAL's tree and MeshQuery find the same nearest points", "[geometry][
     CHECK(Epick::Triangle_3(adapter::point(corners[0]), adapter::point(corners[1]),
                             adapter::point(corners[2])) == *id);
   }
+  TriangleMesh bad = mesh;
+  bad.faces[3][1] = static_cast<std::int32_t>(mesh.vertices.size());
+  CHECK_THROWS_AS(adapter::FaceTree(bad), base::InvalidInput);
+  bad = mesh;
+  bad.vertices[5].y() = std::nan("");
+  CHECK_THROWS_AS(adapter::FaceTree(bad), base::InvalidInput);
 }
 
 }  // namespace graspfit::test_cgal_adapter

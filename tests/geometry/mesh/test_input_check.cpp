@@ -17,6 +17,7 @@
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/rest_pose.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
@@ -139,6 +140,8 @@ TEST_CASE("Points, boxes and poses that are not finite are refused by queries",
   }
   const double none = std::nan("");
   const RigidTransform at = RigidTransform::Identity();
+  const auto piece = clip({Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY()}, {});
+  REQUIRE(piece);
   check_refused({
       {"faces_near",
        [&] {
@@ -149,6 +152,8 @@ TEST_CASE("Points, boxes and poses that are not finite are refused by queries",
       {"surface_clearance", [&] { surface_clearance(query, query, at, 1.0, none); }},
       {"surface_clearance", [&] { surface_clearance(query, query, at, 1.0, 0.0); }},
       {"closest_point", [&] { query.closest_point(Vector3d(1e200, 0.0, 0.0)); }},
+      {"closest_point of a piece", [&] { closest_point(*piece, Vector3d(none, 0.0, 0.0)); }},
+      {"closest_point of a piece without corners", [] { closest_point({}, Vector3d::Zero()); }},
   });
 }
 

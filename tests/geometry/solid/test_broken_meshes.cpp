@@ -16,6 +16,7 @@
 #include "graspfit/geometry/distance_map.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "solid/mesh_holes.hpp"
 #include "support/catch.hpp"

@@ -11,6 +11,7 @@
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_distance.hpp"
 #include "solid/mesh_holes.hpp"

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "graspfit/geometry/distance_map.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "support/catch.hpp"
 #include "support/openvdb_field.hpp"

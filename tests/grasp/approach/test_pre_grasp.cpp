@@ -52,7 +52,7 @@ struct Pinch {
   }
   std::optional<PreGrasp> find(const PreGraspOptions& options, Surroundings around = {}) const {
     const SurroundingsCollision surroundings(hand, std::move(around));
-    return find_pre_grasp(hand, collision, object, surroundings, grasp, options);
+    return find_pre_grasp({hand, collision, object, surroundings}, grasp, options);
   }
   HandModel hand;
   hands::HandCollision collision;
@@ -363,7 +363,7 @@ TEST_CASE("A search ends where many ways cannot be proven, though a later one co
   const HandConfiguration grasp{RigidTransform::Identity(), VectorXd::Constant(1, 0.05)};
   const auto find = [&](double retreat_step) {
     return find_pre_grasp(
-        hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}), grasp,
+        {hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {})}, grasp,
         {.largest_retreat = 0.005, .retreat_step = retreat_step, .opening_steps = 1});
   };
   const auto found = find(0.005);
@@ -397,8 +397,9 @@ TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]
   const HandConfiguration grasp{RigidTransform::Identity(), Eigen::Vector2d(0.05, 0.05)};
   const MeshQuery object(box_at({0.01, 0.01, 0.01}, {0.0, 0.0, 0.02}));
   const auto find = [&](const PreGraspOptions& options) {
-    return find_pre_grasp(hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}),
-                          grasp, options);
+    return find_pre_grasp(
+        {hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {})}, grasp,
+        options);
   };
   const PreGraspOptions at_once{.largest_retreat = 0.0, .opening_steps = 1};
   CHECK_FALSE(find(at_once));
@@ -442,8 +443,8 @@ TEST_CASE("Neutral joints open along where that is allowed and nothing else is f
   const HandConfiguration grasp{RigidTransform::Identity(), Vector3d(0.05, -0.03, 0.05)};
   const MeshQuery object(box_at({0.01, 0.01, 0.01}, {0.0, 0.0, 0.02}));
   const auto find = [&](const HandConfiguration& at, const PreGraspOptions& options) {
-    return find_pre_grasp(hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {}),
-                          at, options);
+    return find_pre_grasp(
+        {hand, hands::HandCollision(hand), object, SurroundingsCollision(hand, {})}, at, options);
   };
   CHECK_FALSE(find(grasp, {.largest_retreat = 0.0, .opening_steps = 1}));
   const PreGraspOptions with_neutral{
@@ -484,7 +485,7 @@ TEST_CASE(
       const PreGraspOptions options{
           .largest_retreat = 0.06, .retreat_step = 0.03, .opening_steps = 3};
       const auto found =
-          find_pre_grasp(hand, scene.collision, scene.object, scene.surroundings, grasp, options);
+          find_pre_grasp({hand, scene.collision, scene.object, scene.surroundings}, grasp, options);
       // This is what the contract calls free, by exact tests at many poses.
       const auto looks_free = [&](const HandConfiguration& from) {
         for (int i = 0; i < 30; ++i) {

@@ -383,7 +383,8 @@ TEST_CASE("The guarantees of fitting hold on every shape, however the fit ends",
       if (seed % 2 == 0) options.palm_after_contact = grasp::PalmAfterContact::Frozen;
       base::Random random(seed);
       const auto selection =
-          grasp::TargetSelector(scene.object, distances, scene.parts, target_options)
+          grasp::TargetSelector(scene.object, distances, scene.parts, target_options,
+                                grasp::IdealMeasure{&scene.hand, {}})
               .select(random);
       if (!selection.targets) continue;
       for (const PalmPlacement& placement :

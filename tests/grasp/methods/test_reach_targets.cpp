@@ -11,6 +11,7 @@
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_file.hpp"
 #include "graspfit/grasp/planner_result.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_io.hpp"
@@ -153,6 +154,49 @@ TEST_CASE("The palm of targets by reach comes from where it is asked to, and kee
     CHECK(grasp.targets.contacts.size() == 3);
     CHECK(grasp.is_valid());
   }
+}
+
+TEST_CASE("Postures and grasps by reach keep off an obstacle beside the object",
+          "[grasp][reach_targets]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const hands::HandCollision collision(hand);
+  PlannerOptions options = reach_options(GraspStyle::Precision, 4);
+  options.palm = true;  // three fingertips alone pinch nothing so narrow squarely
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  // A block 10 mm beside the capsule, where a finger has no room.
+  geometry::TriangleMesh block = geometry::box({0.10, 0.20, 0.20});
+  for (Eigen::Vector3d& vertex : block.vertices) vertex.x() += 0.035 + 0.010 + 0.05;
+  Surroundings surroundings;
+  surroundings.obstacles.emplace_back(block);
+  const SurroundingsCollision with_block(hand, surroundings);
+  const auto touches_block = [&](const hands::HandConfiguration& configuration) {
+    const auto X_OL = hands::forward_kinematics(hand, configuration);
+    for (std::size_t link = 0; link < X_OL.size(); ++link) {
+      if (with_block.touches(collision, static_cast<int>(link), X_OL[link])) return true;
+    }
+    return false;
+  };
+  int num_starts = 0;
+  int num_touching = 0;
+  PlanningRun run;
+  run.num_threads = 1;
+  run.tried_start = [&](const TriedStart& tried) {
+    REQUIRE(tried.start.posture);
+    ++num_starts;
+    num_touching += touches_block(*tried.start.posture) ? 1 : 0;
+  };
+  const PlannerResult result = plan_grasps(object, hand, options, surroundings, run);
+  CHECK(num_starts > 0);
+  CHECK(num_touching == 0);
+  REQUIRE_FALSE(result.grasps.empty());
+  for (const Grasp& grasp : result.grasps) {
+    CHECK(grasp.is_valid());
+    CHECK_FALSE(touches_block(grasp.configuration));
+  }
+  // Without the block hands lie where it would be: that they keep off is no chance.
+  options.max_attempts = 2;
+  plan_grasps(object, hand, options, {}, run);
+  CHECK(num_touching > 0);
 }
 
 TEST_CASE("A grip is chosen among targets by reach only", "[grasp][reach_targets]") {

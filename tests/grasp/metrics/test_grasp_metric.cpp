@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grasp/known_grasps.hpp"
+#include "contact/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/contact/epsilon_linf.hpp"
 #include "graspfit/contact/grasp_matrix_quality.hpp"
@@ -206,7 +206,7 @@ TEST_CASE(
   const GraspMetricInput four = input_of(on_tetrahedron(), mu);
   const WrenchConvention& convention = *four.convention();
   const GraspMatrixQuality matrix = grasp_matrix_quality(
-      on_tetrahedron(), convention.reference_point_O, convention.options.torque_scale);
+      on_tetrahedron(), convention.reference_point_O, convention.options.torque_scale.value());
   CHECK(*value_of("sigma_min", four) == matrix.smallest());
   CHECK(*value_of("sigma_ratio", four) == matrix.ratio());
   const GraspMetricValue linf = evaluate(grasp_metrics().at("epsilon_linf"), four);

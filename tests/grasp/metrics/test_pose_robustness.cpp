@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grasp/known_grasps.hpp"
+#include "contact/known_grasps.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_metric.hpp"

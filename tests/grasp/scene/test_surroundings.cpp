@@ -198,6 +198,13 @@ TEST_CASE("Nothing around touches nothing; what makes no sense is refused",
   CHECK_THROWS_WITH(SurroundingsCollision(hand, {{}, {closed, MeshQuery(open)}}),
                     testing::Contains("obstacle 1 is not closed (3 boundary edges"));
   CHECK_THROWS_AS(SurroundingsCollision(hand, {{}, {MeshQuery(open)}}), InvalidInput);
+  for (const Surroundings& around : {with_table(0.0), Surroundings{{}, {closed}}}) {
+    const SurroundingsCollision surroundings(hand, around);
+    RigidTransform X = RigidTransform::Identity();
+    X.translation().z() = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_AS(surroundings.touches(collision, 0, X), InvalidInput);
+    CHECK_THROWS_AS(surroundings.distance(collision, 0, X, 1.0), InvalidInput);
+  }
 }
 
 }  // namespace test_surroundings

@@ -106,8 +106,12 @@ TEST_CASE("The same seed gives the same targets, other seeds give others",
   std::set<std::vector<int>> different;
   for (int seed = 1; seed <= 30; ++seed) {
     base::Random one(seed), two(seed);
-    const TargetSelection a = grasp::TargetSelector(object, distances, {{0, 1, 2}}, {}).select(one);
-    const TargetSelection b = grasp::TargetSelector(object, distances, {{0, 1, 2}}, {}).select(two);
+    const auto draw = [&](base::Random& random) {
+      return grasp::TargetSelector(object, distances, {{0, 1, 2}}, {}, grasp::IdealMeasure{})
+          .select(random);
+    };
+    const TargetSelection a = draw(one);
+    const TargetSelection b = draw(two);
     CHECK(patches_of(a) == patches_of(b));
     CHECK(a.seeds_tried == b.seeds_tried);
     // Both have drawn as many numbers.

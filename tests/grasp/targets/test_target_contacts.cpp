@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "grasp/target_scenes.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"

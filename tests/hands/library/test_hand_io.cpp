@@ -4,6 +4,7 @@
 #include <string>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/sha256.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "support/catch.hpp"
@@ -174,6 +175,23 @@ TEST_CASE("Meshes may lie in a folder meshes beside the description's own, and n
   fs::remove_all(folder.path() / "clone/meshes");
   fs::create_directory_symlink(folder.path() / "clone/other", folder.path() / "clone/meshes");
   CHECK_THROWS_AS(hand_of("../meshes/part.obj"), base::InvalidInput);
+}
+
+TEST_CASE("Links are known again by the bytes of their mesh files", "[hands][hand_io]") {
+  const Folder folder;
+  const std::string tetrahedron =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  folder.write("meshes/part.obj", tetrahedron);
+  const std::string mesh = "<mesh filename=\"meshes/part.obj\" scale=\"0.01 0.02 0.03\"/>";
+  const HandModel hand =
+      hands::read_hand_model(write_hand(folder, with(kUrdf, "<box size=\"0.1 0.1 0.02\"/>", mesh)));
+  const std::vector<std::string> hashes = hands::link_mesh_hashes(hand);
+  REQUIRE(hashes.size() == hand.links.size());
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    CHECK(hashes[i] == (hand.links[i].name == "base" ? base::sha256_hex(tetrahedron) : ""));
+  }
+  fs::remove(folder.path() / "meshes/part.obj");
+  CHECK_THROWS_AS(hands::link_mesh_hashes(hand), base::IoError);
 }
 
 TEST_CASE("Couplings alone are a whole sidecar", "[hands][hand_io]") {

@@ -357,6 +357,8 @@ TEST_CASE("Names are looked up, and an unknown one is answered with those there 
   CHECK(hand.finger_index("finger") == 0);
   CHECK(hand.joint_index("middle") == 1);
   CHECK(hand.link_index("far") == 2);
+  CHECK(hand.part_name(0) == "finger");
+  CHECK(hand.part_name(std::nullopt) == "palm");
   CHECK_THROWS_WITH(hand.joint_index("wrist"),
                     "hand small: no joint named wrist; there are knuckle, middle");
   CHECK(hand.thumb() == 0);

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -209,6 +210,32 @@ TEST_CASE("Links without faces and poses of another hand", "[hands][hand_collisi
   CHECK(nothing.overlapping_pairs(X_OL).empty());
   CHECK_THROWS_AS(nothing.overlaps_self({}, 1e-3), base::InvalidInput);
   CHECK_THROWS_AS(nothing.overlapping_pairs({}), base::InvalidInput);
+}
+
+TEST_CASE("Poses that are not finite are refused, wherever the links are",
+          "[hands][hand_collision]") {
+  const geometry::MeshQuery object(geometry::box({0.05, 0.05, 0.05}));
+  const auto open = hands::forward_kinematics(barrett(), hands::open_configuration(barrett()));
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const auto& [row, column] : {std::pair{0, 0}, {2, 3}}) {
+      auto X_OL = open;
+      X_OL[1](row, column) = bad;
+      CHECK_THROWS_AS(collision().link_intersects(object, 1, X_OL[1]), base::InvalidInput);
+      CHECK_THROWS_AS(collision().link_depth_above(object, 1, X_OL[1], 0.0, {}),
+                      base::InvalidInput);
+      CHECK_THROWS_AS(collision().against_object(object, X_OL), base::InvalidInput);
+      CHECK_THROWS_AS(collision().against_self(X_OL), base::InvalidInput);
+      CHECK_THROWS_AS(collision().overlapping_pairs(X_OL), base::InvalidInput);
+      CHECK_THROWS_AS(collision().overlaps_self(X_OL, 1e-3), base::InvalidInput);
+    }
+    HandConfiguration configuration = hands::open_configuration(barrett());
+    configuration.q[2] = bad;
+    CHECK_THROWS_AS(hands::forward_kinematics(barrett(), configuration), base::InvalidInput);
+    configuration = hands::open_configuration(barrett());
+    configuration.X_OH.translation().z() = bad;
+    CHECK_THROWS_AS(hands::forward_kinematics(barrett(), configuration), base::InvalidInput);
+  }
 }
 
 }  // namespace

@@ -12,11 +12,13 @@
 #include "graspfit/base/random.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
+#include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "graspfit/hands/pinch_chart.hpp"
 #include "hands/workspace/planar_hand.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/wide_finger_hand.hpp"
 
 namespace test_pinch_chart {
 
@@ -59,6 +61,27 @@ double lean_at(const PinchChart& chart, double opening) {
   REQUIRE(number < chart.pinches.size());
   REQUIRE(chart.pinches[number]);
   return chart.pinches[number]->lean;
+}
+
+/// Checks that two charts are the same to the last bit.
+void check_same(const PinchChart& chart, const PinchChart& expected) {
+  CHECK(chart.kind == expected.kind);
+  CHECK(chart.step == expected.step);
+  CHECK(chart.num_sets == expected.num_sets);
+  REQUIRE(chart.pinches.size() == expected.pinches.size());
+  for (std::size_t k = 0; k < expected.pinches.size(); ++k) {
+    REQUIRE(chart.pinches[k].has_value() == expected.pinches[k].has_value());
+    if (!expected.pinches[k]) continue;
+    CHECK(chart.pinches[k]->opening == expected.pinches[k]->opening);
+    CHECK(chart.pinches[k]->lean == expected.pinches[k]->lean);
+    CHECK(chart.pinches[k]->pads == expected.pinches[k]->pads);
+    CHECK(chart.pinches[k]->q == expected.pinches[k]->q);
+  }
+}
+
+/// How many charts a cache in this folder holds.
+std::ptrdiff_t num_kept(const TemporaryFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path() / "pinch_chart"), {});
 }
 
 }  // namespace
@@ -267,27 +290,10 @@ TEST_CASE("A chart is kept by all that it depends on", "[hands][pinch_chart]") {
   const base::ContentCache cache{.folder = folder.path()};
   const HandModel hand = planar_hand(0.06, {0.08}, 1.0);
   const hands::PinchChartOptions options{.step = 0.02};
-  const auto num_kept = [&] {
-    return std::distance(fs::directory_iterator(folder.path() / "pinch_chart"), {});
-  };
   const PinchChart found = hands::pinch_chart(hand, PinchKind::Tips, options);
-  const auto is_found = [&](const PinchChart& chart) {
-    CHECK(chart.kind == found.kind);
-    CHECK(chart.step == found.step);
-    CHECK(chart.num_sets == found.num_sets);
-    REQUIRE(chart.pinches.size() == found.pinches.size());
-    for (std::size_t k = 0; k < found.pinches.size(); ++k) {
-      REQUIRE(chart.pinches[k].has_value() == found.pinches[k].has_value());
-      if (!found.pinches[k]) continue;
-      CHECK(chart.pinches[k]->opening == found.pinches[k]->opening);
-      CHECK(chart.pinches[k]->lean == found.pinches[k]->lean);
-      CHECK(chart.pinches[k]->pads == found.pinches[k]->pads);
-      CHECK(chart.pinches[k]->q == found.pinches[k]->q);
-    }
-  };
-  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
-  REQUIRE(num_kept() == 1);
-  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
+  check_same(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache), found);
+  REQUIRE(num_kept(folder) == 1);
+  check_same(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache), found);
   // Another number of sets, sealed, shows that the entry is what is read; more text is no chart.
   const std::string key = fs::directory_iterator(folder.path() / "pinch_chart")->path().stem();
   const std::string text = *cache.read("pinch_chart", key);
@@ -295,17 +301,49 @@ TEST_CASE("A chart is kept by all that it depends on", "[hands][pinch_chart]") {
   cache.write("pinch_chart", key, "7" + text.substr(1));
   CHECK(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache).num_sets == 7);
   cache.write("pinch_chart", key, text + " 1");
-  is_found(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache));
+  check_same(hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache), found);
   // Names do not matter; kind, options and hand do.
   HandModel other = hand;
   other.name = "another";
   hands::cached_pinch_chart(other, PinchKind::Tips, options, cache);
-  CHECK(num_kept() == 1);
+  CHECK(num_kept(folder) == 1);
   hands::cached_pinch_chart(hand, PinchKind::Palm, options, cache);
   hands::cached_pinch_chart(hand, PinchKind::Tips, {.step = 0.025}, cache);
   other.joints[0].upper = 1.1;
   hands::cached_pinch_chart(other, PinchKind::Tips, options, cache);
-  CHECK(num_kept() == 4);
+  CHECK(num_kept(folder) == 4);
+}
+
+TEST_CASE("The chart of a hand from a file is kept by what the file describes",
+          "[hands][pinch_chart]") {
+  const TemporaryFolder folder;
+  const base::ContentCache cache{.folder = folder.path()};
+  const hands::PinchChartOptions options{.step = 0.02, .max_configurations = 1 << 12};
+  const std::string description = wide_finger_hand_urdf();
+  const auto with = [&](const std::string& part, const std::string& other) {
+    std::string text = description;
+    REQUIRE(text.find(part) != std::string::npos);
+    return text.replace(text.find(part), part.size(), other);
+  };
+  const auto chart_of = [&](const std::string& file, const std::string& text) {
+    const HandModel hand = hands::read_hand_model(folder.write(file, text));
+    const PinchChart chart = hands::cached_pinch_chart(hand, PinchKind::Tips, options, cache);
+    check_same(chart, hands::pinch_chart(hand, PinchKind::Tips, options));
+    return chart;
+  };
+  const PinchChart found = chart_of("hand.urdf", description);
+  CHECK(found.num_sets == 3);  // the thumb with each of three fingers
+  REQUIRE(hands::squarest(found));
+  REQUIRE(num_kept(folder) == 1);
+  // Read again, and from a file of another name, it is the same hand, whose chart is read.
+  check_same(chart_of("hand.urdf", description), found);
+  check_same(chart_of("again/other.urdf", description), found);
+  CHECK(num_kept(folder) == 1);
+  // Wider fingertips or a joint that turns less far make another hand.
+  chart_of("wider.urdf", with("0.030 0.040 0.018", "0.034 0.040 0.018"));
+  CHECK(num_kept(folder) == 2);
+  chart_of("stiffer.urdf", with("upper=\"1.9\"", "upper=\"1.5\""));
+  CHECK(num_kept(folder) == 3);
 }
 
 TEST_CASE("Options of a chart are checked", "[hands][pinch_chart]") {

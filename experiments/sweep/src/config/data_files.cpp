@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "graspfit/base/lies_in.hpp"
 #include "graspfit/base/sha256.hpp"
 #include "graspfit/sweep/experiment.hpp"
 #include "graspfit/sweep/experiment_config.hpp"
@@ -15,11 +16,6 @@ namespace graspfit::sweep {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
 
 /// A mesh of the data folder and the packaged mesh of the same bytes.
 struct Twin {
@@ -91,7 +87,7 @@ fs::path config_folder() {
   // A program of the build tree uses the sources' configurations, so that a change there counts.
   const fs::path sources = fs::path(GRASPFIT_SOURCE_FOLDER) / "experiments/configs";
   const fs::path installed = GRASPFIT_INSTALLED_CONFIGS;
-  for (const fs::path& candidate : lies_in(program, GRASPFIT_BUILD_FOLDER)
+  for (const fs::path& candidate : base::lies_in(program, GRASPFIT_BUILD_FOLDER)
                                        ? std::vector{sources, beside, installed}
                                        : std::vector{beside, installed, sources}) {
     if (fs::is_directory(candidate, error)) return candidate;
@@ -148,14 +144,14 @@ std::string name_of_input(const fs::path& file) {
   // All files lie in the root of a file system, so that names relative to it would mean nothing
   // elsewhere.
   const bool has_data = data != data.root_path();
-  if (has_data && lies_in(path, data)) return path.lexically_relative(data).string();
+  if (has_data && base::lies_in(path, data)) return path.lexically_relative(data).string();
   for (const fs::path& folder : packaged_mesh_folders()) {
     const fs::path meshes = fs::absolute(folder).lexically_normal();
-    if (meshes != meshes.root_path() && lies_in(path, meshes)) {
+    if (meshes != meshes.root_path() && base::lies_in(path, meshes)) {
       return ("packaged" / path.lexically_relative(meshes)).string();
     }
   }
-  if (!lies_in(path, sources)) return path.string();
+  if (!base::lies_in(path, sources)) return path.string();
   const fs::path relative = path.lexically_relative(sources);
   std::error_code error;
   const bool is_taken = has_data && fs::exists(data / relative, error);

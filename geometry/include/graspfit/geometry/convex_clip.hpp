@@ -49,6 +49,7 @@ std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::in
                                const ConvexVolume& volume);
 
 /// The point of a piece nearest to `point`. Rounded, to the piece's rounded corners.
+/// @throws InvalidInput for a piece without corners and a point that is not finite.
 Eigen::Vector3d closest_point(const ClippedPiece& piece, const Eigen::Vector3d& point);
 
 }  // namespace graspfit::geometry

@@ -62,8 +62,9 @@ struct ConvexDecomposition {
 /// parts; it exceeds 0.05 largest_deviation only where max_piece_vertices is reached. Parts thinner
 /// than 1e-5 of the solid's longest extent are left out, and no deviation counts what they cover.
 ///
-/// The result is deterministic. It costs seconds for 64 pieces and more of them for 256, about a
-/// third of that for the bound of outward_deviation; `cached_convex_decomposition` keeps it.
+/// The result is the same bytes every time, on one build and processor. It costs seconds for 64
+/// pieces and more of them for 256, about a third of that for the bound of outward_deviation;
+/// `cached_convex_decomposition` keeps it.
 /// @throws InvalidInput for bad options; DegenerateGeometry for a mesh that bounds no solid: not
 /// closed, or without volume.
 ConvexDecomposition convex_decomposition(const TriangleMesh& mesh,

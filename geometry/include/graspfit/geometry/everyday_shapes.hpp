@@ -15,7 +15,8 @@
 /// exactly on the other.
 ///
 /// Bounding boxes are those of the exact shapes, to rounding, however few the segments. Surfaces
-/// and volumes converge with the square of the edge length. The same arguments give the same bytes.
+/// and volumes converge with the square of the edge length. The same arguments give the same bytes,
+/// on one build and processor.
 /// All throw InvalidInput that names the field and its value: for a dimension that is not positive
 /// or does not fit the others, for segments out of range, and where edges are too long for the
 /// features of a blended shape (its topology is checked) or too many.

@@ -34,7 +34,7 @@ struct VoxelLattice {
   }
   /// The voxel that holds `point`, perhaps outside the lattice. Approximate: the index is the floor
   /// of a rounded quotient; for a point within rounding of a plane it may be that of either
-  /// neighbor.
+  /// neighbor. The point is finite, and no farther than 2^31 voxels.
   Eigen::Vector3i voxel_at(const Eigen::Vector3d& point) const {
     return ((point - origin) / voxel_size).array().floor().cast<int>();
   }

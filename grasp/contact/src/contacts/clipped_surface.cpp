@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 
 namespace graspfit::contact::internal {
@@ -136,24 +137,26 @@ std::vector<geometry::ClippedPiece> clipped_surface(const FacesInVolume& faces,
 std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::ClippedPiece>& pieces,
                                                 const geometry::TriangleMesh& mesh,
                                                 double distance) {
-  boost::disjoint_sets_with_storage<> sets(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) sets.make_set(i);
+  base::DisjointSets sets(pieces.size());
+  const auto unite = [&sets](std::size_t i, std::size_t j) {
+    sets.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+  };
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> piece_at;  // by edge
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const auto& face = mesh.faces[pieces[i].face];
     for (int corner = 0; corner < 3; ++corner) {
       const std::pair edge = std::minmax({face[corner], face[(corner + 1) % 3]});
       const auto [found, is_new] = piece_at.emplace(edge, i);
-      if (!is_new) sets.union_set(i, found->second);
+      if (!is_new) unite(i, found->second);
     }
   }
   const auto groups = [&] {
+    const std::vector<std::int32_t> set_of = sets.numbered();
     std::vector<std::vector<std::size_t>> result;
-    std::map<std::size_t, std::size_t> index_of;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const auto [found, is_new] = index_of.emplace(sets.find_set(i), result.size());
-      if (is_new) result.emplace_back();
-      result[found->second].push_back(i);
+      const auto set = static_cast<std::size_t>(set_of[i]);
+      if (set == result.size()) result.emplace_back();
+      result[set].push_back(i);
     }
     return result;
   };
@@ -171,7 +174,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::Clip
   for (std::size_t a = 0; a < joined.size(); ++a) {
     for (std::size_t b = a + 1; b < joined.size(); ++b) {
       if ((centroids[a] - centroids[b]).norm() <= distance) {
-        sets.union_set(joined[a].front(), joined[b].front());
+        unite(joined[a].front(), joined[b].front());
       }
     }
   }

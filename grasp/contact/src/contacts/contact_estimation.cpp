@@ -115,14 +115,14 @@ std::vector<Contact> contacts_of(int pad_index, const RigidTransform& X_OC, cons
   const std::vector<ClippedPiece> pieces = internal::clipped_surface(
       internal::faces_in_clip_volume(pad, scene.options.clip_thickness, X_OC, scene.object), mesh);
   const std::vector<Group> groups = contact_groups(pieces, pad, scene);
-  const RigidTransform X_CO = X_OC.inverse();
+  const RigidTransform X_CO = geometry::inverted(X_OC);
   std::vector<Contact> contacts;
   for (const Group& group : groups) {
     const SurfaceMean mean = mean_over(pieces, group, scene);
     if (!mean.is_contact()) continue;
     const auto gap_to = [&](const geometry::MeshQuery& surface) {
       return pad_gap(geometry::MeshQuery(hands::pad_surface_L(scene.hand, pad_index)),
-                     X_OC * pad.X_LC.inverse(), surface, kNoLimit)
+                     X_OC * geometry::inverted(pad.X_LC), surface, kNoLimit)
           .value_or(kNoLimit);
     };
     Contact contact;

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 
 namespace graspfit::contact::internal {
@@ -20,8 +19,5 @@ struct ContactHull {
 /// Contacts linked by chains of distances below `merge_distance` become one point, their mean, so
 /// that the outcome does not depend on their order.
 ContactHull contact_hull(std::span<const Eigen::Vector3d> contacts, double merge_distance);
-
-/// R of a hull; see the public `regularity`.
-double regularity(const ContactHull& contact_hull, Regularity definition);
 
 }  // namespace graspfit::contact::internal

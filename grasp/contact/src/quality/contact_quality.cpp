@@ -1,6 +1,5 @@
 #include "graspfit/contact/contact_quality.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/angle.hpp"
 #include "quality/contact_hull.hpp"
+#include "quality/regularity.hpp"
 
 namespace graspfit::contact {
 namespace {
@@ -203,6 +203,10 @@ ContactQuality contact_quality(std::span<const Contact> contacts, const QualityC
     terms.push_back(term);
   }
   return assemble(contacts, std::move(terms), context, options);
+}
+
+double normalizing_radius(const Eigen::AlignedBox3d& box_O) {
+  return 0.5 * box_O.diagonal().norm();
 }
 
 ContactQuality ideal_quality(std::span<const Contact> contacts, const QualityContext& context,

@@ -1,17 +1,19 @@
+#include "quality/regularity.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/option_check.hpp"
-#include "quality/contact_hull.hpp"
 
 namespace graspfit::contact {
 namespace internal {
@@ -21,31 +23,9 @@ using Eigen::Vector3d;
 using Polygon = std::vector<Vector3d>;
 
 constexpr double kSmallestRegularity = 1e-3;              // R stays in (0, 1]: collinear contacts
-constexpr double kCollinearRel = 1e-3;                    // second over first singular value
-constexpr double kPlanarRel = 0.1;                        // thickness over extent
 constexpr double kCoplanarAngle = std::numbers::pi / 36;  // 5°: hull triangles of one face
 // A triangle this much thinner than long has a normal made of rounding errors.
 constexpr double kSliverRel = 1e-9;
-
-/// Disjoint sets of the indices 0 … n − 1.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parents_(size) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) const {
-    while (parents_[i] != i) i = parents_[i];
-    return i;
-  }
-  /// The smaller representative wins, so that sets are named independently of the order of merging.
-  void unite(std::size_t i, std::size_t j) {
-    const auto [low, high] = std::minmax({find(i), find(j)});
-    parents_[high] = low;
-  }
-
- private:
-  std::vector<std::size_t> parents_;
-};
 
 /// Angle regularity 1 − Q of a polygon seen along `normal`, counter-clockwise or clockwise alike:
 ///   θ̄ = π (n − 2) / n,   Q = Σ |θ_i − θ̄| / ((n − 2)(π − θ̄) + 2 θ̄)
@@ -118,21 +98,26 @@ class HullFaces {
     for (std::size_t f = 0; f < facets.size(); ++f) {
       for (std::size_t i = 0; i < 3; ++i) facet_of_edge_[edge(f, i)] = f;
     }
-    DisjointSets sets(facets.size());
+    base::DisjointSets sets(facets.size());
+    const auto unite = [&sets](std::size_t f, std::size_t neighbor) {
+      sets.unite(static_cast<std::int32_t>(f), static_cast<std::int32_t>(neighbor));
+    };
     for (std::size_t f = 0; f < facets.size(); ++f) {
       const std::optional<Vector3d> normal = unit_normal(f);
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t neighbor = across(f, i);
         if (!normal) {
-          if (i == longest_edge(f)) sets.unite(f, neighbor);
+          if (i == longest_edge(f)) unite(f, neighbor);
         } else if (const std::optional<Vector3d> other = unit_normal(neighbor);
                    other &&
                    std::atan2(normal->cross(*other).norm(), normal->dot(*other)) < kCoplanarAngle) {
-          sets.unite(f, neighbor);
+          unite(f, neighbor);
         }
       }
     }
-    for (std::size_t f = 0; f < facets.size(); ++f) groups_[f] = sets.find(f);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      groups_[f] = static_cast<std::size_t>(sets.root(static_cast<std::int32_t>(f)));
+    }
     split_groups_without_outline();
   }
 
@@ -248,31 +233,6 @@ double combined(const RegularityTerms& terms, Regularity definition) {
 }
 
 }  // namespace
-
-ContactHull contact_hull(std::span<const Vector3d> contacts, double merge_distance) {
-  DisjointSets sets(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
-      if ((contacts[i] - contacts[j]).norm() < merge_distance) sets.unite(i, j);
-    }
-  }
-  ContactHull result;
-  result.num_contacts = contacts.size();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (sets.find(i) != i) continue;
-    Vector3d sum = Vector3d::Zero();
-    int count = 0;
-    for (std::size_t j = i; j < contacts.size(); ++j) {
-      if (sets.find(j) != i) continue;
-      sum += contacts[j];
-      ++count;
-    }
-    result.points.push_back(count == 1 ? contacts[i] : Vector3d(sum / count));
-  }
-  result.hull = geometry::convex_hull(result.points,
-                                      {.collinear_rel = kCollinearRel, .planar_rel = kPlanarRel});
-  return result;
-}
 
 double regularity(const ContactHull& contacts, Regularity definition) {
   if (contacts.num_contacts < 2) return 0.0;

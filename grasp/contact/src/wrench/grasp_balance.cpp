@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contacts/contact_check.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -43,8 +44,9 @@ void BalanceOptions::validate() const {
                 "finite and at least 0");
   base::require(least_normal_sum >= 0.0 && std::isfinite(least_normal_sum), "BalanceOptions",
                 "least_normal_sum", least_normal_sum, "finite and at least 0");
-  base::require(torque_scale > 0.0 && std::isfinite(torque_scale), "BalanceOptions", "torque_scale",
-                torque_scale, "set, finite and positive");
+  const double scale = torque_scale.value_or(std::numeric_limits<double>::quiet_NaN());
+  base::require(scale > 0.0 && std::isfinite(scale), "BalanceOptions", "torque_scale", scale,
+                "set, finite and positive");
   base::require(evenness >= 0.0 && std::isfinite(evenness), "BalanceOptions", "evenness", evenness,
                 "finite and at least 0");
 }
@@ -67,7 +69,7 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
         friction_cone(contact.inward_normal_O, options.friction), options.num_cone_edges);
     for (Index k = i * num_edges; k < (i + 1) * num_edges; ++k) {
       wrenches.col(k) =
-          wrench(edges.col(k), contact.point_O, reference_point_O, options.torque_scale);
+          wrench(edges.col(k), contact.point_O, reference_point_O, *options.torque_scale);
     }
   }
   // The force along an edge counts as one more component of its wrench, in a dimension of its own.

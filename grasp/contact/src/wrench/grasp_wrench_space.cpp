@@ -39,7 +39,7 @@ Wrenches contact_wrenches(std::span<const Contact> contacts, const WrenchConvent
     const Eigen::Matrix3Xd edges = cone_edges(cone, options.num_cone_edges);
     for (const auto& edge : edges.colwise()) {
       wrenches.col(column++) = wrench(normal_force * edge, contact.point_O,
-                                      convention.reference_point_O, options.torque_scale);
+                                      convention.reference_point_O, *options.torque_scale);
     }
   }
   if (wrenches.cols() == 0) return wrenches;
@@ -94,6 +94,7 @@ double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& obj
 bool is_force_closure(const GraspWrenchSpace& space) { return has_origin_inside(space.hull); }
 
 bool is_force_closure(const Wrenches& wrenches) {
+  if (!wrenches.allFinite()) throw base::InvalidInput("is_force_closure: a wrench is not finite");
   return wrenches.cols() > 6 && !is_surely_no_force_closure(wrenches) &&
          has_origin_inside(ConvexPolytope(wrenches));
 }

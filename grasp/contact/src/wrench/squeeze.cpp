@@ -46,8 +46,8 @@ VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfigurati
   MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const hands::RigidTransform& X = X_OL[contacts[i].link];
-    const MatrixXd jacobian =
-        hands::point_jacobian(hand, grasp, contacts[i].link, X.inverse() * contacts[i].point_O);
+    const MatrixXd jacobian = hands::point_jacobian(hand, grasp, contacts[i].link,
+                                                    geometry::inverted(X) * contacts[i].point_O);
     per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
   }
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
@@ -99,13 +99,11 @@ void SqueezeOptions::validate() const {
 }
 
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
-                              std::span<const Contact> contacts,
-                              const Eigen::Vector3d& center_of_mass_O, double torque_scale,
-                              double friction, const SqueezeOptions& options,
-                              const std::optional<double>& bearing_gap) {
+                              std::span<const Contact> contacts, const SqueezeContext& context,
+                              const SqueezeOptions& options) {
   options.validate();
   hands::validate(hand, grasp);
-  const std::vector<Contact> touching = touching_contacts(contacts, bearing_gap);
+  const std::vector<Contact> touching = touching_contacts(contacts, context.bearing_gap);
   base::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
                 touching.size(), "at least 1");
   const int num_links = static_cast<int>(hand.links.size());
@@ -114,16 +112,16 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
                   "link of a contact", contact.link,
                   "one of the " + std::to_string(num_links) + " of hand " + hand.name);
   }
-  const BalanceForces balance = balance_forces(touching, center_of_mass_O, Wrench::Zero(),
-                                               {.friction = friction,
+  const BalanceForces balance = balance_forces(touching, context.center_of_mass_O, Wrench::Zero(),
+                                               {.friction = context.friction,
                                                 .least_normal_sum = options.normal_sum,
-                                                .torque_scale = torque_scale,
+                                                .torque_scale = context.torque_scale,
                                                 .evenness = kEvenness});
   Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
                  balance.residual_norm / options.normal_sum, false, false};
   Index next = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const bool bears = !bearing_gap || contacts[i].gap <= *bearing_gap;
+    const bool bears = !context.bearing_gap || contacts[i].gap <= *context.bearing_gap;
     if (bears) result.forces_O.col(static_cast<Index>(i)) = balance.forces_O.col(next++);
   }
   result.is_balanced = result.residual <= options.largest_residual;

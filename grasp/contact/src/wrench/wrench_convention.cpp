@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "graspfit/base/number_text.hpp"
@@ -14,6 +15,11 @@ namespace graspfit::contact {
 namespace {
 
 using Eigen::Vector3d;
+
+/// The scale as a number that messages and descriptions can state: NaN where none is given.
+double number_of(const std::optional<double>& torque_scale) {
+  return torque_scale.value_or(std::numeric_limits<double>::quiet_NaN());
+}
 
 std::string_view name_of_tool(WrenchTool tool) {
   switch (tool) {
@@ -53,8 +59,8 @@ void WrenchSpaceOptions::validate() const {
   };
   check(num_cone_edges >= 3, "num_cone_edges", num_cone_edges, "at least 3");
   check(friction >= 0.0 && std::isfinite(friction), "friction", friction, "finite and at least 0");
-  check(torque_scale > 0.0 && std::isfinite(torque_scale), "torque_scale", torque_scale,
-        "set, finite and positive");
+  const double scale = number_of(torque_scale);
+  check(scale > 0.0 && std::isfinite(scale), "torque_scale", scale, "set, finite and positive");
   check(force_limit > 0.0 && std::isfinite(force_limit), "force_limit", force_limit,
         "finite and positive");
 }
@@ -66,7 +72,7 @@ std::string internal::describe(const WrenchConvention& convention, std::string_v
   std::string text;
   if (convention.tool) text.append(name_of_tool(*convention.tool)).append(": ");
   text.append("torques about (" + number(c.x()) + ", " + number(c.y()) + ", " + number(c.z()) +
-              ") m over " + number(options.torque_scale) + " m, friction " +
+              ") m over " + number(number_of(options.torque_scale)) + " m, friction " +
               number(options.friction) + ", " + std::to_string(options.num_cone_edges) +
               " inscribed edges from normal x e_x, ")
       .append(norm)

@@ -8,6 +8,7 @@
 
 #include "graspfit/geometry/mesh_analysis.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 namespace graspfit::grasp {
@@ -31,7 +32,7 @@ struct ObjectRecord {
   std::vector<geometry::RepairStep> repairs;
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]; zero if there is no volume.
   double volume = 0.0;              ///< [m³]; zero for a mesh left as it is that has none.
-  double normalizing_radius = 0.0;  ///< Half the bounding box's diagonal [m].
+  double normalizing_radius = 0.0;  ///< `contact::normalizing_radius` of the box [m].
 };
 
 /// An object read from a file.

@@ -39,7 +39,7 @@ struct ObjectModelOptions {
 struct ObjectModel {
   geometry::MeshQuery query;                    ///< The mesh with its box tree.
   geometry::MassProperties mass;                ///< Center of mass at uniform density.
-  double normalizing_radius = 0.0;              ///< Half the bounding box diagonal [m].
+  double normalizing_radius = 0.0;              ///< `contact::normalizing_radius` of the box [m].
   geometry::VoxelGrid grid;                     ///< The object and a margin around it.
   std::vector<geometry::SurfacePatch> patches;  ///< The paper's S_i.
   std::vector<std::int32_t> patch_of_voxel;     ///< Index into patches, −1 where not partial.

@@ -9,7 +9,7 @@
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/contact/wrench_convention.hpp"
-#include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_repair.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "graspfit/grasp/contact_score_map.hpp"
 #include "graspfit/grasp/planner_options.hpp"
@@ -131,8 +131,6 @@ inline constexpr std::array kNames<contact::WrenchTool> = {
     NamedValue{contact::WrenchTool::DexNet, "dex-net"},
     NamedValue{contact::WrenchTool::Frogger, "frogger"},
     NamedValue{contact::WrenchTool::DexGraspBench, "dexgraspbench"}};
-template <>
-inline constexpr std::array kNames<contact::ForceNorm> = {NamedValue{contact::ForceNorm::L1, "l1"}};
 template <>
 inline constexpr std::array kNames<contact::ForceScaling> = {
     NamedValue{contact::ForceScaling::UnitNormal, "unit-normal"},

@@ -82,7 +82,8 @@ enum class KeptCandidate {
   Strongest,
 };
 
-/// Everything that decides what the planner does. Same options, object, hand and seed: same grasps.
+/// Everything that decides what the planner does. Same options, object, hand and seed: same grasps,
+/// on one build and processor.
 struct PlannerOptions {
   /// The method that guides hands to the object, by its name in `planning_methods`; "fitting" is
   /// the paper's own. All else is the same for every method.

@@ -6,8 +6,18 @@
 #include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/hand_model.hpp"
 
 namespace graspfit::grasp {
+
+/// The hand, the object and the surroundings among which the hand moves to a grasp. The scene
+/// refers to all of them and owns none.
+struct PreGraspScene {
+  const hands::HandModel& hand;
+  const hands::HandCollision& collision;  ///< Of the same hand.
+  const geometry::MeshQuery& object;
+  const SurroundingsCollision& surroundings;  ///< Of the same hand.
+};
 
 /// Requirements of a pre-grasp, and limits of the search for one.
 struct PreGraspOptions {
@@ -72,10 +82,7 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// not free: the path of a pre-grasp found is free, but a free path may be missed. Links are the
 /// solids of their meshes, poses as `forward_kinematics` rounds them.
 /// @throws InvalidInput for bad options and a grasp outside the hand's limits.
-std::optional<PreGrasp> find_pre_grasp(const hands::HandModel& hand,
-                                       const hands::HandCollision& collision,
-                                       const geometry::MeshQuery& object,
-                                       const SurroundingsCollision& surroundings,
+std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene,
                                        const hands::HandConfiguration& grasp,
                                        const PreGraspOptions& options = {});
 

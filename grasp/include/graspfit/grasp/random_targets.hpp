@@ -41,7 +41,7 @@ class TargetSelector {
   /// selector. `ideal` says how the M of sets is computed that `ideal_m_bias` prefers them by.
   TargetSelector(const ObjectModel& object, const PartDistances& distances,
                  const RequestedParts& parts, const TargetOptions& options,
-                 const IdealMeasure& ideal = {});
+                 const IdealMeasure& ideal);
   ~TargetSelector();
   TargetSelector(TargetSelector&&) noexcept;
 

@@ -45,12 +45,14 @@ class SurroundingsCollision {
   /// Whether a link shares a point with the surroundings. Touching counts. Exact for obstacles as
   /// `HandCollision::link_intersects`; for the table on the corners of the link's convex hull
   /// (exact) mapped to O and rounded once. `collision` and `link` belong to the same hand.
+  /// @throws InvalidInput for a pose that is not finite.
   bool touches(const hands::HandCollision& collision, int link,
                const hands::RigidTransform& X_OL) const;
 
   /// Distance of one link from the surroundings, where it is at most `enough` [m] ≥ 0; infinite
   /// where it is more. Approximate, to rounding; zero where `touches`, and where it rounds to zero.
   /// Of equal distances the table counts first, then obstacles in order.
+  /// @throws InvalidInput for a pose that is not finite.
   SurroundingsDistance distance(const hands::HandCollision& collision, int link,
                                 const hands::RigidTransform& X_OL, double enough) const;
 

@@ -9,6 +9,8 @@ namespace graspfit::hands {
 
 /// Pose of every link in the frame in which the configuration's palm pose is given (O), in link
 /// order. Rounded. Cost: linear in the links.
+/// @throws InvalidInput for a wrong number of joint positions, and where they or the palm's pose
+/// are not finite.
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration);
 

@@ -15,7 +15,8 @@ namespace graspfit::hands {
 ///
 /// A link is the solid that its mesh bounds; surface that a reader added to close an open mesh is
 /// part of the solid (the reader's findings say what was added and how much). Touching counts as
-/// intersecting. Links without faces touch nothing.
+/// intersecting. Links without faces touch nothing. All functions throw InvalidInput for poses that
+/// are not finite, and for a number of poses that is not that of the links.
 class HandCollision {
  public:
   explicit HandCollision(const HandModel& model);

@@ -47,4 +47,9 @@ std::filesystem::path sidecar_file_of(const std::filesystem::path& description_f
 /// it are kept, the others are derived. @throws as `read_hand`.
 std::string derived_sidecar_text(const std::filesystem::path& description_file);
 
+/// SHA-256 of the bytes of every link's mesh files, one file after the other; empty for links
+/// without any. Together with the hashes in the model it tells whether a hand is the one that was
+/// recorded. @throws IoError if a file can no longer be read.
+std::vector<std::string> link_mesh_hashes(const HandModel& hand);
+
 }  // namespace graspfit::hands

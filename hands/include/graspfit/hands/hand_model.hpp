@@ -114,6 +114,9 @@ struct HandModel {
   int joint_index(const std::string& joint_name) const;
   int link_index(const std::string& link_name) const;
   int pad_index(const std::string& pad_name) const;
+  /// Name of a finger; "palm" for none, which no finger is called. Precondition, not checked: there
+  /// is such a finger.
+  std::string part_name(std::optional<int> finger) const;
   /// Index of the pad at a finger's tip, and of the palm's. @throws InvalidInput if there is no
   /// such finger, or it has none.
   int tip_pad_of(int finger) const;

@@ -59,10 +59,11 @@ struct SummaryTable {
 /// An experiment: a question, the unit of work that answers a part of it, and the columns in which
 /// the answer is written. Its axes and fixed settings are in `configs/<slug>.json`.
 struct Experiment {
-  std::string slug;                   ///< Letters, digits and _; the same in every file name.
-  std::vector<Column> columns;        ///< Results: the same bytes for every run.
-  std::vector<Column> timings = {};   ///< What may differ from run to run.
-  std::vector<Column> settings = {};  ///< Settings beside the shared ones.
+  std::string slug;  ///< Letters, digits and _; the same in every file name.
+  std::vector<Column>
+      columns;  ///< Results: the same bytes for every run of a build on a processor.
+  std::vector<Column> timings = {};          ///< What may differ from run to run.
+  std::vector<Column> settings = {};         ///< Settings beside the shared ones.
   std::vector<Column> shared_settings = {};  ///< Settings that it shares with other experiments.
   std::vector<Column> details = {};  ///< Columns of the rows that a cell's row sums up, any number
                                      ///< per cell (one per grasp); if empty, there is no such

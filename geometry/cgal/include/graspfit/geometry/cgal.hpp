@@ -241,8 +241,7 @@ ConvexVolume volume_of_planes(const Planes& planes) {
 /// doubles, which means approximately; `MeshQuery` decides containment and ray hits exactly.
 ///
 /// The tree of a mesh without faces is empty (`tree().empty()`), and an empty tree must not be
-/// asked for a nearest point. Precondition, not checked: every index of a face is that of a vertex,
-/// and coordinates are finite.
+/// asked for a nearest point.
 class FaceTree {
  public:
   using Triangles = std::vector<Kernel::Triangle_3>;
@@ -256,9 +255,18 @@ class FaceTree {
 #endif
   using Tree = CGAL::AABB_tree<Traits>;
 
+  /// @throws InvalidInput for a face whose indices are not all those of vertices, or with a vertex
+  /// that is not finite.
   explicit FaceTree(const TriangleMesh& mesh) {
     triangles_.reserve(mesh.faces.size());
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      for (const auto index : mesh.faces[f]) {
+        if (index < 0 || static_cast<std::size_t>(index) >= mesh.vertices.size() ||
+            !mesh.vertices[static_cast<std::size_t>(index)].allFinite()) {
+          throw base::InvalidInput("FaceTree: face " + std::to_string(f) + " has vertex " +
+                                   std::to_string(index) + ", which is none or is not finite");
+        }
+      }
       const auto [a, b, c] = corners(mesh, f);
       triangles_.emplace_back(point(a), point(b), point(c));
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -53,9 +53,13 @@ struct QualityOptions {
 /// Properties of the object and the hand that M depends on.
 struct QualityContext {
   Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< [m]
-  double normalizing_radius = 0.0;  ///< Half the diagonal of the object's bounding box [m], > 0.
+  double normalizing_radius = 0.0;         ///< `normalizing_radius` of the object's box [m], > 0.
   const hands::HandModel* hand = nullptr;  ///< For pad areas and largest d; not null.
 };
+
+/// The length that distances from the center of mass are divided by in normalized units: half the
+/// diagonal of the object's bounding box [m]. Infinite for an empty box.
+double normalizing_radius(const Eigen::AlignedBox3d& box_O);
 
 /// A pair of contacts of different fingers whose line lies in both friction cones.
 struct StablePair {

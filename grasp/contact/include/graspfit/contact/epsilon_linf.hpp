@@ -26,9 +26,9 @@ std::string describe_linf(const WrenchConvention& convention);
 /// times the number of contacts; it is dimensionless.
 ///
 /// It is zero without force closure, since this wrench space always holds the origin:
-/// `options.outside` and `options.norm` have no effect. It is computed by
-/// `geometry::minkowski_sum_inradius`, not from the s^k sums of edges: 25 ms for three contacts
-/// with eight edges, 75 ms for five, on a loaded machine.
+/// `options.outside` has no effect. It is computed by `geometry::minkowski_sum_inradius`, not from
+/// the s^k sums of edges: 25 ms for three contacts with eight edges, 75 ms for five, on a loaded
+/// machine.
 /// @throws InvalidInput as `contact_wrenches`.
 LInfinityEpsilon epsilon_linf(std::span<const Contact> contacts,
                               const WrenchConvention& convention);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
+#include <optional>
 #include <span>
 
 #include "graspfit/contact/contact.hpp"
@@ -15,8 +15,9 @@ struct BalanceOptions {
   double friction = 1.0;          ///< Coulomb's μ of all contacts, ≥ 0.
   double least_normal_sum = 0.0;  ///< The normal forces sum up to at least this [N], ≥ 0: how hard
                                   ///< the hand squeezes. Zero allows no force at all.
-  /// Length that divides torques [m], > 0. Required: it weighs them in the residual.
-  double torque_scale = std::numeric_limits<double>::quiet_NaN();
+  /// Length that divides torques [m], > 0. Required, since it weighs them in the residual:
+  /// `validate` refuses options without one.
+  std::optional<double> torque_scale = std::nullopt;
   /// Weight of the forces α along the cone edges beside the residual, ≥ 0: ‖residual‖² + evenness²
   /// Σ α² is minimized. Above zero the forces are unique, spread evenly and as symmetric as the
   /// contacts, and the residual exceeds the least one by at most evenness times the sum of the

@@ -70,7 +70,7 @@ double signed_epsilon(std::span<const Contact> contacts, const WrenchObject& obj
 bool is_force_closure(const GraspWrenchSpace& space);
 
 /// Says whether any wrenches have force closure, usually without computing a hull where the answer
-/// is no.
+/// is no. @throws InvalidInput for a wrench that is not finite.
 bool is_force_closure(const Wrenches& wrenches);
 
 /// Returns true only if there is certainly no force closure: some load was found that no wrench

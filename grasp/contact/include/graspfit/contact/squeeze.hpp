@@ -22,6 +22,17 @@ struct SqueezeOptions {
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
 
+/// Properties of the object and of its contacts that a squeeze depends on.
+struct SqueezeContext {
+  Eigen::Vector3d center_of_mass_O = Eigen::Vector3d::Zero();  ///< Torques are about it [m].
+  /// Length that divides torques in the residual [m], > 0. Required: without one a squeeze is
+  /// refused.
+  std::optional<double> torque_scale = std::nullopt;
+  double friction = 1.0;  ///< Coulomb's μ of all contacts, ≥ 0.
+  /// Contacts with a larger gap bear no force [m]; empty: all contacts do.
+  std::optional<double> bearing_gap = std::nullopt;
+};
+
 /// The commanded configuration beyond the surface.
 struct Squeeze {
   hands::HandConfiguration configuration;  ///< The grasp's palm pose; joints commanded, clamped to
@@ -49,16 +60,11 @@ struct Squeeze {
 /// that does not stand where its leader puts it (it stands at a limit, or has broken away) adds no
 /// torque and does not move until its leader takes it along.
 ///
-/// `friction` is Coulomb's μ, ≥ 0; `torque_scale` divides torques in the residual [m], > 0.
-/// Contacts with a gap above `bearing_gap` [m] bear no force; without `bearing_gap` all contacts
-/// do.
-/// @throws InvalidInput for bad options, a configuration outside the hand's limits, no contact that
-/// bears a force, and contacts of links that the hand does not have or with normals that are not
-/// unit.
+/// @throws InvalidInput for bad options, a torque scale or a friction out of range, a configuration
+/// outside the hand's limits, no contact that bears a force, and contacts of links that the hand
+/// does not have or with normals that are not unit.
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
-                              std::span<const Contact> contacts,
-                              const Eigen::Vector3d& center_of_mass_O, double torque_scale,
-                              double friction, const SqueezeOptions& options = {},
-                              const std::optional<double>& bearing_gap = std::nullopt);
+                              std::span<const Contact> contacts, const SqueezeContext& context,
+                              const SqueezeOptions& options = {});
 
 }  // namespace graspfit::contact

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,11 +9,6 @@
 #include "graspfit/geometry/triangle_mesh.hpp"
 
 namespace graspfit::contact {
-
-/// What bounds the contact forces together.
-enum class ForceNorm {
-  L1,  ///< The sum of all forces is at most one: the wrench space is one convex hull.
-};
 
 /// Which length of a unit force is one.
 enum class ForceScaling {
@@ -29,14 +23,15 @@ enum class OutsideValue {
   Signed,  ///< Minus the largest distance from the origin to the plane of a facet that cuts it off.
 };
 
-/// Linearization and scaling of the grasp wrench space.
+/// Linearization and scaling of the grasp wrench space, in which the sum of all forces is at most
+/// one (the norm is L1): it is one convex hull.
 struct WrenchSpaceOptions {
   int num_cone_edges = 8;  ///< Edges per friction cone, ≥ 3. Eight lose at most 7.6 % of μ in some
                            ///< direction; four up to 29 %.
   double friction = 1.0;  ///< Coulomb's μ of all contacts, ≥ 0. The paper's cone of 45°.
-  /// Length that divides torques [m], > 0. Required: ε depends on it.
-  double torque_scale = std::numeric_limits<double>::quiet_NaN();
-  ForceNorm norm = ForceNorm::L1;
+  /// Length that divides torques [m], > 0. Required, since ε depends on it: `validate` refuses
+  /// options without one.
+  std::optional<double> torque_scale = std::nullopt;
   ForceScaling force_scaling = ForceScaling::UnitNormal;
   double force_limit = 1.0;  ///< Factor on all forces, > 0.
   OutsideValue outside = OutsideValue::Zero;

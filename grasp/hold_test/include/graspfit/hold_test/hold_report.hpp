@@ -48,7 +48,8 @@ std::vector<std::string> changed_parameters(const HoldProtocol& protocol);
 std::vector<std::string> load_names(const HoldProtocol& protocol);
 
 /// Returns the text of `hold.json`, with keys in fixed order and numbers in shortest round-trip
-/// form in the C locale. It holds no times, so that the same run gives the same bytes.
+/// form in the C locale. It holds no times, so that the same run on one build and processor gives
+/// the same bytes.
 std::string to_json(const HoldReport& report);
 
 /// Returns the text of `hold.csv`, one row per tested grasp, with units in the column names. Cells

@@ -1,13 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
-namespace graspfit::geometry::internal {
+namespace graspfit::base {
 
-/// Union–find with path halving; the root of a set is its smallest member.
+/// Union–find with path halving over the items 0 to `size` − 1, each of which begins as a set of
+/// its own. The root of a set is its smallest member, whatever the order in which sets were united.
+///
+/// Precondition, not checked: `size` is below 2^31, and no item is outside the range.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t size) : parent_(size) {
@@ -17,13 +21,15 @@ class DisjointSets {
     while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
     return item;
   }
-  void unite(std::int32_t a, std::int32_t b) {
+  /// Makes one set of the sets of `a` and `b`. Returns whether they were two.
+  bool unite(std::int32_t a, std::int32_t b) {
     a = root(a);
     b = root(b);
     parent_[std::max(a, b)] = std::min(a, b);
+    return a != b;
   }
 
-  /// The set of every item, numbered by first member.
+  /// The set of every item; sets are numbered from 0 in the order of their smallest members.
   std::vector<std::int32_t> numbered() {
     std::vector<std::int32_t> number(parent_.size());
     std::int32_t next = 0;
@@ -39,4 +45,4 @@ class DisjointSets {
   std::vector<std::int32_t> parent_;
 };
 
-}  // namespace graspfit::geometry::internal
+}  // namespace graspfit::base

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "graspfit/geometry/surface_proximity.hpp"
+#include "graspfit/grasp/pre_grasp.hpp"
+
+namespace graspfit::grasp::internal {
+
+/// The search for one grasp's pre-grasp.
+class PreGraspSearch {
+ public:
+  /// Refers to all of its arguments. They are valid: options within their ranges, a grasp within
+  /// the hand's limits.
+  PreGraspSearch(const PreGraspScene& scene, const hands::HandConfiguration& grasp,
+                 const PreGraspOptions& options);
+
+  /// What `find_pre_grasp` returns.
+  std::optional<PreGrasp> find();
+
+  /// What `checked_pre_grasp` returns.
+  std::optional<PreGrasp> checked(const hands::HandConfiguration& start);
+
+ private:
+  using LinkPoses = std::vector<hands::RigidTransform>;
+  enum class Joints { Closing, All };
+
+  /// A lower bound of a distance, and how far was searched for it: beyond, the bound says no more.
+  struct SearchedBound {
+    double at_least = 0.0;  ///< [m]
+    double searched = 0.0;  ///< [m]
+  };
+
+  struct LinkPair {
+    int a;
+    int b;
+    geometry::ProximitySeed seed;  ///< Faces near each other when last measured.
+    SearchedBound in_grasp = {};
+  };
+
+  /// A link, to be kept from object and surroundings.
+  struct GuardedLink {
+    int link;
+    geometry::ProximitySeed seed;  ///< With the object.
+    SearchedBound in_grasp = {};   ///< The same.
+  };
+
+  /// The first pre-grasp among all openings of these joints and retreats, in their order.
+  std::optional<PreGrasp> least_opening(Joints joints);
+
+  const geometry::MeshQuery& solid(int link) const { return *scene_.collision.link_solid(link); }
+  Eigen::VectorXd opened(double opening, Joints joints) const;
+  /// The largest share, over the closing joints, of the motion to the joint's position in the open
+  /// hand, in [0, 1].
+  double opening_of(const Eigen::VectorXd& q) const;
+  hands::RigidTransform retreated(double retreat) const;
+
+  double surroundings_distance(int link, const hands::RigidTransform& X_OL, double enough) const;
+  /// Whether every link keeps the wanted clearance.
+  bool is_clear(const LinkPoses& X_OL);
+  /// Distance of the nearest link, where none is in the object.
+  double nearest_distance(const LinkPoses& X_OL) const;
+  /// Whether the straight path to the grasp is free. Surfaces that stay apart suffice, since no
+  /// body is inside another to begin with: at the start no link is in the object, and in the grasp
+  /// neither link of a pair is in the other.
+  bool is_free(const hands::HandConfiguration& start, const LinkPoses& X_OL_start);
+
+  const PreGraspScene& scene_;
+  const hands::HandConfiguration& grasp_;
+  const PreGraspOptions& options_;
+  const Eigen::VectorXd open_q_;
+  const LinkPoses X_OL_grasp_;
+  std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
+  std::vector<LinkPair> pairs_;  ///< Pairs that must stay apart; one that failed last comes first.
+  int num_in_vain_ = 0;          ///< Distances of bodies not proven to stay apart, of this search.
+};
+
+}  // namespace graspfit::grasp::internal
