@@ -392,7 +392,7 @@ TEST_CASE("A file that is not a grasp file is refused with the place and the rea
   CHECK_THAT(refusal(path, replaced(good, "\"version\": 6", "\"version\": 1")),
              Contains("/version: is 1; this program reads versions 4 to 6"));
   CHECK_THAT(
-      refusal(path, replaced(good, "\"torque_scale_m\": 0.05\n", "\"torque_scale_m\": null\n")),
+      refusal(path, replaced(good, "\"torque_scale_m\": 0.05,", "\"torque_scale_m\": null,")),
       Contains("/convention/torque_scale_m: is null, must be a number"));
   CHECK_THAT(refusal(path, replaced(good, "\"norm\": \"l1\"", "\"norm\": \"l2\"")),
              Contains("/convention/norm: is \"l2\", must be one of l1"));
