@@ -296,9 +296,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   progress.clear();
   warn_of_differences("plan", object_file.record, around.record.obstacles);
   progress.show("voxels and contact scores");
-  grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
-      grasp::prepare_object(object_file.mesh, hand, options, &object_timings, {.is_on = true});
+      grasp::prepare_object(object_file.mesh, hand, options, {.is_on = true});
   grasp::PlannerResult result;
   {
     const StopOnInterrupt stop(
@@ -308,7 +307,6 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
                                  .progress = shown_by(progress, options),
                                  .stop = stop.token()});
   }
-  result.timings.object = object_timings;
   progress.clear();
 
   if (result.grasps.empty()) {

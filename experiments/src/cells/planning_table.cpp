@@ -113,9 +113,8 @@ Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
   require_over_table(file->mesh, settings.table_z_O);
   const double load_s = base::seconds_since(start);
   const Clock::time_point prepare_start = Clock::now();
-  grasp::ObjectModelTimings timings;
   grasp::ObjectModel object =
-      grasp::prepare_object(file->mesh, *hand, settings.options, &timings, {.is_on = true});
+      grasp::prepare_object(file->mesh, *hand, settings.options, {.is_on = true});
   const double prepare_s = base::seconds_since(prepare_start);
 
   Planned planned{
@@ -141,7 +140,6 @@ Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
                               },
                           .tried_start = tried_start});
   planned.plan_s = base::seconds_since(plan_start);
-  planned.result.timings.object = timings;
   return planned;
 }
 

@@ -38,6 +38,7 @@ class Search {
       result_.statistics.target_failures[failure] = 0;
     }
     result_.statistics.guidance = attempts_.guidance().counts();
+    result_.timings.object = object.timings;
     result_.timings.guidance_s = attempts_.guidance_s();
   }
 
@@ -181,22 +182,21 @@ std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const PlannerOptions& options,
-                           ObjectModelTimings* timings, const base::ContentCache& cache) {
+                           const base::ContentCache& cache) {
   options.validate();
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
   object_options.averaging = options.averaging;
   object_options.score = options.score;
   object_options.weak = options.weak;
-  return cached_object_model(mesh, object_options, cache, timings);
+  return cached_object_model(mesh, object_options, cache);
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                           const PlannerOptions& options, ObjectModelTimings* timings,
-                           const base::ContentCache& cache) {
+                           const PlannerOptions& options, const base::ContentCache& cache) {
   options.validate();
   if (const auto refusal = size_refusal(mesh, hand, options)) throw base::InvalidInput(*refusal);
-  return prepare_object(mesh, options, timings, cache);
+  return prepare_object(mesh, options, cache);
 }
 
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,
