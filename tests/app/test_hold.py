@@ -226,6 +226,14 @@ class PlanHold(PhysicsTest):
         self.assertTrue(grasp["held"])
         self.assertAlmostEqual(grasp["margin"]["force_N"], margins[0], delta=0.03 * margins[0])
 
+        # By another rank the same grasps hold; their order is the planner's.
+        done = plan(self.folder, "--count", "4", "--hold", "dexgraspbench-100g", "--rank", "m")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        by_m = json.loads((self.folder / "out/grasps.json").read_text())["results"]
+        self.assertEqual(sorted(by_m["hold"]["margins_N"], reverse=True), margins)
+        measures = [grasp["measure"]["m"] for grasp in by_m["grasps"]]
+        self.assertEqual(measures, sorted(measures, reverse=True))
+
 
 def value_of(cell):
     """Returns None, a number or a text."""

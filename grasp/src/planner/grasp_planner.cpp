@@ -141,13 +141,15 @@ class Search {
     }
   }
 
-  /// Sorts the grasps, best M first, and leaves out those that are too like a better one.
+  /// The grasps, best first, without those that are too like a better one.
   void select() {
-    std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
-                     [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
-    if (options_.search == SearchRule::First) return;
+    std::vector<Grasp> ranked = by_rank(std::move(result_.grasps));
+    if (options_.search == SearchRule::First) {
+      result_.grasps = std::move(ranked);
+      return;
+    }
     std::vector<Grasp> selected;
-    for (Grasp& grasp : result_.grasps) {
+    for (Grasp& grasp : ranked) {
       if (!is_unlike(grasp, selected)) {
         ++result_.statistics.duplicates;
       } else if (static_cast<int>(selected.size()) < options_.count) {
@@ -155,6 +157,21 @@ class Search {
       }
     }
     result_.grasps = std::move(selected);
+  }
+
+  std::vector<Grasp> by_rank(std::vector<Grasp> grasps) const {
+    using Rank = std::pair<double, double>;
+    std::vector<std::pair<Rank, std::size_t>> order;
+    for (std::size_t i = 0; i < grasps.size(); ++i) {
+      const double strength =
+          options_.rank == RankRule::M ? 0.0 : attempts_.strength(grasps[i]);
+      order.push_back({{strength, grasps[i].quality.m}, i});
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Grasp> ranked;
+    for (const auto& [rank, index] : order) ranked.push_back(std::move(grasps[index]));
+    return ranked;
   }
 
   const Clock::time_point start_ = Clock::now();

@@ -75,7 +75,7 @@ struct GraspFile {
   double voxel_size = 0.0;         ///< [m]
   double clip_thickness = 0.0;     ///< Used where a pad states none [m].
   double merge_distance = 0.0;     ///< Used by the measure [m].
-  std::vector<Grasp> grasps;       ///< Best M first; with `hold`, largest margin first.
+  std::vector<Grasp> grasps;       ///< As `RankRule` says; with `hold`, largest margin first.
   std::optional<HoldRecord> hold;  ///< Empty: not tested while planning.
   /// Empty: the grasps were planned; else `options` only served to measure them.
   std::optional<ImportRecord> imported;
