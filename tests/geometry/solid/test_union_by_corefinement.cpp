@@ -52,7 +52,7 @@ TEST_CASE("Clean parts that cross are united by corefinement: inside is what is 
     REQUIRE(mesh);
     const MeshAnalysis analysis = analyze(*mesh);
     CHECK(analysis.num_boundary_edges == 0);
-    CHECK(analysis.num_non_manifold_edges == 0);
+    CHECK(analysis.num_nonmanifold_edges == 0);
     const MeshQuery together(*mesh);
     std::vector<MeshQuery> alone;
     for (const TriangleMesh& part : parts) alone.emplace_back(part);
