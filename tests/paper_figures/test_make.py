@@ -29,7 +29,7 @@ TABLES = SOURCE_DIR / "notebooks-data"
 sys.path.insert(0, str(FIGURES_DIR))
 from figure_list import FIGURES, ROOMS  # noqa: E402
 
-sys.path += [str(FIGURES_DIR / room) for room in ROOMS]
+sys.path[1:1] = [str(FIGURES_DIR / room) for room in ROOMS]
 from figure_data import BadData, read_mesh  # noqa: E402
 
 CUBE = {

@@ -1,9 +1,11 @@
 #include "solid/union_by_corefinement.hpp"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/intersections.h>
 
 #include <algorithm>
 #include <array>
@@ -51,11 +53,30 @@ bool have_common_vertices(const TriangleMesh& mesh, const std::vector<std::int32
   return false;
 }
 
-bool are_coplanar(const TriangleMesh& mesh, const FacePair& pair) {
-  const auto [a, b, c] = corners(mesh, static_cast<std::size_t>(pair.first));
-  const auto other = corners(mesh, static_cast<std::size_t>(pair.second));
-  return std::all_of(other.begin(), other.end(),
-                     [&](const Vector3d& corner) { return orientation(a, b, c, corner) == 0; });
+using Corners = std::array<Vector3d, 3>;
+using Segment = CGAL::Exact_predicates_inexact_constructions_kernel::Segment_3;
+
+Segment edge_of(const Corners& face, int side) {
+  const Vector3d& p = face[side];
+  const Vector3d& q = face[(side + 1) % 3];
+  return {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z()}};
+}
+
+/// Whether edges go through the inside of faces only: no corner lies on the other face, and no edge
+/// meets another.
+bool cross_in_general_position(const Corners& a, const Corners& b) {
+  const auto is_on = [](const Corners& face) {
+    return [&face](const Vector3d& p) { return is_on_triangle(p, face[0], face[1], face[2]); };
+  };
+  if (std::any_of(a.begin(), a.end(), is_on(b)) || std::any_of(b.begin(), b.end(), is_on(a))) {
+    return false;
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (CGAL::do_intersect(edge_of(a, i), edge_of(b, j))) return false;
+    }
+  }
+  return true;
 }
 
 /// Every part as a graph of CGAL; empty if one is no manifold, or does not point outward.
@@ -121,7 +142,7 @@ TriangleMesh rounded_mesh(const Graph& graph, const TriangleMesh& mesh) {
   std::vector<std::size_t> kept;
   std::vector<Face> pieces;
   for (const Graph::Face_index face : graph.faces()) {
-    Face indices;
+    Face indices{};
     int corner = 0;
     for (const Graph::Vertex_index vertex : graph.vertices_around_face(graph.halfedge(face))) {
       indices[corner++] = index_of[vertex];
@@ -145,12 +166,18 @@ TriangleMesh rounded_mesh(const Graph& graph, const TriangleMesh& mesh) {
 
 std::optional<TriangleMesh> union_by_corefinement(const TriangleMesh& mesh,
                                                   std::span<const FacePair> crossings) {
+  if (crossings.empty()) return std::nullopt;
   const std::vector<FaceSide> sides = sorted_sides(mesh);
-  if (crossings.empty() || !is_every_edge_of_two_faces(sides)) return std::nullopt;
+  if (!is_every_edge_of_two_faces(sides)) return std::nullopt;
   const std::vector<std::int32_t> parts = parts_of_faces(mesh, sides);
   if (have_common_vertices(mesh, parts)) return std::nullopt;
   for (const FacePair& pair : crossings) {
-    if (parts[pair.first] == parts[pair.second] || are_coplanar(mesh, pair)) return std::nullopt;
+    const auto [first, second] = pair;
+    if (parts[first] == parts[second] ||
+        !cross_in_general_position(corners(mesh, static_cast<std::size_t>(first)),
+                                   corners(mesh, static_cast<std::size_t>(second)))) {
+      return std::nullopt;
+    }
   }
   std::vector<Graph> graphs = graphs_of(mesh, parts);
   if (graphs.empty()) return std::nullopt;

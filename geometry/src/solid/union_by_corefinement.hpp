@@ -19,7 +19,8 @@ using FacePair = std::pair<std::int32_t, std::int32_t>;
 ///
 /// Empty where the mesh is not for it: unless it has two or more parts, each a closed manifold
 /// without crossings of its own that points outward and shares no vertex with another, some of them
-/// cross, none in a common plane, and the surface of the union is a manifold.
+/// cross, edges only through the inside of faces, and the surface of the union is a manifold. What
+/// touches otherwise may make a union that touches itself, which corefinement does not take.
 ///
 /// @param mesh faces with area, vertices with distinct coordinates
 /// @param crossings pairs of faces that share more than corners and edges (`crossing_faces`)
