@@ -251,8 +251,10 @@ class PlanHold(PhysicsTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         by_m = json.loads((self.folder / "out/grasps.json").read_text())["results"]
         self.assertEqual(sorted(by_m["hold"]["margins_N"], reverse=True), margins)
-        measures = [grasp["measure"]["m"] for grasp in by_m["grasps"]]
+        measures = [grasp["m"] for grasp in by_m["grasps"]]
         self.assertEqual(measures, sorted(measures, reverse=True))
+        self.assert_refused("plan", "torus.off", "--hold", "tabletop-lift", "--rank", "margin", cwd=self.folder,
+                            says="--rank margin: protocol tabletop-lift lifts")
 
 
 def value_of(cell):

@@ -290,6 +290,10 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.has("hold")) {
     protocol = hold_protocol_named("hold", flags.text("hold"));
     require_physics("--hold");
+    if (options.rank == grasp::RankRule::Margin && protocol->load == hold_test::HoldLoad::Lift) {
+      throw UsageError("--rank margin: protocol " + protocol->name +
+                       " lifts, and finds no margins");
+    }
   }
   warn_of_findings("plan", reading);
 
@@ -323,7 +327,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   }
   std::optional<grasp::HoldRecord> hold;
   if (protocol) {
-    const bool by_margin = !flags.has("rank") || options.rank == grasp::RankRule::Margin;
+    const bool by_margin = flags.is_default("rank") || options.rank == grasp::RankRule::Margin;
     HeldGrasps held = held_grasps(object.mesh(), hand, *protocol, num_threads,
                                   std::move(result.grasps), by_margin, progress);
     progress.clear();

@@ -201,8 +201,11 @@ void fill_planning_columns(const Planned& planned, sweep::ResultRow& row) {
   row.set("best_m", field(largest(measures.m)));
   row.set("mean_m", field(mean(measures.m)));
   if (!grasps.empty()) {
-    row.set("best_num_contacts", field(grasps.front().contacts.size()));
-    row.set("best_epsilon", grasps.front().epsilon());
+    const grasp::Grasp& best = *std::max_element(
+        grasps.begin(), grasps.end(),
+        [](const grasp::Grasp& a, const grasp::Grasp& b) { return a.quality.m < b.quality.m; });
+    row.set("best_num_contacts", field(best.contacts.size()));
+    row.set("best_epsilon", best.epsilon());
     row.set("largest_penetration_m", measures.largest_penetration);
   }
   row.set("mean_num_contacts", field(mean(measures.num_contacts)));

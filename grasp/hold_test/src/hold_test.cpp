@@ -163,8 +163,11 @@ bool HoldTest::is_near_limit(const grasp::Grasp& grasp, const HoldVerdict& verdi
   const bool is_loaded =
       verdict.stage == HoldStage::Load || verdict.held() ||
       (verdict.stage == HoldStage::Approach && impl_->protocol.load == HoldLoad::Lift);
-  return is_loaded && (holds_at(grasp, kLessLoad) != verdict.held() ||
-                       holds_at(grasp, kMoreLoad) != verdict.held());
+  if (!is_loaded) return false;
+  // The likelier change comes first.
+  const double first = verdict.held() ? kMoreLoad : kLessLoad;
+  const double second = verdict.held() ? kLessLoad : kMoreLoad;
+  return holds_at(grasp, first) != verdict.held() || holds_at(grasp, second) != verdict.held();
 }
 
 HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {

@@ -163,8 +163,7 @@ class Search {
     using Rank = std::pair<double, double>;
     std::vector<std::pair<Rank, std::size_t>> order;
     for (std::size_t i = 0; i < grasps.size(); ++i) {
-      const double strength =
-          options_.rank == RankRule::M ? 0.0 : attempts_.strength(grasps[i]);
+      const double strength = options_.rank == RankRule::M ? 0.0 : attempts_.strength(grasps[i]);
       order.push_back({{strength, grasps[i].quality.m}, i});
     }
     std::stable_sort(order.begin(), order.end(),

@@ -24,6 +24,9 @@ constexpr double kIdealShare = 0.5;   // of the targets' own M
 // An angle larger than the one by which refinement may exceed its largest turn [rad].
 constexpr double kAngleSlack = 1e-6;
 
+/// That of no grasp, as of one that no contact bears.
+constexpr double kNoStrength = -std::numeric_limits<double>::infinity();
+
 /// `options`, completed by the planner's rules where they leave a value open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                   PlannerOptions options) {
@@ -205,7 +208,7 @@ PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result)
       break;
     case KeptCandidate::Strongest:
       std::get<2>(rank) = is_balanced(result);
-      std::get<3>(rank) = strength(result.grasp.value_or(Grasp{}));
+      std::get<3>(rank) = result.grasp ? strength(*result.grasp) : kNoStrength;
       break;
   }
   return rank;
