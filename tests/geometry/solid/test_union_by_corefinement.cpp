@@ -8,6 +8,7 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/solid_boundary.hpp"
 #include "solid/crossing_faces.hpp"
+#include "solid/mesh_operations.hpp"
 #include "solid/union_by_corefinement.hpp"
 #include "support/catch.hpp"
 
@@ -22,7 +23,8 @@ using graspfit::testing::moved;
 namespace {
 
 std::optional<TriangleMesh> united(const std::vector<TriangleMesh>& parts) {
-  const TriangleMesh mesh = concatenated(parts);
+  TriangleMesh mesh = concatenated(parts);
+  internal::weld(mesh, 0.0);
   return internal::union_by_corefinement(mesh, internal::crossing_faces(mesh));
 }
 
