@@ -120,14 +120,28 @@ class Hold(PhysicsTest):
         self.assertEqual(data["results"]["stages"]["held"], 2)
 
     def test_a_verdict_near_a_limit_is_said_to_be_one(self):
-        _, data = self.hold("--margin", "--quick", "--grasp", "1", out="margin")
-        force = data["results"]["grasps"][0]["margin"]["force_N"]
-        for share, near, held in ((0.95, True, True), (0.5, False, True), (1.04, True, False)):
-            done, data = self.hold("--grasp", "1", "--set", f"force_N={share * force}", out=f"at{share}")
+        def at(load, name, *flags):
+            done, data = self.hold("--grasp", "1", "--step", "0.004", "--set", f"force_N={load}", *flags, out=name)
             (grasp,) = data["results"]["grasps"]
-            self.assertEqual((grasp["near_limit"], grasp["held"]), (near, held), share)
+            return done, grasp
+
+        held, lost = 1.0, 1000.0
+        while lost > 1.05 * held:
+            middle = (held * lost) ** 0.5
+            if at(middle, "middle", "--quick")[1]["held"]:
+                held = middle
+            else:
+                lost = middle
+        found = set()
+        for load in (held, lost, 0.3 * held):
+            done, grasp = at(load, "asked")
+            others = {at(share * load, "other", "--quick")[1]["held"] for share in (0.9, 1.1)}
+            near = others != {grasp["held"]}
+            self.assertEqual(grasp["near_limit"], near, load)
             self.assertEqual("1 near a limit: 0.9 or 1.1 times the load decides otherwise" in done.stdout, near)
-            self.assertIn(f",{str(near).lower()},", (self.folder / f"at{share}/hold.csv").read_text())
+            self.assertIn(f",{str(near).lower()},", (self.folder / "asked/hold.csv").read_text())
+            found.add(near)
+        self.assertEqual(found, {True, False})
 
     def test_a_single_grasp_is_judged_at_a_millisecond_unless_a_step_is_given(self):
         for flags, step in (((), 0.001), (("--step", "0.002"), 0.002), (("--set", "step_s=0.004"), 0.004)):
