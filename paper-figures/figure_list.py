@@ -1,6 +1,9 @@
-"""All figures: slug (the script <slug>.py), what of the paper it answers to, and its experiments."""
+"""All figures: slug (the script <slug>.py of scenes or charts), what of the paper it answers to, and
+its experiments."""
 
 from typing import NamedTuple
+
+ROOMS = ("drawing", "scenes", "charts")  # folders of scripts: what all share, pictures in space, plots
 
 
 class Listed(NamedTuple):

@@ -212,7 +212,7 @@ class BadFlags(program.ProgramTest):
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
                      "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
-                     "reject", "guard-self", "pre-grasp-open-neutral", "candidate-order", "keep"):
+                     "reject", "guard-self", "pre-grasp-open-neutral", "candidate-order", "keep", "rank"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 
@@ -233,6 +233,7 @@ class BadFlags(program.ProgramTest):
         self.refuse("--style", "presicion", says='did you mean "precision"?')
         self.refuse("--planner", "fiting", says='did you mean "fitting"?')
         self.refuse("--hold", "tabletop-lfit", says=["--hold", 'did you mean "tabletop-lift"?'])
+        self.refuse("--rank", "margin", says="--rank margin needs --hold PROTOCOL")
         # The program guesses at no name that is near to nothing.
         self.assertNotIn("mean", self.assert_refused("grab", self.object))
         self.assertNotIn("mean", self.assert_refused("plan", self.object, "--fastest"))

@@ -78,9 +78,10 @@ class Hold(PhysicsTest):
             self.assertEqual(grasp["held"], grasp["margin"]["force_N"] > force)
 
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[1].split()[:2], ["1", grasp["stage"]])
+        near = "yes" if grasp["near_limit"] else "no"
+        self.assertEqual(lines[1].split()[:3], ["1", grasp["stage"], near])
         self.assertIn(f"{results['stages']['held']} of 1 grasps held", lines[2])
-        self.assertIn("with another approach_time_s, squeeze_time_s, hold_time_s", lines[2])
+        self.assertIn("with another step_s, approach_time_s, squeeze_time_s, hold_time_s", lines[2])
         with open(self.folder / "held/hold.csv", newline="") as file:
             (row,) = csv.DictReader(file)
         self.assertEqual(float(row["margin_force_N"]), grasp["margin"]["force_N"])
@@ -104,18 +105,51 @@ class Hold(PhysicsTest):
 
     def test_one_grasp_alone_has_the_verdict_that_it_has_among_others(self):
         _, both = self.hold(out="both")
-        _, second = self.hold("--grasp", "2", out="second")
+        _, second = self.hold("--grasp", "2", "--step", "0.004", out="second")
         self.assertEqual(second["results"]["grasps"], both["results"]["grasps"][1:])
 
     def test_what_the_protocol_asks_decides(self):
         # A kilonewton tears anything out of a hand, and limits that nothing reaches are kept by
         # all.
-        _, data = self.hold("--set", "force_N=1000", out="strong")
+        _, data = self.hold("--set", "force_N=1000", "--quick", out="strong")
         self.assertEqual(data["results"]["stages"]["held"], 0)
+        self.assertEqual({one["near_limit"] for one in data["results"]["grasps"]}, {None})
         self.assertIn("force_N", data["protocol"]["changed_parameters"])
         _, data = self.hold("--set", "largest_shift_m=1e6", "--set", "largest_turn_rad=4",
                             "--set", "largest_penetration_m=1", out="lenient")
         self.assertEqual(data["results"]["stages"]["held"], 2)
+
+    def test_a_verdict_near_a_limit_is_said_to_be_one(self):
+        def at(load, name, *flags):
+            done, data = self.hold("--grasp", "1", "--step", "0.004", "--set", f"force_N={load}", *flags, out=name)
+            (grasp,) = data["results"]["grasps"]
+            return done, grasp
+
+        held, lost = 1.0, 1000.0
+        while lost > 1.05 * held:
+            middle = (held * lost) ** 0.5
+            if at(middle, "middle", "--quick")[1]["held"]:
+                held = middle
+            else:
+                lost = middle
+        found = set()
+        for load in (held, lost, 0.3 * held):
+            done, grasp = at(load, "asked")
+            others = {at(share * load, "other", "--quick")[1]["held"] for share in (0.9, 1.1)}
+            near = others != {grasp["held"]}
+            self.assertEqual(grasp["near_limit"], near, load)
+            self.assertEqual("1 near a limit: 0.9 or 1.1 times the load decides otherwise" in done.stdout, near)
+            self.assertIn(f",{str(near).lower()},", (self.folder / "asked/hold.csv").read_text())
+            found.add(near)
+        self.assertEqual(found, {True, False})
+
+    def test_a_single_grasp_is_judged_at_a_millisecond_unless_a_step_is_given(self):
+        for flags, step in (((), 0.001), (("--step", "0.002"), 0.002), (("--set", "step_s=0.004"), 0.004)):
+            _, data = self.hold("--grasp", "1", "--quick", *flags, out=f"step{step}")
+            self.assertEqual(data["protocol"]["parameters"]["step_s"], step)
+            self.assertEqual("step_s" in data["protocol"]["changed_parameters"], step != 0.004)
+        _, data = self.hold("--quick", out="both")
+        self.assertEqual(data["protocol"]["parameters"]["step_s"], 0.004)
 
     def test_every_parameter_is_written_and_can_be_set(self):
         _, data = self.hold("--squeeze", "extrapolation", "--step", "0.002", "--set",
@@ -219,12 +253,22 @@ class PlanHold(PhysicsTest):
         self.assertIn("margin_N", done.stdout)
 
         # A second test from the file gives the same.
-        done = program.run("hold", "out/grasps.json", "--margin", "--grasp", "1", "--out", "held",
+        done = program.run("hold", "out/grasps.json", "--margin", "--grasp", "1", "--step", "0.004", "--out", "held",
                            cwd=self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         (grasp,) = json.loads((self.folder / "held/hold.json").read_text())["results"]["grasps"]
         self.assertTrue(grasp["held"])
         self.assertAlmostEqual(grasp["margin"]["force_N"], margins[0], delta=0.03 * margins[0])
+
+        # By another rank the same grasps hold; their order is the planner's.
+        done = plan(self.folder, "--count", "4", "--hold", "dexgraspbench-100g", "--rank", "m")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        by_m = json.loads((self.folder / "out/grasps.json").read_text())["results"]
+        self.assertEqual(sorted(by_m["hold"]["margins_N"], reverse=True), margins)
+        measures = [grasp["m"] for grasp in by_m["grasps"]]
+        self.assertEqual(measures, sorted(measures, reverse=True))
+        self.assert_refused("plan", "torus.off", "--hold", "tabletop-lift", "--rank", "margin", cwd=self.folder,
+                            says="--rank margin: protocol tabletop-lift lifts")
 
 
 def value_of(cell):

@@ -59,8 +59,7 @@ TEST_CASE("Pipeline from mesh file to grasps", "[!benchmark][pipeline]") {
     read.push_back(seconds_of([&] { read_file = geometry::read_mesh(*file); }));
     mesh = geometry::scaled(read_file.mesh, 0.15 / geometry::longest_extent(read_file.mesh));
     analysis.push_back(seconds_of([&] { mesh = geometry::repair_mesh(mesh).mesh; }));
-    grasp::ObjectModelTimings timings;
-    grasp::prepare_object(mesh, hand, options, &timings);
+    const grasp::ObjectModelTimings timings = grasp::prepare_object(mesh, hand, options).timings;
     query.push_back(timings.query_s);
     patches.push_back(timings.patches_s);
     voxels.push_back(timings.voxels_s);

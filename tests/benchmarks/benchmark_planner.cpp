@@ -36,8 +36,8 @@ void plan_hundred(const geometry::TriangleMesh& mesh, const std::string& hand_na
   options.search = grasp::SearchRule::First;
   options.distinct = {0.0, 0.0, 0.0};
   grasp::prepare_object(mesh, hand, options);  // From here on weak features come from the cache.
-  grasp::ObjectModelTimings model;
-  const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options, &model);
+  const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options);
+  const grasp::ObjectModelTimings& model = object.timings;
   const grasp::PlannerResult result =
       grasp::plan_grasps(object, hand, options, {}, {.num_threads = 1});
   REQUIRE(result.grasps.size() == kGrasps);

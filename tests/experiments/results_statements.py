@@ -31,7 +31,7 @@ class Tables:
     """Published tables and adopted grasp files of a source tree, and the figures' modules that choose from them."""
 
     def __init__(self, root):
-        sys.path.insert(0, str(root / "paper-figures"))
+        sys.path[1:1] = [str(root / "paper-figures" / room) for room in ("drawing", "scenes", "charts")]
         from figure_data import Source
 
         self.source = Source(root / "notebooks-data", root / "paper-figures" / "data")
@@ -307,9 +307,9 @@ def unselected_squirrel(tables):
 
 
 def gallery(tables):
-    from gallery import HANDS
+    from object_names import GALLERY
 
-    cells = [f"gallery_{name}" for names in HANDS.values() for name in names]
+    cells = [f"gallery_{name}" for names in GALLERY.values() for name in names]
     rows = tables.table("paper_grasps").set_index("case").loc[cells]
     cpu = tables.table("paper_grasps.timing").set_index("case").loc[cells, "cpu_s"]
     yield f"{(rows['valid'] > 0).sum()} of {len(rows)} have valid grasps in {rows['attempts'].max()} attempts"

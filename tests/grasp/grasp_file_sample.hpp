@@ -66,6 +66,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.targets.angle_weight = 0.5;
   options.targets.pool_spacing = 0.01;
   options.targets.palm_reach_tolerance = 0.02;
+  options.rank = grasp::RankRule::Epsilon;
   options.target_draws = 3;
   options.candidate_order = grasp::CandidateOrder::Balance;
   options.kept = grasp::KeptCandidate::Balanced;

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "hold_scenes.hpp"
 #include "support/catch.hpp"
 
@@ -35,6 +37,41 @@ TEST_CASE("What the margin names fails, and a little less holds", "[hold_test]")
   CHECK_FALSE(jaws_on_cube(protocol).test(grasp).held());
   protocol.force = 0.97 * margin.force;
   CHECK(jaws_on_cube(protocol).test(grasp).held());
+}
+
+TEST_CASE("A verdict is near a limit within a tenth of the smallest load that fails",
+          "[hold_test]") {
+  HoldProtocol protocol = hold_protocol("dexgraspbench-100g");
+  const grasp::Grasp grasp = pinch(3.0);
+  const double failing = jaws_on_cube(protocol).margin(grasp).force;
+  struct Case {
+    double share;
+    bool is_held, is_near_limit;
+  };
+  for (const Case& c : {Case{0.5, true, false}, Case{0.95, true, true}, Case{1.04, false, true},
+                        Case{2.0, false, false}}) {
+    CAPTURE(c.share);
+    protocol.force = c.share * failing;
+    HoldTest test = jaws_on_cube(protocol);
+    const HoldVerdict verdict = test.test(grasp);
+    CHECK(verdict.held() == c.is_held);
+    CHECK(test.is_near_limit(grasp, verdict) == c.is_near_limit);
+    CHECK(test.holds_at(grasp, 0.9) == (0.9 * c.share < 0.97));
+    CHECK(test.holds_at(grasp, 1.1) == (1.1 * c.share < 0.97));
+  }
+  for (const double share : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    CHECK_THROWS_WITH(jaws_on_cube(protocol).holds_at(grasp, share),
+                      testing::Contains("HoldTest::holds_at: share"));
+  }
+}
+
+TEST_CASE("What is lost before the load is near no limit", "[hold_test]") {
+  HoldTest test = jaws_on_cube(hold_protocol("dexgraspbench-100g"));
+  grasp::Grasp without = pinch(3.0);
+  without.pre_grasp.reset();
+  const HoldVerdict verdict = test.test(without);
+  REQUIRE(verdict.stage == HoldStage::Rejected);
+  CHECK_FALSE(test.is_near_limit(without, verdict));
 }
 
 TEST_CASE("A margin is zero for what falls by itself, and no more than it was looked for",

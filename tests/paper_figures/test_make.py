@@ -27,8 +27,10 @@ SOURCE_DIR = pathlib.Path(os.environ["GRASPFIT_SOURCE_DIR"])
 FIGURES_DIR = SOURCE_DIR / "paper-figures"
 TABLES = SOURCE_DIR / "notebooks-data"
 sys.path.insert(0, str(FIGURES_DIR))
+from figure_list import FIGURES, ROOMS  # noqa: E402
+
+sys.path[1:1] = [str(FIGURES_DIR / room) for room in ROOMS]
 from figure_data import BadData, read_mesh  # noqa: E402
-from figure_list import FIGURES  # noqa: E402
 
 CUBE = {
     "cube.off": "OFF\n# a comment\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
@@ -65,8 +67,9 @@ class Lists(unittest.TestCase):
         readme = (FIGURES_DIR / "README.md").read_text(encoding="utf-8")
         slugs = [figure.slug for figure in FIGURES]
         self.assertEqual(len(slugs), len(set(slugs)))
-        drawing = {path.stem for path in FIGURES_DIR.glob("*.py") if "\ndef draw(source)" in path.read_text()}
-        self.assertEqual(drawing, set(slugs))
+        drawing = [path for path in FIGURES_DIR.rglob("*.py") if "\ndef draw(source)" in path.read_text()]
+        self.assertEqual(sorted(path.stem for path in drawing), sorted(slugs))
+        self.assertEqual({path.parent.name for path in drawing}, {"scenes", "charts"})
         rows = re.findall(r"^\| `(\w+)` \|(?:[^|]*\|){3}$", readme, re.MULTILINE)
         self.assertEqual(sorted(rows), sorted(slugs))
 
@@ -230,8 +233,10 @@ class Rerun(Folder):
         super().setUp()
         self.scripts = self.folder / "paper-figures"
         self.scripts.mkdir()
-        for path in (FIGURES_DIR / "make", *FIGURES_DIR.glob("*.py")):
-            shutil.copy(path, self.scripts / path.name)
+        for path in (FIGURES_DIR / "make", *FIGURES_DIR.rglob("*.py")):
+            copy = self.scripts / path.relative_to(FIGURES_DIR)
+            copy.parent.mkdir(exist_ok=True)
+            shutil.copy(path, copy)
         (self.folder / "viewer").symlink_to(SOURCE_DIR / "viewer")
         self.stale = [self.scripts / f"data/{slug}/stale.json" for slug in ("paper_grasps", "fitting_stages")]
         for path in self.stale:

@@ -1,8 +1,8 @@
 """Checks that folders of sources are each of one topic: one uses those before it in its module's
-FOLDERS and none after it, and holds no more than 25 files, its public headers included. The folders
-of tests, too, use those before them in tests/CMakeLists.txt and none after them. A module includes
-no private header of another one but those listed here. And no source outside tests is longer than
-500 lines.
+FOLDERS and none after it, and holds no more than 25 files, its public headers included; nor does a
+folder of tests, figures or pages hold more. The folders of tests, too, use those before them in
+tests/CMakeLists.txt and none after them. A module includes no private header of another one but
+those listed here. And no source outside tests is longer than 500 lines.
 
   check_folders.py SOURCE_DIR
 """
@@ -138,11 +138,13 @@ for module in modules:
     check_module(module)
 check_private_headers()
 check_tests()
-for module in sorted(path for path in (SOURCE / "tests").rglob("*") if path.is_dir()):
-    number = len([file for file in module.iterdir() if file.suffix in (".cpp", ".hpp", ".py")])
-    if number > MOST_FILES:
-        faults.append("%s holds %d files, more than %d"
-                      % (module.relative_to(SOURCE), number, MOST_FILES))
+for top in ("tests", "paper-figures", "viewer", "setup"):
+    assert (SOURCE / top).is_dir(), top
+    for folder in sorted({file.parent for file in (SOURCE / top).rglob("*")}):
+        files = [file for file in folder.iterdir() if file.suffix in (".cpp", ".hpp", ".py", ".js")]
+        if len(files) > MOST_FILES:
+            faults.append("%s holds %d files, more than %d"
+                          % (folder.relative_to(SOURCE), len(files), MOST_FILES))
 for file in sorted(SOURCE.glob("*/**/*")):
     top = file.relative_to(SOURCE).parts[0]
     if top in ("tests", "build") or file.suffix not in (".cpp", ".hpp", ".py", ".js"):

@@ -53,7 +53,8 @@ Command plan_command() {
   add_option(
       hold, "hold", "PROTOCOL", std::nullopt,
       "leave out grasps that do not hold in a physics test under this protocol (see hold --help) "
-      "and order the others by the smallest force that fails; failures are counted by stage");
+      "and, without rank, order the others by the smallest force that fails; failures are counted "
+      "by stage");
 
   Command command{
       "plan", "OBJECT",
@@ -283,9 +284,16 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.has("out")) out.emplace(flags.text("out"), is_plan_file);
   require_means_of_output(flags);
   std::optional<hold_test::HoldProtocol> protocol;
+  if (options.rank == grasp::RankRule::Margin && !flags.has("hold")) {
+    throw UsageError("--rank margin needs --hold PROTOCOL, whose test finds margins");
+  }
   if (flags.has("hold")) {
     protocol = hold_protocol_named("hold", flags.text("hold"));
     require_physics("--hold");
+    if (options.rank == grasp::RankRule::Margin && protocol->load == hold_test::HoldLoad::Lift) {
+      throw UsageError("--rank margin: protocol " + protocol->name +
+                       " lifts, and finds no margins");
+    }
   }
   warn_of_findings("plan", reading);
 
@@ -296,9 +304,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   progress.clear();
   warn_of_differences("plan", object_file.record, around.record.obstacles);
   progress.show("voxels and contact scores");
-  grasp::ObjectModelTimings object_timings;
   const grasp::ObjectModel object =
-      grasp::prepare_object(object_file.mesh, hand, options, &object_timings, {.is_on = true});
+      grasp::prepare_object(object_file.mesh, hand, options, {.is_on = true});
   grasp::PlannerResult result;
   {
     const StopOnInterrupt stop(
@@ -308,7 +315,6 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
                                  .progress = shown_by(progress, options),
                                  .stop = stop.token()});
   }
-  result.timings.object = object_timings;
   progress.clear();
 
   if (result.grasps.empty()) {
@@ -321,8 +327,9 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   }
   std::optional<grasp::HoldRecord> hold;
   if (protocol) {
+    const bool by_margin = flags.is_default("rank") || options.rank == grasp::RankRule::Margin;
     HeldGrasps held = held_grasps(object.mesh(), hand, *protocol, num_threads,
-                                  std::move(result.grasps), progress);
+                                  std::move(result.grasps), by_margin, progress);
     progress.clear();
     if (held.grasps.empty()) {
       std::fprintf(stderr, "graspfit plan: %s: no grasp by hand %s holds: %s\n",

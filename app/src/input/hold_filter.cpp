@@ -1,5 +1,6 @@
 #include "input/hold_filter.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "graspfit/hold_test/hold_batch.hpp"
@@ -8,7 +9,7 @@ namespace graspfit::app {
 
 HeldGrasps held_grasps(const geometry::TriangleMesh& object_O, const hands::HandModel& hand,
                        const hold_test::HoldProtocol& protocol, int num_threads,
-                       std::vector<grasp::Grasp> planned, ProgressBar& progress) {
+                       std::vector<grasp::Grasp> planned, bool by_margin, ProgressBar& progress) {
   progress.show("convex pieces");
   const hold_test::HoldHand hold_hand = hold_test::prepare_hold_hand(hand);
   const hold_test::HoldObject hold_object = hold_test::prepare_hold_object(object_O);
@@ -25,7 +26,9 @@ HeldGrasps held_grasps(const geometry::TriangleMesh& object_O, const hands::Hand
   for (const auto& [stage, count] : hold_test::count_stages(tested)) {
     held.record.stages[hold_test::name_of(stage)] = static_cast<std::int64_t>(count);
   }
-  for (const std::size_t index : hold_test::held_best_first(tested)) {
+  std::vector<std::size_t> order = hold_test::held_best_first(tested);
+  if (!by_margin) std::sort(order.begin(), order.end());
+  for (const std::size_t index : order) {
     held.grasps.push_back(std::move(planned[index]));
     if (tested[index].margin) held.record.margins.push_back(tested[index].margin->force);
   }

@@ -81,8 +81,10 @@ po::options_description hold_protocol_options() {
       options, "squeeze", "forces|extrapolation|none", std::nullopt,
       "where the squeeze comes from: the grasp file (forces that balance), as far beyond the "
       "grasp as the pre-grasp is before it, or none; without it the protocol's");
-  add_option(options, "step", "SECONDS", std::nullopt,
-             "of the simulation, from 0.00001; without it the protocol's");
+  add_option(
+      options, "step", "SECONDS", std::nullopt,
+      "of the simulation, from 0.00001; without it the protocol's, for a single grasp at most "
+      "0.001");
   add_repeatable_option(
       options, "set", "PARAMETER=VALUE",
       "another value for a parameter of the protocol, several numbers separated by "
@@ -97,6 +99,13 @@ hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::
     fail_choice(flag, name, joined(names, "|"));
   }
   return hold_test::hold_protocol(name);
+}
+
+bool sets_step(const Flags& flags) {
+  const std::vector<std::string> settings = flags.texts("set");
+  return flags.has("step") ||
+         std::any_of(settings.begin(), settings.end(),
+                     [](const std::string& setting) { return setting.starts_with("step_s="); });
 }
 
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags) {

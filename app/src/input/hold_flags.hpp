@@ -17,6 +17,9 @@ hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::
 /// The protocol that the flags of `hold_protocol_options` give, validated. @throws UsageError.
 hold_test::HoldProtocol read_hold_protocol(const Flags& flags);
 
+/// Whether one of these flags sets the step of the simulation.
+bool sets_step(const Flags& flags);
+
 /// Throws InvalidInput unless this build can test grasps in physics; `flag`, if any, starts the
 /// message.
 void require_physics(const std::string& flag = {});

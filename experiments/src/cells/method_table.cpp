@@ -98,12 +98,10 @@ std::string guidance_text(const grasp::PlannerStatistics& statistics) {
 /// `prepare_s` of a first run.
 grasp::ObjectModelTimings uncached_timings(const Planned& planned) {
   const grasp::PlannerOptions& options = planned.settings.options;
-  grasp::ObjectModelTimings timings;
-  grasp::build_object_model(
-      planned.object.mesh(),
-      {.resolution = options.resolution, .averaging = options.averaging, .score = options.score},
-      &timings);
-  return timings;
+  return grasp::build_object_model(planned.object.mesh(), {.resolution = options.resolution,
+                                                           .averaging = options.averaging,
+                                                           .score = options.score})
+      .timings;
 }
 
 std::optional<double> share_of(std::size_t count, std::size_t all) {

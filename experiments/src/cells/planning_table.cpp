@@ -113,9 +113,8 @@ Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
   require_over_table(file->mesh, settings.table_z_O);
   const double load_s = base::seconds_since(start);
   const Clock::time_point prepare_start = Clock::now();
-  grasp::ObjectModelTimings timings;
   grasp::ObjectModel object =
-      grasp::prepare_object(file->mesh, *hand, settings.options, &timings, {.is_on = true});
+      grasp::prepare_object(file->mesh, *hand, settings.options, {.is_on = true});
   const double prepare_s = base::seconds_since(prepare_start);
 
   Planned planned{
@@ -141,7 +140,6 @@ Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
                               },
                           .tried_start = tried_start});
   planned.plan_s = base::seconds_since(plan_start);
-  planned.result.timings.object = timings;
   return planned;
 }
 
@@ -203,8 +201,11 @@ void fill_planning_columns(const Planned& planned, sweep::ResultRow& row) {
   row.set("best_m", field(largest(measures.m)));
   row.set("mean_m", field(mean(measures.m)));
   if (!grasps.empty()) {
-    row.set("best_num_contacts", field(grasps.front().contacts.size()));
-    row.set("best_epsilon", grasps.front().epsilon());
+    const grasp::Grasp& best = *std::max_element(
+        grasps.begin(), grasps.end(),
+        [](const grasp::Grasp& a, const grasp::Grasp& b) { return a.quality.m < b.quality.m; });
+    row.set("best_num_contacts", field(best.contacts.size()));
+    row.set("best_epsilon", best.epsilon());
     row.set("largest_penetration_m", measures.largest_penetration);
   }
   row.set("mean_num_contacts", field(mean(measures.num_contacts)));

@@ -123,7 +123,7 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   sweep::CellResult result{sweep::ResultRow(columns()), sweep::ResultRow(timings())};
   const Clock::time_point start = Clock::now();
   const grasp::ObjectModel object =
-      grasp::prepare_object(file->mesh, *hand, settings.options, nullptr, {.is_on = true});
+      grasp::prepare_object(file->mesh, *hand, settings.options, {.is_on = true});
   result.timings.set("prepare_s", base::seconds_since(start));
   const Clock::time_point guidance_start = Clock::now();
   const grasp::GuidanceModel model = grasp::guidance_model(

@@ -170,7 +170,7 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   const std::shared_ptr<const hands::HandModel> hand = load_hand(settings.hand);
   const auto start = std::chrono::steady_clock::now();
   const grasp::ObjectModel object =
-      grasp::prepare_object(file->mesh, *hand, settings.options, nullptr, {.is_on = true});
+      grasp::prepare_object(file->mesh, *hand, settings.options, {.is_on = true});
   const std::chrono::duration<double> prepare = std::chrono::steady_clock::now() - start;
 
   sweep::CellResult result{sweep::ResultRow(columns()), sweep::ResultRow(timings())};

@@ -177,6 +177,9 @@ PlanningSettings planning_settings(const std::string& text, std::uint64_t seed,
   if (settings.hand.empty()) throw sweep::SettingError("", "there is no setting hand");
   settings.options.seed = seed;
   require_compatible(settings.options);
+  if (settings.options.rank == grasp::RankRule::Margin) {
+    throw sweep::SettingError("rank", "is margin, which no planner finds; m or epsilon");
+  }
   try {
     settings.options.validate();
   } catch (const base::InvalidInput& error) {

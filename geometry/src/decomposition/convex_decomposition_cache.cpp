@@ -18,7 +18,7 @@ namespace graspfit::geometry {
 namespace {
 
 // Raised whenever the same input may give another result.
-constexpr std::string_view kAlgorithm = "convex decomposition 5";
+constexpr std::string_view kAlgorithm = "convex decomposition 6";
 
 /// Lock on an entry, held while the entry is read or computed: one thread or process does the work
 /// of seconds, while the others wait for it. Where no lock can be obtained, each does the work.

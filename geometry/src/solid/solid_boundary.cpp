@@ -26,6 +26,7 @@
 #include "solid/intersection_part.hpp"
 #include "solid/mesh_edges.hpp"
 #include "solid/mesh_operations.hpp"
+#include "solid/union_by_corefinement.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -151,6 +152,10 @@ int main_axis(const Corners& corners) {
   return axis;
 }
 
+/// Pairs of faces that cross from which on it is asked whether corefinement may unite the parts:
+/// fewer are cut here in a tenth of a second.
+constexpr std::size_t kManyCrossings = 500;
+
 /// The faces that have area, on vertices with distinct coordinates. @throws InvalidInput if the
 /// faces bound no solid.
 TriangleMesh welded(const TriangleMesh& mesh) {
@@ -184,9 +189,16 @@ class Builder {
 
   TriangleMesh build() {
     if (mesh_.faces.empty()) return result_;
+    const auto crossings = internal::crossing_faces(mesh_);
+    if (crossings.size() >= kManyCrossings) {
+      if (auto united = internal::union_by_corefinement(mesh_, crossings)) {
+        result_ = std::move(*united);
+        return cleaned();
+      }
+    }
     tree_.emplace(mesh_);
     std::vector<Crossings> met(mesh_.faces.size());
-    for (const auto& [first, second] : internal::crossing_faces(mesh_)) {
+    for (const auto& [first, second] : crossings) {
       if (are_coplanar(first, second)) {
         met[first].coplanar.push_back(second);
         met[second].coplanar.push_back(first);

@@ -59,6 +59,9 @@ std::vector<TestedGrasp> test_grasps(const HoldHand& hand, const HoldObject& obj
         const grasp::Grasp& grasp = grasps[indices[i]];
         tested[i].index = indices[i];
         tested[i].verdict = test.test(grasp);
+        if (options.near_limit) {
+          tested[i].is_near_limit = test.is_near_limit(grasp, tested[i].verdict);
+        }
         if (options.margin) tested[i].margin = test.margin(grasp, options.largest_margin);
       } catch (...) {
         errors[i] = std::current_exception();

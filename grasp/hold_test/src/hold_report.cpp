@@ -41,6 +41,9 @@ Json conventions() {
        "smallest loads that fail, least over the six directions (force_N, at the center of mass) "
        "and the six axes (torque_Nm); 0 where the grasp is lost without load, and no more than is "
        "tried (100 N, 10 Nm); null where not asked for"},
+      {"near_limit",
+       "whether 0.9 or 1.1 times the load changes whether the grasp holds; null where not asked "
+       "for"},
       {"pieces",
        "convex pieces stand for the object and for each link. volume_error_rel: (volume of their "
        "union - the solid's) / the solid's; outward_deviation_m: how far a piece reaches out of "
@@ -107,6 +110,7 @@ Json results_json(const HoldReport& report) {
                       {"approach_turn_rad", verdict.approach_turn},
                       {"squeeze_force_N", verdict.squeeze_force},
                       {"directions", directions},
+                      {"near_limit", or_null(tested.is_near_limit)},
                       {"margin", margin_json(tested.margin)}});
   }
   return {{"num_grasps", report.num_grasps},
@@ -136,6 +140,7 @@ std::string row(const TestedGrasp& tested, std::size_t num_loads) {
        {verdict.approach_shift, verdict.approach_turn, verdict.squeeze_force}) {
     cells += cell(value);
   }
+  cells += tested.is_near_limit ? (*tested.is_near_limit ? ",true" : ",false") : ",";
   cells += cell(tested.margin ? std::optional(tested.margin->force) : std::nullopt);
   cells += cell(tested.margin ? std::optional(tested.margin->torque) : std::nullopt);
   for (const DirectionVerdict& direction : verdict.directions) {
@@ -176,7 +181,7 @@ std::string to_json(const HoldReport& report) {
   for (const PiecesReport& link : report.links) links.push_back(pieces_json(link));
   return grasp::internal::json_text(
       {{"format", "graspfit-hold"},
-       {"version", 2},
+       {"version", 3},
        {"conventions", conventions()},
        {"grasp_file", {{"file", report.grasp_file}, {"sha256", report.grasp_sha256}}},
        {"engine", {{"name", "MuJoCo"}, {"version", GRASPFIT_ENGINE_VERSION}}},
@@ -191,8 +196,8 @@ std::string to_json(const HoldReport& report) {
 
 std::string to_csv(const HoldReport& report) {
   std::string csv =
-      "rank,held,stage,reason,approach_shift_m,approach_turn_rad,squeeze_force_N,margin_force_N,"
-      "margin_torque_Nm";
+      "rank,held,stage,reason,approach_shift_m,approach_turn_rad,squeeze_force_N,near_limit,"
+      "margin_force_N,margin_torque_Nm";
   const std::vector<std::string> loads = load_names(report.protocol);
   for (const std::string& load : loads) {
     for (const char* column : {"stage", "failed_at_s", "largest_shift_m", "largest_turn_rad"}) {

@@ -128,7 +128,8 @@ bool HoldRun::move(const HandConfiguration& from, const HandConfiguration& to, d
   return true;
 }
 
-void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch) {
+void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch,
+                       double load_share) {
   failure_.clear();
   verdict.stage = HoldStage::Rejected;
   verdict.reason = rejection(grasp);
@@ -136,7 +137,7 @@ void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Wa
   if (watch) watch();
   verdict.stage = HoldStage::Approach;
   if (protocol_.load == HoldLoad::Lift) {
-    physics_.set_load({0.0, 0.0, -protocol_.gravity * protocol_.object_mass},
+    physics_.set_load({0.0, 0.0, -load_share * protocol_.gravity * protocol_.object_mass},
                       Eigen::Vector3d::Zero());
   }
   const HandConfiguration& start = grasp.pre_grasp->configuration;

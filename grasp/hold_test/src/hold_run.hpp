@@ -22,8 +22,9 @@ class HoldRun {
 
   /// Simulates the motion from the pre-grasp to the grasp and on to the squeeze. Fills in the stage
   /// (Rejected, Approach, or Held so far), the reason, how far the approach moved the object, and
-  /// the force of the squeeze.
-  void approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch = {});
+  /// the force of the squeeze. `load_share` scales the weight under which a lift approaches.
+  void approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch = {},
+                double load_share = 1.0);
 
   /// Simulates a load from the squeezed state; may be called as often as wanted.
   DirectionVerdict load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,

@@ -10,6 +10,7 @@
 
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "hold_run.hpp"
 #include "physics.hpp"
 
@@ -35,6 +36,10 @@ constexpr double kLeastLoad = 1e-4;
 
 /// Lever arm by which the largest force of a margin becomes its largest torque [m].
 constexpr double kTorqueLever = 0.1;
+
+/// Shares of the protocol's load by which a verdict counts as near a limit.
+constexpr double kLessLoad = 0.9;
+constexpr double kMoreLoad = 1.1;
 
 /// First load of the search for a failing one, over the largest load.
 constexpr double kFirstLoad = 0.02;
@@ -95,11 +100,11 @@ struct HoldTest::Impl {
   Vector3d direction(int index) const {
     return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ() : six_directions()[index];
   }
-  DirectionVerdict load(int index, const HoldRun::Watch& watch = {}) {
+  DirectionVerdict load(int index, const HoldRun::Watch& watch = {}, double share = 1.0) {
     const Vector3d force = protocol.load == HoldLoad::Lift
                                ? Vector3d(0.0, 0.0, -protocol.gravity * protocol.object_mass)
                                : Vector3d(protocol.force * direction(index));
-    return run.load(direction(index), force, Vector3d::Zero(), watch);
+    return run.load(direction(index), share * force, Vector3d::Zero(), watch);
   }
 
   HoldHand hand;
@@ -140,6 +145,29 @@ HoldVerdict HoldTest::test(const grasp::Grasp& grasp) {
     verdict.stage = std::min(verdict.stage, direction.stage);
   }
   return verdict;
+}
+
+bool HoldTest::holds_at(const grasp::Grasp& grasp, double share) {
+  base::require(share > 0.0 && std::isfinite(share), "HoldTest::holds_at", "share", share,
+                "finite and > 0");
+  HoldVerdict verdict;
+  impl_->run.approach(grasp, verdict, {}, share);
+  bool holds = verdict.held();
+  for (int i = 0; holds && i < impl_->num_directions(); ++i) {
+    holds = impl_->load(i, {}, share).stage == HoldStage::Held;
+  }
+  return holds;
+}
+
+bool HoldTest::is_near_limit(const grasp::Grasp& grasp, const HoldVerdict& verdict) {
+  const bool is_loaded =
+      verdict.stage == HoldStage::Load || verdict.held() ||
+      (verdict.stage == HoldStage::Approach && impl_->protocol.load == HoldLoad::Lift);
+  if (!is_loaded) return false;
+  // The likelier change comes first.
+  const double first = verdict.held() ? kMoreLoad : kLessLoad;
+  const double second = verdict.held() ? kLessLoad : kMoreLoad;
+  return holds_at(grasp, first) != verdict.held() || holds_at(grasp, second) != verdict.held();
 }
 
 HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {

@@ -26,6 +26,8 @@ HoldTest::HoldTest(HoldTest&&) noexcept = default;
 HoldTest& HoldTest::operator=(HoldTest&&) noexcept = default;
 
 HoldVerdict HoldTest::test(const grasp::Grasp&) { refuse(); }
+bool HoldTest::holds_at(const grasp::Grasp&, double) { refuse(); }
+bool HoldTest::is_near_limit(const grasp::Grasp&, const HoldVerdict&) { refuse(); }
 HoldMargin HoldTest::margin(const grasp::Grasp&, double) { refuse(); }
 std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp&, int, double) { refuse(); }
 

@@ -52,7 +52,7 @@ class MoveSearch {
     const geometry::TriangleMesh mesh_W =
         geometry::transformed(scene_.object(object_).surface_O.mesh(), X_WO_start_);
     const grasp::ObjectModel model =
-        grasp::prepare_object(mesh_W, options_.planner, nullptr, options_.cache);
+        grasp::prepare_object(mesh_W, options_.planner, options_.cache);
     const grasp::Surroundings surroundings = surroundings_at_both_ends();
     for (const Vector3d& approach_W : approaches()) {
       grasp::PlannerOptions planner = options_.planner;

@@ -26,14 +26,14 @@ int steps_of(double number) {
 }  // namespace
 
 FittingLoop::FittingLoop(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
-                         const FittingOptions& options)
+                         const FittingOptions& options, const std::vector<int>& depth_guarded)
     : hand_(scene.hand),
       model_(scene.hand.model()),
       object_(scene.object),
       contact_options_(scene.contact_options),
       options_(options),
       voxel_size_(scene.object.grid.lattice.voxel_size),
-      state_(scene, options),
+      state_(scene, options, depth_guarded),
       style_(style),
       has_palm_target_(requested.palm),
       stops_at_palm_(requested.palm) {
@@ -59,8 +59,8 @@ FittingLoop::FittingLoop(const GraspScene& scene, GraspStyle style, const Reques
   }
 }
 
-FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacement& placement,
-                               const std::optional<hands::HandConfiguration>& goal) {
+FittingLoop::Outcome FittingLoop::fit(const TargetContacts& targets, const PalmPlacement& placement,
+                                      const std::optional<hands::HandConfiguration>& goal) {
   goal_ = goal ? *goal
                : fitting_goal(hand_, targets, posture_for(model_, targets, placement), options_);
   for (Part& part : parts_) {
@@ -78,7 +78,8 @@ FittingResult FittingLoop::fit(const TargetContacts& targets, const PalmPlacemen
   return run();
 }
 
-FittingResult FittingLoop::close(const hands::HandConfiguration& start, const RetreatRule& rule) {
+FittingLoop::Outcome FittingLoop::close(const hands::HandConfiguration& start,
+                                        const RetreatRule& rule) {
   goal_ = start;
   is_palm_done_ = true;
   const double step = rule.step.value_or(voxel_size_);
@@ -95,19 +96,22 @@ FittingResult FittingLoop::close(const hands::HandConfiguration& start, const Re
   return run();
 }
 
-FittingResult FittingLoop::failed_start() const {
+FittingLoop::Outcome FittingLoop::failed_start() const {
   FittingResult result;
   result.initial = result.configuration = initial_;
   result.stop = FittingStop::InitialCollision;
   result.smallest_distance = state_.smallest_distance();
-  return result;
+  return {result, {}};
 }
 
-FittingResult FittingLoop::run() {
+FittingLoop::Outcome FittingLoop::run() {
   if (close_free_parts() && options_.palm_after_contact == PalmAfterContact::Recentred) recenter();
-  FittingResult result;
-  finish(result);
-  return result;
+  Outcome outcome;
+  finish(outcome.result);
+  if (is_clear_at_start_ && options_.guard == PenetrationGuard::Voxels) {
+    outcome.links_too_deep = state_.links_too_deep();
+  }
+  return outcome;
 }
 
 /// Steps 1 and 2 until every finger has stopped or the iterations are used up. Returns false as
@@ -251,23 +255,19 @@ bool FittingLoop::palm_touches() {
          has_contact_at(*model_.palm.pad, state_.X_OL());
 }
 
-/// Accepts `candidate` if the guard lets every moved link through and no touching part loses
-/// contact. The cheap tests come first.
+/// Moves to `candidate` if the guard lets every moved link through and no touching part loses
+/// contact.
 bool FittingLoop::try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
                            double length) {
-  if (!state_.passes_map(candidate, moved, length)) return false;
-  for (const Part& part : parts_) {
-    if (part.state != Part::State::Touching || !part.pad) continue;
-    if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
-    if (!has_contact_at(*part.pad, state_.trial_X_OL())) return false;
-  }
-  if (is_palm_held_ && moved.size() == state_.all_links().size() &&
-      !has_contact_at(*model_.palm.pad, state_.trial_X_OL())) {
-    return false;
-  }
-  if (!state_.passes_exact(moved)) return false;
-  state_.accept();
-  return true;
+  return state_.try_move(candidate, moved, length, [&](const std::vector<RigidTransform>& X_OL) {
+    for (const Part& part : parts_) {
+      if (part.state != Part::State::Touching || !part.pad) continue;
+      if (std::find(moved.begin(), moved.end(), part.tip_link) == moved.end()) continue;
+      if (!has_contact_at(*part.pad, X_OL)) return false;
+    }
+    return !is_palm_held_ || moved.size() != state_.all_links().size() ||
+           has_contact_at(*model_.palm.pad, X_OL);
+  });
 }
 
 bool FittingLoop::has_contact_at(int pad, const std::vector<RigidTransform>& X_OL) {

@@ -12,24 +12,22 @@ namespace graspfit::grasp::internal {
 /// One run of the adjustment loop (sections 7 to 9).
 class FittingLoop {
  public:
+  struct Outcome {
+    FittingResult result;
+    /// With the guard on voxels, links whose depth was not guarded and that may be deeper in the
+    /// object than a voxel's edge; none if the hand was not clear at the start.
+    std::vector<int> links_too_deep;
+  };
+
+  /// `depth_guarded` as in `GuardedHand`.
   FittingLoop(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
-              const FittingOptions& options);
+              const FittingOptions& options, const std::vector<int>& depth_guarded);
 
   /// Fits the hand to targets that are assigned to the requested parts.
-  FittingResult fit(const TargetContacts& targets, const PalmPlacement& placement,
-                    const std::optional<hands::HandConfiguration>& goal);
+  Outcome fit(const TargetContacts& targets, const PalmPlacement& placement,
+              const std::optional<hands::HandConfiguration>& goal);
   /// Closes the hand from `start`, without targets.
-  FittingResult close(const hands::HandConfiguration& start, const RetreatRule& retreat);
-
-  /// To be called before the loop runs: keeps the link from getting deeper into the object than a
-  /// voxel's edge, see `GuardedHand::guard_depth`. Motions of the link then take several times as
-  /// long.
-  void guard_depth(int link) { state_.guard_depth(link); }
-  /// To be called after the loop ran: links without `guard_depth` that may be deeper in the object
-  /// than a voxel's edge; none if the hand was not clear at the start.
-  std::vector<int> links_too_deep() {
-    return is_clear_at_start_ ? state_.links_too_deep() : std::vector<int>();
-  }
+  Outcome close(const hands::HandConfiguration& start, const RetreatRule& retreat);
 
  private:
   /// A finger that closes, while the loop runs.
@@ -62,11 +60,11 @@ class FittingLoop {
   void add_part(int finger, bool has_target);
   bool place();
   bool retreat(hands::HandConfiguration start, double step, int most_steps);
-  FittingResult failed_start() const;
+  Outcome failed_start() const;
   void approach();
   void seat_palm(double distance);
   void bring_palm(double distance);
-  FittingResult run();
+  Outcome run();
   void advance(double distance, double tolerance);
   void close_part(Part& part);
   bool close_toward_goal(Part& part);

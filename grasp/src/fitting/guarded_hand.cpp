@@ -37,7 +37,8 @@ constexpr double kDepthTolerance = 0.05;
 
 }  // namespace
 
-GuardedHand::GuardedHand(const GraspScene& scene, const FittingOptions& options)
+GuardedHand::GuardedHand(const GraspScene& scene, const FittingOptions& options,
+                         const std::vector<int>& depth_guarded)
     : hand_(scene.hand),
       model_(scene.hand.model()),
       object_(scene.object),
@@ -50,6 +51,7 @@ GuardedHand::GuardedHand(const GraspScene& scene, const FittingOptions& options)
       distance_(model_.links.size()),
       surroundings_distance_(model_.links.size(), kInfinity) {
   std::iota(all_links_.begin(), all_links_.end(), 0);
+  for (const int link : depth_guarded) guards_depth_[link] = true;
   if (!options.guard_self) return;
   const auto has_solid = [&](int link) { return hand_.collision().link_solid(link).has_value(); };
   for (const int a : all_links_) {
@@ -138,9 +140,15 @@ double GuardedHand::largest_motion(int link, const RigidTransform& X_from,
   return largest;
 }
 
-bool GuardedHand::passes_map(const hands::HandConfiguration& candidate,
-                             const std::vector<int>& moved, double length) {
+bool GuardedHand::try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
+                           double length, const MotionTest& is_wanted) {
   trial_ = candidate;
+  if (!passes_map(moved, length) || !is_wanted(trial_X_OL_) || !passes_exact(moved)) return false;
+  accept();
+  return true;
+}
+
+bool GuardedHand::passes_map(const std::vector<int>& moved, double length) {
   trial_X_OL_ = X_OL_;
   trial_distance_ = distance_;
   trial_surroundings_distance_ = surroundings_distance_;

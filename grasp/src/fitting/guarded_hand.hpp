@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,7 +15,10 @@ namespace graspfit::grasp::internal {
 /// section 9 lets through, and how long the next one may be.
 class GuardedHand {
  public:
-  GuardedHand(const GraspScene& scene, const FittingOptions& options);
+  /// With the guard on voxels, no motion brings a link of `depth_guarded` deeper into the object
+  /// than a voxel's edge; its motions then take several times as long.
+  GuardedHand(const GraspScene& scene, const FittingOptions& options,
+              const std::vector<int>& depth_guarded);
 
   /// Puts the hand somewhere, unchecked.
   void put(const hands::HandConfiguration& configuration);
@@ -23,20 +27,18 @@ class GuardedHand {
   /// the guard, and no link touches the surroundings.
   bool is_clear();
 
-  /// With the guard on voxels: from now on no motion brings this link deeper into the object than a
-  /// voxel's edge.
-  void guard_depth(int link) { guards_depth_[link] = true; }
-  /// Links without `guard_depth` that may be deeper in the object than a voxel's edge.
+  /// Links whose depth is not guarded that may be deeper in the object than a voxel's edge.
   std::vector<int> links_too_deep();
 
-  /// A motion is tested by `passes_map`, then by `passes_exact`, and made by `accept`.
-  bool passes_map(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
-                  double length);  ///< Poses the moved links and tests them against the distance
-                                   ///< map; `length` is the motion of the fastest point [m].
-  /// Tests meshes, surroundings and, where they are guarded, other links; to be called after
-  /// `passes_map`.
-  bool passes_exact(const std::vector<int>& moved);
-  void accept();  ///< Makes the motion under test.
+  /// Whether a motion may be made by what else depends on it; takes the links' poses after it.
+  using MotionTest = std::function<bool(const std::vector<geometry::RigidTransform>& X_OL)>;
+
+  /// Moves the links `moved` to where `candidate` has them, unless the guard keeps one of them or
+  /// `is_wanted` says no: then nothing moves. Cheap tests come first: the distance map,
+  /// `is_wanted`, then meshes, surroundings and, where they are guarded, other links. `length` is
+  /// the motion of the fastest point [m].
+  bool try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
+                double length, const MotionTest& is_wanted);
 
   /// Motion of the fastest point of `links` allowed now [m] (paper section 9) [R].
   double allowed_motion(const std::vector<int>& links) const;
@@ -46,7 +48,6 @@ class GuardedHand {
 
   const hands::HandConfiguration& configuration() const { return configuration_; }
   const std::vector<geometry::RigidTransform>& X_OL() const { return X_OL_; }
-  const std::vector<geometry::RigidTransform>& trial_X_OL() const { return trial_X_OL_; }
   const hands::HandModel& model() const { return model_; }
   const std::vector<int>& all_links() const { return all_links_; }
   /// d_min of a link [voxels]: its value or, well away from the object, a lower bound.
@@ -67,6 +68,11 @@ class GuardedHand {
   struct KnownDepths {
     std::optional<KnownDepth> let, cut;
   };
+
+  /// Poses the moved links of the trial, and tests them against the distance map.
+  bool passes_map(const std::vector<int>& moved, double length);
+  bool passes_exact(const std::vector<int>& moved);  ///< Tests the trial's meshes.
+  void accept();                                     ///< Makes the trial.
 
   float measured(int link, const geometry::RigidTransform& X_OL);
   /// Distance of a link from the surroundings [m], at most `enough`: farther surroundings are

@@ -24,23 +24,20 @@ void require_palm(const hands::HandModel& hand, std::size_t target, std::size_t 
   hand.palm_pad();
 }
 
-/// The result of a loop that `make` builds and `run` runs. With the guard on voxels, a hand that
-/// ends with a link deeper in the object than a voxel's edge (one of twenty) is fitted again, with
-/// the depth of that link guarded at every motion.
-template <class Make, class Run>
-FittingResult fitted(PenetrationGuard guard, const Make& make, const Run& run) {
-  std::vector<int> watched;
-  for (FittingResult spent;;) {
-    internal::FittingLoop loop = make();
-    for (const int link : watched) loop.guard_depth(link);
-    FittingResult result = run(loop);
-    result.contact_tests_s += spent.contact_tests_s;
-    if (guard != PenetrationGuard::Voxels) return result;
-    const std::vector<int> deep = loop.links_too_deep();
-    if (deep.empty()) return result;
-    // Links that are watched already are none of these, so that this ends.
-    watched.insert(watched.end(), deep.begin(), deep.end());
-    spent = result;
+/// The result of a loop that `run` runs while the depths of some links are guarded. With the guard
+/// on voxels, a hand that ends with a link deeper in the object than a voxel's edge (one of twenty)
+/// is fitted again, with the depth of that link guarded at every motion.
+template <class Run>
+FittingResult fitted(const Run& run) {
+  std::vector<int> guarded;
+  for (double spent_s = 0.0;;) {
+    internal::FittingLoop::Outcome outcome = run(guarded);
+    outcome.result.contact_tests_s += spent_s;
+    const std::vector<int>& deep = outcome.links_too_deep;
+    if (deep.empty()) return outcome.result;
+    // Links that are guarded already are none of these, so that this ends.
+    guarded.insert(guarded.end(), deep.begin(), deep.end());
+    spent_s = outcome.result.contact_tests_s;
   }
 }
 
@@ -79,9 +76,10 @@ FittingResult fit_hand(const GraspScene& scene, GraspStyle style, const TargetCo
     }
     requested.fingers.push_back(*target.finger);
   }
-  return fitted(
-      options.guard, [&] { return internal::FittingLoop(scene, style, requested, options); },
-      [&](internal::FittingLoop& loop) { return loop.fit(targets, placement, goal); });
+  return fitted([&](const std::vector<int>& depth_guarded) {
+    return internal::FittingLoop(scene, style, requested, options, depth_guarded)
+        .fit(targets, placement, goal);
+  });
 }
 
 FittingResult close_hand(const GraspScene& scene, GraspStyle style, const RequestedParts& requested,
@@ -106,9 +104,10 @@ FittingResult close_hand(const GraspScene& scene, GraspStyle style, const Reques
     throw InvalidInput("close_hand: retreat of at most " + std::to_string(*retreat.most_steps) +
                        " steps, must be >= 0");
   }
-  return fitted(
-      options.guard, [&] { return internal::FittingLoop(scene, style, requested, options); },
-      [&](internal::FittingLoop& loop) { return loop.close(start, retreat); });
+  return fitted([&](const std::vector<int>& depth_guarded) {
+    return internal::FittingLoop(scene, style, requested, options, depth_guarded)
+        .close(start, retreat);
+  });
 }
 
 }  // namespace graspfit::grasp

@@ -78,7 +78,7 @@ Json conventions() {
       {"hold",
        "only where planned grasps were tested in physics: those that did not hold under the "
        "protocol are left out and counted by the stage they came to, the others are ordered by "
-       "margins_N, the smallest force that fails for each"},
+       "margins_N, the smallest force that fails for each, unless a rank was asked for"},
       {"imported",
        "only where grasps come from another tool's file: poses and joints are that file's, "
        "everything else is computed by the planner's options; attempt is the grasp's place in that "

@@ -83,13 +83,13 @@ void ObjectModelOptions::validate() const {
 }
 
 ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
-                               const ObjectModelOptions& options, ObjectModelTimings* timings) {
-  return cached_object_model(mesh, options, {.is_on = false}, timings);
+                               const ObjectModelOptions& options) {
+  return cached_object_model(mesh, options, {.is_on = false});
 }
 
 ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
-                                const ObjectModelOptions& options, const base::ContentCache& cache,
-                                ObjectModelTimings* timings) {
+                                const ObjectModelOptions& options,
+                                const base::ContentCache& cache) {
   options.validate();
   if (mesh.faces.empty()) {
     throw base::InvalidInput("build_object_model: the mesh has no faces");
@@ -127,7 +127,6 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
       is_weak_patch[i] = is_weak(parts.patches[i], weak->is_weak, mesh, lattice);
     }
   }
-  if (timings != nullptr) *timings = spent;
 
   return ObjectModel{.query = std::move(query),
                      .mass = mass,
@@ -138,7 +137,8 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                      .distance = std::move(parts.distance),
                      .scores = std::move(parts.scores),
                      .weak = std::move(weak),
-                     .is_weak_patch = std::move(is_weak_patch)};
+                     .is_weak_patch = std::move(is_weak_patch),
+                     .timings = spent};
 }
 
 std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::Vector3d& point_O) {

@@ -38,6 +38,7 @@ class Search {
       result_.statistics.target_failures[failure] = 0;
     }
     result_.statistics.guidance = attempts_.guidance().counts();
+    result_.timings.object = object.timings;
     result_.timings.guidance_s = attempts_.guidance_s();
   }
 
@@ -140,13 +141,15 @@ class Search {
     }
   }
 
-  /// Sorts the grasps, best M first, and leaves out those that are too like a better one.
+  /// The grasps, best first, without those that are too like a better one.
   void select() {
-    std::stable_sort(result_.grasps.begin(), result_.grasps.end(),
-                     [](const Grasp& a, const Grasp& b) { return a.quality.m > b.quality.m; });
-    if (options_.search == SearchRule::First) return;
+    std::vector<Grasp> ranked = by_rank(std::move(result_.grasps));
+    if (options_.search == SearchRule::First) {
+      result_.grasps = std::move(ranked);
+      return;
+    }
     std::vector<Grasp> selected;
-    for (Grasp& grasp : result_.grasps) {
+    for (Grasp& grasp : ranked) {
       if (!is_unlike(grasp, selected)) {
         ++result_.statistics.duplicates;
       } else if (static_cast<int>(selected.size()) < options_.count) {
@@ -154,6 +157,20 @@ class Search {
       }
     }
     result_.grasps = std::move(selected);
+  }
+
+  std::vector<Grasp> by_rank(std::vector<Grasp> grasps) const {
+    using Rank = std::pair<double, double>;
+    std::vector<std::pair<Rank, std::size_t>> order;
+    for (std::size_t i = 0; i < grasps.size(); ++i) {
+      const double strength = options_.rank == RankRule::M ? 0.0 : attempts_.strength(grasps[i]);
+      order.push_back({{strength, grasps[i].quality.m}, i});
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Grasp> ranked;
+    for (const auto& [rank, index] : order) ranked.push_back(std::move(grasps[index]));
+    return ranked;
   }
 
   const Clock::time_point start_ = Clock::now();
@@ -181,22 +198,21 @@ std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const PlannerOptions& options,
-                           ObjectModelTimings* timings, const base::ContentCache& cache) {
+                           const base::ContentCache& cache) {
   options.validate();
   ObjectModelOptions object_options;
   object_options.resolution = options.resolution;
   object_options.averaging = options.averaging;
   object_options.score = options.score;
   object_options.weak = options.weak;
-  return cached_object_model(mesh, object_options, cache, timings);
+  return cached_object_model(mesh, object_options, cache);
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                           const PlannerOptions& options, ObjectModelTimings* timings,
-                           const base::ContentCache& cache) {
+                           const PlannerOptions& options, const base::ContentCache& cache) {
   options.validate();
   if (const auto refusal = size_refusal(mesh, hand, options)) throw base::InvalidInput(*refusal);
-  return prepare_object(mesh, options, timings, cache);
+  return prepare_object(mesh, options, cache);
 }
 
 PlannerResult plan_grasps(const ObjectModel& object, const hands::HandModel& hand,

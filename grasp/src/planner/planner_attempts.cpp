@@ -24,6 +24,9 @@ constexpr double kIdealShare = 0.5;   // of the targets' own M
 // An angle larger than the one by which refinement may exceed its largest turn [rad].
 constexpr double kAngleSlack = 1e-6;
 
+/// That of no grasp, as of one that no contact bears.
+constexpr double kNoStrength = -std::numeric_limits<double>::infinity();
+
 /// `options`, completed by the planner's rules where they leave a value open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
                                   PlannerOptions options) {
@@ -77,14 +80,6 @@ bool is_balanced(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze && result.grasp->squeeze->is_balanced;
 }
 
-/// ε of the contacts that touch, with the friction cones of the squeeze.
-double strength(const AttemptResult& result, const MeasuringScene& scene, double friction) {
-  std::vector<contact::Contact> contacts;
-  if (result.grasp)
-    contacts = contact::touching_contacts(result.grasp->contacts, scene.bearing_gap);
-  return contact::signed_epsilon(contacts, scene.wrench_object, friction);
-}
-
 }  // namespace
 
 int stage_of(AttemptOutcome outcome) {
@@ -133,6 +128,11 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
   const base::Stopwatch watch(guidance_s_);
   guidance_ = method.make(
       {{fitting_hand_, object_, surroundings_, scene_.contact_options}, parts_, options_});
+}
+
+double PlannerAttempts::strength(const Grasp& grasp) const {
+  return contact::signed_epsilon(contact::touching_contacts(grasp.contacts, scene_.bearing_gap),
+                                 scene_.wrench_object, options_.squeeze_friction);
 }
 
 AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserver& observer) const {
@@ -208,7 +208,7 @@ PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result)
       break;
     case KeptCandidate::Strongest:
       std::get<2>(rank) = is_balanced(result);
-      std::get<3>(rank) = strength(result, scene_, options_.squeeze_friction);
+      std::get<3>(rank) = result.grasp ? strength(*result.grasp) : kNoStrength;
       break;
   }
   return rank;

@@ -44,6 +44,9 @@ class PlannerAttempts {
 
   const GraspGuidance& guidance() const { return *guidance_; }
   double guidance_s() const { return guidance_s_; }  ///< What it took to prepare.
+  /// What `RankRule` and `KeptCandidate::Strongest` compare: ε, signed, of the contacts
+  /// that touch, with the friction cones of the squeeze.
+  double strength(const Grasp& grasp) const;
 
  private:
   /// Whether the grasp is accepted, the stage reached, and what `KeptCandidate` compares: whether

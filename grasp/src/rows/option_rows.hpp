@@ -317,6 +317,11 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
      {"search", kAny, "search", "", kSearch,
       "best: use all attempts and return the best grasps; first: stop at the first ones", "R",
       "A36"});
+  at(options.rank,
+     {"rank", kAny, "rank", "", kSearch,
+      "what is best among grasps: the largest M; or the largest epsilon at squeeze-friction, how "
+      "hard the grasp is to break, then M; or with hold the largest smallest force that fails",
+      "m: P; others: R"});
   at(options.target_draws, {"target_draws", at_least(1), "target-draws", "1", kTargets,
                             "target sets drawn per attempt; the one that suits the fingertips' "
                             "directions best is fitted; 1: the paper's random set",

@@ -27,9 +27,7 @@ TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
   geometry::TriangleMesh mesh = geometry::box({0.06, 0.08, 0.10});
   const Vector3d center(0.3, -0.2, 0.1);
   for (Vector3d& vertex : mesh.vertices) vertex += center;
-  ObjectModelTimings timings;
-  const ObjectModel object =
-      build_object_model(mesh, {.resolution = 20, .margin = 0.012}, &timings);
+  const ObjectModel object = build_object_model(mesh, {.resolution = 20, .margin = 0.012});
 
   CHECK(object.mesh() == mesh);
   CHECK((object.mass.center_of_mass - center).norm() < 1e-14);
@@ -57,11 +55,11 @@ TEST_CASE("An object model's parts belong together", "[grasp][object_model]") {
   }
   CHECK(num_partial == object.patches.size());
 
-  CHECK(timings.query_s >= 0.0);
-  CHECK(timings.patches_s > 0.0);
-  CHECK(timings.voxels_s > 0.0);
-  CHECK(timings.distance_s > 0.0);
-  CHECK(timings.scores_s > 0.0);
+  CHECK(object.timings.query_s >= 0.0);
+  CHECK(object.timings.patches_s > 0.0);
+  CHECK(object.timings.voxels_s > 0.0);
+  CHECK(object.timings.distance_s > 0.0);
+  CHECK(object.timings.scores_s > 0.0);
 }
 
 TEST_CASE("A model has room of its own around the object, for any hand", "[grasp][object_model]") {
@@ -82,9 +80,8 @@ TEST_CASE("A patch is weak if at least half of its area is on weak faces",
       geometry::concatenated({geometry::box({0.06, 0.04, 0.04}), fin});
   const ObjectModelOptions options{
       .resolution = 25, .weak = geometry::WeakRegionOptions{}, .weak_cache = {.is_on = false}};
-  ObjectModelTimings timings;
-  const ObjectModel object = build_object_model(mesh, options, &timings);
-  CHECK(timings.weak_s > 0.0);
+  const ObjectModel object = build_object_model(mesh, options);
+  CHECK(object.timings.weak_s > 0.0);
   REQUIRE(object.weak.has_value());
   REQUIRE(object.weak->regions.size() == 1);
   CHECK(object.weak->regions[0].verdict == geometry::WeakVerdict::Weak);
@@ -166,9 +163,9 @@ TEST_CASE("A model from the cache is the built one bit for bit, and damaged entr
   REQUIRE(entries().size() == 1);
   const std::filesystem::path file = entries()[0];
   const std::string text = base::read_file(file);
-  ObjectModelTimings timings;
-  check_equal(cached_object_model(mesh, options, cache, &timings), built);
-  CHECK(timings.patches_s == 0.0);  // Nothing was built.
+  const ObjectModel read = cached_object_model(mesh, options, cache);
+  check_equal(read, built);
+  CHECK(read.timings.patches_s == 0.0);  // Nothing was built.
 
   // An entry may be damaged, or sealed as if it were whole but cut short or with a wild number
   // inside.

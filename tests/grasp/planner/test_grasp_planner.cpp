@@ -95,6 +95,41 @@ TEST_CASE("Grasps that miss their targets or their quality are rejected, and cou
   }
 }
 
+TEST_CASE("Rank epsilon orders grasps by how hard they are to break, and leaves the stronger ones",
+          "[grasp][grasp_planner]") {
+  PlannerOptions options = collecting(Acceptance::Valid, 1000, 40);
+  options.search = grasp::SearchRule::Best;
+  options.style = grasp::GraspStyle::Power;
+  const geometry::TriangleMesh mesh = geometry::capsule(0.03, 0.08);
+  const PlannerResult by_m = Run(mesh, options).plan();
+  options.rank = grasp::RankRule::Epsilon;
+  const Run run(mesh, options);
+  const contact::WrenchObject object =
+      contact::wrench_object(run.object.mesh(), run.object.mass.center_of_mass);
+  const auto strength = [&](const Grasp& grasp) {
+    const std::vector<contact::Contact> touching =
+        contact::touching_contacts(grasp.contacts, grasp::bearing_gap(options));
+    return contact::signed_epsilon(touching, object, options.squeeze_friction);
+  };
+  const auto attempts = [](const PlannerResult& result) {
+    std::vector<std::int64_t> numbers;
+    for (const Grasp& grasp : result.grasps) numbers.push_back(grasp.attempt);
+    return numbers;
+  };
+  std::vector<Grasp> expected = by_m.grasps;  // The largest M first, as among equally strong ones.
+  REQUIRE(expected.size() > 4);
+  std::stable_sort(expected.begin(), expected.end(),
+                   [&](const Grasp& a, const Grasp& b) { return strength(a) > strength(b); });
+  std::vector<std::int64_t> numbers;
+  for (const Grasp& grasp : expected) numbers.push_back(grasp.attempt);
+  CHECK(attempts(run.plan()) == numbers);
+  CHECK(attempts(by_m) != numbers);
+
+  options.count = 2;
+  const PlannerResult two = Run(mesh, options).plan();
+  CHECK(attempts(two) == std::vector<std::int64_t>{numbers[0], numbers[1]});
+}
+
 TEST_CASE("Without a length of its own a deviation is too large from a pad's width on",
           "[grasp][grasp_planner]") {
   PlannerOptions options;

@@ -71,11 +71,11 @@ struct GraspFile {
   std::string version = library_version();  ///< Of the library that planned.
   /// Names of the requested fingers, the thumb first, as `options` select them.
   std::vector<std::string> fingers;
-  bool palm = false;               ///< Whether the palm is requested, too.
-  double voxel_size = 0.0;         ///< [m]
-  double clip_thickness = 0.0;     ///< Used where a pad states none [m].
-  double merge_distance = 0.0;     ///< Used by the measure [m].
-  std::vector<Grasp> grasps;       ///< Best M first; with `hold`, largest margin first.
+  bool palm = false;            ///< Whether the palm is requested, too.
+  double voxel_size = 0.0;      ///< [m]
+  double clip_thickness = 0.0;  ///< Used where a pad states none [m].
+  double merge_distance = 0.0;  ///< Used by the measure [m].
+  std::vector<Grasp> grasps;  ///< As `RankRule` says; with `hold` and no rank asked for, by margin.
   std::optional<HoldRecord> hold;  ///< Empty: not tested while planning.
   /// Empty: the grasps were planned; else `options` only served to measure them.
   std::optional<ImportRecord> imported;

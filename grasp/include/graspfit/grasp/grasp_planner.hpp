@@ -55,13 +55,12 @@ std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
 /// The object prepared as `options` ask for. With a cache as `cached_object_model`: the same model,
 /// sooner. @throws InvalidInput for options out of range.
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const PlannerOptions& options,
-                           ObjectModelTimings* timings = nullptr,
                            const base::ContentCache& cache = {.is_on = false});
 
 /// The same, for an object in its own frame and a hand that is to hold it; the model is good for
 /// every hand. @throws InvalidInput also with `size_refusal`, if there is one.
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::HandModel& hand,
-                           const PlannerOptions& options, ObjectModelTimings* timings = nullptr,
+                           const PlannerOptions& options,
                            const base::ContentCache& cache = {.is_on = false});
 
 /// Makes attempts by the method `options.planner` until `count` grasps are accepted

@@ -34,6 +34,16 @@ struct ObjectModelOptions {
   void validate() const;               ///< Throws InvalidInput naming the field and its value.
 };
 
+/// Seconds spent in each step of `build_object_model`; what a cache gave took none of them.
+struct ObjectModelTimings {
+  double query_s = 0.0;
+  double patches_s = 0.0;
+  double voxels_s = 0.0;
+  double distance_s = 0.0;
+  double scores_s = 0.0;
+  double weak_s = 0.0;
+};
+
 /// All that is computed once per object, in the object frame O (the mesh's own frame, in meters);
 /// for every hand, seed and option that is not among `ObjectModelOptions`.
 struct ObjectModel {
@@ -48,6 +58,7 @@ struct ObjectModel {
   std::optional<geometry::WeakRegions> weak;  ///< Empty: not looked for, nothing is known.
   std::vector<bool> is_weak_patch;  ///< Parallel to patches: at least half of its area is on weak
                                     ///< faces. All false where nothing is known.
+  ObjectModelTimings timings;       ///< Never part of results.
 
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
 };
@@ -58,34 +69,21 @@ struct ObjectModel {
 /// farther away.
 std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::Vector3d& point_O);
 
-/// Seconds spent in each step of `build_object_model`, for benchmarks.
-struct ObjectModelTimings {
-  double query_s = 0.0;
-  double patches_s = 0.0;
-  double voxels_s = 0.0;
-  double distance_s = 0.0;
-  double scores_s = 0.0;
-  double weak_s = 0.0;
-};
-
 /// Builds the model of a closed outward mesh (`geometry::repair_mesh` makes or refuses one; a mesh
 /// with holes is not noticed here and gets wrong classes behind them). @throws InvalidInput for bad
 /// options or a mesh without faces, DegenerateGeometry for one without positive volume.
 ObjectModel build_object_model(const geometry::TriangleMesh& mesh,
-                               const ObjectModelOptions& options,
-                               ObjectModelTimings* timings = nullptr);
+                               const ObjectModelOptions& options);
 
 /// The kind of entry that `cached_object_model` keeps.
 inline constexpr std::string_view kObjectModelKind = "object_model";
 
-/// The same model as of `build_object_model`, bit for bit. Patches, classes, distances and scores
-/// that were computed before are read from the cache, and new ones are stored there; the box tree
-/// and the mass are computed again, and weak regions have entries of their own
-/// (`ObjectModelOptions::weak_cache`). Damaged entries are ignored and replaced. Reading counts in
-/// none of the timings.
+/// The same model as of `build_object_model`, bit for bit, but for its timings. Patches, classes,
+/// distances and scores that were computed before are read from the cache, and new ones are stored
+/// there; the box tree and the mass are computed again, and weak regions have entries of their own
+/// (`ObjectModelOptions::weak_cache`). Damaged entries are ignored and replaced.
 ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                                 const ObjectModelOptions& options,
-                                const base::ContentCache& cache = {},
-                                ObjectModelTimings* timings = nullptr);
+                                const base::ContentCache& cache = {});
 
 }  // namespace graspfit::grasp

@@ -54,6 +54,10 @@ template <>
 inline constexpr std::array kNames<SearchRule> = {NamedValue{SearchRule::Best, "best"},
                                                   NamedValue{SearchRule::First, "first"}};
 template <>
+inline constexpr std::array kNames<RankRule> = {NamedValue{RankRule::M, "m"},
+                                                NamedValue{RankRule::Epsilon, "epsilon"},
+                                                NamedValue{RankRule::Margin, "margin"}};
+template <>
 inline constexpr std::array kNames<CandidateOrder> = {
     NamedValue{CandidateOrder::Pads, "pads"}, NamedValue{CandidateOrder::Balance, "balance"}};
 template <>

@@ -39,10 +39,21 @@ enum class Rejection {
 
 /// When the planner stops searching.
 enum class SearchRule {
-  Best,   ///< Use all attempts and return the best accepted grasps: the paper's generate, evaluate,
-          ///< select.
+  Best,   ///< Use all attempts and return the best accepted grasps by `RankRule`: the paper's
+          ///< generate, evaluate, select.
   First,  ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
           ///< grasps.
+};
+
+/// What is best among a run's grasps: their order, and which of alike ones and of more than were
+/// asked for are left.
+enum class RankRule {
+  M,  ///< The paper's measure.
+  /// How hard the grasp is to break: strength as in `KeptCandidate::Strongest` [R], then M.
+  Epsilon,
+  /// The smallest force under which a physics test fails, for who has one (`graspfit plan --hold`);
+  /// in planning the same as `Epsilon`.
+  Margin,
 };
 
 /// What becomes of a hand that has closed while a requested part does not touch.
@@ -99,6 +110,7 @@ struct PlannerOptions {
   int count = 1;  ///< Grasps to collect (K), ≥ 1.
   std::uint64_t seed = 1;
   SearchRule search = SearchRule::Best;
+  RankRule rank = RankRule::M;
   int max_attempts = 50;  ///< Target sets fitted, ≥ 1; a budget of work, not of time.
   /// Steps of fitting and refinement of all attempts together, ≥ 1: the attempt with which their
   /// sum, taken in the order of attempts, reaches it is the last; empty: no such budget.

@@ -80,7 +80,7 @@ struct PlannerTimings {
   PlannerTimings& operator+=(const PlannerTimings& other);
 };
 
-/// What a planner returns: grasps, best M first (ties by attempt), at most `count`.
+/// What a planner returns: grasps, the best by `RankRule` first (ties by attempt), at most `count`.
 struct PlannerResult {
   std::vector<Grasp> grasps;
   PlannerStop stop = PlannerStop::Attempts;

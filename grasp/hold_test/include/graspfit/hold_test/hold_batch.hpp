@@ -16,7 +16,8 @@ namespace graspfit::hold_test {
 struct TestedGrasp {
   std::size_t index = 0;  ///< Index of the grasp in the list.
   HoldVerdict verdict;
-  std::optional<HoldMargin> margin;  ///< Margin of the grasp, if it was asked for.
+  std::optional<HoldMargin> margin;   ///< Margin of the grasp, if it was asked for.
+  std::optional<bool> is_near_limit;  ///< `HoldTest::is_near_limit`, if it was asked for.
 };
 
 /// Which grasps of a list are tested, and how.
@@ -25,6 +26,8 @@ struct HoldBatchOptions {
   /// Whether the smallest failing force and torque are searched for, too. For each of the two 10 to
   /// 60 loads are simulated, mostly 20 to 30.
   bool margin = false;
+  /// Whether it is looked whether verdicts are near a limit: up to twice as many loads more.
+  bool near_limit = false;
   double largest_margin = 100.0;  ///< Largest load tried, as in HoldTest::margin [N], > 0.
   int num_threads = 0;            ///< Number of threads, each with an engine of its own; 0: one per
                                   ///< processor.

@@ -104,6 +104,15 @@ class HoldTest {
   /// @throws InvalidInput for joint positions that do not fit the hand.
   HoldVerdict test(const grasp::Grasp& grasp);
 
+  /// Whether the grasp holds with every load `share` > 0 times the protocol's.
+  /// @throws InvalidInput as `test`, and for another share.
+  bool holds_at(const grasp::Grasp& grasp, double share);
+
+  /// Whether the verdict of `test` is one near a limit: 0.9 or 1.1 times the load changes whether
+  /// the grasp holds. Never true of a grasp that is lost before any load begins
+  /// (under `HoldLoad::Lift` it weighs from the start).
+  bool is_near_limit(const grasp::Grasp& grasp, const HoldVerdict& verdict);
+
   /// Finds the smallest failing loads by bisection: a returned load fails, a load that is 2 %
   /// smaller holds. Loads are tried up to `largest` [N] (torques: `largest` · 0.1 m); where even
   /// this load holds, it is returned. The loads are zero where the grasp is rejected or lost

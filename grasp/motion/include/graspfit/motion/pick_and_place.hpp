@@ -18,7 +18,7 @@ namespace graspfit::motion {
 /// for an approach direction and interpolates; the requirement that nothing is touched during the
 /// motion is ours [R].
 struct PickAndPlaceOptions {
-  /// `count` grasps are tried per approach, best M first; acceptance must be Valid with pre-grasps.
+  /// `count` grasps are tried per approach, best first; acceptance must be Valid with pre-grasps.
   /// `approach_O` is set here, and pre-grasps are fully open (`pre_grasp.opening_steps` 1).
   grasp::PlannerOptions planner;
   hands::HandConfiguration home;  ///< Where every move begins and ends; `X_OH` is X_WH.

@@ -15,6 +15,12 @@ STAND_INS = {
     "shark": "SHARK",
     "duck": "DUCK",
 }
+# Objects of the gallery (Fig. 12) by hand, in the paper's order.
+GALLERY = {
+    "gripper": ("kitten", "bunny", "bimba", "dinosaur", "pegaso"),
+    "Barrett": ("duck", "squirrel", "teddy", "horse", "armadillo"),
+    "human": ("toy_car", "bottle", "shark", "mug", "buddha_head"),
+}
 NOTE = "* not known to be the paper's own mesh: another object of that name"
 
 

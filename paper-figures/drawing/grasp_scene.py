@@ -14,7 +14,7 @@ import numpy as np
 from figure_data import MissingData, posed, turned
 from matplotlib.colors import to_rgb
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "viewer"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "viewer"))
 import vtk_picture  # noqa: E402
 from render_grasps import hull_edges, polygon_normal, side_direction  # noqa: E402
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 from figure_style import BLUE, GREEN, ORANGE, panels
-from gallery import HANDS
-from object_names import note_for, shown_name
+from object_names import GALLERY, note_for, shown_name
 
 COLUMNS = ("case", "attempts", "valid", "best_m", "best_num_contacts")
 
@@ -11,8 +10,8 @@ COLUMNS = ("case", "attempts", "valid", "best_m", "best_num_contacts")
 def draw(source):
     table = source.table("paper_grasps", COLUMNS).set_index("case")
     timing = source.table("paper_grasps.timing", ("case", "cpu_s")).set_index("case")
-    names = [name for of_hand in HANDS.values() for name in of_hand]
-    colors = [color for of_hand, color in zip(HANDS.values(), (BLUE, ORANGE, GREEN)) for _ in of_hand]
+    names = [name for of_hand in GALLERY.values() for name in of_hand]
+    colors = [color for of_hand, color in zip(GALLERY.values(), (BLUE, ORANGE, GREEN)) for _ in of_hand]
     cells = [f"gallery_{name}" for name in names]
     vertices = [source.grasp_file("paper_grasps", cell)["object"]["num_vertices"] for cell in cells]
     valid = table.loc[cells, "valid"]
@@ -42,6 +41,6 @@ def draw(source):
         ax.invert_yaxis()
         ax.grid(axis="y", visible=False)
         ax.set_xlabel(words)
-    for k, (hand, color) in enumerate(zip(HANDS, (BLUE, ORANGE, GREEN))):
+    for k, (hand, color) in enumerate(zip(GALLERY, (BLUE, ORANGE, GREEN))):
         figure.text(0.16 + 0.09 * k, 0.885, f"■ {hand}", color=color, fontsize=8)
     return figure
