@@ -41,7 +41,7 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
     end_B = geometry::bounding_box(body.mesh).center();
   }
   const Eigen::MatrixXd jacobian =
-      folded(tree_, point_jacobian(tree_, followed(q), body.links.front(), end_B));
+      folded(tree_, point_jacobian(tree_, X_HL, body.links.front(), end_B));
   const std::vector<int> independent = independent_joints(tree_);
   const auto column =
       std::find(independent.begin(), independent.end(), *leader) - independent.begin();

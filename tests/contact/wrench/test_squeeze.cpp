@@ -292,9 +292,16 @@ TEST_CASE("A follower that has broken away neither counts nor moves by itself",
   const Squeeze squeeze =
       squeeze_configuration(hand, grasp, contacts, {point, 0.05, 0.0}, {.normal_sum = 1.0});
   const auto jacobian =
-      hands::point_jacobian(hand, grasp, link, X[static_cast<std::size_t>(link)].inverse() * point);
+      hands::point_jacobian(hand, X, link, X[static_cast<std::size_t>(link)].inverse() * point);
   CHECK(squeeze.configuration.q[distal] == 0.5);
   CHECK(squeeze.configuration.q[proximal] - 0.3 == Approx(jacobian(1, proximal) / 5.0));
+  // Link poses that are known already make no difference.
+  const auto squeezed_at = [&](const std::vector<hands::RigidTransform>& X_OL) {
+    return squeeze_configuration(hand, hands::PosedConfiguration{grasp, X_OL}, contacts,
+                                 {point, 0.05, 0.0}, {.normal_sum = 1.0});
+  };
+  CHECK(squeezed_at(X).configuration.q == squeeze.configuration.q);
+  CHECK_THROWS_AS(squeezed_at({}), base::InvalidInput);
 }
 
 TEST_CASE("A squeeze refuses what makes no sense", "[contact][squeeze]") {

@@ -169,7 +169,7 @@ TEST_CASE("Tip pads of the shared hands lie on their link and look where closing
       const ContactPad& pad = tip_pad(hand, finger);
       CAPTURE(source.folder, finger.name, pad.name);
       const Vector3d velocity =
-          (hands::point_jacobian(hand, half, pad.link, pad.X_LC.translation()) * closing_speed)
+          (hands::point_jacobian(hand, X_OL, pad.link, pad.X_LC.translation()) * closing_speed)
               .head<3>();
       const Vector3d normal =
           X_OL[static_cast<std::size_t>(pad.link)].linear() * pad.X_LC.linear().col(2);

@@ -79,9 +79,10 @@ void check_against_differences(const HandModel& hand, base::Random& random) {
       Eigen::AngleAxisd(random.uniform(-3, 3), Vector3d(2, -1, 1).normalized()).toRotationMatrix();
   c.X_OH.translation() = Vector3d(0.2, -0.4, 0.1);
   const Vector3d point_L(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.05);
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, c);
   for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
     CAPTURE(hand.name, link);
-    const auto jacobian = hands::point_jacobian(hand, c, link, point_L);
+    const auto jacobian = hands::point_jacobian(hand, X_OL, link, point_L);
     REQUIRE(jacobian.cols() == c.q.size());
     for (Eigen::Index j = 0; j < c.q.size(); ++j) {
       const auto expected =
@@ -144,18 +145,60 @@ TEST_CASE("A folded Jacobian is what apply_couplings does away from limits", "[h
       2e-5;
   const std::vector<int> joints = hands::independent_joints(hand);
   const auto column = std::find(joints.begin(), joints.end(), leader) - joints.begin();
-  const MatrixXd folded = hands::folded(hand, hands::point_jacobian(hand, c, link, tip));
+  const MatrixXd jacobian =
+      hands::point_jacobian(hand, hands::forward_kinematics(hand, c), link, tip);
+  const MatrixXd folded = hands::folded(hand, jacobian);
   CHECK((folded.col(column).head<3>() - moved).norm() < 1e-8);
   // The coupled distal joint adds a third of its own motion, so that the motion is not the plain
   // column.
-  CHECK((hands::point_jacobian(hand, c, link, tip).col(leader).head<3>() - moved).norm() > 0.01);
+  CHECK((jacobian.col(leader).head<3>() - moved).norm() > 0.01);
+}
+
+TEST_CASE("Followers at a limit of their own fold into their leader's column as is asked",
+          "[hands][jacobian]") {
+  // Joint 2 is led to -0.5 q1, at most to 0.25.
+  HandModel hand = mixed_chain();
+  hand.joints[2].lower = -1.0;
+  hand.joints[2].upper = 0.25;
+  hand.joints[2].coupling = hands::Coupling{.leader = 1, .ratio = -0.5, .offset = 0.0};
+  const MatrixXd columns = (MatrixXd(1, 3) << 10.0, 20.0, 4.0).finished();
+  const auto column_of_leader = [&](double leader, double follower, hands::Followers followers) {
+    const Vector3d q(0.0, leader, follower);
+    const MatrixXd folded = hands::folded(hand, columns, q, followers);
+    REQUIRE(folded.cols() == 2);
+    CHECK(folded(0, 0) == 10.0);
+    CHECK(hands::ratio_to_leader(hand, 0, q, followers) == 1.0);
+    CHECK_FALSE(hands::follows_leader(hand, 0, q, followers));
+    CHECK(20.0 + 4.0 * hands::ratio_to_leader(hand, 2, q, followers) == folded(0, 1));
+    return folded(0, 1);
+  };
+  using hands::Followers;
+  struct Case {
+    double leader, follower;
+    bool within, between, in_place;
+  };
+  for (const Case& c : {Case{-0.3, 0.15, true, true, true},     // between its limits
+                        Case{-0.5, 0.25, true, false, true},    // led exactly onto its limit
+                        Case{-0.9, 0.25, false, false, false},  // led beyond it, and held there
+                        Case{-0.3, 0.2, true, true, false}}) {  // has broken away
+    CAPTURE(c.leader, c.follower);
+    CHECK(column_of_leader(c.leader, c.follower, Followers::All) == 18.0);
+    CHECK(column_of_leader(c.leader, c.follower, Followers::WithinLimits) ==
+          (c.within ? 18.0 : 20.0));
+    CHECK(column_of_leader(c.leader, c.follower, Followers::BetweenLimits) ==
+          (c.between ? 18.0 : 20.0));
+    CHECK(column_of_leader(c.leader, c.follower, Followers::InPlace) == (c.in_place ? 18.0 : 20.0));
+  }
+  CHECK_THROWS_AS(hands::folded(hand, columns, Eigen::VectorXd::Zero(2), Followers::InPlace),
+                  base::InvalidInput);
 }
 
 TEST_CASE("A Jacobian asks for a link and positions of its own hand", "[hands][jacobian]") {
   const HandModel hand = mixed_chain();
   const HandConfiguration c{.q = Eigen::VectorXd::Zero(3)};
-  CHECK_THROWS_AS(hands::point_jacobian(hand, c, 5, Vector3d::Zero()), base::InvalidInput);
-  CHECK_THROWS_AS(hands::point_jacobian(hand, c, -1, Vector3d::Zero()), base::InvalidInput);
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, c);
+  CHECK_THROWS_AS(hands::point_jacobian(hand, X_OL, 5, Vector3d::Zero()), base::InvalidInput);
+  CHECK_THROWS_AS(hands::point_jacobian(hand, X_OL, -1, Vector3d::Zero()), base::InvalidInput);
   CHECK_THROWS_AS(hands::point_jacobian(hand, {}, 1, Vector3d::Zero()), base::InvalidInput);
   CHECK_THROWS_AS(hands::folded(hand, MatrixXd::Zero(6, 2)), base::InvalidInput);
 }

@@ -147,9 +147,10 @@ void check_jacobians(const HandModel& hand, const std::vector<Compared>& links) 
   double worst = 0.0;
   for (int k = 0; k < kNumConfigurations / 10; ++k) {
     const HandConfiguration c = random_configuration(hand, random, k);
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, c);
     for (std::size_t i = 0; i < links.size(); ++i) {
       const Vector3d point_L = random_pose(random).translation();
-      const auto own = hands::point_jacobian(hand, c, static_cast<int>(i), point_L);
+      const auto own = hands::point_jacobian(hand, X_OL, static_cast<int>(i), point_L);
       // KDL's Jacobian is in the palm's frame and is turned into O; joints beside the chain do not
       // move the link.
       Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(6, c.q.size());

@@ -23,37 +23,27 @@ using Eigen::VectorXd;
 /// enough to decide among balanced forces well above rounding (its square, 1e-6, does).
 constexpr double kEvenness = 1e-3;
 
-/// A coupled joint this near to where its leader puts it counts as following it [rad or m]. The
-/// slack covers the rounding of positions that were written as text, as in `hands::validate`.
-constexpr double kFollowingSlack = 1e-9;
-
 /// Says for each joint whether it is a coupled one that stands where its leader puts it.
 std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
-  std::vector<bool> follows(hand.joints.size(), false);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    const auto& coupling = hand.joints[j].coupling;
-    follows[j] = coupling && std::abs(q[static_cast<Index>(j)] -
-                                      hands::led_position(*coupling, q)) <= kFollowingSlack;
+  std::vector<bool> follows;
+  for (int j = 0; j < static_cast<int>(hand.joints.size()); ++j) {
+    follows.push_back(hands::follows_leader(hand, j, q, hands::Followers::InPlace));
   }
   return follows;
 }
 
 /// Generalized forces Σ Jᵀ f on the independent joints, in their order [N m or N].
-VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
-                      std::span<const Contact> contacts, const Eigen::Matrix3Xd& forces_O,
-                      const std::vector<bool>& follows) {
-  const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
+VectorXd joint_forces(const hands::HandModel& hand, const hands::PosedConfiguration& grasp,
+                      std::span<const Contact> contacts, const Eigen::Matrix3Xd& forces_O) {
   MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const hands::RigidTransform& X = X_OL[contacts[i].link];
-    const MatrixXd jacobian = hands::point_jacobian(hand, grasp, contacts[i].link,
+    const hands::RigidTransform& X = grasp.X_OL[contacts[i].link];
+    const MatrixXd jacobian = hands::point_jacobian(hand, grasp.X_OL, contacts[i].link,
                                                     geometry::inverted(X) * contacts[i].point_O);
     per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
   }
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (hand.joints[j].coupling && !follows[j]) per_joint(0, static_cast<Index>(j)) = 0.0;
-  }
-  return hands::folded(hand, per_joint).transpose();
+  return hands::folded(hand, per_joint, grasp.configuration.q, hands::Followers::InPlace)
+      .transpose();
 }
 
 /// Moves the independent joints by `displacement`, clamped to the limits, and their followers with
@@ -77,10 +67,9 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
   }
   hands::apply_couplings(hand, q);
   for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (!follows[j]) continue;
-    const double behind =
-        q[static_cast<Index>(j)] - hands::led_position(*hand.joints[j].coupling, q);
-    is_clamped = is_clamped || std::abs(behind) > kFollowingSlack;
+    const bool is_left_behind = follows[j] && !hands::follows_leader(hand, static_cast<int>(j), q,
+                                                                     hands::Followers::InPlace);
+    is_clamped = is_clamped || is_left_behind;
   }
   return is_clamped;
 }
@@ -98,15 +87,18 @@ void SqueezeOptions::validate() const {
   require(largest_residual, "largest_residual", "finite and >= 0", largest_residual >= 0.0);
 }
 
-Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
+Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::PosedConfiguration& grasp,
                               std::span<const Contact> contacts, const SqueezeContext& context,
                               const SqueezeOptions& options) {
   options.validate();
-  hands::validate(hand, grasp);
+  hands::validate(hand, grasp.configuration);
   const std::vector<Contact> touching = touching_contacts(contacts, context.bearing_gap);
   base::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
                 touching.size(), "at least 1");
   const int num_links = static_cast<int>(hand.links.size());
+  base::require(grasp.X_OL.size() == hand.links.size(), "squeeze_configuration",
+                "number of link poses", grasp.X_OL.size(),
+                "one per link of hand " + hand.name + ", " + std::to_string(num_links));
   for (const Contact& contact : contacts) {
     base::require(contact.link >= 0 && contact.link < num_links, "squeeze_configuration",
                   "link of a contact", contact.link,
@@ -117,7 +109,8 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
                                                 .least_normal_sum = options.normal_sum,
                                                 .torque_scale = context.torque_scale,
                                                 .evenness = kEvenness});
-  Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
+  Squeeze result{grasp.configuration,
+                 Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
                  balance.residual_norm / options.normal_sum, false, false};
   Index next = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -126,8 +119,8 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
   }
   result.is_balanced = result.residual <= options.largest_residual;
 
-  const std::vector<bool> follows = following_joints(hand, grasp.q);
-  VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O, follows);
+  const std::vector<bool> follows = following_joints(hand, grasp.configuration.q);
+  VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O);
   const std::vector<int> independent = hands::independent_joints(hand);
   for (std::size_t k = 0; k < independent.size(); ++k) {
     const bool is_slide = hand.joints[independent[k]].type == hands::JointType::Prismatic;
@@ -135,6 +128,14 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
   }
   result.is_clamped = command(hand, displacement, follows, result.configuration.q);
   return result;
+}
+
+Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
+                              std::span<const Contact> contacts, const SqueezeContext& context,
+                              const SqueezeOptions& options) {
+  const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
+  return squeeze_configuration(hand, hands::PosedConfiguration{grasp, X_OL}, contacts, context,
+                               options);
 }
 
 }  // namespace graspfit::contact

@@ -14,6 +14,13 @@ namespace graspfit::hands {
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration);
 
+/// A configuration with the link poses that `forward_kinematics` gives there, for work of several
+/// steps on one configuration. Refers to both.
+struct PosedConfiguration {
+  const HandConfiguration& configuration;
+  const std::vector<RigidTransform>& X_OL;
+};
+
 /// Pose of one link, computed from the pose of its parent link in `X_OL`. This is one step of
 /// `forward_kinematics`, for callers that move only a few of many links.
 RigidTransform link_pose(const HandModel& model, int link, const std::vector<RigidTransform>& X_OL,

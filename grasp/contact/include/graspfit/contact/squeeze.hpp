@@ -5,6 +5,7 @@
 #include <span>
 
 #include "graspfit/contact/contact.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 
 namespace graspfit::contact {
@@ -61,8 +62,13 @@ struct Squeeze {
 /// torque and does not move until its leader takes it along.
 ///
 /// @throws InvalidInput for bad options, a torque scale or a friction out of range, a configuration
-/// outside the hand's limits, no contact that bears a force, and contacts of links that the hand
-/// does not have or with normals that are not unit.
+/// outside the hand's limits, a number of link poses that is not the hand's, no contact that bears
+/// a force, and contacts of links that the hand does not have or with normals that are not unit.
+Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::PosedConfiguration& grasp,
+                              std::span<const Contact> contacts, const SqueezeContext& context,
+                              const SqueezeOptions& options = {});
+
+/// The same for a configuration whose link poses are not known yet.
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                               std::span<const Contact> contacts, const SqueezeContext& context,
                               const SqueezeOptions& options = {});
