@@ -12,6 +12,7 @@
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/hands/jacobian.hpp"
 
 namespace graspfit::hold_test::internal {
 
@@ -20,17 +21,13 @@ using hands::HandConfiguration;
 
 namespace {
 
-/// A coupled joint this near to where its leader puts it counts as following it [rad or m]. The
-/// slack covers the rounding of positions that were written as text, as for the squeeze.
-constexpr double kFollowingSlack = 1e-9;
-
 std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::VectorXd& q) {
   std::vector<bool> follows(hand.joints.size(), false);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < static_cast<int>(hand.joints.size()); ++j) {
     const auto& coupling = hand.joints[j].coupling;
     if (!coupling) continue;
-    const double off = q[j] - hands::led_position(*coupling, q);
-    follows[j] = !coupling->breakaway || std::abs(off) <= kFollowingSlack;
+    follows[j] =
+        !coupling->breakaway || hands::follows_leader(hand, j, q, hands::Followers::InPlace);
   }
   return follows;
 }
@@ -128,12 +125,12 @@ bool HoldRun::move(const HandConfiguration& from, const HandConfiguration& to, d
   return true;
 }
 
-void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch,
-                       double load_share) {
+HoldVerdict HoldRun::approach(const grasp::Grasp& grasp, const Watch& watch, double load_share) {
+  HoldVerdict verdict;
   failure_.clear();
   verdict.stage = HoldStage::Rejected;
   verdict.reason = rejection(grasp);
-  if (!verdict.reason.empty()) return;
+  if (!verdict.reason.empty()) return verdict;
   if (watch) watch();
   verdict.stage = HoldStage::Approach;
   if (protocol_.load == HoldLoad::Lift) {
@@ -145,11 +142,12 @@ void HoldRun::approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Wa
   const bool is_there = move(start, grasp.configuration, protocol_.approach_time, verdict, watch) &&
                         move(grasp.configuration, end, protocol_.squeeze_time, verdict, watch);
   verdict.reason = failure_;
-  if (!is_there) return;
+  if (!is_there) return verdict;
   verdict.stage = HoldStage::Held;
   verdict.squeeze_force = physics_.squeeze_force();
   squeezed_state_ = physics_.state();
   X_HB_squeezed_ = X_HB();
+  return verdict;
 }
 
 DirectionVerdict HoldRun::load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,

@@ -20,11 +20,11 @@ class HoldRun {
           const HoldProtocol& protocol)
       : physics_(physics), hand_(hand.model), object_(object), protocol_(protocol) {}
 
-  /// Simulates the motion from the pre-grasp to the grasp and on to the squeeze. Fills in the stage
+  /// Simulates the motion from the pre-grasp to the grasp and on to the squeeze. Returns the stage
   /// (Rejected, Approach, or Held so far), the reason, how far the approach moved the object, and
-  /// the force of the squeeze. `load_share` scales the weight under which a lift approaches.
-  void approach(const grasp::Grasp& grasp, HoldVerdict& verdict, const Watch& watch = {},
-                double load_share = 1.0);
+  /// the force of the squeeze; loads are left to `load`. `load_share` scales the weight under which
+  /// a lift approaches.
+  HoldVerdict approach(const grasp::Grasp& grasp, const Watch& watch = {}, double load_share = 1.0);
 
   /// Simulates a load from the squeezed state; may be called as often as wanted.
   DirectionVerdict load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
@@ -41,8 +41,9 @@ class HoldRun {
 
   std::string rejection(const grasp::Grasp& grasp);
   hands::HandConfiguration squeezed(const grasp::Grasp& grasp) const;
-  /// Moves linearly from one command to another, with checks on the way. Returns false if the
-  /// object was lost or the simulation went wrong.
+  /// Moves linearly from one command to another, with checks on the way, each of which goes into
+  /// the largest motion of `verdict`. Returns false if the object was lost or the simulation went
+  /// wrong.
   bool move(const hands::HandConfiguration& from, const hands::HandConfiguration& to,
             double duration, HoldVerdict& verdict, const Watch& watch);
   bool step(const Watch& watch);  ///< Returns false if the simulation went wrong.

@@ -130,8 +130,7 @@ HoldTest::HoldTest(HoldTest&&) noexcept = default;
 HoldTest& HoldTest::operator=(HoldTest&&) noexcept = default;
 
 HoldVerdict HoldTest::test(const grasp::Grasp& grasp) {
-  HoldVerdict verdict;
-  impl_->run.approach(grasp, verdict);
+  HoldVerdict verdict = impl_->run.approach(grasp);
   if (verdict.stage == HoldStage::Rejected) return verdict;
   for (int i = 0; i < impl_->num_directions(); ++i) {
     if (verdict.stage == HoldStage::Approach) {
@@ -150,9 +149,7 @@ HoldVerdict HoldTest::test(const grasp::Grasp& grasp) {
 bool HoldTest::holds_at(const grasp::Grasp& grasp, double share) {
   base::require(share > 0.0 && std::isfinite(share), "HoldTest::holds_at", "share", share,
                 "finite and > 0");
-  HoldVerdict verdict;
-  impl_->run.approach(grasp, verdict, {}, share);
-  bool holds = verdict.held();
+  bool holds = impl_->run.approach(grasp, {}, share).held();
   for (int i = 0; holds && i < impl_->num_directions(); ++i) {
     holds = impl_->load(i, {}, share).stage == HoldStage::Held;
   }
@@ -178,8 +175,7 @@ HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {
   if (!(largest > 0.0) || !std::isfinite(largest)) {
     throw base::InvalidInput("HoldTest::margin: largest must be finite and > 0 N");
   }
-  HoldVerdict approach;
-  impl_->run.approach(grasp, approach);
+  const HoldVerdict approach = impl_->run.approach(grasp);
   HoldMargin margin;
   if (approach.stage != HoldStage::Held) return margin;
   const auto is_held = [](const DirectionVerdict& verdict) {
@@ -219,8 +215,7 @@ std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp& grasp, int direction
   const auto watch = [&] {
     if (++num_steps % every == 0) frames.push_back(frame());
   };
-  HoldVerdict verdict;
-  impl_->run.approach(grasp, verdict, watch);
+  const HoldVerdict verdict = impl_->run.approach(grasp, watch);
   if (verdict.stage == HoldStage::Rejected) return frames;
   if (verdict.stage == HoldStage::Held) impl_->load(direction, watch);
   if (num_steps % every != 0) frames.push_back(frame());
