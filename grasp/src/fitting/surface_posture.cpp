@@ -91,23 +91,21 @@ struct SurfaceSearch::Evaluated {
 /// The sum of squares as a function of the motion.
 class SurfaceSearch::NormalEquations {
  public:
-  explicit NormalEquations(Index size) : a_(size, size), b_(size) {}
-
-  void set(const std::vector<Wish>& wishes, const HandMotion& motion) {
-    a_.setZero();
-    b_.setZero();
+  NormalEquations(const std::vector<Wish>& wishes, const HandMotion& motion)
+      : a_(MatrixXd::Zero(motion.size(), motion.size())), b_(VectorXd::Zero(motion.size())) {
+    std::vector<Index> entries;  // of the row at hand that are not zero
     for (const Wish& wish : wishes) {
       RowVectorXd row = wish.is_turn ? motion.turn_row(wish.link, wish.direction_O)
                                      : motion.row(wish.link, wish.point_O, wish.direction_O);
       if (wish.against) row -= motion.row(*wish.against, wish.point_O, wish.direction_O);
-      entries_.clear();
+      entries.clear();
       for (Index i = 0; i < row.size(); ++i) {
-        if (row[i] != 0.0) entries_.push_back(i);
+        if (row[i] != 0.0) entries.push_back(i);
       }
       const double squared_weight = wish.weight * wish.weight;
-      for (const Index i : entries_) {
+      for (const Index i : entries) {
         b_[i] += squared_weight * wish.value * row[i];
-        for (const Index j : entries_) a_(i, j) += squared_weight * row[i] * row[j];
+        for (const Index j : entries) a_(i, j) += squared_weight * row[i] * row[j];
       }
     }
   }
@@ -142,7 +140,6 @@ class SurfaceSearch::NormalEquations {
  private:
   MatrixXd a_;
   VectorXd b_;
-  std::vector<Index> entries_;  ///< Of the row at hand that are not zero.
 };
 
 CoarseDistances::CoarseDistances(const geometry::SignedDistanceMap& map)
@@ -161,7 +158,7 @@ SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
       nearest_(nearest),
       places_(places),
       distances_(object.distance),
-      motion_(hand.model(), true, true, HandMotion::Breakaway::Beyond) {
+      entries_(hand.model(), true, true, MotionEntries::Breakaway::Beyond) {
   for (const geometry::SurfacePatch& patch : object.patches) {
     planes_.push_back({patch.outward_normal.cast<float>(),
                        static_cast<float>(patch.outward_normal.dot(patch.centroid))});
@@ -330,23 +327,20 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
 SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
                                   const hands::HandConfiguration& start, double lift,
                                   const IsWorthIt& is_worth_it) const {
-  HandMotion motion = motion_;
-  NormalEquations equations(motion.size());
-  Evaluated best, trial;
-  const auto accept = [&] {
-    motion.set(best.posture.configuration, best.posture.X_OL, best.pivot_O);
-    equations.set(best.wishes, motion);
+  const auto motion_from = [&](const Evaluated& at) {
+    return HandMotion(entries_, at.posture.configuration, at.posture.X_OL, at.pivot_O);
   };
-  evaluate(pads, start, lift, best);
-  accept();
+  Evaluated best = evaluated(pads, start, lift);
+  NormalEquations equations(best.wishes, motion_from(best));
   double damping = kFirstDamping;
   int num_steps = 0;
   for (int i = 1; i < kMostEvaluations && damping < kMostDamping; ++i) {
+    const HandMotion motion = motion_from(best);
     VectorXd step = equations.solution(damping, motion.bounds(kLongestReach));
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
     if (equations.gain(step) < kLeastGain * best.sum) break;
-    evaluate(pads, motion.moved(step), lift, trial);
+    Evaluated trial = evaluated(pads, motion.moved(step), lift);
     if (!(trial.sum < best.sum)) {
       damping *= 8.0;
       continue;
@@ -354,30 +348,27 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     const double hopeful = kLastHopefulGap + kGapPerStep * (kMostEvaluations - 1 - i);
     if (i > kHopefulFor && trial.posture.largest_gap > hopeful) break;
     const bool is_done = trial.sum > (1.0 - kLeastGain) * best.sum;
-    std::swap(best, trial);
+    best = std::move(trial);
     if (is_done) break;
     if (++num_steps == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.patches)) break;
-    accept();
+    equations = NormalEquations(best.wishes, motion_from(best));
     damping = std::max(0.25 * damping, 1e-4);
   }
   return std::move(best.posture);
 }
 
 /// The posture of a configuration, and what a step from there should do.
-void SurfaceSearch::evaluate(const std::vector<int>& pads,
-                             const hands::HandConfiguration& configuration, double lift,
-                             Evaluated& result) const {
+SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
+                                                  const hands::HandConfiguration& configuration,
+                                                  double lift) const {
   const hands::HandModel& model = hand_.model();
   const double voxel_size = object_.grid.lattice.voxel_size;
   const double margin = kMargin * voxel_size + lift;
   const double depth_margin = kDepthMargin * voxel_size + lift;
+  Evaluated result;
   SurfacePosture& posture = result.posture;
   posture.configuration = configuration;
   posture.X_OL = hands::forward_kinematics(model, configuration);
-  posture.patches.clear();
-  posture.largest_gap = posture.largest_lean = posture.largest_depth = 0.0;
-  result.wishes.clear();
-  result.pivot_O = Vector3d::Zero();
   for (const int pad : pads) {
     const int link = model.pads[pad].link;
     const Vector3d point = touching_point(pad, posture.X_OL[link]);
@@ -416,10 +407,10 @@ void SurfaceSearch::evaluate(const std::vector<int>& pads,
   for (const auto& [a, b] : neighbors_) {
     if (std::optional<Wish> apart = overlap(a, b, posture.X_OL)) result.wishes.push_back(*apart);
   }
-  result.sum = 0.0;
   for (const Wish& wish : result.wishes) {
     result.sum += wish.weight * wish.weight * wish.value * wish.value;
   }
+  return result;
 }
 
 }  // namespace graspfit::grasp::internal

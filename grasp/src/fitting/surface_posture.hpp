@@ -87,15 +87,15 @@ class SurfaceSearch {
   double height(const Eigen::Vector3d& point_O) const;
   DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL, double lift) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
-  void evaluate(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
-                double lift, Evaluated& result) const;
+  Evaluated evaluated(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
+                      double lift) const;
 
   const FittingHand& hand_;
   const ObjectModel& object_;
   const NearestPatches& nearest_;  ///< Of all patches with a normal.
   const NearestPatches& places_;   ///< Of those on which pads may lie.
   const CoarseDistances distances_;
-  const HandMotion motion_;
+  const MotionEntries entries_;
   std::vector<Plane> planes_;                               ///< Per patch.
   std::vector<std::vector<Eigen::Vector3d>> pad_points_L_;  ///< Per pad.
   std::vector<std::vector<PointGroup>> groups_;             ///< Per link.

@@ -20,6 +20,7 @@ using Eigen::RowVectorXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using hands::HandConfiguration;
+using internal::HandMotion;
 using internal::LinkPoses;
 using internal::NearPoints;
 
@@ -97,7 +98,7 @@ class Refinement {
         options_(options),
         least_(0.5 * options.least_distance),
         clearance_(scene.hand, scene.object, scene.surroundings),
-        motion_(scene.hand.model(), options.largest_shift > 0.0, options.largest_turn > 0.0) {
+        entries_(scene.hand.model(), options.largest_shift > 0.0, options.largest_turn > 0.0) {
     for (const int pad : requested_pads) requests_.push_back(request_of(pad, targets));
   }
 
@@ -184,11 +185,11 @@ class Refinement {
   }
 
   HandConfiguration opened_by(const internal::Clearance::Blocked& blocked, int round, double step) {
-    motion_.set(configuration_, X_OL_, palm_center(configuration_));
-    VectorXd motion = VectorXd::Zero(motion_.size());
+    const HandMotion from(entries_, configuration_, X_OL_, palm_center(configuration_));
+    VectorXd motion = VectorXd::Zero(from.size());
     bool withdraws = false;
     const auto open = [&](int link) {
-      const VectorXd opening = motion_.opening(link, step);
+      const VectorXd opening = from.opening(link, step);
       for (Index i = 0; i < motion.size(); ++i) {
         if (opening[i] != 0.0) motion[i] = opening[i];
       }
@@ -196,7 +197,7 @@ class Refinement {
     };
     for (const int link : blocked.by_own_hand) {
       open(link);
-      const VectorXd straightening = motion_.straightening(link, step);
+      const VectorXd straightening = from.straightening(link, step);
       for (Index i = 0; i < motion.size(); ++i) {
         if (straightening[i] != 0.0) motion[i] = straightening[i];
       }
@@ -204,7 +205,7 @@ class Refinement {
     for (const int link : blocked.links) {
       withdraws = !open(link) || round >= kOpeningsOfFingersAlone || withdraws;
     }
-    HandConfiguration opened = motion_.moved(motion);
+    HandConfiguration opened = from.moved(motion);
     if (withdraws && options_.largest_shift > 0.0) {
       opened.X_OH.pretranslate(-step * (opened.X_OH.linear() * model_.palm.direction_H));
     }
@@ -377,11 +378,15 @@ class Refinement {
   };
   /// Takes one step, shortened until clear.
   Step step(double trust) {
-    const VectorXd motion = wanted_motion(trust);
+    Vector3d pivot = Vector3d::Zero();
+    for (const PadRequest& request : requests_)
+      pivot += request.point_O / static_cast<double>(requests_.size());
+    const HandMotion from(entries_, configuration_, X_OL_, pivot);
+    const VectorXd motion = wanted_motion(from, trust);
     const double longest = motion.cwiseAbs().maxCoeff();
     double share = 1.0;
     for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
-      const HandConfiguration candidate = motion_.moved(share * motion);
+      const HandConfiguration candidate = from.moved(share * motion);
       if (!is_within_limits(candidate)) continue;
       const LinkPoses X_OL = hands::forward_kinematics(model_, candidate);
       if (!clearance_.is_apart(X_OL, least_)) continue;
@@ -392,26 +397,22 @@ class Refinement {
     return {0.0, longest};
   }
 
-  VectorXd wanted_motion(double trust) {
-    Vector3d pivot = Vector3d::Zero();
-    for (const PadRequest& request : requests_)
-      pivot += request.point_O / static_cast<double>(requests_.size());
-    motion_.set(configuration_, X_OL_, pivot);
+  VectorXd wanted_motion(const HandMotion& from, double trust) const {
     const double clearance =
         std::clamp(kClearancePerGap * largest_gap(), options_.least_distance, kMostClearance);
     internal::ConstrainedRows rows;
-    for (Index i = 0; i < motion_.size(); ++i) {
-      rows.want(RowVectorXd::Unit(motion_.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
+    for (Index i = 0; i < from.size(); ++i) {
+      rows.want(RowVectorXd::Unit(from.size(), i), 0.0, i < 6 ? kPalmWeight : kJointWeight);
     }
     for (const PadRequest& request : requests_) {
       const double wanted = std::max(options_.wanted_gap, clearance) - request.gap;
-      rows.want(motion_.row(request.link, request.point_O, request.normal_O), wanted, kGapWeight);
-      if (request.target) draw_to_target(request, trust, rows);
+      rows.want(from.row(request.link, request.point_O, request.normal_O), wanted, kGapWeight);
+      if (request.target) draw_to_target(request, from, trust, rows);
     }
     for (const NearPoints& near : near_) {
-      RowVectorXd row = motion_.row(near.link, near.point_O, near.normal_O);
+      RowVectorXd row = from.row(near.link, near.point_O, near.normal_O);
       if (near.other_link) {
-        row -= motion_.row(*near.other_link, near.point_on_other_O, near.normal_O);
+        row -= from.row(*near.other_link, near.point_on_other_O, near.normal_O);
       }
       // What even the longest step leaves clear needs no row.
       if (near.distance - trust * row.cwiseAbs().sum() > clearance) continue;
@@ -420,13 +421,13 @@ class Refinement {
       rows.require(row, std::min(clearance - near.distance, kPartingShare * trust));
       if (near.distance < clearance) rows.want(row, clearance - near.distance, kClearanceWeight);
     }
-    add_limits(trust, rows);
+    add_limits(from, trust, rows);
     return rows.solve(kShortestStep);
   }
 
   /// Adds weak rows that draw the pad's contact point to the target and its normal against the
   /// surface's normal.
-  void draw_to_target(const PadRequest& request, double trust,
+  void draw_to_target(const PadRequest& request, const HandMotion& from, double trust,
                       internal::ConstrainedRows& rows) const {
     const Vector3d middle = hands::pad_contact_point(model_, request.pad, X_OL_);
     Vector3d way = request.target->point_O - middle;
@@ -435,28 +436,27 @@ class Refinement {
     const Vector3d pad_normal = hands::pad_pose(model_, request.pad, X_OL_).linear().col(2);
     const Vector3d turn = pad_normal.cross(-outward);
     for (int axis = 0; axis < 3; ++axis) {
-      rows.want(motion_.row(request.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
-      rows.want(kTiltLever * motion_.turn_row(request.link, Vector3d::Unit(axis)),
+      rows.want(from.row(request.link, middle, Vector3d::Unit(axis)), way[axis], target_weight_);
+      rows.want(kTiltLever * from.turn_row(request.link, Vector3d::Unit(axis)),
                 std::clamp(kTiltLever * turn[axis], -trust, trust), tilt_weight_);
     }
   }
 
-  void add_limits(double trust, internal::ConstrainedRows& rows) const {
-    const auto [lower, upper] = motion_.bounds(trust);
-    for (Index i = 0; i < motion_.size(); ++i) {
-      rows.require(RowVectorXd::Unit(motion_.size(), i), lower[i]);
-      rows.require(-RowVectorXd::Unit(motion_.size(), i), -upper[i]);
+  void add_limits(const HandMotion& from, double trust, internal::ConstrainedRows& rows) const {
+    const auto [lower, upper] = from.bounds(trust);
+    for (Index i = 0; i < from.size(); ++i) {
+      rows.require(RowVectorXd::Unit(from.size(), i), lower[i]);
+      rows.require(-RowVectorXd::Unit(from.size(), i), -upper[i]);
     }
-    for (const auto& [row, least] : motion_.breakaway_rows()) rows.require(row, least);
+    for (const auto& [row, least] : from.breakaway_rows()) rows.require(row, least);
     const Vector3d shifted = shift(configuration_);
     if (shifted.norm() > 0.5 * options_.largest_shift && shifted.norm() > 0.0) {
-      rows.require(
-          -motion_.row(model_.palm.link, palm_center(configuration_), shifted.normalized()),
-          shifted.norm() - options_.largest_shift);
+      rows.require(-from.row(model_.palm.link, palm_center(configuration_), shifted.normalized()),
+                   shifted.norm() - options_.largest_shift);
     }
     const Vector3d turned = turn(configuration_);
     if (turned.norm() > 0.5 * options_.largest_turn && turned.norm() > 0.0) {
-      rows.require(-motion_.turn_row(model_.palm.link, turned.normalized()),
+      rows.require(-from.turn_row(model_.palm.link, turned.normalized()),
                    turned.norm() - options_.largest_turn);
     }
   }
@@ -468,7 +468,7 @@ class Refinement {
   const RefinementOptions& options_;
   const double least_;  ///< Distance that a step must keep: half of the one that it aims at [m].
   internal::Clearance clearance_;
-  internal::HandMotion motion_;
+  const internal::MotionEntries entries_;
   std::vector<PadRequest> requests_;
   HandConfiguration start_;
   HandConfiguration configuration_;

@@ -7,13 +7,14 @@
 
 namespace graspfit::grasp::internal {
 
-/// Small motions of a hand as a vector of lengths: palm translation in O, palm rotation about a
-/// pivot (angle times a length), then one entry per joint that is free to move (times its lever).
-/// In these units a motion of 1 mm is one of at most about 1 mm of any point of the hand.
+/// The entries of small motions of a hand, whatever its configuration is: lengths for the palm's
+/// translation in O, its rotation about a pivot (angle times a length), then one entry per joint
+/// that is free to move (times its lever). In these units a motion of 1 mm is one of at most about
+/// 1 mm of any point of the hand.
 ///
 /// Free are the independent joints, and breakaway joints, which may go further closed than their
-/// coupling (`breakaway_rows`) and are then moved on their own.
-class HandMotion {
+/// coupling (`HandMotion::breakaway_rows`) and are then moved on their own.
+class MotionEntries {
  public:
   /// What the entry of a breakaway joint is.
   enum class Breakaway {
@@ -21,15 +22,40 @@ class HandMotion {
     Beyond,  ///< What it moves beyond its coupling; with its leader it moves anyhow.
   };
 
-  HandMotion(const hands::HandModel& hand, bool palm_translates, bool palm_turns,
-             Breakaway breakaway = Breakaway::Alone);
+  /// Refers to `hand`.
+  MotionEntries(const hands::HandModel& hand, bool palm_translates, bool palm_turns,
+                Breakaway breakaway = Breakaway::Alone);
 
   Eigen::Index size() const { return 6 + static_cast<Eigen::Index>(free_joints_.size()); }
 
-  /// Sets the configuration that motions start from, its link poses `X_OL`, and the point `pivot_O`
-  /// about which the palm turns.
-  void set(const hands::HandConfiguration& configuration,
-           const std::vector<hands::RigidTransform>& X_OL, const Eigen::Vector3d& pivot_O);
+ private:
+  friend class HandMotion;
+
+  bool is_beyond(int joint) const;
+
+  const hands::HandModel& hand_;
+  bool palm_translates_;
+  bool palm_turns_;
+  Breakaway breakaway_;
+  std::vector<int> free_joints_;
+  /// Per link: those that move it, distal ones first.
+  std::vector<std::vector<int>> joints_above_;
+  /// Per joint: the entry of the motion that drives it, or its leader.
+  std::vector<int> entry_of_joint_;
+  std::vector<double> lever_;  ///< Per joint [m/rad; 1 of a prismatic joint].
+  Eigen::VectorXd open_q_;     ///< Of the open hand.
+};
+
+/// Small motions of a hand from one configuration, as vectors of `MotionEntries`. Nothing is
+/// computed or copied to make one: it is made anew for every configuration.
+class HandMotion {
+ public:
+  /// Refers to `entries`, to the configuration that motions start from and to its link poses
+  /// `X_OL`; the palm turns about `pivot_O`.
+  HandMotion(const MotionEntries& entries, const hands::HandConfiguration& configuration,
+             const std::vector<hands::RigidTransform>& X_OL, const Eigen::Vector3d& pivot_O);
+
+  Eigen::Index size() const { return entries_.size(); }
 
   /// The derivative of direction · point, for a point of a link in O, over the motion.
   Eigen::RowVectorXd row(int link, const Eigen::Vector3d& point_O,
@@ -63,28 +89,17 @@ class HandMotion {
   hands::HandConfiguration moved(const Eigen::VectorXd& motion) const;
 
  private:
-  bool is_beyond(int joint) const;
-  double share_of_follower(int follower) const;
+  double share_of_entry(int joint) const;
   /// Adds what every joint above a link does to a row: `rate` of its `hands::JointVelocity`.
   template <class Rate>
-  void add_joints(int link, const Eigen::Vector3d& point_O, const Rate& rate,
-                  Eigen::RowVectorXd& row) const;
+  Eigen::RowVectorXd with_joints(Eigen::RowVectorXd row, int link, const Eigen::Vector3d& point_O,
+                                 const Rate& rate) const;
 
+  const MotionEntries& entries_;
   const hands::HandModel& hand_;
-  bool palm_translates_;
-  bool palm_turns_;
-  Breakaway breakaway_;
-  std::vector<int> free_joints_;
-  /// Per link: those that move it, distal ones first.
-  std::vector<std::vector<int>> joints_above_;
-  /// Per joint: the entry of the motion that drives it, or its leader.
-  std::vector<int> entry_of_joint_;
-  std::vector<double> ratio_;  ///< Per joint: its ratio to that entry.
-  std::vector<double> lever_;  ///< Per joint [m/rad; 1 of a prismatic joint].
-  Eigen::VectorXd open_q_;     ///< Of the open hand.
-  hands::HandConfiguration configuration_;
-  std::vector<hands::RigidTransform> X_OL_;
-  Eigen::Vector3d pivot_O_ = Eigen::Vector3d::Zero();
+  const hands::HandConfiguration& configuration_;
+  const std::vector<hands::RigidTransform>& X_OL_;
+  const Eigen::Vector3d pivot_O_;
 };
 
 /// Lever by which turns of the palm become lengths, about half a hand [m/rad].

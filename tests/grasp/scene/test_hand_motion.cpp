@@ -12,11 +12,12 @@
 namespace test_hand_motion {
 
 using namespace graspfit;
-using Breakaway = grasp::internal::HandMotion::Breakaway;
+using Breakaway = grasp::internal::MotionEntries::Breakaway;
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using grasp::internal::HandMotion;
+using grasp::internal::MotionEntries;
 using hands::RigidTransform;
 
 namespace {
@@ -49,10 +50,10 @@ TEST_CASE("Rows of a hand's motion are what a small motion does", "[grasp][hand_
     for (const Breakaway breakaway : {Breakaway::Alone, Breakaway::Beyond}) {
       CAPTURE(name, breakaway == Breakaway::Beyond);
       const hands::HandModel hand = hands::find_hand(name);
-      HandMotion motion(hand, true, true, breakaway);
+      const MotionEntries entries(hand, true, true, breakaway);
       const hands::HandConfiguration from = half_closed(hand, 0.1);
       const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, from);
-      motion.set(from, X_OL, Vector3d(0.1, 0.0, 0.1));
+      const HandMotion motion(entries, from, X_OL, Vector3d(0.1, 0.0, 0.1));
       base::Random random(7);
       for (int trial = 0; trial < 20; ++trial) {
         VectorXd small(motion.size());
@@ -78,9 +79,10 @@ TEST_CASE("Rows of a hand's motion are what a small motion does", "[grasp][hand_
 TEST_CASE("A breakaway joint whose entry is what it moves beyond its coupling follows its leader",
           "[grasp][hand_motion]") {
   const hands::HandModel hand = hands::find_hand("barrett");
-  HandMotion motion(hand, true, true, Breakaway::Beyond);
+  const MotionEntries entries(hand, true, true, Breakaway::Beyond);
   const hands::HandConfiguration from = half_closed(hand, 0.0);
-  motion.set(from, hands::forward_kinematics(hand, from), Vector3d::Zero());
+  const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, from);
+  const HandMotion motion(entries, from, X_OL, Vector3d::Zero());
   // Whatever a motion within its bounds is, no joint is set back onto its coupling afterwards: it
   // ends where the rows say.
   const HandMotion::Bounds bounds = motion.bounds(0.01);
