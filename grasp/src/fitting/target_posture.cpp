@@ -76,22 +76,16 @@ class Search {
       }
     }
     num_residuals_ = 6 * static_cast<int>(tips_.size()) + 3 + 1 + static_cast<int>(joints_.size());
-    pose_.resize(hand.links.size());
   }
 
-  TargetPosture run() {
-    hands::HandConfiguration best = start_;
-    VectorXd residual(num_residuals_);
-    MatrixXd jacobian(num_residuals_, 4 + static_cast<int>(joints_.size()));
-    evaluate(best, residual, &jacobian);
-    double error = residual.squaredNorm();
+  TargetPosture run() const {
+    Evaluated best = evaluated(start_);
+    MatrixXd jacobian = jacobian_at(best);
+    double error = best.residual.squaredNorm();
     double damping = 1e-3;
     for (int iteration = 0; iteration < kIterations && damping < 1e3; ++iteration) {
-      const VectorXd step = bounded_step(best, residual, jacobian, damping);
-      hands::HandConfiguration trial = moved(best, step);
-      VectorXd trial_residual(num_residuals_);
-      evaluate(trial, trial_residual, nullptr);
-      const double trial_error = trial_residual.squaredNorm();
+      Evaluated trial = evaluated(moved(best.at, bounded_step(best, jacobian, damping)));
+      const double trial_error = trial.residual.squaredNorm();
       if (!(trial_error < error)) {
         damping *= 8.0;
         continue;
@@ -101,12 +95,19 @@ class Search {
       error = trial_error;
       damping = std::max(damping / 8.0, 1e-6);
       if (is_done) break;
-      evaluate(best, residual, &jacobian);
+      jacobian = jacobian_at(best);
     }
     return measured(best);
   }
 
  private:
+  /// A configuration, and how far it is from what is wanted.
+  struct Evaluated {
+    hands::HandConfiguration at;
+    std::vector<RigidTransform> X_OL;  ///< Of the links that a tip hangs on; others are not set.
+    VectorXd residual;
+  };
+
   hands::HandConfiguration moved(const hands::HandConfiguration& from, const VectorXd& step) const {
     hands::HandConfiguration result = start_;
     result.X_OH = turned(from.X_OH, from.X_OH * hand_.palm.center_H, direction_, step[3]);
@@ -120,14 +121,14 @@ class Search {
   }
 
   /// Damped least squares; joints that stand at a limit and would leave it are held.
-  VectorXd bounded_step(const hands::HandConfiguration& at, const VectorXd& residual,
-                        const MatrixXd& jacobian, double damping) const {
+  VectorXd bounded_step(const Evaluated& from, const MatrixXd& jacobian, double damping) const {
     MatrixXd normal = jacobian.transpose() * jacobian;
-    VectorXd gradient = jacobian.transpose() * residual;
+    VectorXd gradient = jacobian.transpose() * from.residual;
     for (const int joint : joints_) {
       const int i = *variable_of_[joint];
-      const bool is_held = (at.q[joint] <= hand_.joints[joint].lower && gradient[i] > 0.0) ||
-                           (at.q[joint] >= hand_.joints[joint].upper && gradient[i] < 0.0);
+      const double q = from.at.q[joint];
+      const bool is_held = (q <= hand_.joints[joint].lower && gradient[i] > 0.0) ||
+                           (q >= hand_.joints[joint].upper && gradient[i] < 0.0);
       if (!is_held) continue;
       normal.row(i).setZero();
       normal.col(i).setZero();
@@ -138,68 +139,91 @@ class Search {
     return -normal.ldlt().solve(gradient);
   }
 
-  void evaluate(const hands::HandConfiguration& at, VectorXd& residual, MatrixXd* jacobian) {
-    residual.setZero();
-    if (jacobian) jacobian->setZero();
+  Evaluated evaluated(const hands::HandConfiguration& at) const {
+    Evaluated result{at, std::vector<RigidTransform>(hand_.links.size()),
+                     VectorXd::Zero(num_residuals_)};
+    VectorXd& residual = result.residual;
     int row = 0;
-    const Vector3d palm = at.X_OH * hand_.palm.center_H;
     for (const Tip& tip : tips_) {
-      for (const int link : tip.links) pose_[link] = hands::link_pose(hand_, link, pose_, at);
-      const RigidTransform X_OC = pose_[tip.links.back()] * hand_.pads[tip.pad].X_LC;
-      const Vector3d point = X_OC * tip.contact_C;
-      const Vector3d normal = X_OC.linear().col(2);
+      for (const int link : tip.links) {
+        result.X_OL[link] = hands::link_pose(hand_, link, result.X_OL, at);
+      }
+      const auto [point, normal] = contact_of(tip, result.X_OL);
       residual.segment<3>(row) = (point - tip.target->point_O) / kMissUnit;
       residual.segment<3>(row + 3) = kTiltWeight * (normal + tip.target->outward_normal_O);
-      if (jacobian) {
-        jacobian->block<3, 3>(row, 0).setIdentity();
-        jacobian->block<3, 1>(row, 3) = direction_.cross(point - palm) / kMissUnit;
-        jacobian->block<3, 1>(row + 3, 3) = kTiltWeight * direction_.cross(normal);
-        add_joints(tip, at, point, normal, row, *jacobian);
-      }
       row += 6;
     }
-    if (palm_target_) {
-      residual.segment<3>(row) = (palm - palm_target_->point_O) / kMissUnit;
-      if (jacobian) jacobian->block<3, 3>(row, 0).setIdentity();
-    }
+    const Vector3d palm = at.X_OH * hand_.palm.center_H;
+    if (palm_target_) residual.segment<3>(row) = (palm - palm_target_->point_O) / kMissUnit;
     row += 3;
-    const double distance = (centroid_ - palm).dot(direction_);
-    if (wanted_distance_ && distance < *wanted_distance_) {
-      residual[row] = (*wanted_distance_ - distance) / kMissUnit;
-      if (jacobian) jacobian->block<1, 3>(row, 0) = direction_.transpose();
+    if (const std::optional<double> distance = distance_below_wanted(palm)) {
+      residual[row] = (*wanted_distance_ - *distance) / kMissUnit;
     }
     ++row;
     for (const int joint : joints_) {
-      const double range = hand_.joints[joint].upper - hand_.joints[joint].lower;
-      residual[row] = kRestWeight * (at.q[joint] - start_.q[joint]) / range;
-      if (jacobian) (*jacobian)(row, *variable_of_[joint]) = kRestWeight / range;
+      residual[row] = kRestWeight * (at.q[joint] - start_.q[joint]) / range(joint);
       ++row;
     }
+    return result;
   }
 
-  void add_joints(const Tip& tip, const hands::HandConfiguration& at, const Vector3d& point,
-                  const Vector3d& normal, int row, MatrixXd& jacobian) const {
-    for (const int index : tip.joints) {
-      const hands::Joint& joint = hand_.joints[index];
-      const std::optional<int> column = variable_of_[hands::leader_of(hand_, index)];
-      // A follower at its limit does not follow.
-      const bool is_stopped =
-          joint.coupling && (at.q[index] <= joint.lower || at.q[index] >= joint.upper);
-      if (!column || is_stopped) continue;
-      const double ratio = joint.coupling ? joint.coupling->ratio : 1.0;
-      const hands::JointVelocity velocity =
-          hands::joint_velocity(joint, pose_[joint.parent_link] * joint.X_PJ, point);
-      jacobian.block<3, 1>(row, *column) += ratio * velocity.linear / kMissUnit;
-      jacobian.block<3, 1>(row + 3, *column) +=
-          ratio * kTiltWeight * velocity.angular.cross(normal);
+  /// The derivative of the residual over the variables.
+  MatrixXd jacobian_at(const Evaluated& evaluated) const {
+    MatrixXd jacobian = MatrixXd::Zero(num_residuals_, 4 + static_cast<int>(joints_.size()));
+    int row = 0;
+    const Vector3d palm = evaluated.at.X_OH * hand_.palm.center_H;
+    for (const Tip& tip : tips_) {
+      const auto [point, normal] = contact_of(tip, evaluated.X_OL);
+      jacobian.block<3, 3>(row, 0).setIdentity();
+      jacobian.block<3, 1>(row, 3) = direction_.cross(point - palm) / kMissUnit;
+      jacobian.block<3, 1>(row + 3, 3) = kTiltWeight * direction_.cross(normal);
+      for (const int joint : tip.joints) {
+        const std::optional<int> column = variable_of_[hands::leader_of(hand_, joint)];
+        const double ratio =
+            hands::ratio_to_leader(hand_, joint, evaluated.at.q, hands::Followers::BetweenLimits);
+        if (!column || ratio == 0.0) continue;
+        const hands::Joint& moved = hand_.joints[joint];
+        const hands::JointVelocity velocity =
+            hands::joint_velocity(moved, evaluated.X_OL[moved.parent_link] * moved.X_PJ, point);
+        jacobian.block<3, 1>(row, *column) += ratio * velocity.linear / kMissUnit;
+        jacobian.block<3, 1>(row + 3, *column) +=
+            ratio * kTiltWeight * velocity.angular.cross(normal);
+      }
+      row += 6;
     }
+    if (palm_target_) jacobian.block<3, 3>(row, 0).setIdentity();
+    row += 3;
+    if (distance_below_wanted(palm)) jacobian.block<1, 3>(row, 0) = direction_.transpose();
+    ++row;
+    for (const int joint : joints_) {
+      jacobian(row, *variable_of_[joint]) = kRestWeight / range(joint);
+      ++row;
+    }
+    return jacobian;
   }
 
-  TargetPosture measured(const hands::HandConfiguration& best) {
+  struct TipContact {
+    Vector3d point_O;
+    Vector3d normal_O;  ///< Of the pad, outward.
+  };
+  TipContact contact_of(const Tip& tip, const std::vector<RigidTransform>& X_OL) const {
+    const RigidTransform X_OC = X_OL[tip.links.back()] * hand_.pads[tip.pad].X_LC;
+    return {X_OC * tip.contact_C, X_OC.linear().col(2)};
+  }
+
+  /// Distance of the palm from the targets along its direction, where it is less than wanted.
+  std::optional<double> distance_below_wanted(const Vector3d& palm) const {
+    const double distance = (centroid_ - palm).dot(direction_);
+    if (!wanted_distance_ || !(distance < *wanted_distance_)) return std::nullopt;
+    return distance;
+  }
+
+  double range(int joint) const { return hand_.joints[joint].upper - hand_.joints[joint].lower; }
+
+  TargetPosture measured(const Evaluated& best) const {
     TargetPosture result;
-    result.configuration = best;
-    VectorXd residual(num_residuals_);
-    evaluate(best, residual, nullptr);
+    result.configuration = best.at;
+    const VectorXd& residual = best.residual;
     for (std::size_t i = 0; i < tips_.size(); ++i) {
       const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
       result.largest_miss =
@@ -226,7 +250,6 @@ class Search {
   std::vector<std::optional<int>> variable_of_;  ///< Per joint; empty if it is none.
   hands::HandConfiguration start_;
   int num_residuals_ = 0;
-  std::vector<RigidTransform> pose_;
 };
 
 }  // namespace
