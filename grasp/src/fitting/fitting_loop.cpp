@@ -106,8 +106,7 @@ FittingLoop::Outcome FittingLoop::failed_start() const {
 
 FittingLoop::Outcome FittingLoop::run() {
   if (close_free_parts() && options_.palm_after_contact == PalmAfterContact::Recentred) recenter();
-  Outcome outcome;
-  finish(outcome.result);
+  Outcome outcome{finished(), {}};
   if (is_clear_at_start_ && options_.guard == PenetrationGuard::Voxels) {
     outcome.links_too_deep = state_.links_too_deep();
   }
@@ -307,8 +306,9 @@ bool FittingLoop::is_hopeless(const Part& part) const {
   return (object_.distance.at(tip) - std::sqrt(3.0)) * voxel_size_ > options_.give_up_distance;
 }
 
-void FittingLoop::finish(FittingResult& result) {
+FittingResult FittingLoop::finished() {
   state_.measure_all();
+  FittingResult result;
   result.initial = initial_;
   result.iterations = iterations_;
   result.configuration = state_.configuration();
@@ -333,6 +333,7 @@ void FittingLoop::finish(FittingResult& result) {
                 : has_all        ? FittingStop::Contact
                 : is_blocked     ? FittingStop::BlockedFinger
                                  : FittingStop::MissedContact;
+  return result;
 }
 
 }  // namespace graspfit::grasp::internal

@@ -78,7 +78,7 @@ class FittingLoop {
   bool try_shift(const Eigen::Vector3d& shift, double opening);
   void close_on(Part& part);
   void press_palm();
-  void finish(FittingResult& result);
+  FittingResult finished();
 
   bool try_move(const hands::HandConfiguration& candidate, const std::vector<int>& moved,
                 double length);

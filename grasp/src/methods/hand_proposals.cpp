@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "graspfit/geometry/angle.hpp"
 
@@ -92,12 +93,16 @@ std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
   return pinch(grip, random);
 }
 
-bool HandProposals::complete(const HandGrips::Grip& grip, double most,
-                             HandProposal& proposal) const {
-  if (proposal.largest_cost >= most) return false;
-  return std::all_of(grip.parts.begin(), grip.parts.end(), [&](std::size_t part) {
-    return proposal.patches[part] || complete(part, most, proposal);
-  });
+std::optional<HandProposal> HandProposals::completed(const HandGrips::Grip& grip, double most,
+                                                     HandProposal proposal) const {
+  if (proposal.largest_cost >= most) return std::nullopt;
+  for (const std::size_t part : grip.parts) {
+    if (proposal.patches[part]) continue;
+    const std::optional<Placing> placing = cheapest(proposal, part, most);
+    if (!placing) return std::nullopt;
+    proposal = with(std::move(proposal), *placing);
+  }
+  return proposal;
 }
 
 /// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
@@ -118,18 +123,14 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
       aligned(facing(grips_.parts()[pinch.part_a].samples, samples->first),
               facing(grips_.parts()[pinch.part_b].samples, samples->second), a_O, b_O, random);
   if (!X_OH) return std::nullopt;
-  HandProposal proposal = proposal_at(*X_OH);
-  set(pinch.part_a, samples->first, *a.patch, proposal);
-  set(pinch.part_b, samples->second, *b.patch, proposal);
-  const auto charge = [&](std::size_t part, std::int32_t sample, const Facing& place_O) {
+  const auto placing = [&](std::size_t part, std::int32_t sample, const PoolPoint& place) {
     const Facing pad_H = facing(grips_.parts()[part].samples, sample);
-    const double gap = (*X_OH * pad_H.point - place_O.point).norm();
-    proposal.largest_cost =
-        std::max(proposal.largest_cost, cost(gap, X_OH->linear() * pad_H.normal, place_O.normal));
+    const double gap = (*X_OH * pad_H.point - place.point_O).norm();
+    return Placing{part, sample, *place.patch,
+                   cost(gap, X_OH->linear() * pad_H.normal, place.inward_normal_O)};
   };
-  charge(pinch.part_a, samples->first, a_O);
-  charge(pinch.part_b, samples->second, b_O);
-  return proposal;
+  return with(with(proposal_at(*X_OH), placing(pinch.part_a, samples->first, a)),
+              placing(pinch.part_b, samples->second, b));
 }
 
 /// The palm on a point of the pool, leaning a little, turned anyhow.
@@ -149,9 +150,8 @@ HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random
       (tilt * roll).toRotationMatrix() *
       Eigen::Quaterniond::FromTwoVectors(pad.normal, point.inward_normal_O).toRotationMatrix();
   X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
-  HandProposal proposal = proposal_at(X_OH);
-  set(grip.parts.back(), sample, *point.patch, proposal);
-  return proposal;
+  // The palm lies where it was put: that costs nothing.
+  return with(proposal_at(X_OH), {grip.parts.back(), sample, *point.patch, 0.0});
 }
 
 HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
@@ -163,19 +163,23 @@ HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
   return proposal;
 }
 
-void HandProposals::set(std::size_t part, std::int32_t sample, std::int32_t patch,
-                        HandProposal& proposal) const {
-  const hands::PadSamples& samples = grips_.parts()[part].samples;
+/// The proposal with one more part placed.
+HandProposal HandProposals::with(HandProposal proposal, const Placing& placing) const {
+  const hands::PadSamples& samples = grips_.parts()[placing.part].samples;
   for (std::size_t j = 0; j < samples.joints.size(); ++j) {
-    proposal.configuration.q[samples.joints[j]] = samples.positions(static_cast<Index>(j), sample);
+    proposal.configuration.q[samples.joints[j]] =
+        samples.positions(static_cast<Index>(j), placing.sample);
     proposal.is_fixed[static_cast<std::size_t>(samples.joints[j])] = true;
   }
-  proposal.patches[part] = patch;
+  proposal.patches[placing.part] = placing.patch;
+  proposal.largest_cost = std::max(proposal.largest_cost, placing.cost);
+  return proposal;
 }
 
-/// Places a part by the sample that is nearest to the surface and leans least there; false if that
-/// costs no less than `most`.
-bool HandProposals::complete(std::size_t part, double most, HandProposal& proposal) const {
+/// Of a part's samples that agree with the parts placed already the one that is nearest to the
+/// surface and leans least there; empty if each costs no less than `most`.
+std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal& proposal,
+                                                              std::size_t part, double most) const {
   const hands::PadSamples& samples = grips_.parts()[part].samples;
   const RigidTransform& X_OH = proposal.configuration.X_OH;
   double least = most;
@@ -209,10 +213,8 @@ bool HandProposals::complete(std::size_t part, double most, HandProposal& propos
       best_patch = index;
     }
   }
-  if (!best) return false;
-  set(part, static_cast<std::int32_t>(*best), best_patch, proposal);
-  proposal.largest_cost = std::max(proposal.largest_cost, least);
-  return true;
+  if (!best) return std::nullopt;
+  return Placing{part, static_cast<std::int32_t>(*best), best_patch, least};
 }
 
 }  // namespace graspfit::grasp::internal

@@ -34,16 +34,25 @@ class HandProposals {
   /// hand's tables do not know that they can be there. Most draws are.
   std::optional<HandProposal> draw(const HandGrips::Grip& grip, base::Random& random) const;
 
-  /// Places the other parts of the grip. False if that costs no less than `most`, as soon as that
-  /// is seen.
-  bool complete(const HandGrips::Grip& grip, double most, HandProposal& proposal) const;
+  /// The proposal with the other parts of the grip placed, too. Empty if that costs no less than
+  /// `most`, as soon as that is seen.
+  std::optional<HandProposal> completed(const HandGrips::Grip& grip, double most,
+                                        HandProposal proposal) const;
 
  private:
   std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal palm_first(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
-  void set(std::size_t part, std::int32_t sample, std::int32_t patch, HandProposal& proposal) const;
-  bool complete(std::size_t part, double most, HandProposal& proposal) const;
+  /// A part of the hand at a patch, as one of its samples is.
+  struct Placing {
+    std::size_t part = 0;
+    std::int32_t sample = 0;
+    std::int32_t patch = 0;
+    double cost = 0.0;  ///< [m]
+  };
+  HandProposal with(HandProposal proposal, const Placing& placing) const;
+  std::optional<Placing> cheapest(const HandProposal& proposal, std::size_t part,
+                                  double most) const;
 
   const hands::HandModel& hand_;
   const ObjectModel& object_;

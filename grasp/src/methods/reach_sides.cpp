@@ -208,9 +208,10 @@ std::optional<ReachSides::Candidate> ReachSides::drawn(const Grip& grip, double 
   std::optional<HandProposal> best;
   for (int i = 0; i < kProposals; ++i) {
     const double most = best ? best->largest_cost : std::numeric_limits<double>::infinity();
-    std::optional<HandProposal> proposal = this->proposal(grip, random, work);
-    if (!proposal) break;
-    if (!proposals_.complete(grip, most, *proposal)) continue;
+    std::optional<HandProposal> begun = this->proposal(grip, random, work);
+    if (!begun) break;
+    std::optional<HandProposal> proposal = proposals_.completed(grip, most, std::move(*begun));
+    if (!proposal) continue;
     std::vector<std::int32_t> patches;
     for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
     if (are_apart(patches) && has_stable_pair(patches)) best = std::move(proposal);

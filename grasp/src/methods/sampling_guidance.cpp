@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 
 #include "graspfit/base/random.hpp"
 #include "graspfit/hands/palm_pose.hpp"
@@ -64,7 +65,7 @@ class SamplingGuidance : public GraspGuidance {
 
     const hands::HandModel& hand = scene_.hand.model();
     hands::HandConfiguration start = hands::open_hand_spread_by(hand, preshape.spread_share);
-    preclose(preshape.closed_by_rad, start.q);
+    start.q = preclosed(std::move(start.q), preshape.closed_by_rad);
     const Vector3d direction = -sample.normal;
     const Vector3d axis =
         hands::turned_axis(hands::any_normal(direction), direction, roll * 2.0 * std::numbers::pi);
@@ -97,7 +98,7 @@ class SamplingGuidance : public GraspGuidance {
            scene_.options.approach_angle;
   }
 
-  void preclose(double angle, Eigen::VectorXd& q) const {
+  Eigen::VectorXd preclosed(Eigen::VectorXd q, double angle) const {
     const hands::HandModel& hand = scene_.hand.model();
     for (std::size_t j = 0; j < hand.joints.size(); ++j) {
       const hands::Joint& joint = hand.joints[j];
@@ -106,6 +107,7 @@ class SamplingGuidance : public GraspGuidance {
       position = std::clamp(position + joint.closing_sign * angle, joint.lower, joint.upper);
     }
     hands::apply_couplings(hand, q);
+    return q;
   }
 
   const GuidanceScene scene_;

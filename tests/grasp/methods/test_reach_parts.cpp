@@ -109,13 +109,15 @@ TEST_CASE("The cheapest hand is found with or without knowing what another costs
     const std::optional<internal::HandProposal> drawn = proposals.draw(grip, random);
     if (!drawn) continue;
     ++num_drawn;
-    internal::HandProposal whole = *drawn;
-    REQUIRE(proposals.complete(grip, std::numeric_limits<double>::infinity(), whole));
-    internal::HandProposal again = *drawn;
-    CHECK(proposals.complete(grip, whole.largest_cost + 1e-9, again));
-    CHECK(again.configuration.q == whole.configuration.q);
-    CHECK(again.largest_cost == whole.largest_cost);
-    CHECK_FALSE(proposals.complete(grip, whole.largest_cost, again = *drawn));
+    const std::optional<internal::HandProposal> whole =
+        proposals.completed(grip, std::numeric_limits<double>::infinity(), *drawn);
+    REQUIRE(whole);
+    const std::optional<internal::HandProposal> again =
+        proposals.completed(grip, whole->largest_cost + 1e-9, *drawn);
+    REQUIRE(again);
+    CHECK(again->configuration.q == whole->configuration.q);
+    CHECK(again->largest_cost == whole->largest_cost);
+    CHECK_FALSE(proposals.completed(grip, whole->largest_cost, *drawn));
   }
   CHECK(num_drawn == 60);
 }
