@@ -11,7 +11,8 @@ std::optional<PreGrasp> checked_pre_grasp(const PreGraspScene& scene,
   options.validate();
   hands::validate(scene.hand, start);
   hands::validate(scene.hand, grasp);
-  return PreGraspSearch(scene, grasp, options).checked(start);
+  const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(scene.hand, grasp);
+  return PreGraspSearch(scene, {grasp, X_OL}, options).checked(start);
 }
 
 }  // namespace graspfit::grasp::internal

@@ -48,8 +48,18 @@ HandConfiguration interpolated(const HandConfiguration& from, const HandConfigur
 
 std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene, const HandConfiguration& grasp,
                                        const PreGraspOptions& options) {
+  const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(scene.hand, grasp);
+  return find_pre_grasp(scene, hands::PosedConfiguration{grasp, X_OL}, options);
+}
+
+std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene,
+                                       const hands::PosedConfiguration& grasp,
+                                       const PreGraspOptions& options) {
   options.validate();
-  hands::validate(scene.hand, grasp);
+  hands::validate(scene.hand, grasp.configuration);
+  base::require(grasp.X_OL.size() == scene.hand.links.size(), "find_pre_grasp",
+                "number of link poses", grasp.X_OL.size(),
+                "one per link of hand " + scene.hand.name);
   return internal::PreGraspSearch(scene, grasp, options).find();
 }
 

@@ -43,13 +43,13 @@ double clearance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
 
 }  // namespace
 
-PreGraspSearch::PreGraspSearch(const PreGraspScene& scene, const HandConfiguration& grasp,
+PreGraspSearch::PreGraspSearch(const PreGraspScene& scene, const hands::PosedConfiguration& grasp,
                                const PreGraspOptions& options)
     : scene_(scene),
-      grasp_(grasp),
+      grasp_(grasp.configuration),
       options_(options),
       open_q_(hands::open_configuration(scene.hand).q),
-      X_OL_grasp_(hands::forward_kinematics(scene.hand, grasp)) {
+      X_OL_grasp_(grasp.X_OL) {
   for (int link = 0; link < static_cast<int>(scene.hand.links.size()); ++link) {
     if (scene.collision.link_solid(link)) links_.push_back({link, {}, {}});
   }

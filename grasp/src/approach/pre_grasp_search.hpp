@@ -6,15 +6,16 @@
 
 #include "graspfit/geometry/surface_proximity.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 
 namespace graspfit::grasp::internal {
 
 /// The search for one grasp's pre-grasp.
 class PreGraspSearch {
  public:
-  /// Refers to all of its arguments. They are valid: options within their ranges, a grasp within
-  /// the hand's limits.
-  PreGraspSearch(const PreGraspScene& scene, const hands::HandConfiguration& grasp,
+  /// Refers to all of its arguments, and to what the grasp refers to. They are valid: options
+  /// within their ranges, a grasp within the hand's limits.
+  PreGraspSearch(const PreGraspScene& scene, const hands::PosedConfiguration& grasp,
                  const PreGraspOptions& options);
 
   /// What `find_pre_grasp` returns.
@@ -71,7 +72,7 @@ class PreGraspSearch {
   const hands::HandConfiguration& grasp_;
   const PreGraspOptions& options_;
   const Eigen::VectorXd open_q_;
-  const LinkPoses X_OL_grasp_;
+  const LinkPoses& X_OL_grasp_;
   std::vector<GuardedLink> links_;  ///< Those with a solid; one that failed last comes first.
   std::vector<LinkPair> pairs_;  ///< Pairs that must stay apart; one that failed last comes first.
   int num_in_vain_ = 0;          ///< Distances of bodies not proven to stay apart, of this search.

@@ -4,12 +4,9 @@
 #include <utility>
 
 #include "graspfit/grasp/grasp_measure.hpp"
-#include "graspfit/hands/forward_kinematics.hpp"
 
 namespace graspfit::grasp {
 namespace {
-
-using geometry::RigidTransform;
 
 /// Marks the contacts of `pad` as targets; returns whether one of them is near enough.
 bool mark_requested(std::vector<contact::Contact>& contacts, int pad,
@@ -25,15 +22,16 @@ bool mark_requested(std::vector<contact::Contact>& contacts, int pad,
 
 }  // namespace
 
-Grasp internal::with_contacts(const MeasuringScene& scene,
-                              const hands::HandConfiguration& configuration,
-                              const RequestedParts& requested) {
+internal::PosedGrasp internal::with_contacts(const MeasuringScene& scene,
+                                             const hands::HandConfiguration& configuration,
+                                             const RequestedParts& requested) {
   const hands::HandModel& hand = scene.hand;
   hands::validate(hand, configuration);
-  Grasp grasp;
+  PosedGrasp measured{.grasp = {}, .X_OL = hands::forward_kinematics(hand, configuration)};
+  Grasp& grasp = measured.grasp;
   grasp.configuration = configuration;
-  grasp.contacts = contact::estimate_contacts(hand, hands::forward_kinematics(hand, configuration),
-                                              scene.object, scene.contact_options, scene.weak);
+  grasp.contacts = contact::estimate_contacts(hand, measured.X_OL, scene.object,
+                                              scene.contact_options, scene.weak);
   grasp.has_all_contacts = true;
   for (const int pad : requested_pads(hand, requested)) {
     const bool has_contact = mark_requested(grasp.contacts, pad, scene.largest_gap);
@@ -41,22 +39,22 @@ Grasp internal::with_contacts(const MeasuringScene& scene,
   }
   grasp.quality =
       contact::contact_quality(grasp.contacts, scene.quality_context, scene.quality_options);
-  return grasp;
+  return measured;
 }
 
-Grasp internal::with_self_penetration(const MeasuringScene& scene, Grasp grasp) {
-  const hands::HandCollision::Result with_self =
-      scene.collision.against_self(hands::forward_kinematics(scene.hand, grasp.configuration));
-  grasp.penetration.self_intersects = with_self.intersects;
-  grasp.penetration.self_depth = with_self.depth;
-  grasp.penetration.self_link_a = with_self.link_a;
-  grasp.penetration.self_link_b = with_self.link_b;
-  return grasp;
+internal::PosedGrasp internal::with_self_penetration(const MeasuringScene& scene,
+                                                     PosedGrasp measured) {
+  const hands::HandCollision::Result with_self = scene.collision.against_self(measured.X_OL);
+  GraspPenetration& penetration = measured.grasp.penetration;
+  penetration.self_intersects = with_self.intersects;
+  penetration.self_depth = with_self.depth;
+  penetration.self_link_a = with_self.link_a;
+  penetration.self_link_b = with_self.link_b;
+  return measured;
 }
 
-Grasp internal::with_all_measures(const MeasuringScene& scene, Grasp grasp) {
-  const std::vector<RigidTransform> X_OL =
-      hands::forward_kinematics(scene.hand, grasp.configuration);
+internal::PosedGrasp internal::with_all_measures(const MeasuringScene& scene, PosedGrasp measured) {
+  auto& [grasp, X_OL] = measured;
   const hands::HandCollision::Result with_object =
       scene.collision.against_object(scene.object, X_OL);
   GraspPenetration& penetration = grasp.penetration;
@@ -76,14 +74,15 @@ Grasp internal::with_all_measures(const MeasuringScene& scene, Grasp grasp) {
         touching, contact::wrench_convention(contact::WrenchTool::GraspIt, scene.wrench_object,
                                              touching, scene.friction)));
   }
-  return grasp;
+  return measured;
 }
 
 Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
                     const RequestedParts& requested) {
   return internal::with_all_measures(
-      scene, internal::with_self_penetration(
-                 scene, internal::with_contacts(scene, configuration, requested)));
+             scene, internal::with_self_penetration(
+                        scene, internal::with_contacts(scene, configuration, requested)))
+      .grasp;
 }
 
 }  // namespace graspfit::grasp

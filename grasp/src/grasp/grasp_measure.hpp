@@ -1,20 +1,31 @@
 #pragma once
 
+#include <vector>
+
 #include "graspfit/grasp/grasp_measure.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 
 namespace graspfit::grasp::internal {
 
 /// `measure_grasp` in three steps, each of which takes what the one before returned: most attempts
 /// of the planner end after the first, which is by far the cheapest.
 
+/// A grasp that is being measured, with the link poses of its configuration.
+struct PosedGrasp {
+  Grasp grasp;
+  std::vector<hands::RigidTransform> X_OL;
+
+  hands::PosedConfiguration posed_configuration() const { return {grasp.configuration, X_OL}; }
+};
+
 /// Contacts and M.
-Grasp with_contacts(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
-                    const RequestedParts& requested);
+PosedGrasp with_contacts(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
+                         const RequestedParts& requested);
 
 /// Adds how deep the hand penetrates itself.
-Grasp with_self_penetration(const MeasuringScene& scene, Grasp grasp);
+PosedGrasp with_self_penetration(const MeasuringScene& scene, PosedGrasp measured);
 
 /// Adds the penetration of everything else, and ε.
-Grasp with_all_measures(const MeasuringScene& scene, Grasp grasp);
+PosedGrasp with_all_measures(const MeasuringScene& scene, PosedGrasp measured);
 
 }  // namespace graspfit::grasp::internal

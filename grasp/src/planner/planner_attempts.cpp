@@ -70,6 +70,41 @@ AttemptOutcome unusable_outcome(const Grasp& grasp) {
   return grasp.quality.stable_pairs.empty() ? AttemptOutcome::Unstable : AttemptOutcome::PoorShape;
 }
 
+/// The failure of an attempt whose closing ended so; empty if it did not fail.
+std::optional<AttemptOutcome> failure_of(FittingStop stop) {
+  switch (stop) {
+    case FittingStop::InitialCollision:
+      return AttemptOutcome::InitialCollision;
+    case FittingStop::BlockedFinger:
+      return AttemptOutcome::BlockedFinger;
+    case FittingStop::MissedContact:
+      return AttemptOutcome::MissedContact;
+    case FittingStop::IterationLimit:
+      return AttemptOutcome::IterationLimit;
+    case FittingStop::Contact:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// The failure of an attempt whose refinement ended so; empty if it did not fail.
+std::optional<AttemptOutcome> failure_of(RefinementStop stop) {
+  switch (stop) {
+    case RefinementStop::Contact:
+      return std::nullopt;
+    case RefinementStop::OutOfReach:
+      return AttemptOutcome::MissedContact;
+    case RefinementStop::Intersecting:
+      return AttemptOutcome::BlockedFinger;
+    case RefinementStop::SelfCollision:
+      return AttemptOutcome::SelfCollision;
+    case RefinementStop::GapLeft:
+    case RefinementStop::IterationLimit:
+      break;
+  }
+  return AttemptOutcome::GapLeft;
+}
+
 /// Residual of the grasp's squeeze; infinite without one.
 double squeeze_residual(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze ? result.grasp->squeeze->residual
@@ -192,7 +227,7 @@ std::size_t PlannerAttempts::best_with_way_in(std::vector<AttemptResult>& tried)
   for (;;) {
     const std::size_t best = best_of(tried);
     if (!tried[best].is_way_in_open_question) return best;
-    find_way_in(tried[best]);
+    tried[best] = with_way_in(std::move(tried[best]));
   }
 }
 
@@ -230,16 +265,16 @@ bool PlannerAttempts::is_enough(const AttemptResult& result) const {
 /// One hand closed from one start.
 AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t number) const {
   AttemptResult result;
-  hands::HandConfiguration configuration;
-  std::optional<AttemptOutcome> failure = close(start, configuration, result);
+  Reached reached = close(start, result);
   // Refinement also brings fingers into contact that stopped short of the surface.
-  const bool is_refinable = options_.refine && failure != AttemptOutcome::InitialCollision;
+  const bool is_refinable = options_.refine && reached.failure != AttemptOutcome::InitialCollision;
   const RequestedParts parts = parts_to_touch(options_, parts_, start.targets);
   if (is_refinable) {
     const bool is_drawn = start.draws_to_targets && !start.targets.contacts.empty();
-    failure = refine(requested_pads(hand_, parts), is_drawn ? &start.targets : nullptr,
-                     configuration, result);
+    reached = refine(reached.configuration, requested_pads(hand_, parts),
+                     is_drawn ? &start.targets : nullptr, result);
   }
+  const std::optional<AttemptOutcome>& failure = reached.failure;
   const bool is_measured =
       !failure ||
       (options_.missing_contact == MissingContact::Measured &&
@@ -248,10 +283,11 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     result.outcome = *failure;
     return result;
   }
-  Grasp grasp;
+  PosedGrasp measured;
+  Grasp& grasp = measured.grasp;
   {
     const base::Stopwatch watch(result.timings.measure_s);
-    grasp = with_contacts(scene_, configuration, parts);
+    measured = with_contacts(scene_, reached.configuration, parts);
     grasp.targets = start.targets;
     if (!start.targets.contacts.empty()) {
       grasp.ideal_m = ideal_m(object_, start.targets, {&hand_, options_.quality});
@@ -266,7 +302,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   }
   {
     const base::Stopwatch watch(result.timings.measure_s);
-    grasp = with_self_penetration(scene_, std::move(grasp));
+    measured = with_self_penetration(scene_, std::move(measured));
   }
   if (!options_.refine && grasp.penetration.self_depth > options_.self_overlap) {
     result.outcome = AttemptOutcome::SelfCollision;
@@ -278,9 +314,8 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   }
   {
     const base::Stopwatch watch(result.timings.measure_s);
-    grasp = with_all_measures(scene_, std::move(grasp));
+    measured = with_all_measures(scene_, std::move(measured));
   }
-  if (options_.kept != KeptCandidate::First) add_squeeze(grasp, result);
   // A start that cut something may have been turned before refinement.
   const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle &&
                            are_scores_high(grasp.contacts);
@@ -289,81 +324,58 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   result.is_accepted = is_as_asked && is_accepted(grasp);
   result.is_way_in_open_question = true;
   result.grasp = std::move(grasp);
+  result.X_OL = std::move(measured.X_OL);
+  if (options_.kept != KeptCandidate::First) {
+    const base::Stopwatch watch(result.timings.pre_grasp_s);
+    result.grasp->squeeze = squeeze_of(result);
+  }
   return result;
 }
 
-/// Closes the hand from the start onto the object, at the level of voxels. Returns why this failed,
-/// if it did; `configuration` is the final one in any case.
-std::optional<AttemptOutcome> PlannerAttempts::close(const GuidedStart& start,
-                                                     hands::HandConfiguration& configuration,
-                                                     AttemptResult& result) const {
-  const base::Stopwatch watch(result.timings.fitting_s);
+/// Closes the hand from the start onto the object, at the level of voxels. Iterations and times are
+/// added to those of `work`.
+PlannerAttempts::Reached PlannerAttempts::close(const GuidedStart& start,
+                                                AttemptResult& work) const {
+  const base::Stopwatch watch(work.timings.fitting_s);
   const FittingResult fitted = start.close();
-  result.fitting_iterations += fitted.iterations;
-  result.timings.contact_tests_s += fitted.contact_tests_s;
-  configuration = fitted.configuration;
-  switch (fitted.stop) {
-    case FittingStop::InitialCollision:
-      return AttemptOutcome::InitialCollision;
-    case FittingStop::BlockedFinger:
-      return AttemptOutcome::BlockedFinger;
-    case FittingStop::MissedContact:
-      return AttemptOutcome::MissedContact;
-    case FittingStop::IterationLimit:
-      return AttemptOutcome::IterationLimit;
-    case FittingStop::Contact:
-      break;
-  }
-  return std::nullopt;
+  work.fitting_iterations += fitted.iterations;
+  work.timings.contact_tests_s += fitted.contact_tests_s;
+  return {fitted.configuration, failure_of(fitted.stop)};
 }
 
-/// Brings a hand that is closed at the level of voxels into true contact. Returns why this failed,
-/// if it did.
-std::optional<AttemptOutcome> PlannerAttempts::refine(const std::vector<int>& pads,
-                                                      const TargetContacts* targets,
-                                                      hands::HandConfiguration& configuration,
-                                                      AttemptResult& result) const {
-  const base::Stopwatch watch(result.timings.refinement_s);
+/// Brings a hand that is closed at the level of voxels into true contact. Iterations and times are
+/// added to those of `work`.
+PlannerAttempts::Reached PlannerAttempts::refine(const hands::HandConfiguration& closed,
+                                                 const std::vector<int>& pads,
+                                                 const TargetContacts* targets,
+                                                 AttemptResult& work) const {
+  const base::Stopwatch watch(work.timings.refinement_s);
   RefinementOptions refinement = options_.refinement;
   if (options_.approach_O) {
-    const double left = options_.approach_angle - angle_from_approach(configuration) - kAngleSlack;
+    const double left = options_.approach_angle - angle_from_approach(closed) - kAngleSlack;
     refinement.largest_turn = std::min(refinement.largest_turn, std::max(0.0, left));
   }
   const RefinementResult refined =
       refine_contacts({fitting_hand_, object_, surroundings_, scene_.contact_options}, pads,
-                      targets, configuration, refinement);
-  result.refinement_iterations += refined.iterations;
-  configuration = refined.configuration;
-  switch (refined.stop) {
-    case RefinementStop::Contact:
-      return std::nullopt;
-    case RefinementStop::OutOfReach:
-      return AttemptOutcome::MissedContact;
-    case RefinementStop::Intersecting:
-      return AttemptOutcome::BlockedFinger;
-    case RefinementStop::SelfCollision:
-      return AttemptOutcome::SelfCollision;
-    case RefinementStop::GapLeft:
-    case RefinementStop::IterationLimit:
-      break;
-  }
-  return AttemptOutcome::GapLeft;
+                      targets, closed, refinement);
+  work.refinement_iterations += refined.iterations;
+  return {refined.configuration, failure_of(refined.stop)};
 }
 
-void PlannerAttempts::add_squeeze(Grasp& grasp, AttemptResult& result) const {
-  const base::Stopwatch watch(result.timings.pre_grasp_s);
-  grasp.squeeze =
-      contact::squeeze_configuration(hand_, grasp.configuration, grasp.contacts,
-                                     {.center_of_mass_O = object_.mass.center_of_mass,
-                                      .torque_scale = scene_.wrench_object.largest_radius,
-                                      .friction = options_.squeeze_friction,
-                                      .bearing_gap = scene_.bearing_gap},
-                                     options_.squeeze);
+contact::Squeeze PlannerAttempts::squeeze_of(const AttemptResult& result) const {
+  const Grasp& grasp = *result.grasp;
+  const hands::PosedConfiguration posed{grasp.configuration, result.X_OL};
+  return contact::squeeze_configuration(hand_, posed, grasp.contacts,
+                                        {.center_of_mass_O = object_.mass.center_of_mass,
+                                         .torque_scale = scene_.wrench_object.largest_radius,
+                                         .friction = options_.squeeze_friction,
+                                         .bearing_gap = scene_.bearing_gap},
+                                        options_.squeeze);
 }
 
 /// Completes a grasp by its pre-grasp, without which it fails where one is required, and, if it is
 /// accepted, by its squeeze.
-void PlannerAttempts::find_way_in(AttemptResult& result) const {
+AttemptResult PlannerAttempts::with_way_in(AttemptResult result) const {
   result.is_way_in_open_question = false;
   Grasp& grasp = *result.grasp;
   if (options_.pre_grasps && !grasp.penetration.is_any()) {
@@ -373,15 +385,19 @@ void PlannerAttempts::find_way_in(AttemptResult& result) const {
     if (options_.targets.search == TargetSearch::Reach) pre_grasp.open_neutral = true;
     grasp.pre_grasp =
         find_pre_grasp({hand_, fitting_hand_.collision(), object_.query, surroundings_},
-                       grasp.configuration, pre_grasp);
+                       hands::PosedConfiguration{grasp.configuration, result.X_OL}, pre_grasp);
   }
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;
     result.is_accepted = false;
     result.grasp.reset();
-    return;
+    return result;
   }
-  if (result.is_accepted && !grasp.squeeze) add_squeeze(grasp, result);
+  if (result.is_accepted && !grasp.squeeze) {
+    const base::Stopwatch watch(result.timings.pre_grasp_s);
+    grasp.squeeze = squeeze_of(result);
+  }
+  return result;
 }
 
 /// Angle between the palm's direction and the one asked for [rad]; 0 if none is asked for.

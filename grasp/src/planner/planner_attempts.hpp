@@ -20,8 +20,9 @@ struct AttemptResult {
   AttemptOutcome outcome = AttemptOutcome::NoTargets;
   bool is_exhausted = false;  ///< The method had nothing left to try: not an attempt at all.
   std::optional<std::string> target_failure;
-  std::optional<Grasp> grasp;  ///< Where the outcome is Valid or UsableOnly.
-  bool is_accepted = false;    ///< Whether the options accept the grasp.
+  std::optional<Grasp> grasp;               ///< Where the outcome is Valid or UsableOnly.
+  std::vector<hands::RigidTransform> X_OL;  ///< Of the grasp's configuration, if there is a grasp.
+  bool is_accepted = false;                 ///< Whether the options accept the grasp.
   /// The grasp's pre-grasp was not searched for yet, nor perhaps its squeeze; until then it is
   /// assumed to exist.
   bool is_way_in_open_question = false;
@@ -54,16 +55,19 @@ class PlannerAttempts {
   using StartRank = std::tuple<bool, int, bool, double>;
 
   AttemptResult try_start(const GuidedStart& start, std::int64_t number) const;
-  std::optional<AttemptOutcome> close(const GuidedStart& start,
-                                      hands::HandConfiguration& configuration,
-                                      AttemptResult& result) const;
-  std::optional<AttemptOutcome> refine(const std::vector<int>& pads, const TargetContacts* targets,
-                                       hands::HandConfiguration& configuration,
-                                       AttemptResult& result) const;
+  /// How closing or refinement ended.
+  struct Reached {
+    hands::HandConfiguration configuration;  ///< The final one, whether it failed or not.
+    std::optional<AttemptOutcome> failure;
+  };
+
+  Reached close(const GuidedStart& start, AttemptResult& work) const;
+  Reached refine(const hands::HandConfiguration& closed, const std::vector<int>& pads,
+                 const TargetContacts* targets, AttemptResult& work) const;
   std::size_t best_of(const std::vector<AttemptResult>& tried) const;
   std::size_t best_with_way_in(std::vector<AttemptResult>& tried) const;
-  void add_squeeze(Grasp& grasp, AttemptResult& result) const;
-  void find_way_in(AttemptResult& result) const;
+  contact::Squeeze squeeze_of(const AttemptResult& result) const;
+  AttemptResult with_way_in(AttemptResult result) const;
   double angle_from_approach(const hands::HandConfiguration& configuration) const;
   bool are_scores_high(const std::vector<contact::Contact>& contacts) const;
   bool is_accepted(const Grasp& grasp) const;

@@ -4,6 +4,7 @@
 
 #include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/grasp/surroundings.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_collision.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_model.hpp"
@@ -81,7 +82,13 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// distances per pair cannot prove free (links slide along the object with hardly a gap) counts as
 /// not free: the path of a pre-grasp found is free, but a free path may be missed. Links are the
 /// solids of their meshes, poses as `forward_kinematics` rounds them.
-/// @throws InvalidInput for bad options and a grasp outside the hand's limits.
+/// @throws InvalidInput for bad options, a grasp outside the hand's limits, and a number of link
+/// poses that is not the hand's.
+std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene,
+                                       const hands::PosedConfiguration& grasp,
+                                       const PreGraspOptions& options = {});
+
+/// The same for a configuration whose link poses are not known yet.
 std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene,
                                        const hands::HandConfiguration& grasp,
                                        const PreGraspOptions& options = {});
