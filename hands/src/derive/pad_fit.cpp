@@ -73,8 +73,9 @@ std::vector<Vector2d> hull_of(const std::vector<Vector2d>& points) {
   return outline.size() < 3 ? std::vector<Vector2d>{} : outline;
 }
 
-/// Removes the corner whose removal costs least area, until `count` corners are left.
-void simplify(std::vector<Vector2d>& outline, std::size_t count) {
+/// The outline without the corners whose removal costs least area, one after the other, until
+/// `count` are left.
+std::vector<Vector2d> simplified(std::vector<Vector2d> outline, std::size_t count) {
   while (outline.size() > count) {
     std::size_t least = 0;
     double least_area = std::numeric_limits<double>::infinity();
@@ -89,6 +90,7 @@ void simplify(std::vector<Vector2d>& outline, std::size_t count) {
     }
     outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(least));
   }
+  return outline;
 }
 
 bool is_inside(const std::vector<Vector2d>& outline, const Vector2d& point) {
@@ -253,7 +255,7 @@ std::optional<FittedPad> flat_pad(const MeshQuery& link, const RayGrid& grid,
   const double part_area = size * grid.step * grid.step;
   const double least_area = is_most ? 0.0 : 0.5 * kFrontShare * part_area;
   if (outline_S.size() < 3 || !(area_of(outline_S) > least_area)) return std::nullopt;
-  simplify(outline_S, kMaxCorners);
+  outline_S = simplified(std::move(outline_S), kMaxCorners);
   // From the search frame's x and y onto the plane, then into the pad's own axes.
   const auto lifted_L = [&R_LS, &front = plane](const Vector2d& p) -> Vector3d {
     const double z = (front.offset - front.normal.head<2>().dot(p)) / front.normal.z();
@@ -313,7 +315,7 @@ std::optional<FittedPad> bulging_pad(const MeshQuery& link, const std::vector<Me
     if (part[i]) hits_S.push_back(grid.samples[i].point.head<2>());
   }
   std::vector<Vector2d> outline_S = hull_of(hits_S);
-  if (outline_S.size() >= 3) simplify(outline_S, kMaxCorners);
+  if (outline_S.size() >= 3) outline_S = simplified(std::move(outline_S), kMaxCorners);
   if (outline_S.size() < 3 || fill_share(grid, part, outline_S) < kFillShare) {
     outline_S = largest_rectangle(grid, part);
   }

@@ -208,8 +208,9 @@ void follow_first_leaders(const std::string& file, HandModel& model) {
   }
 }
 
-void resolve(const Sidecar& sidecar, const std::string& file, HandModel& model) {
+HandModel resolved(const Sidecar& sidecar, const std::string& file, HandModel model) {
   SidecarResolver(model, sidecar, file).resolve();
+  return model;
 }
 
 }  // namespace graspfit::hands::internal

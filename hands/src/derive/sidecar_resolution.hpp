@@ -17,9 +17,9 @@ void set_couplings(const std::vector<SidecarCoupling>& couplings, const std::str
 /// @throws InvalidInput, prefixed by `file`, if the couplings form a cycle.
 void follow_first_leaders(const std::string& file, HandModel& model);
 
-/// Fingers, pads, palm, closing signs and exclusions of a complete sidecar, put into a model that
-/// has links, joints and couplings. Links that are fixed to each other are excluded besides.
+/// A model of links, joints and couplings with the fingers, pads, palm, closing signs and
+/// exclusions of a complete sidecar. Links that are fixed to each other are excluded besides.
 /// @throws InvalidInput, prefixed by `file`, for names that nothing bears.
-void resolve(const Sidecar& sidecar, const std::string& file, HandModel& model);
+HandModel resolved(const Sidecar& sidecar, const std::string& file, HandModel model);
 
 }  // namespace graspfit::hands::internal

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "description/description_package.hpp"
@@ -93,10 +94,16 @@ TriangleMesh scaled_by(TriangleMesh mesh, const Eigen::Vector3d& scale) {
   return mesh;
 }
 
-/// The surface of one <visual> or <collision> in the link's frame. Primitives are inscribed: their
-/// vertices lie on the round surface. The file of a <mesh> is added to `mesh_files`.
-TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_file,
-                     const std::string& item, std::vector<std::string>& mesh_files) {
+/// One <visual> or <collision> in the link's frame.
+struct PartSurface {
+  TriangleMesh mesh_L;
+  std::optional<std::string> mesh_file;  ///< Of a <mesh>.
+};
+
+/// Primitives are inscribed: their vertices lie on the round surface.
+PartSurface surface(const DescribedGeometry& part, const fs::path& description_file,
+                    const std::string& item) {
+  std::optional<std::string> mesh_file;
   const TriangleMesh mesh_G = std::visit(
       Overloaded{[](const BoxShape& box) { return geometry::box(box.size); },
                  [](const CylinderShape& cylinder) {
@@ -110,17 +117,17 @@ TriangleMesh surface(const DescribedGeometry& part, const fs::path& description_
                  },
                  [](const SphereShape& sphere) { return geometry::ball(sphere.radius, 3); },
                  [&](const LoadedMeshShape& loaded) {
-                   if (!loaded.filename.empty()) mesh_files.push_back(loaded.filename);
+                   if (!loaded.filename.empty()) mesh_file = loaded.filename;
                    return loaded.mesh;
                  },
                  [&](const MeshFileShape& mesh) {
                    const fs::path file = mesh_path(description_file, mesh.filename, item);
                    const fs::path folder = fs::weakly_canonical(description_file).parent_path();
-                   mesh_files.push_back(file.lexically_relative(folder).generic_string());
+                   mesh_file = file.lexically_relative(folder).generic_string();
                    return scaled_by(read_link_mesh(file, item), mesh.scale);
                  }},
       part.shape);
-  return transformed(mesh_G, part.X_LG);
+  return {transformed(mesh_G, part.X_LG), mesh_file};
 }
 
 /// The connected parts of a mesh, where corners with equal coordinates are one; the mesh itself if
@@ -239,15 +246,17 @@ std::string text_of(const ClosingReport& report) {
 
 }  // namespace
 
-void read_link_surface(const DescribedLink& source, const std::filesystem::path& description_file,
-                       Link& link, Findings& findings) {
+LinkSurface read_link_surface(const DescribedLink& source,
+                              const std::filesystem::path& description_file, Findings& findings) {
   const std::vector<DescribedGeometry>& parts =
       source.collision.empty() ? source.visual : source.collision;
   const std::string item = description_file.string() + ": link " + source.name;
+  LinkSurface result;
   std::vector<TriangleMesh> meshes;
   ClosingReport report;
   for (const DescribedGeometry& part : parts) {
-    TriangleMesh mesh = surface(part, description_file, item, link.mesh_files);
+    auto [mesh, mesh_file] = surface(part, description_file, item);
+    if (mesh_file) result.mesh_files.push_back(*mesh_file);
     const geometry::MeshAnalysis analysis = geometry::analyze(mesh);
     if (!analysis.is_closed || !analysis.is_manifold || !analysis.is_outward) {
       try {
@@ -260,7 +269,8 @@ void read_link_surface(const DescribedLink& source, const std::filesystem::path&
     if (!is_known) meshes.push_back(std::move(mesh));  // equal parts are taken once
   }
   if (!report.steps.empty()) findings.note("link " + source.name, text_of(report));
-  link.mesh_L = geometry::concatenated(meshes);
+  result.mesh_L = geometry::concatenated(meshes);
+  return result;
 }
 
 }  // namespace graspfit::hands::internal

@@ -1,15 +1,23 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "description/robot_description.hpp"
-#include "graspfit/hands/hand_model.hpp"
+#include "graspfit/geometry/triangle_mesh.hpp"
 #include "model/findings.hpp"
 
 namespace graspfit::hands::internal {
 
-/// Sets `link`'s closed surface and mesh files: collision geometry, or visual geometry where the
-/// link has none; several parts are concatenated, equal ones taken once.
+/// What a link's geometry is made into.
+struct LinkSurface {
+  geometry::TriangleMesh mesh_L;        ///< Closed.
+  std::vector<std::string> mesh_files;  ///< Read for it, as `Link::mesh_files`.
+};
+
+/// Reads a link's closed surface: collision geometry, or visual geometry where the link has none;
+/// several parts are concatenated, equal ones taken once.
 ///
 /// A part that is open, not manifold or inside out is mended by `geometry::repair_mesh`, holes of
 /// any size filled. Where that fails, each of its connected pieces is mended by itself, and a piece
@@ -19,7 +27,7 @@ namespace graspfit::hands::internal {
 /// hole counts).
 /// @throws IoError, InvalidInput (file, link, mesh) for a mesh that is not there, lies outside the
 /// description's package, or cannot be closed.
-void read_link_surface(const DescribedLink& source, const std::filesystem::path& description_file,
-                       Link& link, Findings& findings);
+LinkSurface read_link_surface(const DescribedLink& source,
+                              const std::filesystem::path& description_file, Findings& findings);
 
 }  // namespace graspfit::hands::internal

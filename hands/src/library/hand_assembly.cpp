@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "derive/derivation.hpp"
@@ -78,8 +79,7 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
     });
   }
   for (const DescribedLink& source : links) {
-    Link aside;  // without a tree meshes are read too, so that missing ones are reported at once
-    Link* link = &aside;
+    Link* link = nullptr;  // without a tree meshes are read too: missing ones are reported at once
     if (sources.tree) {
       const auto found =
           std::find_if(sources.tree->links.begin(), sources.tree->links.end(),
@@ -87,8 +87,14 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
       if (found == sources.tree->links.end()) continue;  // the link is before the palm and left out
       link = &*found;
     }
-    findings.attempt([&] { read_link_surface(source, description_file, *link, findings); },
-                     "link " + source.name);
+    findings.attempt(
+        [&] {
+          LinkSurface surface = read_link_surface(source, description_file, findings);
+          if (!link) return;
+          link->mesh_L = std::move(surface.mesh_L);
+          link->mesh_files = std::move(surface.mesh_files);
+        },
+        "link " + source.name);
   }
   // After faults of the tree there may be limits and couplings that no configuration satisfies.
   if (sources.tree && !findings.has_faults()) {
@@ -125,7 +131,7 @@ std::optional<HandModel> assemble(const HandSources& sources, Findings& findings
       sidecar = parse_sidecar(text, file + " (derived)");
       model.sidecar_sha256 = base::sha256_hex(text);
     }
-    resolve(sidecar, file, model);
+    model = resolved(sidecar, file, std::move(model));
     try {
       validate(model);
     } catch (const InvalidInput& invalid) {
