@@ -80,7 +80,7 @@ class Deriver {
   double reach_of(const Chain& chain) const;
   void chains();
   void given_chains();
-  void complete(Chain& chain) const;
+  Chain chain_of(std::vector<int> bodies) const;
   /// Drops bars of linkages. A chain all of whose joints follow is no finger of its own if another
   /// chain has the same leaders, reaches farther, and touches it beyond their common part in all
   /// sampled configurations.

@@ -45,13 +45,12 @@ void Deriver::chains() {
     }
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       if (!is_end[b]) continue;
-      Chain chain;
+      std::vector<int> bodies;
       for (int up = static_cast<int>(b); up > 0; up = *bodies_[at(up)].parent) {
-        chain.bodies.insert(chain.bodies.begin(), up);
+        bodies.insert(bodies.begin(), up);
       }
-      chains_.push_back(std::move(chain));
+      chains_.push_back(chain_of(std::move(bodies)));
     }
-    for (Chain& chain : chains_) complete(chain);
     drop_linkage_members();
     share_out_trunks();
   }
@@ -65,27 +64,24 @@ void Deriver::chains() {
 void Deriver::given_chains() {
   const std::vector<int> body_of = body_of_links(bodies_, tree_.links.size());
   for (const SidecarFinger& finger : *given_.fingers) {
-    Chain chain;
+    std::vector<int> bodies;
     for (const std::string& name : finger.links) {
       for (std::size_t i = 0; i < tree_.links.size(); ++i) {
         if (tree_.links[i].name != name) continue;
         const int body = body_of[i];
-        if (body > 0 && (chain.bodies.empty() || chain.bodies.back() != body)) {
-          chain.bodies.push_back(body);
-        }
+        if (body > 0 && (bodies.empty() || bodies.back() != body)) bodies.push_back(body);
       }
     }
-    if (chain.bodies.empty()) {
+    if (bodies.empty()) {
       fail("finger " + finger.name + ": none of its links moves: nothing can be derived for it");
     }
-    complete(chain);
-    chains_.push_back(std::move(chain));
+    chains_.push_back(chain_of(std::move(bodies)));
   }
 }
 
-void Deriver::complete(Chain& chain) const {
-  chain.joints.clear();
-  chain.leaders.clear();
+Chain Deriver::chain_of(std::vector<int> bodies) const {
+  Chain chain;
+  chain.bodies = std::move(bodies);
   for (const int body : chain.bodies) {
     const int joint = *bodies_[at(body)].joint;
     chain.joints.push_back(joint);
@@ -95,6 +91,7 @@ void Deriver::complete(Chain& chain) const {
     }
   }
   chain.tip_B = tip_of(bodies_[at(chain.bodies.back())]);
+  return chain;
 }
 
 void Deriver::drop_linkage_members() {
@@ -162,7 +159,7 @@ void Deriver::share_out_trunks() {
   for (const std::size_t c : order) {
     std::erase_if(chains_[c].bodies, [&](int body) { return taken.contains(body); });
     taken.insert(chains_[c].bodies.begin(), chains_[c].bodies.end());
-    complete(chains_[c]);
+    chains_[c] = chain_of(chains_[c].bodies);
   }
 }
 

@@ -89,7 +89,9 @@ class Reader : private XmlSource {
     if (index == 0) fail(root, "no <chain>");
     // Limits of joints with faults say nothing.
     if (!findings_.has_faults()) findings_.attempt([&] { share_dofs(root); });
-    if (lacks_meshes_ && !findings_.has_faults()) borrow_meshes(path_, description_, findings_);
+    if (lacks_meshes_ && !findings_.has_faults()) {
+      description_ = with_borrowed_meshes(path_, description_, findings_);
+    }
     return std::move(description_);
   }
 

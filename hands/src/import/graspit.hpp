@@ -30,7 +30,7 @@ namespace graspfit::hands::internal {
 ///
 /// Meshes are the geometry of the body files (millimeters), where it exists and can be read. Links
 /// without mesh get those of the only URDF beside the file, if its joints are in the same positions
-/// (see `borrow_meshes`). Both are noted. Masses of body files are not read.
+/// (see `with_borrowed_meshes`). Both are noted. Masses of body files are not read.
 /// @throws IoError, InvalidInput prefixed by the file, and the line where that helps.
 RobotDescription parse_graspit(const std::string& text, const std::filesystem::path& file,
                                Findings& findings);

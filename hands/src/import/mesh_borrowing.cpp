@@ -219,7 +219,7 @@ fs::path urdf_in(const fs::path& folder) {
   return found[0];
 }
 
-void borrow(const fs::path& file, RobotDescription& description, Findings& findings) {
+RobotDescription borrowed(const fs::path& file, RobotDescription description, Findings& findings) {
   const fs::path folder = fs::absolute(file).parent_path();
   const fs::path urdf_file = urdf_in(folder);
   Findings strict(Findings::AtFault::Throw);  // suspicious joints of the URDF do not matter
@@ -264,17 +264,20 @@ void borrow(const fs::path& file, RobotDescription& description, Findings& findi
                                              ", whose joints stand in the same places: " + names);
     }
   }
+  return description;
 }
 
 }  // namespace
 
-void borrow_meshes(const fs::path& file, RobotDescription& description, Findings& findings) {
+RobotDescription with_borrowed_meshes(const fs::path& file, const RobotDescription& description,
+                                      Findings& findings) {
   try {
-    borrow(file, description, findings);
+    return borrowed(file, description, findings);
   } catch (const base::Error& error) {
     findings.suspicious("", "link meshes are not there, and none can be taken from a URDF: " +
                                 std::string(error.what()));
   }
+  return description;
 }
 
 }  // namespace graspfit::hands::internal
