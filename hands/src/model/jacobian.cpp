@@ -18,15 +18,14 @@ JointVelocity joint_velocity(const Joint& joint, const RigidTransform& X_OJ,
 Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
                                                         const HandConfiguration& configuration,
                                                         int link, const Eigen::Vector3d& point_L) {
-  if (link < 0 || link >= static_cast<int>(model.links.size())) {
+  if (link < 0 || link >= std::ssize(model.links)) {
     throw base::InvalidInput("hand " + model.name + ": link " + std::to_string(link) + " of " +
                              std::to_string(model.links.size()));
   }
   const std::vector<RigidTransform> X_OL = forward_kinematics(model, configuration);
   const Eigen::Vector3d point_O = X_OL[link] * point_L;
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian =
-      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(
-          6, static_cast<Eigen::Index>(model.joints.size()));
+      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, std::ssize(model.joints));
   for (const int index : joints_to(model, link)) {
     const Joint& joint = model.joints[index];
     const JointVelocity velocity = joint_velocity(joint, X_OL[joint.child_link], point_O);
@@ -37,26 +36,26 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
 
 std::vector<int> independent_joints(const HandModel& model) {
   std::vector<int> joints;
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    if (!model.joints[j].coupling) joints.push_back(static_cast<int>(j));
+  for (int j = 0; j < std::ssize(model.joints); ++j) {
+    if (!model.joints[j].coupling) joints.push_back(j);
   }
   return joints;
 }
 
 Eigen::MatrixXd folded(const HandModel& model, const Eigen::MatrixXd& per_joint) {
-  if (per_joint.cols() != static_cast<Eigen::Index>(model.joints.size())) {
+  if (per_joint.cols() != std::ssize(model.joints)) {
     throw base::InvalidInput("hand " + model.name + ": " + std::to_string(per_joint.cols()) +
                              " columns for " + std::to_string(model.joints.size()) + " joints");
   }
   const std::vector<int> independent = independent_joints(model);
-  Eigen::MatrixXd result(per_joint.rows(), static_cast<Eigen::Index>(independent.size()));
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    auto column = result.col(static_cast<Eigen::Index>(k));
+  Eigen::MatrixXd result(per_joint.rows(), std::ssize(independent));
+  for (int k = 0; k < std::ssize(independent); ++k) {
+    auto column = result.col(k);
     column = per_joint.col(independent[k]);
-    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    for (int j = 0; j < std::ssize(model.joints); ++j) {
       const std::optional<Coupling>& coupling = model.joints[j].coupling;
       if (coupling && coupling->leader == independent[k]) {
-        column += coupling->ratio * per_joint.col(static_cast<Eigen::Index>(j));
+        column += coupling->ratio * per_joint.col(j);
       }
     }
   }
