@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/angle.hpp"
 
 namespace graspfit::grasp::internal {
@@ -136,7 +137,7 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
 HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random& random) const {
   const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
   const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
-  const auto sample = static_cast<std::int32_t>(random.index(palm.size()));
+  const auto sample = base::as_index<std::int32_t>(random.index(palm.size()));
   const Facing pad = facing(palm, sample);
   const Eigen::AngleAxisd roll(random.uniform(-std::numbers::pi, std::numbers::pi),
                                point.inward_normal_O);
@@ -166,9 +167,9 @@ HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
 void HandProposals::set(std::size_t part, std::int32_t sample, std::int32_t patch,
                         HandProposal& proposal) const {
   const hands::PadSamples& samples = grips_.parts()[part].samples;
-  for (std::size_t j = 0; j < samples.joints.size(); ++j) {
-    proposal.configuration.q[samples.joints[j]] = samples.positions(static_cast<Index>(j), sample);
-    proposal.is_fixed[static_cast<std::size_t>(samples.joints[j])] = true;
+  for (int j = 0; j < std::ssize(samples.joints); ++j) {
+    proposal.configuration.q[samples.joints[j]] = samples.positions(j, sample);
+    proposal.is_fixed[samples.joints[j]] = true;
   }
   proposal.patches[part] = patch;
 }
@@ -186,9 +187,8 @@ bool HandProposals::complete(std::size_t part, double most, HandProposal& propos
     for (std::size_t j = samples.joints.size() - samples.num_shared;
          j < samples.joints.size() && fits; ++j) {
       const int joint = samples.joints[j];
-      fits = !proposal.is_fixed[static_cast<std::size_t>(joint)] ||
-             proposal.configuration.q[joint] ==
-                 samples.positions(static_cast<Index>(j), static_cast<Index>(from));
+      fits = !proposal.is_fixed[joint] ||
+             proposal.configuration.q[joint] == samples.positions(j, from);
     }
     if (!fits) continue;
     for (std::size_t number = from; number < from + samples.range_size; ++number) {
@@ -210,7 +210,7 @@ bool HandProposals::complete(std::size_t part, double most, HandProposal& propos
     }
   }
   if (!best) return false;
-  set(part, static_cast<std::int32_t>(*best), best_patch, proposal);
+  set(part, base::as_index<std::int32_t>(*best), best_patch, proposal);
   proposal.largest_cost = std::max(proposal.largest_cost, least);
   return true;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/contact/contact_estimation.hpp"
 #include "graspfit/contact/grasp_balance.hpp"
@@ -30,10 +31,9 @@ constexpr double kFollowingSlack = 1e-9;
 /// Says for each joint whether it is a coupled one that stands where its leader puts it.
 std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
   std::vector<bool> follows(hand.joints.size(), false);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const auto& coupling = hand.joints[j].coupling;
-    follows[j] = coupling && std::abs(q[static_cast<Index>(j)] -
-                                      hands::led_position(*coupling, q)) <= kFollowingSlack;
+    follows[j] = coupling && std::abs(q[j] - hands::led_position(*coupling, q)) <= kFollowingSlack;
   }
   return follows;
 }
@@ -43,15 +43,15 @@ VectorXd joint_forces(const hands::HandModel& hand, const hands::HandConfigurati
                       std::span<const Contact> contacts, const Eigen::Matrix3Xd& forces_O,
                       const std::vector<bool>& follows) {
   const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
-  MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  MatrixXd per_joint = MatrixXd::Zero(1, std::ssize(hand.joints));
+  for (int i = 0; i < std::ssize(contacts); ++i) {
     const hands::RigidTransform& X = X_OL[contacts[i].link];
     const MatrixXd jacobian = hands::point_jacobian(hand, grasp, contacts[i].link,
                                                     geometry::inverted(X) * contacts[i].point_O);
-    per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
+    per_joint += forces_O.col(i).transpose() * jacobian.topRows(3);
   }
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (hand.joints[j].coupling && !follows[j]) per_joint(0, static_cast<Index>(j)) = 0.0;
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
+    if (hand.joints[j].coupling && !follows[j]) per_joint(0, j) = 0.0;
   }
   return hands::folded(hand, per_joint).transpose();
 }
@@ -62,8 +62,8 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
              const std::vector<bool>& follows, VectorXd& q) {
   bool is_clamped = false;
   const std::vector<int> independent = hands::independent_joints(hand);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    const double change = displacement[static_cast<Index>(k)];
+  for (int k = 0; k < std::ssize(independent); ++k) {
+    const double change = displacement[k];
     if (change == 0.0) continue;
     const hands::Joint& joint = hand.joints[independent[k]];
     const double wanted = q[independent[k]] + change;
@@ -72,14 +72,13 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
   }
   // Followers are put where they belong first: the couplings would leave behind a breakaway joint
   // that its leader opens.
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (follows[j]) q[static_cast<Index>(j)] = hands::led_position(*hand.joints[j].coupling, q);
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
+    if (follows[j]) q[j] = hands::led_position(*hand.joints[j].coupling, q);
   }
   hands::apply_couplings(hand, q);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     if (!follows[j]) continue;
-    const double behind =
-        q[static_cast<Index>(j)] - hands::led_position(*hand.joints[j].coupling, q);
+    const double behind = q[j] - hands::led_position(*hand.joints[j].coupling, q);
     is_clamped = is_clamped || std::abs(behind) > kFollowingSlack;
   }
   return is_clamped;
@@ -106,7 +105,7 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
   const std::vector<Contact> touching = touching_contacts(contacts, context.bearing_gap);
   base::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
                 touching.size(), "at least 1");
-  const int num_links = static_cast<int>(hand.links.size());
+  const int num_links = base::as_index<int>(hand.links.size());
   for (const Contact& contact : contacts) {
     base::require(contact.link >= 0 && contact.link < num_links, "squeeze_configuration",
                   "link of a contact", contact.link,
@@ -117,21 +116,21 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandCon
                                                 .least_normal_sum = options.normal_sum,
                                                 .torque_scale = context.torque_scale,
                                                 .evenness = kEvenness});
-  Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
+  Squeeze result{grasp, Eigen::Matrix3Xd::Zero(3, std::ssize(contacts)),
                  balance.residual_norm / options.normal_sum, false, false};
   Index next = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (int i = 0; i < std::ssize(contacts); ++i) {
     const bool bears = !context.bearing_gap || contacts[i].gap <= *context.bearing_gap;
-    if (bears) result.forces_O.col(static_cast<Index>(i)) = balance.forces_O.col(next++);
+    if (bears) result.forces_O.col(i) = balance.forces_O.col(next++);
   }
   result.is_balanced = result.residual <= options.largest_residual;
 
   const std::vector<bool> follows = following_joints(hand, grasp.q);
   VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O, follows);
   const std::vector<int> independent = hands::independent_joints(hand);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
+  for (int k = 0; k < std::ssize(independent); ++k) {
     const bool is_slide = hand.joints[independent[k]].type == hands::JointType::Prismatic;
-    displacement[static_cast<Index>(k)] /= is_slide ? options.slide_stiffness : options.stiffness;
+    displacement[k] /= is_slide ? options.slide_stiffness : options.stiffness;
   }
   result.is_clamped = command(hand, displacement, follows, result.configuration.q);
   return result;
