@@ -76,7 +76,7 @@ Json clip_volume(const hands::ContactPad& pad, double thickness) {
   Json faces = Json::array();
   Json edges = Json::array();
   std::map<std::pair<std::int32_t, std::int32_t>, Eigen::Vector3d> normal_at;
-  for (std::size_t f = 0; f < mesh_C.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh_C.faces); ++f) {
     const geometry::Face& face = mesh_C.faces[f];
     faces.push_back({face[0], face[1], face[2]});
     const Eigen::Vector3d normal = geometry::face_normal(mesh_C, f);

@@ -25,7 +25,7 @@ void validate(const HandScene& scene) {
            ", must be finite and at least 0");
   }
   for (const HandPose& pose : scene.poses) {
-    if (pose.q.size() == static_cast<Eigen::Index>(scene.hand.joints.size())) continue;
+    if (pose.q.size() == std::ssize(scene.hand.joints)) continue;
     refuse("pose " + pose.name + " has " + std::to_string(pose.q.size()) + " joint positions, " +
            scene.hand.name + " has " + std::to_string(scene.hand.joints.size()) + " joints");
   }
@@ -53,11 +53,11 @@ Json views(const hands::HandModel& hand) {
   Eigen::Vector3d thumb = Eigen::Vector3d::Zero();   // its tip, from the palm center
   Eigen::Vector3d others = Eigen::Vector3d::Zero();  // mean of the other fingers' tips
   double num_others = 0.0;
-  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
+  for (int f = 0; f < std::ssize(hand.fingers); ++f) {
     if (!hand.fingers[f].tip_pad) continue;
     const Eigen::Vector3d tip =
         hands::pad_pose(hand, *hand.fingers[f].tip_pad, X_HL).translation() - hand.palm.center_H;
-    if (static_cast<int>(f) == hand.thumb()) {
+    if (f == hand.thumb()) {
       thumb = tip;
     } else {
       others += tip;

@@ -70,7 +70,7 @@ class Frames {
   explicit Frames(const motion::TableScene& scene) : scene_(scene) {}
 
   void add(std::vector<RigidTransform> X_WO, int object, const motion::MotionState& state) {
-    X_WO.at(static_cast<std::size_t>(object)) = state.X_WO;
+    X_WO.at(object) = state.X_WO;
     for (const RigidTransform& X : X_WO) append_pose(X, objects_);
     for (const RigidTransform& X : hands::forward_kinematics(scene_.hand(), state.hand)) {
       append_pose(X, links_);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "hand_data.hpp"
@@ -193,7 +194,7 @@ void validate(const PageInput& input) {
     const grasp::Grasp& grasp = input.grasps[i];
     const std::string name = "grasp " + std::to_string(i + 1);
     const auto require_joints = [&](const std::string& what, const Eigen::VectorXd& q) {
-      if (q.size() == static_cast<Eigen::Index>(hand.joints.size())) return;
+      if (q.size() == std::ssize(hand.joints)) return;
       refuse(what + " has " + std::to_string(q.size()) + " joint positions, " + hand.name +
              " has " + std::to_string(hand.joints.size()) + " joints");
     };
@@ -213,7 +214,7 @@ void validate(const PageInput& input) {
                hand.name + " does not have");
       }
     }
-    const int num_contacts = static_cast<int>(grasp.contacts.size());
+    const int num_contacts = base::as_index<int>(grasp.contacts.size());
     for (const contact::StablePair& pair : grasp.quality.stable_pairs) {
       if (!is_index(pair.first, num_contacts) || !is_index(pair.second, num_contacts)) {
         refuse(name + " has a stable pair of contacts " + std::to_string(pair.first) + " and " +

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "frame_data.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -39,7 +41,7 @@ void validate(const ReplayInput& input) {
   for (std::size_t d = 0; d < input.replays.size(); ++d) {
     if (input.replays[d].empty()) refuse("replay " + std::to_string(d) + " has no frame");
     for (const HoldFrame& frame : input.replays[d]) {
-      if (frame.hand.q.size() == static_cast<Eigen::Index>(num_joints)) continue;
+      if (std::cmp_equal(frame.hand.q.size(), num_joints)) continue;
       refuse("a frame of replay " + std::to_string(d) + " has " +
              std::to_string(frame.hand.q.size()) + " joint positions, " + input.hand.model.name +
              " has " + std::to_string(num_joints) + " joints");
@@ -51,7 +53,7 @@ void validate(const ReplayInput& input) {
 Json pieces_json(const geometry::ConvexDecomposition& shape) {
   TriangleMesh all;
   for (const TriangleMesh& piece : shape.pieces) {
-    const auto first = static_cast<std::int32_t>(all.vertices.size());
+    const auto first = base::as_index<std::int32_t>(all.vertices.size());
     all.vertices.insert(all.vertices.end(), piece.vertices.begin(), piece.vertices.end());
     for (const geometry::Face& face : piece.faces) {
       all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});

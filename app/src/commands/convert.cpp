@@ -10,6 +10,7 @@
 
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/sha256.hpp"
 #include "graspfit/exchange/dexgraspbench.hpp"
@@ -159,7 +160,7 @@ Source import_isaac(const Flags& flags) {
   options.num_contacts = flags.integer("contacts", base::at_least(1));
   if (flags.is_default("contacts") && !flags.has("fingers")) {
     options.num_contacts =
-        std::min(options.num_contacts, static_cast<int>(reading.model.fingers.size()));
+        std::min(options.num_contacts, base::as_index<int>(reading.model.fingers.size()));
   }
   if (flags.has("palm")) options.palm = true;
   warn_of_findings("convert", reading);

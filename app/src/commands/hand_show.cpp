@@ -146,7 +146,7 @@ std::string range_text(const hands::DistanceRange& range) {
 /// Prints what the fingertips reach over all configurations.
 void print_workspace(const HandModel& hand) {
   const hands::HandWorkspace workspace = hands::cached_hand_workspace(hand);
-  const auto thumb = static_cast<std::size_t>(hand.thumb());
+  const int thumb = hand.thumb();
   std::vector<std::vector<std::string>> rows = {
       {"finger", "palm_to_tip_mm", hand.fingers[thumb].name + "_to_tip_mm", "graspable_mm"}};
   for (std::size_t f = 0; f < hand.fingers.size(); ++f) {

@@ -293,8 +293,8 @@ void write_replays(const Request& request, const Bench& bench,
     replay.hand = bench.hand;
     replay.protocol = request.protocol;
     replay.verdict = verdict;
-    for (std::size_t d = 0; d < verdict.directions.size(); ++d) {
-      replay.replays.push_back(test.replay(bench.file.grasps[index], static_cast<int>(d)));
+    for (int d = 0; d < std::ssize(verdict.directions); ++d) {
+      replay.replays.push_back(test.replay(bench.file.grasps[index], d));
     }
     viewer::write_replay_page(folder / (replay_name(index) + ".html"), replay);
     if (!request.gif) continue;

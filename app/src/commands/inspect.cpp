@@ -8,6 +8,7 @@
 
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/shape_diameter.hpp"
@@ -179,13 +180,12 @@ void print_thickness(const geometry::MeshQuery& object) {
   const std::size_t step = (mesh.faces.size() + kMostMeasured - 1) / kMostMeasured;
   std::vector<std::int32_t> faces;
   for (std::size_t face = 0; face < mesh.faces.size(); face += step) {
-    faces.push_back(static_cast<std::int32_t>(face));
+    faces.push_back(base::as_index<std::int32_t>(face));
   }
   const std::vector<double> thickness = geometry::shape_diameter(object, faces).thickness;
   std::vector<std::pair<double, double>> thickness_and_area;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto face = static_cast<std::size_t>(faces[i]);
-    thickness_and_area.emplace_back(thickness[i], geometry::vector_area(mesh, face).norm());
+    thickness_and_area.emplace_back(thickness[i], geometry::vector_area(mesh, faces[i]).norm());
   }
   std::sort(thickness_and_area.begin(), thickness_and_area.end());
   std::string quantiles;
@@ -200,7 +200,7 @@ void print_thickness(const geometry::MeshQuery& object) {
 void print_weak(const geometry::TriangleMesh& mesh, const geometry::WeakRegions& weak) {
   double area = 0.0;
   double weak_area = 0.0;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     const double own = geometry::vector_area(mesh, face).norm();
     area += own;
     if (weak.is_weak[face]) weak_area += own;
@@ -233,7 +233,7 @@ std::vector<float> per_voxel(const grasp::ObjectModel& object, const std::vector
   std::vector<float> result(object.patch_of_voxel.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t voxel = 0; voxel < result.size(); ++voxel) {
     const std::int32_t patch = object.patch_of_voxel[voxel];
-    if (patch >= 0) result[voxel] = static_cast<float>(values.at(static_cast<std::size_t>(patch)));
+    if (patch >= 0) result[voxel] = static_cast<float>(values.at(patch));
   }
   return result;
 }

@@ -9,6 +9,7 @@
 #include "cli/command_line.hpp"
 #include "cli/interrupts.hpp"
 #include "commands/commands.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
@@ -276,7 +277,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   const hands::HandReading reading = load_hand(flags.text("hand"));
   const hands::HandModel& hand = reading.model;
   if (flags.is_default("contacts") && !flags.has("fingers")) {
-    options.num_contacts = std::min(options.num_contacts, static_cast<int>(hand.fingers.size()));
+    options.num_contacts = std::min(options.num_contacts, base::as_index<int>(hand.fingers.size()));
   }
   require_possible(flags, hand, options);
   const int num_threads = num_threads_of(flags);

@@ -210,7 +210,7 @@ void read_score_map_flags(const Flags& flags, PlannerOptions& options) {
 
 PlannerOptions read_planner_flags(const Flags& flags) {
   if (flags.has("fingers") && !flags.is_default("contacts") &&
-      flags.integer("contacts") != static_cast<int>(flags.words("fingers").size())) {
+      flags.integer("contacts") != std::ssize(flags.words("fingers"))) {
     throw UsageError("--contacts " + flags.text("contacts") + " contradicts the " +
                      std::to_string(flags.words("fingers").size()) + " named by --fingers");
   }

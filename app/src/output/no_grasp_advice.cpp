@@ -46,8 +46,7 @@ std::string sizes_text(const geometry::TriangleMesh& object, const hands::HandMo
   for (const int a : parts.fingers) {
     for (const int b : parts.fingers) {
       if (a == b) continue;
-      const hands::DistanceRange& range =
-          distances.tip_to_tip.at(static_cast<std::size_t>(a)).at(static_cast<std::size_t>(b));
+      const hands::DistanceRange& range = distances.tip_to_tip.at(a).at(b);
       nearest = std::min(nearest, range.smallest);
       farthest = std::max(farthest, range.largest);
     }

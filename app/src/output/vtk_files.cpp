@@ -93,8 +93,7 @@ std::string patches_ply(const grasp::ObjectModel& object) {
   std::string faces;
   std::size_t num_vertices = 0;
   for (const geometry::VoxelPiece& piece : pieces) {
-    const auto patch =
-        static_cast<std::size_t>(object.patch_of_voxel.at(static_cast<std::size_t>(piece.voxel)));
+    const std::int32_t patch = object.patch_of_voxel.at(piece.voxel);
     const double score = object.scores.scores.at(patch);
     faces += std::to_string(piece.piece.polygon.size());
     for (const Eigen::Vector3d& corner : piece.piece.polygon) {

@@ -117,7 +117,7 @@ double d_min(const grasp::ObjectModel& object, const grasp::FittingHand& hand,
   const std::vector<geometry::RigidTransform> X_OL =
       hands::forward_kinematics(hand.model(), grasp.configuration);
   float smallest = kEnough;
-  for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
+  for (int link = 0; link < std::ssize(X_OL); ++link) {
     if (hand.samples(link).balls.empty()) continue;
     smallest = std::min(smallest,
                         grasp::smallest_distance(hand, link, X_OL[link], object.distance, kEnough));
@@ -191,7 +191,7 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& fold
   row.set("planner_seed", static_cast<std::int64_t>(options.seed));
   row.set("voxel_size_m", voxel_size);
   row.set("clip_thickness_m", grasp::clip_thickness(options, voxel_size));
-  row.set("is_complete", static_cast<int>(found.size()) >= options.count);
+  row.set("is_complete", std::ssize(found) >= options.count);
   row.set(
       "found_share",
       field(share_of(found.size(), static_cast<std::size_t>(planned.result.statistics.attempts))));

@@ -184,8 +184,7 @@ std::vector<contact::Contact> contacts_in(const hands::HandModel& hand,
                                : hands::pad_contact_point(hand, grasp::pad_for(hand, target), X_OL);
     const geometry::ClosestPoint nearest = object.closest_point(point);
     contacts[i].point_O = nearest.point;
-    contacts[i].inward_normal_O =
-        -geometry::face_normal(object.mesh(), static_cast<std::size_t>(nearest.face));
+    contacts[i].inward_normal_O = -geometry::face_normal(object.mesh(), nearest.face);
   }
   return contacts;
 }

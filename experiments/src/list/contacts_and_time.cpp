@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cells/planning_table.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "list/experiment_list.hpp"
@@ -91,7 +92,7 @@ void fill_timings(const Planned& planned, sweep::ResultRow& row) {
     const auto attempt = static_cast<std::size_t>(grasp.attempt);
     if (attempt >= planned.attempt_cpu_s.size()) continue;
     const double before = attempt == 0 ? 0.0 : planned.attempt_cpu_s[attempt - 1];
-    const int count = std::min(static_cast<int>(grasp.contacts.size()), kContactCounts.back());
+    const int count = std::min(base::as_index<int>(grasp.contacts.size()), kContactCounts.back());
     cpu_s[count].push_back(planned.attempt_cpu_s[attempt] - before);
   }
   for (const int count : kContactCounts) {

@@ -98,8 +98,8 @@ std::vector<sweep::Column> details() {
 std::vector<contact::Contact> contacts_on_pads(const ContactSet& set,
                                                const hands::HandModel& hand) {
   std::vector<contact::Contact> contacts;
-  for (std::size_t i = 0; i < set.contacts.size(); ++i) {
-    if (i >= hand.fingers.size()) {
+  for (int i = 0; i < std::ssize(set.contacts); ++i) {
+    if (i >= std::ssize(hand.fingers)) {
       throw base::InvalidInput("contact_set: hand " + set.hand + " has " +
                                std::to_string(hand.fingers.size()) + " fingers for " +
                                std::to_string(set.contacts.size()) + " contacts");
@@ -114,7 +114,7 @@ std::vector<contact::Contact> contacts_on_pads(const ContactSet& set,
         given.boundary_distance_rel * hands::largest_boundary_distance(hand.pads[pad]);
     contact.link = hand.pads[pad].link;
     contact.pad = pad;
-    contact.finger = static_cast<int>(i);
+    contact.finger = i;
     contact.is_target = true;
     contact.weak = given.weak;
     contacts.push_back(contact);
@@ -141,7 +141,7 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
   result.row.set("regularity", quality.regularity);
   result.row.set("centroid_distance_m", quality.centroid_distance);
   result.row.set("m", quality.m);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (int i = 0; i < std::ssize(contacts); ++i) {
     sweep::ResultRow detail(details());
     detail.set("contact", field(i));
     detail.set("x_m", contacts[i].point_O.x());
@@ -152,10 +152,9 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
     detail.set("strength", quality.terms[i].strength);
     std::string partners;
     for (const contact::StablePair& pair : quality.stable_pairs) {
-      const int self = static_cast<int>(i);
-      if (pair.first != self && pair.second != self) continue;
+      if (pair.first != i && pair.second != i) continue;
       partners += (partners.empty() ? "" : " ") +
-                  std::to_string(pair.first == self ? pair.second : pair.first);
+                  std::to_string(pair.first == i ? pair.second : pair.first);
     }
     detail.set("paired_with", partners);
     result.details.push_back(std::move(detail));

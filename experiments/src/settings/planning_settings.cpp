@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/base/nearest_name.hpp"
+#include "graspfit/base/number_text.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/option_names.hpp"
 #include "settings/planning_setting_list.hpp"
@@ -102,7 +104,7 @@ const Schema& internal::planning_setting_schemas() {
 void require_compatible(const grasp::PlannerOptions& options) {
   const bool has_palm = options.palm.value_or(options.style == grasp::GraspStyle::Power);
   const int num_fingers =
-      options.fingers.empty() ? options.num_contacts : static_cast<int>(options.fingers.size());
+      options.fingers.empty() ? options.num_contacts : base::as_index<int>(options.fingers.size());
   if (num_fingers < 2 && !has_palm) {
     throw sweep::SettingError(
         options.fingers.empty() ? "contacts" : "fingers",

@@ -13,6 +13,7 @@
 #include "decomposition/piece_hull.hpp"
 #include "decomposition/piece_measures.hpp"
 #include "decomposition/solid_part.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -63,7 +64,7 @@ TriangleMesh used_part(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       std::int32_t& to = index[face[k]];
       if (to < 0) {
-        to = static_cast<std::int32_t>(used.vertices.size());
+        to = base::as_index<std::int32_t>(used.vertices.size());
         used.vertices.push_back(mesh.vertices[face[k]]);
       }
       mapped[k] = to;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/random.hpp"
 
@@ -65,7 +66,7 @@ std::vector<Sample> samples_of(const SolidPart& part, base::Random& random) {
         (static_cast<double>(i) + random.uniform()) / static_cast<double>(kNumSamples) * total;
     const auto at =
         std::min(std::upper_bound(areas.begin(), areas.end(), area_drawn) - areas.begin(),
-                 static_cast<std::ptrdiff_t>(areas.size()) - 1);
+                 std::ssize(areas) - 1);
     const auto& t = triangles[at];
     double u = random.uniform();
     double v = random.uniform();
@@ -116,8 +117,8 @@ void add_segments(const std::vector<Sample>& samples, const OutsideDepth& depth,
   const std::size_t first = evidence.obstacles.size();
   std::vector<std::pair<double, std::int32_t>> heavy;
   for (std::size_t i = 0; i < kNumSegments; ++i) {
-    const auto a = static_cast<std::int32_t>(random.index(samples.size()));
-    const auto b = static_cast<std::int32_t>(random.index(samples.size()));
+    const auto a = base::as_index<std::int32_t>(random.index(samples.size()));
+    const auto b = base::as_index<std::int32_t>(random.index(samples.size()));
     double deepest = 0.0;
     for (int step = 1; step <= kNumSteps; ++step) {
       const double s = static_cast<double>(step) / (kNumSteps + 1);
@@ -140,17 +141,18 @@ void add_segments(const std::vector<Sample>& samples, const OutsideDepth& depth,
 void add_hull_faces(const PieceHull& hull, const OutsideDepth& depth, double allowed,
                     Evidence& evidence) {
   const std::size_t first = evidence.obstacles.size();
-  const auto base = static_cast<std::int32_t>(evidence.points.size());
+  const auto first_point = base::as_index<std::int32_t>(evidence.points.size());
   const double spacing = sample_spacing(hull);
   evidence.points.insert(evidence.points.end(), hull.mesh.vertices.begin(),
                          hull.mesh.vertices.end());
-  for (std::size_t f = 0; f < hull.mesh.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(hull.mesh.faces); ++f) {
     const std::array<Vector3d, 3> p = corners(hull.mesh, f);
     const Face& face = hull.mesh.faces[f];
     const double deepest = deepest_on(p, spacing, depth);
     const double weight = excess(deepest, allowed) * vector_area(hull.mesh, f).norm();
     if (!(weight > 0.0)) continue;
-    evidence.obstacles.push_back({{base + face[0], base + face[1], base + face[2]}, weight});
+    evidence.obstacles.push_back(
+        {{first_point + face[0], first_point + face[1], first_point + face[2]}, weight});
   }
   scale_weights(evidence.obstacles, first);
 }
@@ -189,17 +191,17 @@ double separated_weight(const Evidence& evidence, const CutPlane& plane, double 
 
 /// The offset along a direction that separates the largest weight of obstacles, and this weight.
 std::pair<double, double> best_offset(const Evidence& evidence, const Vector3d& direction) {
-  const std::size_t n = evidence.points.size();
+  const auto n = base::as_index<std::int32_t>(evidence.points.size());
   std::vector<std::pair<double, std::int32_t>> order(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    order[i] = {direction.dot(evidence.points[i]), static_cast<std::int32_t>(i)};
+  for (std::int32_t i = 0; i < n; ++i) {
+    order[i] = {direction.dot(evidence.points[i]), i};
   }
   std::sort(order.begin(), order.end());
   std::vector<std::int32_t> rank(n);
-  for (std::size_t i = 0; i < n; ++i) rank[order[i].second] = static_cast<std::int32_t>(i);
+  for (std::int32_t i = 0; i < n; ++i) rank[order[i].second] = i;
   std::vector<double> change(n + 1, 0.0);
   for (const Obstacle& o : evidence.obstacles) {
-    auto low = static_cast<std::int32_t>(n);
+    std::int32_t low = n;
     std::int32_t high = -1;
     for (const std::int32_t end : o.ends) {
       low = std::min(low, rank[end]);
@@ -211,7 +213,7 @@ std::pair<double, double> best_offset(const Evidence& evidence, const Vector3d& 
   double sum = 0.0;
   double best = -1.0;
   double offset = 0.0;
-  for (std::size_t i = 0; i + 1 < n; ++i) {
+  for (std::int32_t i = 0; i + 1 < n; ++i) {
     sum += change[i];
     if (sum > best && order[i + 1].first > order[i].first) {
       best = sum;

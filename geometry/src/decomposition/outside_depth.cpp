@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 // weighted by angle [Bærentzen & Aanæs 2005].
 std::vector<Vector3d> vertex_normals_of(const TriangleMesh& mesh) {
   std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
     const Vector3d normal = face_normal(mesh, f);
     const std::array<Vector3d, 3> p = corners(mesh, f);
     for (int k = 0; k < 3; ++k) {
@@ -45,12 +45,12 @@ OutsideDepth::OutsideDepth(const MeshQuery& solid, int resolution)
     : solid_(solid),
       mesh_(&solid.mesh()),
       lattice_(lattice_around(solid.box(), {.resolution = resolution})),
-      nearest_faces_(static_cast<std::size_t>(lattice_.num_voxels()), -1),
+      nearest_faces_(lattice_.num_voxels(), -1),
       edge_normals_(edge_normals_of(solid.mesh())),
       vertex_normals_(vertex_normals_of(solid.mesh())) {
   face_normals_.reserve(mesh_->faces.size());
   face_corners_.reserve(mesh_->faces.size());
-  for (std::size_t f = 0; f < mesh_->faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh_->faces); ++f) {
     face_normals_.push_back(face_normal(*mesh_, f));
     face_corners_.push_back(corners(*mesh_, f));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/mesh_query.hpp"
 #include "hull/exact_hull.hpp"
 
@@ -66,14 +67,14 @@ PieceHull hull_of(const std::vector<Vector3d>& points, const ExactHull& exact) {
   PieceHull hull;
   std::vector<std::int32_t> index(points.size(), -1);
   for (const std::size_t corner : exact.corners) {
-    index[corner] = static_cast<std::int32_t>(hull.mesh.vertices.size());
+    index[corner] = base::as_index<std::int32_t>(hull.mesh.vertices.size());
     hull.mesh.vertices.push_back(points[corner]);
   }
-  const auto num_faces = static_cast<Eigen::Index>(exact.triangles.size());
+  const auto num_faces = std::ssize(exact.triangles);
   hull.normals.resize(3, num_faces);
   hull.offsets.resize(num_faces);
   for (Eigen::Index f = 0; f < num_faces; ++f) {
-    const auto& [a, b, c] = exact.triangles[static_cast<std::size_t>(f)];
+    const auto& [a, b, c] = exact.triangles[f];
     hull.mesh.faces.push_back({index[a], index[b], index[c]});
     hull.normals.col(f) = accurate_vector_area(points[a], points[b], points[c]).stableNormalized();
     hull.offsets[f] = hull.normals.col(f).dot(points[a]);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "graspfit/base/as_index.hpp"
+
 namespace graspfit::geometry::internal {
 namespace {
 
@@ -18,13 +20,13 @@ class PartBuilder {
 
   void add_point(std::int32_t old) {
     if (index_[old] < 0) {
-      index_[old] = static_cast<std::int32_t>(part.points.size());
+      index_[old] = base::as_index<std::int32_t>(part.points.size());
       part.points.push_back(from_.points[old]);
     }
     part.corners.push_back(index_[old]);
   }
   void add_point(const Vector3d& point) {
-    part.corners.push_back(static_cast<std::int32_t>(part.points.size()));
+    part.corners.push_back(base::as_index<std::int32_t>(part.points.size()));
     part.points.push_back(point);
   }
   void end_polygon(std::int32_t face) {
@@ -32,7 +34,7 @@ class PartBuilder {
       part.corners.resize(part.starts.back());
       return;
     }
-    part.starts.push_back(static_cast<std::int32_t>(part.corners.size()));
+    part.starts.push_back(base::as_index<std::int32_t>(part.corners.size()));
     part.faces.push_back(face);
   }
 
@@ -127,10 +129,10 @@ SolidPart whole_solid(const MeshQuery& solid) {
   SolidPart part;
   part.points = mesh.vertices;
   part.starts.push_back(0);
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
     part.corners.insert(part.corners.end(), mesh.faces[f].begin(), mesh.faces[f].end());
-    part.starts.push_back(static_cast<std::int32_t>(part.corners.size()));
-    part.faces.push_back(static_cast<std::int32_t>(f));
+    part.starts.push_back(base::as_index<std::int32_t>(part.corners.size()));
+    part.faces.push_back(f);
   }
   Eigen::AlignedBox3d box = solid.box();
   const Vector3d margin = Vector3d::Constant(kMarginRel * box.diagonal().norm());

@@ -74,7 +74,7 @@ std::vector<MedialBall> medial_balls(const MeshQuery& object,
                                      const MedialBallOptions& options) {
   options.validate();
   for (const SurfaceSample& sample : samples) {
-    if (sample.face < 0 || static_cast<std::size_t>(sample.face) >= object.mesh().faces.size()) {
+    if (sample.face < 0 || sample.face >= std::ssize(object.mesh().faces)) {
       throw base::InvalidInput("medial_balls: a sample is on face " + std::to_string(sample.face) +
                                " of " + std::to_string(object.mesh().faces.size()));
     }

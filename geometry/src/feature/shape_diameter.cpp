@@ -6,7 +6,9 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/parallel_for.hpp"
@@ -161,7 +163,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
   options.validate();
   const std::size_t num_faces = mesh.mesh().faces.size();
   for (const std::int32_t face : faces) {
-    if (face < 0 || static_cast<std::size_t>(face) >= num_faces) {
+    if (face < 0 || std::cmp_greater_equal(face, num_faces)) {
       throw base::InvalidInput("shape_diameter: face " + std::to_string(face) + " of " +
                                std::to_string(num_faces));
     }
@@ -169,7 +171,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
   const internal::FaceTree& tree = mesh.indexed().tree();
   const std::vector<Vector3d> rays = cone_of_rays(options);
   std::vector<Vector3d> normals(num_faces);
-  for (std::size_t face = 0; face < num_faces; ++face) {
+  for (std::int32_t face = 0; face < std::ssize(normals); ++face) {
     normals[face] = face_normal(mesh.mesh(), face);
   }
   ShapeDiameter result{std::vector<double>(faces.size(), std::numeric_limits<double>::infinity()),
@@ -190,7 +192,7 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
       lengths.push_back(hit.t);
     }
     if (lengths.empty()) return;
-    result.num_hits[i] = static_cast<std::int32_t>(lengths.size());
+    result.num_hits[i] = base::as_index<std::int32_t>(lengths.size());
     result.thickness[i] = trimmed_mean(lengths, options.trim_deviations);
   });
   return result;

@@ -46,7 +46,7 @@ class NearVoxels {
   NearVoxels(const VoxelLattice& lattice, double reach)
       : edge_(base::bounded_integer(std::ceil(reach), 1, lattice.counts.maxCoeff())),
         counts_((lattice.counts.array() + edge_ - 1) / edge_),
-        is_near_(static_cast<std::size_t>(counts_.prod()), 0) {}
+        is_near_(counts_.prod(), 0) {}
 
   void add(const Vector3i& voxel) {
     const Vector3i block = voxel / edge_;
@@ -80,7 +80,7 @@ void take_nearer(const VoxelLattice& lattice, const std::vector<Index>& voxels,
   high = (high.array() + margin).min(lattice.counts.array() - 1);
   VoxelGrid part;
   part.lattice = {lattice.origin, lattice.voxel_size, high - low + Vector3i::Ones()};
-  part.classes.assign(static_cast<std::size_t>(part.lattice.num_voxels()), VoxelClass::Empty);
+  part.classes.assign(part.lattice.num_voxels(), VoxelClass::Empty);
   for (const Index index : centers) {
     const Vector3i voxel = lattice.voxel(index) - low;
     if (part.lattice.contains(voxel)) {
@@ -114,25 +114,24 @@ std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid&
   {
     const SignedDistanceMap map = signed_distance_map(grid);
     VoxelGrid sure{lattice, std::vector<VoxelClass>(grid.classes.size(), VoxelClass::Empty)};
-    for (std::size_t i = 0; i < grid.classes.size(); ++i) {
+    for (Index i = 0; i < std::ssize(grid.classes); ++i) {
       if (grid.classes[i] == VoxelClass::Empty) continue;
       // Surface lies within half a diagonal of each partial voxel's center, and only there.
       const double depth = std::abs(map.values[i]);
       if (grid.classes[i] == VoxelClass::Full && depth - kHalfDiagonal >= in_voxels) {
         sure.classes[i] = VoxelClass::Partial;
       } else if (depth + 2.0 * kHalfDiagonal >= in_voxels) {
-        unsure.push_back(static_cast<Index>(i));
+        unsure.push_back(i);
       }
     }
     result.to_center = signed_distance_map(sure).values;
   }
   result.is_opened.assign(grid.classes.size(), 0);
   std::vector<Index> residue;
-  for (std::size_t i = 0; i < grid.classes.size(); ++i) {
+  for (Index i = 0; i < std::ssize(grid.classes); ++i) {
     if (grid.classes[i] == VoxelClass::Empty) continue;
-    const auto index = static_cast<Index>(i);
-    result.is_opened[i] = result.to_center[i] <= reach(index);
-    if (!result.is_opened[i]) residue.push_back(index);
+    result.is_opened[i] = result.to_center[i] <= reach(i);
+    if (!result.is_opened[i]) residue.push_back(i);
   }
   if (residue.empty()) return result;
 

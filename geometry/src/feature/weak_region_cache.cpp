@@ -18,8 +18,8 @@ std::string to_text(const WeakRegions& result) {
   for (const double thickness : result.thickness) out.number(thickness);
   out.end_line();
   std::vector<std::int32_t> weak;
-  for (std::size_t face = 0; face < result.is_weak.size(); ++face) {
-    if (result.is_weak[face]) weak.push_back(static_cast<std::int32_t>(face));
+  for (std::int32_t face = 0; face < std::ssize(result.is_weak); ++face) {
+    if (result.is_weak[face]) weak.push_back(face);
   }
   out.indices(weak);
   out.number(static_cast<std::int64_t>(result.regions.size()));

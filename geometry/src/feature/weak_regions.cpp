@@ -26,7 +26,7 @@ constexpr int kLeastResolution = 16;               // Enough for any object smal
 constexpr double kFewestVoxelsPerThickness = 2.0;  // Fewer do not resolve a ball.
 
 /// Voxel of the solid in which the middle of a face lies; −1 if there is none near.
-Index voxel_of_face(const TriangleMesh& mesh, std::size_t face, const VoxelGrid& grid) {
+Index voxel_of_face(const TriangleMesh& mesh, std::int32_t face, const VoxelGrid& grid) {
   const auto [a, b, c] = corners(mesh, face);
   const Vector3d middle = (a + b + c) / 3.0;
   const VoxelLattice& lattice = grid.lattice;
@@ -76,9 +76,9 @@ class RegionSearch {
         longest_way_(lattice_, label_) {
     internal::keep_largest_set(lattice_, is_body_);
     std::vector<Index> residue;
-    for (std::size_t i = 0; i < grid.classes.size(); ++i) {
+    for (Index i = 0; i < std::ssize(grid.classes); ++i) {
       if (grid.classes[i] != VoxelClass::Empty && !is_body_[i]) {
-        residue.push_back(static_cast<Index>(i));
+        residue.push_back(i);
       }
     }
     const auto is_residue = [&](Index i) {
@@ -87,11 +87,11 @@ class RegionSearch {
     pieces_ = label_sets(lattice_, residue, is_residue, label_);
     faces_of_.resize(pieces_.size());
     std::vector<std::int32_t> faces;
-    for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
+    for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
       const Index voxel = voxel_of_face(mesh_, face, grid);
       if (voxel < 0 || label_[voxel] < 0) continue;
-      faces_of_[label_[voxel]].emplace_back(static_cast<std::int32_t>(face), voxel);
-      faces.push_back(static_cast<std::int32_t>(face));
+      faces_of_[label_[voxel]].emplace_back(face, voxel);
+      faces.push_back(face);
     }
     const std::vector<double> thickness =
         shape_diameter(object, faces, options.shape_diameter).thickness;
@@ -99,8 +99,8 @@ class RegionSearch {
   }
 
   void run() {
-    for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
-      if (has_thin(faces_of_[piece])) search(static_cast<std::int32_t>(piece));
+    for (std::int32_t piece = 0; piece < std::ssize(pieces_); ++piece) {
+      if (has_thin(faces_of_[piece])) search(piece);
     }
     std::sort(result_.regions.begin(), result_.regions.end(),
               [](const WeakRegion& a, const WeakRegion& b) { return a.faces[0] < b.faces[0]; });
@@ -206,7 +206,7 @@ class RegionSearch {
     };
     if (branch_label_.empty()) branch_label_.assign(label_.size(), -1);
     const auto branches = label_sets(lattice_, beyond, is_beyond, branch_label_);
-    for (std::size_t name = 0; name < branches.size(); ++name) {
+    for (std::int32_t name = 0; name < std::ssize(branches); ++name) {
       std::vector<Index> neck;
       for (const Index voxel : branches[name]) {
         for_each_neighbor(lattice_, voxel, [&](Index neighbor) {
@@ -214,8 +214,7 @@ class RegionSearch {
         });
       }
       const auto is_own = [&](const auto& face) {
-        return branch_label_[face.second] == static_cast<std::int32_t>(name) &&
-               label_[face.second] == piece;
+        return branch_label_[face.second] == name && label_[face.second] == piece;
       };
       Faces own;
       std::copy_if(faces.begin(), faces.end(), std::back_inserter(own), is_own);

@@ -133,8 +133,8 @@ ConvexHull3 convex_hull(std::span<const Vector3d> points, const HullOptions& opt
   std::sort(distinct.begin(), distinct.end());
   const Vector3d mean = mean_of(points, distinct);
   Eigen::Matrix3Xd centered(3, distinct.size());
-  for (std::size_t k = 0; k < distinct.size(); ++k) {
-    centered.col(static_cast<Eigen::Index>(k)) = points[distinct[k]] - mean;
+  for (Eigen::Index k = 0; k < std::ssize(distinct); ++k) {
+    centered.col(k) = points[distinct[k]] - mean;
   }
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(centered, Eigen::ComputeFullU);
   const Eigen::VectorXd& values = svd.singularValues();

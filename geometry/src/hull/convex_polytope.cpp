@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "hull/hull_builder.hpp"
 #include "hull/polytope_data.hpp"
@@ -45,7 +46,9 @@ struct SideValue {
 class ScaledPoint {
  public:
   ScaledPoint(const PolytopeData& data, const Eigen::Ref<const VectorXd>& point)
-      : data_(data), rank_(static_cast<int>(data.axes.size())), is_exact_(data.has_scaled_points) {
+      : data_(data),
+        rank_(base::as_index<int>(data.axes.size())),
+        is_exact_(data.has_scaled_points) {
     for (int j = 0; j < rank_; ++j) {
       const double x = point[data.axes[j]];
       coordinates_[j] = std::ldexp(x, -data.exponents[j]);
@@ -88,7 +91,7 @@ struct ExactSide {
 /// The side of a facet on which a point of the span lies, by integers.
 ExactSide exact_side(const PolytopeData& data, Index facet,
                      const Eigen::Ref<const VectorXd>& point) {
-  const auto rank = static_cast<Index>(data.axes.size());
+  const auto rank = std::ssize(data.axes);
   MatrixXd corners_and_point(rank, rank + 1);
   corners_and_point << data.points(data.axes, data.facets.col(facet)), point(data.axes);
   std::array<int, kMaxDimension> corners;
@@ -127,7 +130,7 @@ ExactSide exact_side(const PolytopeData& data, Index facet,
 
 /// Whether a point lies in the span of a hull of lower rank.
 bool is_in_span(const PolytopeData& data, const Eigen::Ref<const VectorXd>& point) {
-  const auto count = static_cast<int>(data.independent.size());
+  const auto count = base::as_index<int>(data.independent.size());
   MatrixXd spanning(data.dimension(), count + 1);
   spanning << data.points(Eigen::seqN(0, data.dimension()), data.independent), point;
   const IntegerPoints exact(spanning);

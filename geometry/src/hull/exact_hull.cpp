@@ -113,8 +113,8 @@ class SolidHull {
       }
     }
     facet_of_face_.resize(mesh_.number_of_faces());
-    for (std::size_t face = 0; face < facet_of_face_.size(); ++face) {
-      facet_of_face_[face] = sets.root(static_cast<std::int32_t>(face));
+    for (std::int32_t face = 0; face < std::ssize(facet_of_face_); ++face) {
+      facet_of_face_[face] = sets.root(face);
     }
   }
 
@@ -180,7 +180,7 @@ std::vector<std::size_t> hull_in_plane(std::span<const Vector3d> points,
   Indices ring;
   for (const Kernel::Point_2& corner : corners) {
     const auto found = std::lower_bound(given.begin(), given.end(), corner);
-    ring.push_back(order[static_cast<std::size_t>(found - given.begin())]);
+    ring.push_back(order[found - given.begin()]);
   }
   start_at_least(ring, less);
   return ring;

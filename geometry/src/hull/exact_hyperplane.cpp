@@ -180,7 +180,7 @@ BinaryParts parts_of(Digits number, int num_digits) {
 
 IntegerPoints::IntegerPoints(const Eigen::Ref<const Eigen::MatrixXd>& points)
     : dimension_(static_cast<int>(points.rows())),
-      points_(static_cast<std::size_t>(points.cols())),
+      points_(points.cols()),
       minors_(std::size_t{1} << points.rows()) {
   static_assert(std::numeric_limits<long>::digits >= 60, "GMP takes and gives 64-bit numbers");
   std::size_t num_bits = 0;
@@ -290,7 +290,7 @@ void IntegerPoints::narrow_hyperplane(std::span<const int> corners, IntegerHyper
 }
 
 void IntegerPoints::hyperplane(std::span<const int> corners, IntegerHyperplane& result) {
-  assert(static_cast<int>(corners.size()) == dimension_);
+  assert(std::ssize(corners) == dimension_);
   if (is_narrow()) {
     narrow_hyperplane(corners, result);
   } else {

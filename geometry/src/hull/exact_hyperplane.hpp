@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
+
 /// \file
 /// Hyperplanes through points with double coordinates, in integers: coordinates are differences of
 /// multiples of one power of two per axis, so no division and no common divisor is ever needed.
@@ -79,7 +81,7 @@ class IntegerPoints {
   explicit IntegerPoints(const Eigen::Ref<const Eigen::MatrixXd>& points);
 
   int dimension() const { return dimension_; }
-  int size() const { return static_cast<int>(points_.size()); }
+  int size() const { return base::as_index<int>(points_.size()); }
   int scale(int axis) const { return scales_[axis]; }
   const IntegerVector& point(int index) const { return points_[index]; }
 
@@ -125,7 +127,7 @@ class IntegerEchelon {
   /// Adds `row` if it is linearly independent of the rows before; returns whether it is.
   bool add(const IntegerVector& row);
 
-  int rank() const { return static_cast<int>(rows_.size()); }
+  int rank() const { return base::as_index<int>(rows_.size()); }
   /// A column per independent row, such that the rows restricted to these columns are independent.
   const std::vector<int>& columns() const { return columns_; }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "hull/exact_hyperplane.hpp"
 
 /// \file
@@ -70,9 +71,9 @@ class HullBuilder {
   /// rounding unless `filter` is off. `exact`: the same points, times 2^(scale + exponent).
   HullBuilder(const Eigen::MatrixXd& points, const std::array<int, kMaxDimension>& exponents,
               IntegerPoints& exact, bool filter)
-      : exact_(exact), filter_(filter), points_(static_cast<std::size_t>(points.cols())) {
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      for (int j = 0; j < D; ++j) points_[i][j] = points(j, static_cast<Eigen::Index>(i));
+      : exact_(exact), filter_(filter), points_(points.cols()) {
+    for (Eigen::Index i = 0; i < std::ssize(points_); ++i) {
+      for (int j = 0; j < D; ++j) points_[i][j] = points(j, i);
     }
     differences_ = points_;
     double squared_radius = 0.0;
@@ -92,9 +93,9 @@ class HullBuilder {
   bool build(std::span<const int> simplex) {
     if (!start(simplex)) return false;
     // Facets are only ever appended, so one pass sees all that get points.
-    for (std::size_t f = 0; f < simplices_.size(); ++f) {
+    for (int f = 0; f < std::ssize(simplices_); ++f) {
       if (is_alive(f) && first_outside_[f] >= 0) {
-        insert(farthest_outside(f), static_cast<int>(f));
+        insert(farthest_outside(f), f);
       }
     }
     return true;
@@ -131,8 +132,8 @@ class HullBuilder {
   /// Numbers of the facets of the hull, ascending; the others were replaced.
   std::vector<int> facets() const {
     std::vector<int> alive;
-    for (std::size_t f = 0; f < simplices_.size(); ++f) {
-      if (is_alive(f)) alive.push_back(static_cast<int>(f));
+    for (int f = 0; f < std::ssize(simplices_); ++f) {
+      if (is_alive(f)) alive.push_back(f);
     }
     return alive;
   }
@@ -172,7 +173,7 @@ class HullBuilder {
   /// Error bound of a side value per length of the difference of a point from a corner.
   double unit_bound(int facet) const { return planes_[facet].bound / radius_; }
 
-  int num_created() const { return static_cast<int>(simplices_.size()); }
+  int num_created() const { return base::as_index<int>(simplices_.size()); }
 
  private:
   using Point = std::array<double, D>;
@@ -279,7 +280,7 @@ class HullBuilder {
   void refine(int facet) {
     if (exact_index_[facet] >= 0) return;
     if (free_planes_.empty()) {
-      free_planes_.push_back(static_cast<int>(integer_planes_.size()));
+      free_planes_.push_back(base::as_index<int>(integer_planes_.size()));
       integer_planes_.emplace_back();
     }
     exact_index_[facet] = free_planes_.back();
@@ -306,7 +307,7 @@ class HullBuilder {
   }
 
   int add_facet(const HullSimplex<D>& simplex) {
-    const int id = static_cast<int>(simplices_.size());
+    const int id = base::as_index<int>(simplices_.size());
     simplices_.push_back(simplex);
     planes_.emplace_back();
     compute_plane(simplex, planes_.back());
@@ -336,7 +337,7 @@ class HullBuilder {
         compute_plane(simplices_[id], planes_[id]);
       }
     }
-    for (int p = 0; p < static_cast<int>(points_.size()); ++p) {
+    for (int p = 0; p < std::ssize(points_); ++p) {
       if (std::find(simplex.begin(), simplex.end(), p) == simplex.end()) assign(p, 0);
     }
     return true;
@@ -347,7 +348,7 @@ class HullBuilder {
   /// from then on.
   void assign(int point, int first) {
     uncertain_.clear();
-    for (int f = first; f < static_cast<int>(simplices_.size()); ++f) {
+    for (int f = first; f < std::ssize(simplices_); ++f) {
       const double value = side_value(f, point);
       const double bound = planes_[f].bound;
       if (value > bound) return push_outside(f, point);
@@ -389,7 +390,7 @@ class HullBuilder {
   /// `point` over the rim of that set.
   void insert(int point, int seed) {
     ++step_;
-    const int first_new = static_cast<int>(simplices_.size());
+    const int first_new = base::as_index<int>(simplices_.size());
     visible_.assign(1, seed);
     visible_step_[seed] = step_;
     for (std::size_t k = 0; k < visible_.size(); ++k) {
@@ -414,11 +415,11 @@ class HullBuilder {
         rim_.push_back({f, i});
       }
     }
-    for (std::size_t k = 0; k < rim_.size(); ++k) {
+    for (int k = 0; k < std::ssize(rim_); ++k) {
       const auto [f, i] = rim_[k];
       for (int j = 0; j < D; ++j) {
         if (j == i) continue;
-        simplices_[first_new + static_cast<int>(k)].neighbors[j] = across_rim(f, i, j);
+        simplices_[first_new + k].neighbors[j] = across_rim(f, i, j);
       }
     }
     rim_.clear();

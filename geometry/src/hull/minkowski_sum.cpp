@@ -161,7 +161,7 @@ InradiusBounds minkowski_sum_inradius(std::span<const MatrixXd> summands,
       has_grown = add_support(basis.rightCols(1));
       has_grown = add_support(-basis.rightCols(1)) || has_grown;
     } else {
-      std::vector<Index> nearest(static_cast<std::size_t>(hull.num_facets()));
+      std::vector<Index> nearest(hull.num_facets());
       std::iota(nearest.begin(), nearest.end(), Index{0});
       std::sort(nearest.begin(), nearest.end(), [&](Index a, Index b) {
         return hull.offsets()[a] != hull.offsets()[b] ? hull.offsets()[a] < hull.offsets()[b]

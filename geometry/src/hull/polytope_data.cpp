@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "hull/hull_builder.hpp"
 
 namespace graspfit::geometry::internal {
@@ -26,7 +27,7 @@ namespace {
 
 /// Indices of distinct points in lexicographic order, of equal ones the lowest.
 std::vector<int> distinct_points(const MatrixXd& points) {
-  std::vector<int> order(static_cast<std::size_t>(points.cols()));
+  std::vector<int> order(points.cols());
   std::iota(order.begin(), order.end(), 0);
   const auto compare = [&](int a, int b) {
     for (Index j = 0; j < points.rows(); ++j) {
@@ -105,21 +106,21 @@ class SpanHull {
 
   /// The corners of facets that are extreme points; the others lie within larger facets.
   std::vector<int> extreme_corners() {
-    std::vector<std::vector<int>> stars(static_cast<std::size_t>(coordinates_.cols()));
+    std::vector<std::vector<int>> stars(coordinates_.cols());
     for (const int f : facets_) {
       for (const int corner : builder_.simplex(f).corners) stars[corner].push_back(f);
     }
     std::vector<int> extreme;
-    for (std::size_t corner = 0; corner < stars.size(); ++corner) {
+    for (int corner = 0; corner < std::ssize(stars); ++corner) {
       if (!stars[corner].empty() && is_extreme(stars[corner])) {
-        extreme.push_back(static_cast<int>(corner));
+        extreme.push_back(corner);
       }
     }
     return extreme;
   }
 
   int num_corners() const {
-    std::vector<bool> used(static_cast<std::size_t>(coordinates_.cols()), false);
+    std::vector<bool> used(coordinates_.cols(), false);
     for (const int f : facets_) {
       for (const int corner : builder_.simplex(f).corners) used[corner] = true;
     }
@@ -151,10 +152,10 @@ class SpanHull {
     }
     std::sort(sorted.begin(), sorted.end(),
               [](const Sorted& a, const Sorted& b) { return a.corners < b.corners; });
-    std::vector<int> index_of(static_cast<std::size_t>(builder_.num_created()), -1);
-    for (std::size_t i = 0; i < sorted.size(); ++i) index_of[sorted[i].facet] = static_cast<int>(i);
+    std::vector<int> index_of(builder_.num_created(), -1);
+    for (int i = 0; i < std::ssize(sorted); ++i) index_of[sorted[i].facet] = i;
 
-    const auto count = static_cast<Index>(sorted.size());
+    const auto count = std::ssize(sorted);
     data.facets.resize(D, count);
     data.neighbors.resize(D, count);
     data.gradients.resize(D, count);
@@ -246,7 +247,7 @@ bool build_facets(std::vector<int> chosen, PolytopeData& data) {
   std::unique_ptr<SpanHull<D>> hull = built_hull<D>(data, chosen);
   if (!hull) return false;
   std::vector<int> extreme = hull->extreme_corners();
-  const bool is_tight = static_cast<int>(extreme.size()) == hull->num_corners();
+  const bool is_tight = std::ssize(extreme) == hull->num_corners();
   for (int& i : extreme) i = chosen[i];
   if (!is_tight) {
     chosen = extreme;
@@ -302,7 +303,7 @@ bool build_in_axes(const std::vector<int>& chosen, PolytopeData& data) {
 /// Computes what is measured in the space rather than on `axes`: normals, distances, the volume in
 /// the span.
 void measure_in_space(PolytopeData& data) {
-  const auto rank = static_cast<Index>(data.axes.size());
+  const auto rank = std::ssize(data.axes);
   const bool is_full = rank == data.dimension();
   if (is_full) {
     data.directions = MatrixXd::Identity(rank, rank);
@@ -355,13 +356,13 @@ PolytopeData polytope_data(const Eigen::Ref<const MatrixXd>& points) {
     data.vertices = chosen;
     data.independent = chosen;
   } else if (chosen.size() > 1) {
-    data.axes.resize(static_cast<std::size_t>(points.rows()));
+    data.axes.resize(points.rows());
     std::iota(data.axes.begin(), data.axes.end(), 0);
     if (!build_in_axes(chosen, data)) {
       data.axes = span_of(data.points, data.axes, chosen).axes;
       build_in_axes(chosen, data);
     }
-    data.rank = static_cast<int>(data.axes.size());
+    data.rank = base::as_index<int>(data.axes.size());
     measure_in_space(data);
   }
   return data;

@@ -1,6 +1,7 @@
 #include "mesh/input_check.hpp"
 
 #include <string>
+#include <utility>
 
 #include "graspfit/base/errors.hpp"
 
@@ -19,7 +20,7 @@ void require_indices(const TriangleMesh& mesh, const char* who) {
   const std::size_t count = mesh.vertices.size();
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     for (const std::int32_t vertex : mesh.faces[face]) {
-      if (vertex >= 0 && static_cast<std::size_t>(vertex) < count) continue;
+      if (vertex >= 0 && std::cmp_less(vertex, count)) continue;
       throw base::InvalidInput(std::string(who) + ": face " + std::to_string(face) +
                                " has vertex " + std::to_string(vertex) + " of " +
                                std::to_string(count));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -22,7 +23,7 @@ class AreaSampler {
       : mesh_(mesh), seed_(seed) {
     double sum = 0.0;
     area_below_.reserve(mesh.faces.size());
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
       sum += vector_area(mesh, face).norm();
       area_below_.push_back(sum);
     }
@@ -41,18 +42,19 @@ class AreaSampler {
     // without area.
     const double area_drawn = random.uniform() * area();
     const auto found = std::upper_bound(area_below_.begin(), area_below_.end(), area_drawn);
-    const auto face = std::min<std::ptrdiff_t>(found - area_below_.begin(), last_with_area());
+    const auto face = base::as_index<std::int32_t>(
+        std::min<std::ptrdiff_t>(found - area_below_.begin(), last_with_area()));
     // The root turns a uniform number into one whose density grows with the width of the triangle
     // [Osada et al. 2002].
     const double across = std::sqrt(random.uniform());
     const double along = random.uniform();
     SurfaceSample sample;
-    sample.face = static_cast<std::int32_t>(face);
+    sample.face = face;
     sample.barycentric = {1.0 - across, across * (1.0 - along), across * along};
-    const auto [a, b, c] = corners(mesh_, static_cast<std::size_t>(face));
+    const auto [a, b, c] = corners(mesh_, face);
     sample.point =
         sample.barycentric[0] * a + sample.barycentric[1] * b + sample.barycentric[2] * c;
-    sample.normal = face_normal(mesh_, static_cast<std::size_t>(face));
+    sample.normal = face_normal(mesh_, face);
     return sample;
   }
 

@@ -3,21 +3,22 @@
 #include <cmath>
 #include <string>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 
 namespace graspfit::geometry {
 
-std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, std::size_t face) {
+std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, std::int32_t face) {
   const Face& f = mesh.faces[face];
   return {mesh.vertices[f[0]], mesh.vertices[f[1]], mesh.vertices[f[2]]};
 }
 
-Eigen::Vector3d vector_area(const TriangleMesh& mesh, std::size_t face) {
+Eigen::Vector3d vector_area(const TriangleMesh& mesh, std::int32_t face) {
   const auto [a, b, c] = corners(mesh, face);
   return 0.5 * (b - a).cross(c - a);
 }
 
-Eigen::Vector3d face_normal(const TriangleMesh& mesh, std::size_t face) {
+Eigen::Vector3d face_normal(const TriangleMesh& mesh, std::int32_t face) {
   return vector_area(mesh, face).stableNormalized();
 }
 
@@ -33,7 +34,7 @@ double longest_extent(const TriangleMesh& mesh) {
 
 double surface_area(const TriangleMesh& mesh) {
   double area = 0.0;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     area += vector_area(mesh, face).norm();
   }
   return area;
@@ -57,7 +58,7 @@ TriangleMesh scaled(const TriangleMesh& mesh, double factor) {
 TriangleMesh concatenated(const std::vector<TriangleMesh>& meshes) {
   TriangleMesh result;
   for (const TriangleMesh& mesh : meshes) {
-    const auto first = static_cast<std::int32_t>(result.vertices.size());
+    const auto first = base::as_index<std::int32_t>(result.vertices.size());
     result.vertices.insert(result.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     for (const Face& f : mesh.faces) {
       result.faces.push_back({f[0] + first, f[1] + first, f[2] + first});

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
+
+#include "graspfit/base/as_index.hpp"
 
 namespace graspfit::geometry::internal {
 namespace {
@@ -31,7 +34,7 @@ std::vector<std::int32_t> weld_equal(std::vector<Eigen::Vector3d>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Eigen::Vector3d p = vertices[i].array() + 0.0;
     const auto [entry, is_new] =
-        seen.try_emplace({p[0], p[1], p[2]}, static_cast<std::int32_t>(kept));
+        seen.try_emplace({p[0], p[1], p[2]}, base::as_index<std::int32_t>(kept));
     if (is_new) vertices[kept++] = p;
     target[i] = entry->second;
   }
@@ -64,7 +67,7 @@ std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, doub
     for (int axis = 0; axis < 3; ++axis) {
       cell[axis] = static_cast<std::int64_t>(std::floor((p[axis] - origin[axis]) / cell_size));
     }
-    auto first = static_cast<std::int32_t>(kept);
+    auto first = base::as_index<std::int32_t>(kept);
     for (int neighbor = 0; neighbor < 27; ++neighbor) {
       const auto found = kept_in_cell.find(
           {cell[0] + neighbor % 3 - 1, cell[1] + neighbor / 3 % 3 - 1, cell[2] + neighbor / 9 - 1});
@@ -76,7 +79,7 @@ std::vector<std::int32_t> weld_near(std::vector<Eigen::Vector3d>& vertices, doub
       }
     }
     target[i] = first;
-    if (first < static_cast<std::int32_t>(kept)) continue;
+    if (std::cmp_less(first, kept)) continue;
     kept_in_cell[cell].push_back(first);
     vertices[kept++] = p;
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh_io/byte_order.hpp"
 #include "mesh_io/mesh_formats.hpp"
@@ -219,7 +220,7 @@ PolygonSoup parse_text_stl(std::string_view content) {
       const double x = text.coordinate();
       const double y = text.coordinate();
       const double z = text.coordinate();
-      soup.corners.push_back(static_cast<std::int32_t>(soup.vertices.size()));
+      soup.corners.push_back(base::as_index<std::int32_t>(soup.vertices.size()));
       soup.vertices.emplace_back(x, y, z);
       ++in_facet;
     } else if (keyword == "outer") {
@@ -358,7 +359,7 @@ PolygonSoup parse_stl(std::string_view content) {
       for (int axis = 0; axis < 3; ++axis) {
         point[axis] = decoded<float>(at + 12 * corner + 4 * axis, true);
       }
-      soup.corners.push_back(static_cast<std::int32_t>(soup.vertices.size()));
+      soup.corners.push_back(base::as_index<std::int32_t>(soup.vertices.size()));
       soup.add_vertex(point);
     }
   }
@@ -389,7 +390,7 @@ std::string format_stl(const TriangleMesh& mesh) {
       append_little_endian(out, static_cast<float>(point[axis]));
     }
   };
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     append_point(face_normal(mesh, face));
     for (const Eigen::Vector3d& corner : corners(mesh, face)) append_point(corner);
     append_little_endian(out, std::uint16_t{0});

@@ -39,8 +39,7 @@ void add(const aiMesh& mesh, const Eigen::Matrix4d& X, PolygonSoup& soup) {
       soup.corners.push_back(static_cast<std::int32_t>(first + face.mIndices[k]));
     }
     if (is_mirrored) {
-      std::reverse(soup.corners.begin() + static_cast<std::ptrdiff_t>(soup.polygon_begin.back()),
-                   soup.corners.end());
+      std::reverse(soup.corners.begin() + soup.polygon_begin.back(), soup.corners.end());
     }
   }
 }

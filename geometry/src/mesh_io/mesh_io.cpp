@@ -86,7 +86,7 @@ void triangulate(const std::vector<Eigen::Vector3d>& vertices,
     if (ear == rest.size()) break;  // Not a simple polygon: whatever triangles, the edges match.
     const std::size_t n = rest.size();
     faces.push_back({rest[ear - 1], rest[ear], rest[(ear + 1) % n]});
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+    rest.erase(rest.begin() + ear);
   }
   for (std::size_t i = 2; i < rest.size(); ++i) faces.push_back({rest[0], rest[i - 1], rest[i]});
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
+
 namespace graspfit::geometry::internal {
 namespace {
 
@@ -42,17 +44,17 @@ class Builder {
   Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes)
       : mesh_(mesh), nodes_(nodes) {
     items_.reserve(mesh.faces.size());
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+    for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
       const auto [a, b, c] = corners(mesh, face);
       Item item;
       item.lower = a.cwiseMin(b).cwiseMin(c);
       item.upper = a.cwiseMax(b).cwiseMax(c);
       item.middle = item.lower + item.upper;
-      item.face = static_cast<std::int32_t>(face);
+      item.face = face;
       items_.push_back(item);
     }
     nodes_.reserve(items_.size());
-    build(0, static_cast<std::int32_t>(items_.size()), 0);
+    build(0, base::as_index<std::int32_t>(items_.size()), 0);
   }
 
   const std::vector<Item>& items() const { return items_; }
@@ -75,7 +77,7 @@ class Builder {
       nodes_[index].count = end - begin;
       Eigen::Vector3d normals = Eigen::Vector3d::Zero();
       for (std::int32_t i = begin; i < end; ++i) {
-        const auto [a, b, c] = corners(mesh_, static_cast<std::size_t>(items_[i].face));
+        const auto [a, b, c] = corners(mesh_, items_[i].face);
         normals += (b - a).cross(c - a);
       }
       set_slab(index, begin, end, normals);
@@ -83,7 +85,7 @@ class Builder {
     }
     const std::int32_t middle = split(begin, end, middles, depth);
     Eigen::Vector3d normals = build(begin, middle, depth + 1);
-    nodes_[index].first = static_cast<std::int32_t>(nodes_.size());
+    nodes_[index].first = base::as_index<std::int32_t>(nodes_.size());
     normals += build(middle, end, depth + 1);
     set_slab(index, begin, end, normals);
     return normals;
@@ -98,8 +100,7 @@ class Builder {
     node.low = std::numeric_limits<double>::infinity();
     node.high = -std::numeric_limits<double>::infinity();
     for (std::int32_t i = begin; i < end; ++i) {
-      for (const Eigen::Vector3d& corner :
-           corners(mesh_, static_cast<std::size_t>(items_[i].face))) {
+      for (const Eigen::Vector3d& corner : corners(mesh_, items_[i].face)) {
         const double height = node.normal.dot(corner);
         node.low = std::min(node.low, height);
         node.high = std::max(node.high, height);

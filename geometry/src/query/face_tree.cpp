@@ -3,8 +3,8 @@
 namespace graspfit::geometry::internal {
 
 FaceTree::FaceTree(const TriangleMesh& mesh) {
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    tree_.insert(FacePrimitive({corners(mesh, face), static_cast<std::int32_t>(face)}));
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
+    tree_.insert(FacePrimitive({corners(mesh, face), face}));
   }
   // At once, not at the first query, which may come from several threads.
   tree_.build();

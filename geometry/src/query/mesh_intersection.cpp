@@ -268,7 +268,7 @@ class DeepestPoint {
     if (radius + distance <= depth) return;
     // No point is farther from the surface than from the face nearest to the center, and the
     // distance to this face, which is convex, is largest at a corner.
-    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(closest.face));
+    const Corners face = geometry::corners(solid_.mesh(), closest.face);
     double to_face = 0.0;
     for (const Vector3d& corner : corners) {
       to_face = std::max(to_face, (corner - internal::closest_on_triangle(corner, face)).norm());
@@ -336,7 +336,7 @@ class DeepestPoint {
   /// whereas quarters would have to become as small as the tolerance all along the edge. False if
   /// no such cut applies.
   bool split_along_face(const Item& item) {
-    const Corners face = geometry::corners(solid_.mesh(), static_cast<std::size_t>(item.face));
+    const Corners face = geometry::corners(solid_.mesh(), item.face);
     const Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]).normalized();
     for (const Vector3d& corner : item.corners) {
       // Also refuses faces without a normal.

@@ -10,6 +10,7 @@
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -32,7 +33,7 @@ std::vector<std::int32_t> one_vertex_per_part(const TriangleMesh& mesh) {
     }
   }
   std::vector<std::int32_t> result;
-  for (std::int32_t v = 0; v < static_cast<std::int32_t>(is_used.size()); ++v) {
+  for (std::int32_t v = 0; v < std::ssize(is_used); ++v) {
     if (is_used[v] && sets.root(v) == v) result.push_back(v);
   }
   return result;
@@ -246,7 +247,7 @@ ClosestPoint nearest_point(const internal::IndexedMesh& indexed, const Eigen::Ve
       best = {candidate.point, squared, face, candidate.barycentric};
     }
   };
-  if (first) offer(corners(indexed.mesh, static_cast<std::size_t>(*first)), *first);
+  if (first) offer(corners(indexed.mesh, *first), *first);
   indexed.tree().traverse_by_bound(
       [&](const Eigen::AlignedBox3d& box) { return box.squaredExteriorDistance(point); },
       // Each coordinate of a point in its box is at least as far as the box, and so are rounded
@@ -284,7 +285,7 @@ ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point) const {
 }
 
 ClosestPoint MeshQuery::closest_point(const Eigen::Vector3d& point, std::int32_t first) const {
-  const auto num_faces = static_cast<std::int32_t>(mesh().faces.size());
+  const auto num_faces = base::as_index<std::int32_t>(mesh().faces.size());
   base::require(first >= 0 && first < num_faces, "MeshQuery::closest_point", "first", first,
                 ">= 0 and less than the number of faces");
   return nearest_point(*indexed_, point, first);

@@ -51,7 +51,7 @@ class Search {
     for (const Vector3d& corner : corners) radius = std::max(radius, (corner - center).norm());
     double bound = distance + radius;
     if (bound <= found_.lower) return;
-    const Corners face = geometry::corners(surface_.mesh(), static_cast<std::size_t>(closest.face));
+    const Corners face = geometry::corners(surface_.mesh(), closest.face);
     double to_face = 0.0;
     for (const Vector3d& corner : corners) {
       to_face = std::max(to_face, (corner - closest_on_triangle(corner, face)).norm());

@@ -23,7 +23,7 @@ Vector3d normal_of(const Corners& triangle) {
       edges.begin(), edges.end(),
       [](const Vector3d& e, const Vector3d& f) { return e.squaredNorm() < f.squaredNorm(); });
   // From the end of the longest edge on to the corner opposite to it.
-  const Vector3d& next = edges[static_cast<std::size_t>(longest - edges.begin() + 1) % 3];
+  const Vector3d& next = edges[(longest - edges.begin() + 1) % 3];
   return longest->cross(next - next.dot(*longest) / longest->squaredNorm() * *longest);
 }
 

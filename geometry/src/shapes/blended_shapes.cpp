@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/units.hpp"
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "shapes/implicit_surface.hpp"
@@ -427,7 +428,7 @@ TriangleMesh table(const TableDimensions& d) {
   const auto vertex = [&](const Eigen::Vector3i& p) {
     std::int32_t& i = index[p[0] + 6 * (p[1] + 6 * p[2])];
     if (i < 0) {
-      i = static_cast<std::int32_t>(mesh.vertices.size());
+      i = base::as_index<std::int32_t>(mesh.vertices.size());
       mesh.vertices.emplace_back(x[p[0]], y[p[1]], z[p[2]]);
     }
     return i;

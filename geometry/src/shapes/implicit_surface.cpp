@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
@@ -174,7 +175,7 @@ QuadMesh surface_net(const Lattice& lattice) {
         ++crossings;
       }
     }
-    vertex_of[lattice.index(cell)] = static_cast<std::int32_t>(net.vertices.size());
+    vertex_of[lattice.index(cell)] = base::as_index<std::int32_t>(net.vertices.size());
     net.vertices.push_back(sum / crossings);
   });
   // The four cells around a crossed edge, counter-clockwise seen from the edge's high end.
@@ -334,9 +335,8 @@ class Flipper {
     std::vector<std::array<std::int32_t, 3>> edges;  // low vertex, high vertex, half-edge
     edges.reserve(twin_.size());
     valence_.assign(mesh.vertices.size(), 0);
-    for (std::size_t h = 0; h < twin_.size(); ++h) {
-      edges.push_back(
-          {std::min(from(h), to(h)), std::max(from(h), to(h)), static_cast<std::int32_t>(h)});
+    for (std::int32_t h = 0; h < std::ssize(twin_); ++h) {
+      edges.push_back({std::min(from(h), to(h)), std::max(from(h), to(h)), h});
       ++valence_[from(h)];
     }
     std::sort(edges.begin(), edges.end());
@@ -465,7 +465,7 @@ TriangleMesh polygonize(const ImplicitSolid& solid, double edge_length) {
         surface.projected(mesh.vertices[i]).cwiseMax(solid.box.min()).cwiseMin(solid.box.max());
   }
   Flipper(mesh).run();
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
     const auto [a, b, c] = corners(mesh, f);
     const Vector3d normal = (b - a).cross(c - a);
     for (const Vector3d& p : {a, b, c}) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "shapes/shape_limits.hpp"
@@ -37,7 +38,7 @@ TriangleMesh ball(double radius, int subdivisions) {
     const auto midpoint = [&](std::int32_t a, std::int32_t b) {
       const auto [entry, is_new] = midpoints.try_emplace(std::minmax(a, b), 0);
       if (is_new) {
-        entry->second = static_cast<std::int32_t>(mesh.vertices.size());
+        entry->second = base::as_index<std::int32_t>(mesh.vertices.size());
         mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]).normalized());
       }
       return entry->second;
@@ -147,7 +148,7 @@ TriangleMesh solid_of_revolution(const std::vector<Eigen::Vector2d>& profile, in
 
   // Rings of `segments` vertices between the two poles; z ascending winds the faces outward.
   TriangleMesh mesh;
-  const auto rings = static_cast<std::int32_t>(profile.size()) - 2;
+  const auto rings = base::as_index<std::int32_t>(profile.size()) - 2;
   mesh.vertices.emplace_back(0.0, 0.0, profile.front()[1]);
   for (std::int32_t ring = 0; ring < rings; ++ring) {
     const Eigen::Vector2d& p = profile[ring + 1];
@@ -156,7 +157,7 @@ TriangleMesh solid_of_revolution(const std::vector<Eigen::Vector2d>& profile, in
       mesh.vertices.emplace_back(p[0] * c, p[0] * s, p[1]);
     }
   }
-  const auto last = static_cast<std::int32_t>(mesh.vertices.size());
+  const auto last = base::as_index<std::int32_t>(mesh.vertices.size());
   mesh.vertices.emplace_back(0.0, 0.0, profile.back()[1]);
   const auto at = [&](std::int32_t ring, int i) { return 1 + ring * segments + i % segments; };
   for (int i = 0; i < segments; ++i) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 
@@ -83,7 +84,7 @@ std::vector<Vector2d> rounded_profile(const char* shape, const std::vector<Profi
 
 TriangleMesh turned_surface(const std::vector<Vector2d>& profile, int segments,
                             double edge_length) {
-  const auto rings = static_cast<std::int32_t>(profile.size()) - 2;
+  const auto rings = base::as_index<std::int32_t>(profile.size()) - 2;
   // How often the number of vertices of each ring is halved: while edges stay below 1.4 edge
   // lengths, so that they end between 0.7 and 1.4, and at most once more than for the neighboring
   // rings.
@@ -106,14 +107,14 @@ TriangleMesh turned_surface(const std::vector<Vector2d>& profile, int segments,
   std::vector<std::int32_t> first(rings);
   mesh.vertices.emplace_back(0.0, 0.0, profile.front()[1]);
   for (std::int32_t ring = 0; ring < rings; ++ring) {
-    first[ring] = static_cast<std::int32_t>(mesh.vertices.size());
+    first[ring] = base::as_index<std::int32_t>(mesh.vertices.size());
     const Vector2d& p = profile[ring + 1];
     for (int i = 0; i < segments; i += 1 << halvings[ring]) {
       const auto [c, s] = turn(i, segments);
       mesh.vertices.emplace_back(p[0] * c, p[0] * s, p[1]);
     }
   }
-  const auto last = static_cast<std::int32_t>(mesh.vertices.size());
+  const auto last = base::as_index<std::int32_t>(mesh.vertices.size());
   mesh.vertices.emplace_back(0.0, 0.0, profile.back()[1]);
   const auto at = [&](std::int32_t ring, int i) {
     return first[ring] + (i % segments >> halvings[ring]);

@@ -40,7 +40,7 @@ class WrapLimit : public CGAL::Alpha_wraps_3::internal::Wrapping_default_visitor
 };
 
 bool has_area(const TriangleMesh& mesh) {
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     if (!is_degenerate(mesh, face)) return true;
   }
   return false;

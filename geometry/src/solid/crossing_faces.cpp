@@ -107,13 +107,13 @@ std::vector<std::pair<std::int32_t, std::int32_t>> crossing_faces(
   using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::int32_t>;
   std::vector<Box> boxes;
   boxes.reserve(mesh.faces.size());
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     if (is_degenerate(mesh, face)) continue;
     const auto [a, b, c] = corners(mesh, face);
     const Vector3d lower = a.cwiseMin(b).cwiseMin(c);
     const Vector3d upper = a.cwiseMax(b).cwiseMax(c);
     boxes.emplace_back(CGAL::Bbox_3(lower[0], lower[1], lower[2], upper[0], upper[1], upper[2]),
-                       static_cast<std::int32_t>(face));
+                       face);
   }
   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
   const PairTest do_cross(mesh);

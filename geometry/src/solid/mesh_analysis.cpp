@@ -35,9 +35,9 @@ std::size_t count_doubled(const TriangleMesh& mesh, const std::vector<FaceSide>&
       candidates.push_back(around[i].second);
     }
   });
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     if (internal::has_repeated_vertex(mesh.faces[face])) {
-      candidates.push_back(static_cast<std::int32_t>(face));
+      candidates.push_back(face);
     }
   }
   std::sort(candidates.begin(), candidates.end());
@@ -62,9 +62,9 @@ bool has_pinched_vertex(const TriangleMesh& mesh, const std::vector<FaceSide>& s
     }
   });
   std::vector<std::int32_t> fan_of(mesh.vertices.size(), -1);
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     for (int k = 0; k < 3; ++k) {
-      const std::int32_t fan = fans.root(static_cast<std::int32_t>(3 * face) + k);
+      const std::int32_t fan = fans.root(3 * face + k);
       std::int32_t& known = fan_of[mesh.faces[face][k]];
       if (known >= 0 && known != fan) return true;
       known = fan;
@@ -111,7 +111,7 @@ MeshAnalysis analyze(const TriangleMesh& mesh, const MeshAnalysisOptions& option
   analysis.box = bounding_box(mesh);
 
   analysis.num_unused_vertices = mesh.vertices.size() - used_vertices(mesh).size();
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     if (internal::is_degenerate(mesh, face)) ++analysis.num_degenerate_faces;
   }
 

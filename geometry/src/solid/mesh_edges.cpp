@@ -62,17 +62,17 @@ std::vector<double> volumes_of_parts(const TriangleMesh& mesh,
 std::vector<FaceSide> sorted_sides(const TriangleMesh& mesh) {
   std::vector<std::int32_t> begin(mesh.vertices.size() + 1, 0);
   const auto for_each_side = [&mesh](auto visit) {
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
       const Face& face = mesh.faces[f];
       if (has_repeated_vertex(face)) continue;
       for (std::int32_t k = 0; k < 3; ++k) {
-        visit(FaceSide{face[k], face[k == 2 ? 0 : k + 1], static_cast<std::int32_t>(f), k});
+        visit(FaceSide{face[k], face[k == 2 ? 0 : k + 1], f, k});
       }
     }
   };
   for_each_side([&begin](const FaceSide& side) { ++begin[side.low() + 1]; });
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) begin[v + 1] += begin[v];
-  std::vector<FaceSide> sides(static_cast<std::size_t>(begin.back()));
+  std::vector<FaceSide> sides(begin.back());
   std::vector<std::int32_t> next(begin.begin(), begin.end() - 1);
   for_each_side([&](const FaceSide& side) { sides[next[side.low()]++] = side; });
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -99,7 +99,7 @@ bool bounds_solid(const TriangleMesh& mesh) {
   return is_even;
 }
 
-bool is_degenerate(const TriangleMesh& mesh, std::size_t face) {
+bool is_degenerate(const TriangleMesh& mesh, std::int32_t face) {
   const auto [a, b, c] = corners(mesh, face);
   return are_collinear(a, b, c);
 }
@@ -112,9 +112,8 @@ std::vector<std::int32_t> inside_out_parts(const TriangleMesh& mesh,
     return is_part_closed[part] && volumes[part] < 0.0;
   };
   std::vector<std::int32_t> result;
-  for (std::size_t part = 0; part < is_part_closed.size(); ++part) {
-    const auto number = static_cast<std::int32_t>(part);
-    if (is_candidate(number)) result.push_back(number);
+  for (std::int32_t part = 0; part < std::ssize(is_part_closed); ++part) {
+    if (is_candidate(part)) result.push_back(part);
   }
   if (result.empty() || is_part_closed.size() == 1) return result;
 

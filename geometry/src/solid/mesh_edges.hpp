@@ -60,7 +60,7 @@ std::vector<std::int32_t> parts_of_faces(const TriangleMesh& mesh,
 bool bounds_solid(const TriangleMesh& mesh);
 
 /// Whether a face has a repeated index or three collinear corners. Exact.
-bool is_degenerate(const TriangleMesh& mesh, std::size_t face);
+bool is_degenerate(const TriangleMesh& mesh, std::int32_t face);
 
 /// Parts whose own surface winds around `point`, ascending; parts on whose surface `point` lies are
 /// left out. Exact. `tree` is that of the mesh whose faces `parts` numbers.

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "solid/mesh_edges.hpp"
 
@@ -183,7 +184,7 @@ double coned_volume(const TriangleMesh& mesh) {
       for (const std::int32_t vertex : rim) {
         middle += mesh.vertices[vertex] / static_cast<double>(rim.size());
       }
-      const auto apex = static_cast<std::int32_t>(closed.vertices.size());
+      const auto apex = base::as_index<std::int32_t>(closed.vertices.size());
       closed.vertices.push_back(middle);
       for (std::size_t i = 0; i < rim.size(); ++i) {
         closed.faces.push_back({rim[i], rim[(i + 1) % rim.size()], apex});

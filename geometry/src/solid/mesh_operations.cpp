@@ -9,6 +9,7 @@
 #include <map>
 
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "mesh/vertex_welding.hpp"
 #include "solid/mesh_edges.hpp"
@@ -85,7 +86,7 @@ std::vector<Face> patch_of(const TriangleMesh& mesh, const HoleRim& rim) {
   }
   std::vector<Face> patch;
   if (rim.size() == 3 || num_on_line == rim.size()) {
-    for (std::int32_t i = 2; i < static_cast<std::int32_t>(rim.size()); ++i) {
+    for (std::int32_t i = 2; i < std::ssize(rim); ++i) {
       patch.push_back({0, i - 1, i});
     }
     return patch;
@@ -134,7 +135,7 @@ std::size_t remove_unused_vertices(TriangleMesh& mesh) {
     new_index[v] = next++;
   }
   const std::size_t removed = mesh.vertices.size() - static_cast<std::size_t>(next);
-  mesh.vertices.resize(static_cast<std::size_t>(next));
+  mesh.vertices.resize(next);
   for (Face& face : mesh.faces) {
     for (std::int32_t& vertex : face) vertex = new_index[vertex];
   }
@@ -180,10 +181,10 @@ std::size_t make_consistent(TriangleMesh& mesh) {
     neighbors[second->face].emplace_back(first->face, agree);
   });
   std::vector<int> state(mesh.faces.size(), 0);  // 0 unseen, +1 keep, −1 turn
-  for (std::size_t start = 0; start < mesh.faces.size(); ++start) {
+  for (std::int32_t start = 0; start < std::ssize(mesh.faces); ++start) {
     if (state[start] != 0) continue;
     state[start] = 1;
-    std::vector<std::int32_t> component = {static_cast<std::int32_t>(start)};
+    std::vector<std::int32_t> component = {start};
     for (std::size_t next = 0; next < component.size(); ++next) {
       for (const auto& [neighbor, agree] : neighbors[component[next]]) {
         if (state[neighbor] != 0) continue;
@@ -194,7 +195,7 @@ std::size_t make_consistent(TriangleMesh& mesh) {
     // The orientation of the majority is kept.
     const auto turned =
         std::count_if(component.begin(), component.end(), [&](auto f) { return state[f] < 0; });
-    if (2 * turned > static_cast<std::ptrdiff_t>(component.size())) {
+    if (2 * turned > std::ssize(component)) {
       for (const std::int32_t face : component) state[face] = -state[face];
     }
   }
@@ -232,14 +233,14 @@ std::size_t split_nonmanifold(TriangleMesh& mesh) {
   std::vector<std::int32_t> fan_of(mesh.vertices.size(), -1);
   std::map<std::int32_t, std::int32_t> vertex_of_fan;
   std::size_t added = 0;
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+  for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
     for (std::int32_t k = 0; k < 3; ++k) {
-      const std::int32_t fan = fans.root(static_cast<std::int32_t>(3 * f) + k);
+      const std::int32_t fan = fans.root(3 * f + k);
       std::int32_t& vertex = mesh.faces[f][k];
       if (fan_of[vertex] < 0) fan_of[vertex] = fan;
       if (fan_of[vertex] == fan) continue;
       const auto [entry, is_new] =
-          vertex_of_fan.try_emplace(fan, static_cast<std::int32_t>(mesh.vertices.size()));
+          vertex_of_fan.try_emplace(fan, base::as_index<std::int32_t>(mesh.vertices.size()));
       if (is_new) {
         mesh.vertices.push_back(Vector3d(mesh.vertices[vertex]));
         ++added;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -116,7 +117,7 @@ std::vector<Triangle> found_in(const TriangleMesh& mesh, std::vector<Triangle> t
   for (Triangle& triangle : triangles) triangle = sorted(triangle);
   std::sort(triangles.begin(), triangles.end(), comes_first);
   std::vector<Triangle> found;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     const Triangle triangle = corners(mesh, face);
     if (std::binary_search(triangles.begin(), triangles.end(), sorted(triangle), comes_first)) {
       found.push_back(triangle);
@@ -276,7 +277,8 @@ class Repair {
         internal::fill_holes(mesh, rims, options_.max_hole_extent_rel * longest_extent(mesh));
     // Faces without area reach no farther than the rim and the other faces of their patch.
     std::vector<Face> patches;
-    for (std::size_t face = open.faces.size(); face < mesh.faces.size(); ++face) {
+    for (auto face = base::as_index<std::int32_t>(open.faces.size()); face < std::ssize(mesh.faces);
+         ++face) {
       if (!internal::is_degenerate(mesh, face)) patches.push_back(mesh.faces[face]);
     }
     add_step("filled holes", count, reach_of(patches, open));

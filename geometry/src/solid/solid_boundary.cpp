@@ -18,6 +18,7 @@
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/input_check.hpp"
@@ -166,7 +167,7 @@ TriangleMesh welded(const TriangleMesh& mesh) {
         "the mesh bounds no solid: an edge is not run through equally often in both directions");
   }
   std::size_t kept = 0;
-  for (std::size_t face = 0; face < result.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(result.faces); ++face) {
     if (!internal::is_degenerate(result, face)) result.faces[kept++] = result.faces[face];
   }
   result.faces.resize(kept);
@@ -210,21 +211,21 @@ class Builder {
       met[second].cuts.push_back(common);
     }
     add_whole_faces(met);
-    for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
-      if (!met[face].empty()) add_pieces(static_cast<std::int32_t>(face), met[face]);
+    for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
+      if (!met[face].empty()) add_pieces(face, met[face]);
     }
     return cleaned();
   }
 
  private:
   Exact::Triangle_3 triangle(std::int32_t face) const {
-    const auto [a, b, c] = geometry::corners(mesh_, static_cast<std::size_t>(face));
+    const auto [a, b, c] = geometry::corners(mesh_, face);
     return {to_exact(a), to_exact(b), to_exact(c)};
   }
 
   bool are_coplanar(std::int32_t first, std::int32_t second) const {
-    const auto [a, b, c] = geometry::corners(mesh_, static_cast<std::size_t>(first));
-    const Corners other = geometry::corners(mesh_, static_cast<std::size_t>(second));
+    const auto [a, b, c] = geometry::corners(mesh_, first);
+    const Corners other = geometry::corners(mesh_, second);
     return std::all_of(other.begin(), other.end(), [&](const Vector3d& corner) {
       return internal::orientation(a, b, c, corner) == 0;
     });
@@ -242,12 +243,11 @@ class Builder {
     // Whether faces stay as they are (1), stay turned (−1) or are dropped (0), by the region's
     // first face.
     std::vector<int> fate(mesh_.faces.size(), 0);
-    for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
-      if (!met[f].empty()) continue;
-      const auto face = static_cast<std::int32_t>(f);
+    for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
+      if (!met[face].empty()) continue;
       const std::int32_t first = regions.root(face);
       if (first == face) {
-        const Corners corners = geometry::corners(mesh_, f);
+        const Corners corners = geometry::corners(mesh_, face);
         const int axis = main_axis(corners);
         std::array<Exact::FT, 3> center;
         for (int i = 0; i < 3; ++i) {
@@ -259,10 +259,10 @@ class Builder {
         if (sides.is_solid_above != sides.is_solid_below) {
           const int up = internal::orientation_2d(corners[0], corners[1], corners[2],
                                                   (axis + 1) % 3, (axis + 2) % 3);
-          fate[f] = sides.is_solid_below ? up : -up;
+          fate[face] = sides.is_solid_below ? up : -up;
         }
       }
-      const auto& [a, b, c] = mesh_.faces[f];
+      const auto& [a, b, c] = mesh_.faces[face];
       if (fate[first] > 0) result_.faces.push_back({a, b, c});
       if (fate[first] < 0) result_.faces.push_back({a, c, b});
     }
@@ -270,7 +270,7 @@ class Builder {
 
   /// Cuts a face by all that it meets and adds the pieces that bound the solid.
   void add_pieces(std::int32_t face, const Crossings& crossings) {
-    const Corners corners = geometry::corners(mesh_, static_cast<std::size_t>(face));
+    const Corners corners = geometry::corners(mesh_, face);
     const int axis = main_axis(corners);
     const int a = (axis + 1) % 3;
     const int b = (axis + 2) % 3;
@@ -299,7 +299,7 @@ class Builder {
       return false;
     };
     for (const std::int32_t other : crossings.coplanar) {
-      const Corners c = geometry::corners(mesh_, static_cast<std::size_t>(other));
+      const Corners c = geometry::corners(mesh_, other);
       for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
         if (is_beyond_a_side(c[i], c[j])) continue;
@@ -359,7 +359,7 @@ class Builder {
         for (int i = 0; i < 3; ++i) {
           const Cut::Vertex_handle vertex = part->vertex(i);
           const auto [known, is_new] =
-              vertex_of.try_emplace(vertex, static_cast<std::int32_t>(result_.vertices.size()));
+              vertex_of.try_emplace(vertex, base::as_index<std::int32_t>(result_.vertices.size()));
           if (is_new) result_.vertices.push_back(lifted(vertex->point()).rounded());
           added[i] = known->second;
         }

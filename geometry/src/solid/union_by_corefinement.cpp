@@ -14,6 +14,7 @@
 
 #include "exact/exact_number.hpp"
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "solid/mesh_edges.hpp"
 
 namespace graspfit::geometry::internal {
@@ -45,7 +46,7 @@ bool have_common_vertices(const TriangleMesh& mesh, const std::vector<std::int32
   std::vector<std::int32_t> part_of(mesh.vertices.size(), -1);
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
     for (const std::int32_t vertex : mesh.faces[face]) {
-      std::int32_t& part = part_of[static_cast<std::size_t>(vertex)];
+      std::int32_t& part = part_of[vertex];
       if (part >= 0 && part != parts[face]) return true;
       part = parts[face];
     }
@@ -85,10 +86,10 @@ std::vector<Graph> graphs_of(const TriangleMesh& mesh, const std::vector<std::in
       static_cast<std::size_t>(*std::max_element(parts.begin(), parts.end()) + 1));
   std::vector<Graph::Vertex_index> vertex_of(mesh.vertices.size());
   for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-    Graph& graph = graphs[static_cast<std::size_t>(parts[face])];
+    Graph& graph = graphs[parts[face]];
     std::array<Graph::Vertex_index, 3> vertices;
     for (int i = 0; i < 3; ++i) {
-      const auto index = static_cast<std::size_t>(mesh.faces[face][i]);
+      const std::int32_t index = mesh.faces[face][i];
       if (!vertex_of[index].is_valid()) {
         const Vector3d& p = mesh.vertices[index];
         vertex_of[index] = graph.add_vertex(ExactPoint(p.x(), p.y(), p.z()));
@@ -114,8 +115,8 @@ double rounded(const Exact::FT& number) {
 TriangleMesh rounded_mesh(const Graph& graph, const TriangleMesh& mesh) {
   TriangleMesh result{mesh.vertices, {}};
   std::map<Coordinates, std::int32_t> known;
-  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    known.emplace(coordinates(mesh.vertices[i]), static_cast<std::int32_t>(i));
+  for (std::int32_t i = 0; i < std::ssize(mesh.vertices); ++i) {
+    known.emplace(coordinates(mesh.vertices[i]), i);
   }
   std::vector<std::int32_t> index_of(graph.num_vertices(), -1);
   std::vector<std::pair<Coordinates, std::size_t>> added;
@@ -132,7 +133,7 @@ TriangleMesh rounded_mesh(const Graph& graph, const TriangleMesh& mesh) {
   }
   std::sort(added.begin(), added.end());
   for (const auto& [at, vertex] : added) {
-    index_of[vertex] = static_cast<std::int32_t>(result.vertices.size());
+    index_of[vertex] = base::as_index<std::int32_t>(result.vertices.size());
     result.vertices.emplace_back(at[0], at[1], at[2]);
   }
   std::map<Face, std::size_t> whole;
@@ -174,8 +175,7 @@ std::optional<TriangleMesh> union_by_corefinement(const TriangleMesh& mesh,
   for (const FacePair& pair : crossings) {
     const auto [first, second] = pair;
     if (parts[first] == parts[second] ||
-        !cross_in_general_position(corners(mesh, static_cast<std::size_t>(first)),
-                                   corners(mesh, static_cast<std::size_t>(second)))) {
+        !cross_in_general_position(corners(mesh, first), corners(mesh, second))) {
       return std::nullopt;
     }
   }

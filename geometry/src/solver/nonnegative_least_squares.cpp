@@ -36,7 +36,7 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
   // Each round lowers the residual, so that no set of columns recurs in real arithmetic; the limit
   // guards against cycles by rounding.
   const Index most_rounds = 10 * (a.rows() + a.cols());
-  std::vector<bool> is_refused(static_cast<std::size_t>(a.cols()), false);
+  std::vector<bool> is_refused(a.cols(), false);
   for (Index round = 0; round < most_rounds; ++round) {
     const VectorXd gradient = a.transpose() * (b - a * x);
     Index entering = -1;
@@ -57,14 +57,14 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
     bool is_new = true;
     while (!passive.empty()) {
       MatrixXd columns(a.rows(), passive.size());
-      for (std::size_t k = 0; k < passive.size(); ++k) {
-        columns.col(static_cast<Index>(k)) = a.col(passive[k]);
+      for (Index k = 0; k < std::ssize(passive); ++k) {
+        columns.col(k) = a.col(passive[k]);
       }
       const VectorXd best = columns.colPivHouseholderQr().solve(b);
       double share = 1.0;
-      for (std::size_t k = 0; k < passive.size(); ++k) {
+      for (Index k = 0; k < std::ssize(passive); ++k) {
         const double old_value = x[passive[k]];
-        const double new_value = best[static_cast<Index>(k)];
+        const double new_value = best[k];
         if (new_value <= 0.0) share = std::min(share, old_value / (old_value - new_value));
       }
       const auto position = std::lower_bound(passive.begin(), passive.end(), entering);
@@ -77,9 +77,9 @@ VectorXd nonnegative_least_squares(const MatrixXd& a, const VectorXd& b) {
       }
       is_new = false;
       std::vector<Index> kept;
-      for (std::size_t k = 0; k < passive.size(); ++k) {
+      for (Index k = 0; k < std::ssize(passive); ++k) {
         double& value = x[passive[k]];
-        const double new_value = best[static_cast<Index>(k)];
+        const double new_value = best[k];
         const bool is_blocking = new_value <= 0.0 && value / (value - new_value) <= share;
         value = is_blocking ? 0.0 : value + share * (new_value - value);
         if (value > 0.0) {

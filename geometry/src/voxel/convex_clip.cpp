@@ -14,12 +14,12 @@ namespace graspfit::geometry {
 namespace {
 
 void require_face(const TriangleMesh& mesh, std::int32_t face) {
-  if (face < 0 || static_cast<std::size_t>(face) >= mesh.faces.size()) {
+  if (face < 0 || face >= std::ssize(mesh.faces)) {
     throw base::InvalidInput("clip: face " + std::to_string(face) + " of " +
                              std::to_string(mesh.faces.size()));
   }
-  for (const std::int32_t vertex : mesh.faces[static_cast<std::size_t>(face)]) {
-    if (vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size()) continue;
+  for (const std::int32_t vertex : mesh.faces[face]) {
+    if (vertex >= 0 && vertex < std::ssize(mesh.vertices)) continue;
     throw base::InvalidInput("clip: face " + std::to_string(face) + " has vertex " +
                              std::to_string(vertex) + " of " +
                              std::to_string(mesh.vertices.size()));
@@ -81,7 +81,7 @@ std::vector<ClippedPiece> clip(const TriangleMesh& mesh, std::span<const std::in
   std::vector<ClippedPiece> pieces;
   for (const std::int32_t face : faces) {
     require_face(mesh, face);
-    if (auto piece = clipper.clip(corners(mesh, static_cast<std::size_t>(face)))) {
+    if (auto piece = clipper.clip(corners(mesh, face))) {
       piece->face = face;
       pieces.push_back(std::move(*piece));
     }

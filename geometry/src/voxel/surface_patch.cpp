@@ -58,7 +58,7 @@ class PatchProjection {
 
   void visit(std::int32_t piece) {
     if (all_.is_whole(piece)) {
-      visit(piece, corners(mesh_, static_cast<std::size_t>(all_.pieces[piece].face)));
+      visit(piece, corners(mesh_, all_.pieces[piece].face));
       return;
     }
     const auto polygon = all_.polygon(piece);
@@ -149,7 +149,7 @@ VoxelPiece voxel_piece(const TriangleMesh& mesh, const CutLayer& layer, const Cu
   result.piece.centroid = piece.centroid;
   result.piece.face = piece.face;
   if (layer.is_whole(name.piece)) {
-    const auto triangle = corners(mesh, static_cast<std::size_t>(piece.face));
+    const auto triangle = corners(mesh, piece.face);
     result.piece.polygon.assign(triangle.begin(), triangle.end());
   } else {
     const auto polygon = layer.polygon(name.piece);

@@ -299,8 +299,8 @@ void TriangleCutter::split(const CutPolygon& polygon, std::uint32_t line, InPlan
     *in++ = {cut, leaves ? cut_inside : corner.edge};
     if (out != nullptr) *out++ = {cut, leaves ? corner.edge : cut_outside};
   }
-  inside.resize(static_cast<std::size_t>(in - inside.data()));
-  if (outside != nullptr) outside->resize(static_cast<std::size_t>(out - outside->data()));
+  inside.resize(in - inside.data());
+  if (outside != nullptr) outside->resize(out - outside->data());
 }
 
 CutMeasure TriangleCutter::measure(const CutPolygon& polygon) {

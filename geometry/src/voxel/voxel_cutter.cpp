@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "exact/predicates.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "mesh/input_check.hpp"
 
@@ -83,20 +84,20 @@ void VoxelCutter::run(const std::function<void(const CutLayer&, std::int64_t)>& 
 
   // The faces by the layer in which they begin, ascending in each.
   std::vector<std::size_t> begin(num_layers + 2, 0);
-  for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
-    find_cells(static_cast<std::int32_t>(face));
+  for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
+    find_cells(face);
     ++begin[first_[2] + 2];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<std::int32_t> faces(mesh_.faces.size());
-  for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
     const Face& f = mesh_.faces[face];
     const int low = std::min({codes_[f[0]][2], codes_[f[1]][2], codes_[f[2]][2]});
-    faces[begin[(low >> 1) + 1]++] = static_cast<std::int32_t>(face);
+    faces[begin[(low >> 1) + 1]++] = face;
   }
 
   const std::int32_t num_cells = lattice_.counts[0] * lattice_.counts[1];
-  const auto num_faces = static_cast<std::int32_t>(mesh_.faces.size());
+  const auto num_faces = base::as_index<std::int32_t>(mesh_.faces.size());
   std::vector<CutPieceName> scratch;
   for (std::size_t k = 0; k < num_layers; ++k) {
     for (std::size_t i = begin[k]; i < begin[k + 1]; ++i) {
@@ -243,7 +244,7 @@ void VoxelCutter::add_cut(const CutPolygon& polygon) {
 void VoxelCutter::add(CutLayer& layer, double area, const Eigen::Vector3d& centroid,
                       std::size_t first_corner, double squared_radius) {
   layer.names.push_back({cell_[0] + lattice_.counts[0] * cell_[1], face_,
-                         static_cast<std::int32_t>(layer.pieces.size())});
+                         base::as_index<std::int32_t>(layer.pieces.size())});
   layer.pieces.push_back({centroid, normal_, area, static_cast<std::int32_t>(first_corner),
                           static_cast<float>(squared_radius), face_});
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "voxel/triangle_clip.hpp"
@@ -54,7 +55,7 @@ struct CutLayer {
   std::int32_t end_of(std::int32_t piece) const {
     const auto next = static_cast<std::size_t>(piece) + 1;
     return next < pieces.size() ? pieces[next].first_corner
-                                : static_cast<std::int32_t>(corners.size());
+                                : base::as_index<std::int32_t>(corners.size());
   }
 };
 

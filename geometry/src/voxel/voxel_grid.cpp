@@ -64,8 +64,7 @@ std::int64_t VoxelGrid::count(VoxelClass voxel_class) const {
 VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
                    const std::vector<SurfacePatch>& patches) {
   // Full marks "not seen yet" until every region has got its class; seen ones are labeled at once.
-  VoxelGrid grid{lattice, std::vector<VoxelClass>(static_cast<std::size_t>(lattice.num_voxels()),
-                                                  VoxelClass::Full)};
+  VoxelGrid grid{lattice, std::vector<VoxelClass>(lattice.num_voxels(), VoxelClass::Full)};
   std::vector<char> is_seen(grid.classes.size(), 0);
   for (const SurfacePatch& patch : patches) {
     if (patch.voxel < 0 || patch.voxel >= lattice.num_voxels()) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <queue>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 
 namespace graspfit::geometry::internal {
@@ -44,7 +45,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   std::vector<std::size_t> first_of_row;  // First run of each row, and the end of the last.
   for (std::size_t row = 0; row < is_member.size(); row += static_cast<std::size_t>(nx)) {
     first_of_row.push_back(runs.size());
-    const auto begin = is_member.begin() + static_cast<std::ptrdiff_t>(row);
+    const auto begin = is_member.begin() + row;
     for (auto at = begin; (at = std::find(at, begin + nx, 1)) != begin + nx;) {
       const auto end = std::find(at, begin + nx, 0);
       runs.push_back({static_cast<int>(at - begin), static_cast<int>(end - begin) - 1});
@@ -61,7 +62,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
       // The last of them may touch the next run too.
       for (std::size_t c = b; c < first_of_row[other + 1] && runs[c].first <= runs[a].last + 1;
            ++c) {
-        sets.unite(static_cast<std::int32_t>(a), static_cast<std::int32_t>(c));
+        sets.unite(base::as_index<std::int32_t>(a), base::as_index<std::int32_t>(c));
       }
     }
   };
@@ -85,7 +86,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   for (std::size_t row = 0; row + 1 < first_of_row.size(); ++row) {
     for (std::size_t i = first_of_row[row]; i < first_of_row[row + 1]; ++i) {
       if (set_of[i] == largest) continue;
-      const auto begin = is_member.begin() + static_cast<std::ptrdiff_t>(row * nx);
+      const auto begin = is_member.begin() + row * nx;
       std::fill(begin + runs[i].first, begin + runs[i].last + 1, 0);
     }
   }

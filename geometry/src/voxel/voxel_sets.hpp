@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "voxel/block.hpp"
 
@@ -35,7 +36,7 @@ std::vector<std::vector<Index>> label_sets(const VoxelLattice& lattice,
   std::vector<std::vector<Index>> sets;
   for (const Index first : solid) {
     if (label[first] >= 0 || !is_member(first)) continue;
-    const auto name = static_cast<std::int32_t>(sets.size());
+    const auto name = base::as_index<std::int32_t>(sets.size());
     std::vector<Index> set = {first};
     label[first] = name;
     for (std::size_t next = 0; next < set.size(); ++next) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "approach/checked_pre_grasp.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
@@ -111,7 +112,7 @@ ImportResult import_grasps(const grasp::ObjectFile& object, const hands::HandMod
                            std::span<const ImportedGrasp> grasps, const grasp::ImportRecord& source,
                            const PlannerOptions& options) {
   PlannerOptions used = options;
-  used.count = std::max(1, static_cast<int>(grasps.size()));
+  used.count = std::max(1, base::as_index<int>(grasps.size()));
   used.validate();
   require_solid(object.record);
   GraspFile file = empty_file(object, hand, source, used);

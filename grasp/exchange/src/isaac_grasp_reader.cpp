@@ -54,7 +54,7 @@ class Reader {
 
  private:
   Eigen::VectorXd joints(const YamlNode& node) const {
-    Eigen::VectorXd q = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(hand_.joints.size()),
+    Eigen::VectorXd q = Eigen::VectorXd::Constant(std::ssize(hand_.joints),
                                                   std::numeric_limits<double>::quiet_NaN());
     for (const auto& [name, value] : node.members()) {
       const std::size_t joint = index_of(name, value);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -110,7 +111,7 @@ class Document {
     accessor["min"] = Json::array({lower[0], lower[1], lower[2]});
     accessor["max"] = Json::array({upper[0], upper[1], upper[2]});
     json_["accessors"].push_back(accessor);
-    return static_cast<int>(json_["accessors"].size()) - 1;
+    return base::as_index<int>(json_["accessors"].size()) - 1;
   }
 
   int add_indices(const geometry::TriangleMesh& mesh) {
@@ -120,7 +121,7 @@ class Document {
     }
     json_["accessors"].push_back(
         add_view(begin, kElementArrayBuffer, kUnsignedInt, 3 * mesh.faces.size(), "SCALAR"));
-    return static_cast<int>(json_["accessors"].size()) - 1;
+    return base::as_index<int>(json_["accessors"].size()) - 1;
   }
 
   /// Makes a buffer view of the bytes from `begin` on, and returns its accessor.

@@ -43,8 +43,8 @@ std::string millimeters(double length) {
 
 void require_size(const hands::HandModel& hand, const HandConfiguration& configuration,
                   const char* what) {
-  if (configuration.q.size() == static_cast<Eigen::Index>(hand.joints.size()) &&
-      configuration.q.allFinite() && configuration.X_OH.matrix().allFinite()) {
+  if (configuration.q.size() == std::ssize(hand.joints) && configuration.q.allFinite() &&
+      configuration.X_OH.matrix().allFinite()) {
     return;
   }
   throw base::InvalidInput(std::string("HoldTest: the ") + what + " has " +

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -95,7 +96,7 @@ struct HoldTest::Impl {
         run(physics, hand, object, protocol) {}
 
   int num_directions() const {
-    return protocol.load == HoldLoad::Lift ? 1 : static_cast<int>(six_directions().size());
+    return protocol.load == HoldLoad::Lift ? 1 : base::as_index<int>(six_directions().size());
   }
   Vector3d direction(int index) const {
     return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ() : six_directions()[index];

@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/list_text.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 
@@ -172,7 +173,7 @@ class Scene {
     }
     bodies_ += "<body" + attribute("name", link_name(index)) + pose(X_PL) + ">\n" + joint +
                link_inertial(link) + pieces(hand_.links[index], "hand", Eigen::Vector3d::Zero());
-    for (int child = 0; child < static_cast<int>(model().links.size()); ++child) {
+    for (int child = 0; child < std::ssize(model().links); ++child) {
       if (model().links[child].parent_link == index) add_link(child);
     }
     bodies_ += "</body>\n";
@@ -211,7 +212,7 @@ class Scene {
   }
 
   void add_pairs() {
-    const int num_links = static_cast<int>(model().links.size());
+    const int num_links = base::as_index<int>(model().links.size());
     for (int a = 0; a < num_links; ++a) {
       for (int b = a + 1; b < num_links; ++b) {
         if (!model().is_excluded(a, b)) continue;
@@ -222,7 +223,7 @@ class Scene {
   }
 
   void add_drives() {
-    for (int j = 0; j < static_cast<int>(model().joints.size()); ++j) {
+    for (int j = 0; j < std::ssize(model().joints); ++j) {
       const hands::Joint& joint = model().joints[j];
       if (!joint.coupling || joint.coupling->breakaway) {
         actuators_ += "<position" + attribute("name", joint_name(j)) +

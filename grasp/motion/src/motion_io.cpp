@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/json_bounds.hpp"
 #include "graspfit/base/json_value.hpp"
@@ -48,7 +49,7 @@ Json move_json(const MotionFile& file, const RecordedMove& move) {
     segments.push_back(std::move(entry));
   }
   const MotionSegment& first = move.segments.front();
-  return {{"object", file.objects.at(static_cast<std::size_t>(move.object)).name},
+  return {{"object", file.objects.at(move.object).name},
           {"grasp_m", move.grasp_m},
           {"num_contacts", move.num_contacts},
           {"from", keyframe_json(first.from, first.X_WO_from)},
@@ -57,8 +58,8 @@ Json move_json(const MotionFile& file, const RecordedMove& move) {
 
 int object_index(const JsonValue& node, const std::vector<MotionObject>& objects) {
   const std::string name = node.text();
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].name == name) return static_cast<int>(i);
+  for (int i = 0; i < std::ssize(objects); ++i) {
+    if (objects[i].name == name) return i;
   }
   node.fail("is \"" + name + "\", which is none of the objects");
 }
@@ -222,7 +223,7 @@ MotionFile make_motion_file(const TableScene& scene, std::vector<MotionObject> o
   }
   for (const PlannedMove& move : result.moves) {
     file.moves.push_back({move.object, move.grasp.quality.m,
-                          static_cast<int>(move.grasp.contacts.size()), move.segments});
+                          base::as_index<int>(move.grasp.contacts.size()), move.segments});
   }
   file.unmoved = result.unmoved;
   return file;
@@ -242,8 +243,7 @@ std::string to_json(const MotionFile& file) {
   for (const RecordedMove& move : file.moves) moves.push_back(move_json(file, move));
   Json unmoved = Json::array();
   for (const UnmovedObject& object : file.unmoved) {
-    unmoved.push_back({{"object", file.objects.at(static_cast<std::size_t>(object.object)).name},
-                       {"reason", object.reason}});
+    unmoved.push_back({{"object", file.objects.at(object.object).name}, {"reason", object.reason}});
   }
   const Json json = {
       {"format", kFormat},
@@ -322,7 +322,7 @@ std::vector<std::vector<RigidTransform>> object_poses(const MotionFile& file) {
   for (const MotionObject& object : file.objects) X_WO.push_back(object.X_WO_start);
   std::vector<std::vector<RigidTransform>> poses = {X_WO};
   for (const RecordedMove& move : file.moves) {
-    X_WO.at(static_cast<std::size_t>(move.object)) = move.segments.back().X_WO_to;
+    X_WO.at(move.object) = move.segments.back().X_WO_to;
     poses.push_back(X_WO);
   }
   return poses;

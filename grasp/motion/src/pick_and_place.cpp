@@ -88,7 +88,7 @@ class MoveSearch {
 
   bool is_goal_free() {
     const SceneObject& moved = scene_.object(object_);
-    for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
+    for (int other = 0; other < std::ssize(scene_.objects()); ++other) {
       if (other == object_) continue;
       const SceneObject& standing = scene_.object(other);
       const RigidTransform X_SO = geometry::relative_pose(X_WO_[other], X_WO_goal_);
@@ -127,7 +127,7 @@ class MoveSearch {
     const grasp::PreGraspOptions& pre_grasp = options_.planner.pre_grasp;
     const double reach =
         2.0 * hands::largest_reach(scene_.hand()) + pre_grasp.largest_retreat + pre_grasp.clearance;
-    for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
+    for (int other = 0; other < std::ssize(scene_.objects()); ++other) {
       if (other == object_) continue;
       const RigidTransform& X_WS = X_WO_[other];
       for (const RigidTransform& X : {X_WS, X_from_goal * X_WS}) {
@@ -341,8 +341,8 @@ MoveAttempt plan_move(const TableScene& scene, std::span<const RigidTransform> X
   const std::size_t num_objects = scene.objects().size();
   base::require(X_WO.size() == num_objects, "plan_move", "number of poses", X_WO.size(),
                 "that of the objects, " + std::to_string(num_objects));
-  base::require(object >= 0 && object < static_cast<int>(num_objects), "plan_move", "object",
-                object, "in [0, " + std::to_string(num_objects) + ")");
+  base::require(object >= 0 && object < std::ssize(X_WO), "plan_move", "object", object,
+                "in [0, " + std::to_string(num_objects) + ")");
   hands::validate(scene.hand(), options.home);
   return MoveSearch(scene, X_WO, object, X_WO_goal, options)();
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -47,7 +48,7 @@ geometry::TriangleMesh hull_mesh(const geometry::TriangleMesh& mesh) {
   geometry::TriangleMesh result;
   std::vector<std::int32_t> index_of(corners.size(), -1);
   for (const std::size_t i : hull.vertices) {
-    index_of[i] = static_cast<std::int32_t>(result.vertices.size());
+    index_of[i] = base::as_index<std::int32_t>(result.vertices.size());
     result.vertices.push_back(corners[i]);
   }
   for (const geometry::HullFacet& facet : hull.facets) {
@@ -71,10 +72,10 @@ class Travel {
  public:
   Travel(const TableScene& scene, const MotionSegment& segment)
       : way_(scene.hand(), segment.from, segment.to), is_carrying_(is_carrying(segment.phase)) {
-    const std::size_t num_links = scene.hand().links.size();
+    const auto num_links = base::as_index<int>(scene.hand().links.size());
     if (!is_carrying_) {
-      for (std::size_t link = 0; link < num_links; ++link) {
-        links_.push_back(way_.speed(static_cast<int>(link)));
+      for (int link = 0; link < num_links; ++link) {
+        links_.push_back(way_.speed(link));
       }
       return;
     }
@@ -85,7 +86,7 @@ class Travel {
     object_ = path + turn * geometry::largest_radius(object.surface_O.mesh(), pivot_O);
     const auto X_WL = hands::forward_kinematics(scene.hand(), segment.from);
     const Vector3d pivot_W = segment.X_WO_from * pivot_O;
-    for (std::size_t link = 0; link < num_links; ++link) {
+    for (int link = 0; link < num_links; ++link) {
       const Vector3d pivot_L = geometry::inverted(X_WL[link]) * pivot_W;
       links_.push_back(path +
                        turn * geometry::largest_radius(scene.hand().links[link].mesh_L, pivot_L));
@@ -121,7 +122,7 @@ Posed posed(const TableScene& scene, const MotionSegment& segment, double share)
 /// Links that have a surface.
 std::vector<int> solid_links(const TableScene& scene) {
   std::vector<int> links;
-  for (int link = 0; link < static_cast<int>(scene.hand().links.size()); ++link) {
+  for (int link = 0; link < std::ssize(scene.hand().links); ++link) {
     if (scene.collision().link_solid(link)) links.push_back(link);
   }
   return links;
@@ -152,7 +153,7 @@ class SegmentProof {
     if (is_carrying(segment_.phase) && !is_object_over_table()) {
       return Collision{scene_.object(segment_.object).name, "table"};
     }
-    for (int other = 0; other < static_cast<int>(scene_.objects().size()); ++other) {
+    for (int other = 0; other < std::ssize(scene_.objects()); ++other) {
       if (auto found = with_object(other)) return found;
     }
     return among_links();
@@ -211,8 +212,7 @@ class SegmentProof {
   std::optional<Collision> with_object(int other) const {
     const bool is_handled = other == segment_.object;
     if (is_handled && is_carrying(segment_.phase)) return std::nullopt;
-    const auto index = static_cast<std::size_t>(other);
-    const RigidTransform X_OW = geometry::inverted(is_handled ? segment_.X_WO_from : X_WO_[index]);
+    const RigidTransform X_OW = geometry::inverted(is_handled ? segment_.X_WO_from : X_WO_[other]);
     const SceneObject& object = scene_.object(other);
     const double tolerance = is_handled && is_touching(segment_.phase) ? kTouchTolerance : 0.0;
     const auto is_apart = [&](const geometry::MeshQuery& body, double travel, const auto& X_WB) {
@@ -352,8 +352,8 @@ MotionClearance clearance_at(const TableScene& scene, std::span<const RigidTrans
   if (carries && !is_resting(segment.phase)) {
     nearest.object = std::max(0.0, scene.height_of_object(segment.object, at.state.X_WO));
   }
-  for (std::size_t other = 0; other < scene.objects().size(); ++other) {
-    const bool is_handled = static_cast<int>(other) == segment.object;
+  for (int other = 0; other < std::ssize(scene.objects()); ++other) {
+    const bool is_handled = other == segment.object;
     if (is_handled && (carries || is_touching(segment.phase))) continue;
     const geometry::MeshQuery& surface = scene.objects()[other].surface_O;
     const RigidTransform X_OW = geometry::inverted(is_handled ? segment.X_WO_from : X_WO[other]);
@@ -393,8 +393,8 @@ std::optional<Collision> find_overlap(const TableScene& scene, std::span<const R
   if (carries && scene.height_of_object(segment.object, at.state.X_WO) < -kRestTolerance) {
     return Collision{scene.object(segment.object).name, "table"};
   }
-  for (std::size_t other = 0; other < scene.objects().size(); ++other) {
-    const bool is_handled = static_cast<int>(other) == segment.object;
+  for (int other = 0; other < std::ssize(scene.objects()); ++other) {
+    const bool is_handled = other == segment.object;
     const SceneObject& object = scene.objects()[other];
     const RigidTransform X_OW = geometry::inverted(is_handled ? at.state.X_WO : X_WO[other]);
     for (const int link : links) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -36,20 +37,16 @@ class TidyingSearch {
   }
 
  private:
-  int num_objects() const { return static_cast<int>(at_.size()); }
-  bool is_home(int object) const {
-    const auto i = static_cast<std::size_t>(object);
-    return is_same(at_[i], goal_[i]);
-  }
+  int num_objects() const { return base::as_index<int>(at_.size()); }
+  bool is_home(int object) const { return is_same(at_[object], goal_[object]); }
 
   /// True once all objects are at their goals.
   bool search() {
     std::vector<UnmovedObject> refused;
     for (int object = 0; object < num_objects(); ++object) {
       if (is_home(object)) continue;
-      const auto i = static_cast<std::size_t>(object);
       std::string reason;
-      if (std::optional<PlannedMove> move = planned(object, goal_[i], reason)) {
+      if (std::optional<PlannedMove> move = planned(object, goal_[object], reason)) {
         if (descend(std::move(*move))) return true;
         refused.push_back({object, "its goal leaves another object without a free move"});
       } else {
@@ -62,26 +59,25 @@ class TidyingSearch {
 
   bool put_one_down() {
     for (int object = 0; object < num_objects(); ++object) {
-      const auto i = static_cast<std::size_t>(object);
-      if (is_home(object) || was_put_down_[i]) continue;
-      was_put_down_[i] = true;
+      if (is_home(object) || was_put_down_[object]) continue;
+      was_put_down_[object] = true;
       for (const RigidTransform& X_WO : stopovers(object)) {
         std::string reason;
         std::optional<PlannedMove> move = planned(object, X_WO, reason);
         if (move && descend(std::move(*move))) return true;
       }
-      was_put_down_[i] = false;
+      was_put_down_[object] = false;
     }
     return false;
   }
 
   bool descend(PlannedMove move) {
-    const auto i = static_cast<std::size_t>(move.object);
-    const RigidTransform before = std::exchange(at_[i], move.X_WO_to);
+    const int object = move.object;
+    const RigidTransform before = std::exchange(at_[object], move.X_WO_to);
     moves_.push_back(std::move(move));
     if (search()) return true;
     moves_.pop_back();
-    at_[i] = before;
+    at_[object] = before;
     return false;
   }
 
@@ -124,12 +120,11 @@ class TidyingSearch {
   /// Returns the poses in which an object may be put down in between: for each rest pose, all
   /// resting places and quarter turns.
   std::vector<RigidTransform> stopovers(int object) const {
-    const auto i = static_cast<std::size_t>(object);
     const SceneObject& moved = scene_.object(object);
     const auto up_of = [](const RigidTransform& X_WO) -> Eigen::Vector3d {
       return X_WO.linear().row(2).transpose();
     };
-    std::vector<Eigen::Vector3d> ups = {up_of(goal_[i]), up_of(at_[i])};
+    std::vector<Eigen::Vector3d> ups = {up_of(goal_[object]), up_of(at_[object])};
     for (const geometry::RestPose& pose :
          geometry::rest_poses(moved.surface_O.mesh(), moved.center_of_mass_O)) {
       ups.push_back(pose.up_O);
@@ -139,7 +134,7 @@ class TidyingSearch {
       const bool is_known = std::any_of(distinct.begin(), distinct.end(), [&](const auto& other) {
         return (up - other).norm() < 0.1;
       });
-      if (!is_known && static_cast<int>(distinct.size()) < options_.max_rest_poses) {
+      if (!is_known && std::ssize(distinct) < options_.max_rest_poses) {
         distinct.push_back(up);
       }
     }
@@ -198,14 +193,14 @@ TidyingResult tidy_table(const TableScene& scene, const std::vector<RigidTransfo
     base::require(size == num_objects, "tidy_table", "number of poses", size,
                   "that of the objects, " + std::to_string(num_objects));
   }
-  for (std::size_t a = 0; a < num_objects; ++a) {
+  for (int a = 0; a < std::ssize(scene.objects()); ++a) {
     const SceneObject& object = scene.objects()[a];
     for (const auto* poses : {&X_WO_start, &X_WO_goal}) {
-      const double height = scene.height_of_object(static_cast<int>(a), (*poses)[a]);
+      const double height = scene.height_of_object(a, (*poses)[a]);
       base::require(height >= -1e-9, "tidy_table: " + object.name, "lowest z", height,
                     ">= 0 m at start and goal");
     }
-    for (std::size_t b = 0; b < a; ++b) {
+    for (int b = 0; b < a; ++b) {
       if (geometry::do_intersect(scene.objects()[b].surface_O, object.surface_O,
                                  geometry::relative_pose(X_WO_start[b], X_WO_start[a]))) {
         throw base::InvalidInput("tidy_table: " + scene.objects()[b].name + " and " + object.name +

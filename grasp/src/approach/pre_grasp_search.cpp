@@ -50,7 +50,7 @@ PreGraspSearch::PreGraspSearch(const PreGraspScene& scene, const hands::PosedCon
       options_(options),
       open_q_(hands::open_configuration(scene.hand).q),
       X_OL_grasp_(grasp.X_OL) {
-  for (int link = 0; link < static_cast<int>(scene.hand.links.size()); ++link) {
+  for (int link = 0; link < std::ssize(scene.hand.links); ++link) {
     if (scene.collision.link_solid(link)) links_.push_back({link, {}, {}});
   }
   for (const GuardedLink& a : links_) {
@@ -113,11 +113,10 @@ Eigen::VectorXd PreGraspSearch::opened(double opening, Joints joints) const {
 
 double PreGraspSearch::opening_of(const Eigen::VectorXd& q) const {
   double largest = 0.0;
-  for (std::size_t j = 0; j < scene_.hand.joints.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    const double whole = open_q_[i] - grasp_.q[i];
+  for (int j = 0; j < std::ssize(scene_.hand.joints); ++j) {
+    const double whole = open_q_[j] - grasp_.q[j];
     if (scene_.hand.joints[j].closing_sign == 0 || whole == 0.0) continue;
-    largest = std::max(largest, (q[i] - grasp_.q[i]) / whole);
+    largest = std::max(largest, (q[j] - grasp_.q[j]) / whole);
   }
   return std::min(largest, 1.0);
 }
@@ -182,17 +181,16 @@ bool PreGraspSearch::is_free(const HandConfiguration& start, const LinkPoses& X_
   };
   const auto is_link_free = [&](GuardedLink& guarded) {
     const int link = guarded.link;
-    const auto index = static_cast<std::size_t>(link);
     SearchedBound of_surroundings;
     return stays_apart(way.speed(link), guarded.in_grasp,
                        [&](const LinkPoses& X_OL, double enough) {
-                         return clearance(scene_.object, solid(link), X_OL[index], enough,
+                         return clearance(scene_.object, solid(link), X_OL[link], enough,
                                           guarded.seed);
                        }) &&
            (scene_.surroundings.surroundings().is_empty() ||
             stays_apart(way.speed(link), of_surroundings,
                         [&](const LinkPoses& X_OL, double enough) {
-                          return surroundings_distance(link, X_OL[index], enough);
+                          return surroundings_distance(link, X_OL[link], enough);
                         }));
   };
   const auto is_pair_free = [&](LinkPair& pair) {

@@ -16,7 +16,7 @@ namespace graspfit::grasp {
 
 TargetContacts assign_fingers(const hands::HandModel& hand, const TargetContacts& targets,
                               const RequestedParts& parts, const PalmPlacement& placement) {
-  if (parts.size() != static_cast<int>(targets.contacts.size())) {
+  if (parts.size() != std::ssize(targets.contacts)) {
     throw base::InvalidInput("assign_fingers: " + std::to_string(parts.size()) + " parts for " +
                              std::to_string(targets.contacts.size()) + " targets");
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 
@@ -91,7 +92,7 @@ HandConfiguration opened_from(const HandModel& hand, const HandConfiguration& go
 bool do_fingers_cross(const FittingHand& hand, const HandConfiguration& goal) {
   const HandModel& model = hand.model();
   const auto X_OL = hands::forward_kinematics(model, opened_from(model, goal));
-  const auto num_links = static_cast<int>(model.links.size());
+  const auto num_links = base::as_index<int>(model.links.size());
   for (int a = 0; a < num_links; ++a) {
     for (int b = a + 1; b < num_links; ++b) {
       if (model.is_excluded(a, b)) continue;
@@ -109,10 +110,10 @@ HandConfiguration with_fingers_apart(const FittingHand& hand, const TargetContac
     if (target.finger) has_target[*target.finger] = true;
   }
   std::vector<int> placed, free;
-  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+  for (int f = 0; f < std::ssize(model.fingers); ++f) {
     const bool is_free = !has_target[f] && model.fingers[f].swing_joint &&
                          !model.joints[*model.fingers[f].swing_joint].coupling;
-    (is_free ? free : placed).push_back(static_cast<int>(f));
+    (is_free ? free : placed).push_back(f);
   }
   const auto X_OL = hands::forward_kinematics(model, goal);
   const auto base = [&](int finger) -> Eigen::Vector3d {

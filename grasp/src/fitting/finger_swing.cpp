@@ -98,12 +98,12 @@ double best_swing(const hands::HandModel& hand, const hands::HandConfiguration& 
 std::map<std::optional<int>, std::vector<FingerTarget>> pairs_by_leader(
     const hands::HandModel& hand, const TargetContacts& targets) {
   std::map<std::optional<int>, std::vector<FingerTarget>> pairs;
-  for (std::size_t t = 0; t < targets.contacts.size(); ++t) {
+  for (int t = 0; t < std::ssize(targets.contacts); ++t) {
     if (targets.contacts[t].is_palm) continue;
     const int finger = *targets.contacts[t].finger;
     std::optional<int> leader = hand.fingers[finger].swing_joint;
     if (leader) leader = hands::leader_of(hand, *leader);
-    pairs[leader].push_back({finger, static_cast<int>(t)});
+    pairs[leader].push_back({finger, t});
   }
   return pairs;
 }

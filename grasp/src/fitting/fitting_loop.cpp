@@ -37,8 +37,8 @@ FittingLoop::FittingLoop(const GraspScene& scene, GraspStyle style, const Reques
       style_(style),
       has_palm_target_(requested.palm),
       stops_at_palm_(requested.palm) {
-  for (std::size_t joint = 0; joint < model_.joints.size(); ++joint) {
-    moved_links_.push_back(hands::links_moved_by(model_, static_cast<int>(joint)));
+  for (int joint = 0; joint < std::ssize(model_.joints); ++joint) {
+    moved_links_.push_back(hands::links_moved_by(model_, joint));
   }
   std::vector<bool> has_target(model_.fingers.size(), false);
   for (const int finger : requested.fingers) {
@@ -46,8 +46,8 @@ FittingLoop::FittingLoop(const GraspScene& scene, GraspStyle style, const Reques
     add_part(finger, true);
   }
   if (style == GraspStyle::Power) {
-    for (std::size_t finger = 0; finger < model_.fingers.size(); ++finger) {
-      if (!has_target[finger]) add_part(static_cast<int>(finger), false);
+    for (int finger = 0; finger < std::ssize(model_.fingers); ++finger) {
+      if (!has_target[finger]) add_part(finger, false);
     }
   }
   for (Part& part : parts_) {

@@ -177,8 +177,8 @@ SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
     for (const Vector3d& point : pad.surface) add(point);
   }
   const double voxel_size = object.grid.lattice.voxel_size;
-  for (std::size_t link = 0; link < hand.model().links.size(); ++link) {
-    groups_.push_back(groups_of(hand.samples(static_cast<int>(link)).points_L, voxel_size));
+  for (int link = 0; link < std::ssize(hand.model().links); ++link) {
+    groups_.push_back(groups_of(hand.samples(link).points_L, voxel_size));
   }
   find_neighbors();
 }
@@ -216,7 +216,7 @@ std::optional<SurfaceSearch::Wish> SurfaceSearch::overlap(
         0.5 * inner_box.diagonal().norm()) {
       return;
     }
-    for (const PointGroup& group : groups_[static_cast<std::size_t>(inner)]) {
+    for (const PointGroup& group : groups_[inner]) {
       const Vector3d center = X * group.center_L.cast<double>();
       if (box.exteriorDistance(center) > group.radius) continue;
       for (const Eigen::Vector3f& point_L : group.points_L) {
@@ -269,13 +269,13 @@ std::vector<SurfaceSearch::PointGroup> SurfaceSearch::groups_of(
 }
 
 double SurfaceSearch::height(const Vector3d& point_O) const {
-  const Plane& plane = planes_[static_cast<std::size_t>(nearest_.at(point_O))];
+  const Plane& plane = planes_[nearest_.at(point_O)];
   return static_cast<double>(plane.normal.dot(point_O.cast<float>()) - plane.offset);
 }
 
 /// Of a link's points that are within the lift of voxels that are not empty the one deepest below
 /// its patch.
-SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link, const RigidTransform& X_OL,
+SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(int link, const RigidTransform& X_OL,
                                                       double lift) const {
   const geometry::VoxelLattice& lattice = object_.grid.lattice;
   const double voxels_per_meter = 1.0 / lattice.voxel_size;
@@ -308,7 +308,7 @@ SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(std::size_t link, const Ri
 /// About where a pad touches: the mean of its points, those most that are nearest to the surface or
 /// deepest below it.
 Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) const {
-  const std::vector<Vector3d>& points_L = pad_points_L_[static_cast<std::size_t>(pad)];
+  const std::vector<Vector3d>& points_L = pad_points_L_[pad];
   std::vector<double> heights;
   heights.reserve(points_L.size());
   for (const Vector3d& point_L : points_L) heights.push_back(height(X_OL * point_L));
@@ -396,12 +396,12 @@ SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
     if (beyond > 0.0) result.wishes.push_back({link, point, across / beyond, beyond});
     posture.largest_gap = std::max(posture.largest_gap, std::hypot(along + margin, beyond));
   }
-  for (std::size_t link = 0; link < model.links.size(); ++link) {
+  for (int link = 0; link < std::ssize(model.links); ++link) {
     const DeepPoint deep = deepest_point(link, posture.X_OL[link], lift);
     posture.largest_depth = std::max(posture.largest_depth, deep.depth);
     if (deep.depth + depth_margin > 0.0) {
-      result.wishes.push_back({static_cast<int>(link), deep.point_O, deep.outward_O,
-                               deep.depth + depth_margin, kDepthWeight});
+      result.wishes.push_back(
+          {link, deep.point_O, deep.outward_O, deep.depth + depth_margin, kDepthWeight});
     }
   }
   for (const auto& [a, b] : neighbors_) {

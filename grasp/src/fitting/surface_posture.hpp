@@ -33,7 +33,7 @@ class CoarseDistances {
   /// most 255.
   int at(const Eigen::Array3f& position) const {
     const Eigen::Array3i voxel = position.max(0.0F).min(last_voxel_).cast<int>();
-    return values_[static_cast<std::size_t>((voxel * strides_).sum())];
+    return values_[(voxel * strides_).sum()];
   }
 
  private:
@@ -85,7 +85,7 @@ class SurfaceSearch {
   void find_neighbors();
   std::optional<Wish> overlap(int a, int b, const std::vector<hands::RigidTransform>& X_OL) const;
   double height(const Eigen::Vector3d& point_O) const;
-  DeepPoint deepest_point(std::size_t link, const hands::RigidTransform& X_OL, double lift) const;
+  DeepPoint deepest_point(int link, const hands::RigidTransform& X_OL, double lift) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
   Evaluated evaluated(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
                       double lift) const;

@@ -13,7 +13,7 @@ namespace graspfit::grasp {
 namespace {
 
 void require_joints(const hands::HandModel& hand, const hands::HandConfiguration& configuration) {
-  base::require(configuration.q.size() == static_cast<Eigen::Index>(hand.joints.size()),
+  base::require(configuration.q.size() == std::ssize(hand.joints),
                 "distinct grasps: hand " + hand.name, "number of joint positions",
                 static_cast<long>(configuration.q.size()),
                 "that of its joints, " + std::to_string(hand.joints.size()));
@@ -42,11 +42,10 @@ ConfigurationDistance configuration_distance(const hands::HandModel& hand,
   ConfigurationDistance result;
   result.translation = (a.X_OH * hand.palm.center_H - b.X_OH * hand.palm.center_H).norm();
   result.rotation = angle_of(a.X_OH.linear().transpose() * b.X_OH.linear());
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.coupling) continue;
-    const auto index = static_cast<Eigen::Index>(j);
-    const double difference = std::abs(a.q[index] - b.q[index]);
+    const double difference = std::abs(a.q[j] - b.q[j]);
     result.joints =
         std::max(result.joints,
                  joint.type == hands::JointType::Prismatic ? difference / slide_scale : difference);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/option_check.hpp"
 
@@ -21,12 +22,11 @@ Eigen::VectorXd point_of(const hands::HandModel& hand, const hands::HandConfigur
   point.head(3) = grasp.X_OH * hand.palm.center_H / options.translation;
   // Two rotations by an angle apart differ by 2 √2 sin(angle / 2) in the Frobenius norm.
   point.segment(3, 9) = grasp.X_OH.linear().reshaped() / (std::numbers::sqrt2 * options.rotation);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.coupling) continue;
     const double scale = joint.type == hands::JointType::Prismatic ? options.slide_scale : 1.0;
-    const auto index = static_cast<Eigen::Index>(j);
-    point[12 + index] = grasp.q[index] / (options.joints * scale);
+    point[12 + j] = grasp.q[j] / (options.joints * scale);
   }
   return point;
 }
@@ -42,21 +42,21 @@ GraspDiversity grasp_diversity(const hands::HandModel& hand, Configurations conf
     base::require(value > 0.0, "grasp_diversity", field, value, "positive");
   }
   GraspDiversity diversity;
-  diversity.num_grasps = diversity.num_clusters = static_cast<int>(configurations.size());
+  diversity.num_grasps = diversity.num_clusters = base::as_index<int>(configurations.size());
   if (configurations.empty()) return diversity;
   configuration_distance(hand, configurations[0], configurations[0], options.slide_scale);
   base::DisjointSets clusters(configurations.size());
-  for (std::size_t i = 1; i < configurations.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
+  for (std::int32_t i = 1; i < std::ssize(configurations); ++i) {
+    for (std::int32_t j = 0; j < i; ++j) {
       if (!are_distinct(hand, configurations[i], configurations[j], options) &&
-          clusters.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j))) {
+          clusters.unite(i, j)) {
         --diversity.num_clusters;
       }
     }
   }
   Eigen::MatrixXd points(12 + configurations[0].q.size(), configurations.size());
-  for (std::size_t i = 0; i < configurations.size(); ++i) {
-    points.col(static_cast<Eigen::Index>(i)) = point_of(hand, configurations[i], options);
+  for (int i = 0; i < std::ssize(configurations); ++i) {
+    points.col(i) = point_of(hand, configurations[i], options);
   }
   const Eigen::MatrixXd centered = points.colwise() - points.rowwise().mean();
   const Eigen::VectorXd spread = Eigen::JacobiSVD<Eigen::MatrixXd>(centered).singularValues();

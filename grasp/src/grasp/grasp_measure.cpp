@@ -62,10 +62,10 @@ internal::PosedGrasp internal::with_all_measures(const MeasuringScene& scene, Po
   penetration.object_depth = with_object.depth;
   penetration.object_depth_bound = with_object.depth_bound;
   penetration.object_link = with_object.link_a;
-  for (std::size_t link = 0; link < X_OL.size(); ++link) {
+  for (int link = 0; link < std::ssize(X_OL); ++link) {
     penetration.surroundings_touched =
         penetration.surroundings_touched ||
-        scene.surroundings.touches(scene.collision, static_cast<int>(link), X_OL[link]);
+        scene.surroundings.touches(scene.collision, link, X_OL[link]);
   }
   const std::vector<contact::Contact> touching =
       contact::touching_contacts(grasp.contacts, scene.bearing_gap);

@@ -108,7 +108,7 @@ class GraspReader {
     hands::HandConfiguration configuration;
     configuration.X_OH = internal::pose(node.at("X_OH"));
     const JsonValue joints = node.at("joints");
-    configuration.q.resize(static_cast<Eigen::Index>(hand_.joints.size()));
+    configuration.q.resize(std::ssize(hand_.joints));
     for (std::size_t i = 0; i < hand_.joints.size(); ++i) {
       configuration.q[i] = joints.at(hand_.joints[i].name).number();
     }
@@ -136,9 +136,9 @@ class GraspReader {
       forces.fail("has " + std::to_string(items.size()) + " forces for " +
                   std::to_string(num_contacts) + " contacts");
     }
-    squeeze.forces_O.resize(3, static_cast<Eigen::Index>(items.size()));
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      squeeze.forces_O.col(static_cast<Eigen::Index>(i)) = internal::vector3(items[i]);
+    squeeze.forces_O.resize(3, std::ssize(items));
+    for (int i = 0; i < std::ssize(items); ++i) {
+      squeeze.forces_O.col(i) = internal::vector3(items[i]);
     }
     squeeze.residual = node.at("residual").number();
     squeeze.is_balanced = node.at("is_balanced").flag();

@@ -120,8 +120,8 @@ class JsonWriter {
 /// The index of the part of a hand that has this name.
 template <class Item>
 int index_by_name(const std::vector<Item>& items, const base::JsonValue& name) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (items[i].name == name.text()) return static_cast<int>(i);
+  for (int i = 0; i < std::ssize(items); ++i) {
+    if (items[i].name == name.text()) return i;
   }
   name.fail("the hand has nothing named \"" + name.text() + "\"");
 }

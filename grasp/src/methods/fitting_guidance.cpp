@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/contact/grasp_balance.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/grasp/planner_result.hpp"
@@ -155,7 +156,7 @@ class FittingGuidance : public GraspGuidance {
       std::vector<TargetSide> sides =
           sides_of(*selection.targets, scene_, options.target_draws > 1);
       if (sides.empty()) continue;
-      num_judged += static_cast<int>(sides.size());
+      num_judged += base::as_index<int>(sides.size());
       if (options.target_draws == 1) return sides;
       if (options.candidate_order == CandidateOrder::Balance) {
         const int set_imbalance = imbalance(*selection.targets);
@@ -197,7 +198,7 @@ class FittingGuidance : public GraspGuidance {
 
   std::optional<TargetContacts> ranked_targets(std::int64_t number) const {
     const std::lock_guard<std::mutex> lock(ranked_lock_);
-    while (static_cast<std::int64_t>(ranked_sets_.size()) <= number) {
+    while (std::ssize(ranked_sets_) <= number) {
       std::optional<TargetContacts> next = ranked_->next();
       if (!next) return std::nullopt;
       ranked_sets_.push_back(std::move(*next));

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/units.hpp"
 #include "graspfit/geometry/angle.hpp"
 #include "targets/target_feasibility.hpp"
@@ -41,10 +42,9 @@ std::optional<std::size_t> class_of(double distance, double lean_a, double lean_
 /// Whether two samples agree in the joints that move both pads.
 bool do_agree(const hands::PadSamples& a, Index sample_a, const hands::PadSamples& b,
               Index sample_b) {
-  for (std::size_t i = 0; i < a.joints.size(); ++i) {
-    for (std::size_t j = 0; j < b.joints.size(); ++j) {
-      if (a.joints[i] == b.joints[j] && a.positions(static_cast<Index>(i), sample_a) !=
-                                            b.positions(static_cast<Index>(j), sample_b)) {
+  for (int i = 0; i < std::ssize(a.joints); ++i) {
+    for (int j = 0; j < std::ssize(b.joints); ++j) {
+      if (a.joints[i] == b.joints[j] && a.positions(i, sample_a) != b.positions(j, sample_b)) {
         return false;
       }
     }
@@ -72,10 +72,10 @@ std::vector<std::vector<std::size_t>> sets_with_first(std::size_t count, std::si
 std::optional<int> pad_before_tip(const hands::HandModel& hand, int finger) {
   const int tip_link = hand.pads[*hand.fingers[finger].tip_pad].link;
   std::optional<int> last;
-  for (std::size_t p = 0; p < hand.pads.size(); ++p) {
+  for (int p = 0; p < std::ssize(hand.pads); ++p) {
     const hands::ContactPad& pad = hand.pads[p];
     if (pad.finger != finger || pad.link >= tip_link) continue;
-    if (!last || pad.link > hand.pads[*last].link) last = static_cast<int>(p);
+    if (!last || pad.link > hand.pads[*last].link) last = p;
   }
   return last;
 }
@@ -108,8 +108,8 @@ PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
       double& least = least_lean_[static_cast<std::size_t>(line.norm() / kDistanceStep)];
       least = std::min(least, std::max(lean_a, lean_b));
       auto& entries = classes_[*number];
-      const std::pair<std::int32_t, std::int32_t> entry(static_cast<std::int32_t>(i),
-                                                        static_cast<std::int32_t>(j));
+      const std::pair<std::int32_t, std::int32_t> entry(base::as_index<std::int32_t>(i),
+                                                        base::as_index<std::int32_t>(j));
       // Of more than fit a uniform choice stays.
       const std::uint64_t seen = num_seen[*number]++;
       if (entries.size() < kMostPerClass) {
@@ -143,10 +143,9 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
                      const GripRule& rule) {
   RequestedParts all = requested;
   if (rule.may_add_finger || rule.may_exchange) {
-    for (std::size_t finger = 0; finger < hand.fingers.size(); ++finger) {
-      const auto number = static_cast<int>(finger);
-      const bool is_asked = std::count(all.fingers.begin(), all.fingers.end(), number) > 0;
-      if (!is_asked && hand.fingers[finger].tip_pad) all.fingers.push_back(number);
+    for (int finger = 0; finger < std::ssize(hand.fingers); ++finger) {
+      const bool is_asked = std::count(all.fingers.begin(), all.fingers.end(), finger) > 0;
+      if (!is_asked && hand.fingers[finger].tip_pad) all.fingers.push_back(finger);
     }
   }
   const bool may_add_palm = rule.may_add_palm && hand.palm.pad.has_value() && !requested.palm;
@@ -191,7 +190,7 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
     for (std::size_t other = num_usual; other < parts_.size(); ++other) {
       const auto finger =
           std::find(requested.fingers.begin(), requested.fingers.end(), *parts_[other].finger);
-      wrap[static_cast<std::size_t>(finger - requested.fingers.begin())] = other;
+      wrap[finger - requested.fingers.begin()] = other;
     }
     wrap.push_back(palm);
     add(std::move(wrap));

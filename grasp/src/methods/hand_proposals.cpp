@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/angle.hpp"
 
 namespace graspfit::grasp::internal {
@@ -137,7 +138,7 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
 HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random& random) const {
   const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
   const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
-  const auto sample = static_cast<std::int32_t>(random.index(palm.size()));
+  const auto sample = base::as_index<std::int32_t>(random.index(palm.size()));
   const Facing pad = facing(palm, sample);
   const Eigen::AngleAxisd roll(random.uniform(-std::numbers::pi, std::numbers::pi),
                                point.inward_normal_O);
@@ -166,10 +167,9 @@ HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
 /// The proposal with one more part placed.
 HandProposal HandProposals::with(HandProposal proposal, const Placing& placing) const {
   const hands::PadSamples& samples = grips_.parts()[placing.part].samples;
-  for (std::size_t j = 0; j < samples.joints.size(); ++j) {
-    proposal.configuration.q[samples.joints[j]] =
-        samples.positions(static_cast<Index>(j), placing.sample);
-    proposal.is_fixed[static_cast<std::size_t>(samples.joints[j])] = true;
+  for (int j = 0; j < std::ssize(samples.joints); ++j) {
+    proposal.configuration.q[samples.joints[j]] = samples.positions(j, placing.sample);
+    proposal.is_fixed[samples.joints[j]] = true;
   }
   proposal.patches[placing.part] = placing.patch;
   proposal.largest_cost = std::max(proposal.largest_cost, placing.cost);
@@ -190,9 +190,8 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
     for (std::size_t j = samples.joints.size() - samples.num_shared;
          j < samples.joints.size() && fits; ++j) {
       const int joint = samples.joints[j];
-      fits = !proposal.is_fixed[static_cast<std::size_t>(joint)] ||
-             proposal.configuration.q[joint] ==
-                 samples.positions(static_cast<Index>(j), static_cast<Index>(from));
+      fits = !proposal.is_fixed[joint] ||
+             proposal.configuration.q[joint] == samples.positions(j, from);
     }
     if (!fits) continue;
     for (std::size_t number = from; number < from + samples.range_size; ++number) {
@@ -214,7 +213,7 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
     }
   }
   if (!best) return std::nullopt;
-  return Placing{part, static_cast<std::int32_t>(*best), best_patch, least};
+  return Placing{part, base::as_index<std::int32_t>(*best), best_patch, least};
 }
 
 }  // namespace graspfit::grasp::internal

@@ -53,7 +53,7 @@ class MedialGuidance : public GraspGuidance {
 
   GuidedStarts starts(std::int64_t number) const override {
     GuidedStarts result;
-    if (number >= static_cast<std::int64_t>(candidates_.size())) {
+    if (number >= std::ssize(candidates_)) {
       result.is_exhausted = true;
       if (number == 0) result.failure = kNoCandidate;
       return result;

@@ -31,13 +31,13 @@ std::vector<std::vector<std::int32_t>> patches_around(const ObjectModel& object,
     return std::array<double, 3>{cell[0], cell[1], cell[2]};
   };
   std::map<std::array<double, 3>, std::vector<std::int32_t>> cells;
-  for (std::size_t i = 0; i < object.patches.size(); ++i) {
+  for (std::int32_t i = 0; i < std::ssize(object.patches); ++i) {
     if (!object.patches[i].has_normal) continue;
-    cells[cell_of(object.patches[i].centroid)].push_back(static_cast<std::int32_t>(i));
+    cells[cell_of(object.patches[i].centroid)].push_back(i);
   }
   std::vector<std::vector<std::int32_t>> around(object.patches.size());
   for (const PoolPoint& point : pool) {
-    std::vector<std::int32_t>& own = around[static_cast<std::size_t>(*point.patch)];
+    std::vector<std::int32_t>& own = around[*point.patch];
     const std::array<double, 3> center = cell_of(point.point_O);
     for (int n = 0; n < 27; ++n) {
       const auto cell =
@@ -73,7 +73,7 @@ double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double 
   for (int draw = 0; draw < kDraws; ++draw) {
     std::vector<std::int32_t> beside;
     for (const std::int32_t patch : patches) {
-      const std::vector<std::int32_t>& around = around_[static_cast<std::size_t>(patch)];
+      const std::vector<std::int32_t>& around = around_[patch];
       beside.push_back(around[random.index(around.size())]);
     }
     const double drawn = nominal(beside, -std::numeric_limits<double>::infinity());

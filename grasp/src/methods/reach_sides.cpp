@@ -70,7 +70,7 @@ constexpr double kMostDepthOfWraps = 0.001;  // [m]
 
 std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) {
   std::vector<bool> is_in(num_patches, false);
-  for (const PoolPoint& point : rules.pool()) is_in[static_cast<std::size_t>(*point.patch)] = true;
+  for (const PoolPoint& point : rules.pool()) is_in[*point.patch] = true;
   return is_in;
 }
 
@@ -121,8 +121,8 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
       strength_(scene.object, rules.pool(),
                 0.5 * (scene.options.friction + scene.options.squeeze_friction)),
       pool_of_patch_(scene.object.patches.size(), -1) {
-  for (std::size_t p = 0; p < rules.pool().size(); ++p) {
-    pool_of_patch_[static_cast<std::size_t>(*rules.pool()[p].patch)] = static_cast<std::int32_t>(p);
+  for (std::int32_t p = 0; p < std::ssize(rules.pool()); ++p) {
+    pool_of_patch_[*rules.pool()[p].patch] = p;
   }
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
@@ -340,18 +340,15 @@ bool ReachSides::is_good(const SurfacePosture& posture) const {
 
 bool ReachSides::is_clear_of_surroundings(const SurfacePosture& posture) const {
   if (scene_.surroundings.surroundings().is_empty()) return true;
-  for (std::size_t link = 0; link < posture.X_OL.size(); ++link) {
-    const auto number = static_cast<int>(link);
-    if (scene_.surroundings.touches(scene_.hand.collision(), number, posture.X_OL[link])) {
+  for (int link = 0; link < std::ssize(posture.X_OL); ++link) {
+    if (scene_.surroundings.touches(scene_.hand.collision(), link, posture.X_OL[link])) {
       return false;
     }
   }
   return true;
 }
 
-std::int32_t ReachSides::point_of(std::int32_t patch) const {
-  return pool_of_patch_[static_cast<std::size_t>(patch)];
-}
+std::int32_t ReachSides::point_of(std::int32_t patch) const { return pool_of_patch_[patch]; }
 
 TargetSide ReachSides::side_of(const Candidate& candidate) const {
   const hands::HandModel& hand = scene_.hand.model();

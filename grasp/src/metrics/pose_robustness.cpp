@@ -44,8 +44,7 @@ std::optional<contact::Contact> met_contact(const contact::Contact& contact,
   const Vector3d way = motion.linear() * contact.inward_normal_O;
   const auto hit = surface.first_hit(motion * contact.point_O - reach * way, way);
   if (!hit || hit->distance > 2.0 * reach) return std::nullopt;
-  const Vector3d outward =
-      geometry::vector_area(surface.mesh(), static_cast<std::size_t>(hit->face)).stableNormalized();
+  const Vector3d outward = geometry::vector_area(surface.mesh(), hit->face).stableNormalized();
   if (!(outward.dot(way) < 0.0)) return std::nullopt;  // from within, or a face without area
   contact::Contact met = contact;
   met.point_O = hit->point;

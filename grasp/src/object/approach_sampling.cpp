@@ -47,8 +47,7 @@ std::vector<geometry::SurfaceSample> box_ray_hits(const ObjectModel& object,
           origin[v] += at_v;
           const auto hit = object.query.first_hit(origin, Vector3d(-side * Vector3d::Unit(axis)));
           if (!hit) continue;
-          const auto face = static_cast<std::size_t>(hit->face);
-          const Vector3d area = geometry::vector_area(object.mesh(), face);
+          const Vector3d area = geometry::vector_area(object.mesh(), hit->face);
           if (!(area.norm() > 0.0)) continue;
           hits.push_back({hit->point, area.normalized(), hit->face, Vector3d::Zero()});
         }

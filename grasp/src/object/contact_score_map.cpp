@@ -33,8 +33,8 @@ class PatchLookup {
     if (voxels_.empty()) return;
     counts_ = highest - lowest_ + Vector3i::Ones();
     patches_.assign(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2], -1);
-    for (std::size_t i = 0; i < voxels_.size(); ++i) {
-      patches_[index(voxels_[i] - lowest_)] = static_cast<std::int32_t>(i);
+    for (std::int32_t i = 0; i < std::ssize(voxels_); ++i) {
+      patches_[index(voxels_[i] - lowest_)] = i;
     }
   }
 
@@ -42,7 +42,7 @@ class PatchLookup {
   /// each other's window of `radius` voxels to every side.
   template <typename Visit>
   void for_each_pair(int radius, Visit visit) const {
-    for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    for (std::int32_t i = 0; i < std::ssize(voxels_); ++i) {
       const Vector3i center = voxels_[i] - lowest_;
       // The half of the window that follows the center in index order.
       const int last_z = std::min(center[2] + radius, counts_[2] - 1);
@@ -55,7 +55,7 @@ class PatchLookup {
           const int last_x = std::min(center[0] + radius, counts_[0] - 1);
           const std::int32_t* row = patches_.data() + index({0, y, z});
           for (int x = first_x; x <= last_x; ++x) {
-            if (row[x] >= 0) visit(i, static_cast<std::size_t>(row[x]));
+            if (row[x] >= 0) visit(i, row[x]);
           }
         }
       }
@@ -79,7 +79,7 @@ std::vector<double> mean_filtered(const std::vector<double>& scores, const Patch
                                   int radius) {
   std::vector<double> sums = scores;
   std::vector<int> counts(scores.size(), 1);
-  lookup.for_each_pair(radius, [&](std::size_t i, std::size_t j) {
+  lookup.for_each_pair(radius, [&](std::int32_t i, std::int32_t j) {
     sums[i] += scores[j];
     sums[j] += scores[i];
     ++counts[i];
@@ -92,7 +92,7 @@ std::vector<double> mean_filtered(const std::vector<double>& scores, const Patch
 /// Middle value; mean of the two middle ones for an even count. Zero for none.
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + values.size() / 2;
   std::nth_element(values.begin(), middle, values.end());
   if (values.size() % 2 == 1) return *middle;
   return 0.5 * (*std::max_element(values.begin(), middle) + *middle);
@@ -118,7 +118,7 @@ ContactScoreMap contact_score_map(const std::vector<SurfacePatch>& patches,
   std::vector<double> distances(patches.size(), 0.0);
   std::vector<double> angles(patches.size(), 0.0);
   std::vector<int> counts(patches.size(), 0);
-  lookup.for_each_pair(options.neighborhood / 2, [&](std::size_t i, std::size_t j) {
+  lookup.for_each_pair(options.neighborhood / 2, [&](std::int32_t i, std::int32_t j) {
     const SurfacePatch& a = patches[i];
     const SurfacePatch& b = patches[j];
     if (!a.has_normal || !b.has_normal) return;

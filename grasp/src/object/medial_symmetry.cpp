@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/base/random.hpp"
@@ -25,7 +26,7 @@ constexpr int kRandomCandidates = 8;  // as many as there are around an axis
 MedialSymmetry symmetry_of(const geometry::MedialBall& ball, const std::vector<Vector3d>& centers,
                            double least_spread, const MedialSymmetryOptions& options) {
   MedialSymmetry symmetry{.ball = ball};
-  symmetry.neighbors = static_cast<int>(centers.size()) - 1;
+  symmetry.neighbors = base::as_index<int>(centers.size()) - 1;
   for (const Vector3d& center : centers) symmetry.center_of_gravity_O += center;
   symmetry.center_of_gravity_O /= static_cast<double>(centers.size());
   if (symmetry.neighbors < 1) return symmetry;
@@ -106,11 +107,11 @@ std::vector<MedialSymmetry> medial_symmetries(const ObjectModel& object,
 std::vector<MedialCandidate> medial_candidates(std::span<const MedialSymmetry> symmetries,
                                                std::uint64_t seed) {
   std::vector<MedialCandidate> candidates;
-  for (std::size_t i = 0; i < symmetries.size(); ++i) {
+  for (std::int32_t i = 0; i < std::ssize(symmetries); ++i) {
     const MedialSymmetry& symmetry = symmetries[i];
     const Vector3d& center = symmetry.ball.center;
     const auto add = [&](const Vector3d& outward, const Vector3d& axis) {
-      candidates.push_back({center, outward, axis, static_cast<std::int32_t>(i)});
+      candidates.push_back({center, outward, axis, i});
     };
     switch (symmetry.kind) {
       case SymmetryKind::Axis: {

@@ -15,7 +15,7 @@ NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool
       last_voxel_((lattice_.counts.array() - 1).cast<double>()),
       patch_of_voxel_(object.patch_of_voxel) {
   for (std::int32_t& patch : patch_of_voxel_) {
-    if (patch >= 0 && !is_meant[static_cast<std::size_t>(patch)]) patch = -1;
+    if (patch >= 0 && !is_meant[patch]) patch = -1;
   }
   std::vector<float> squared(patch_of_voxel_.size(), std::numeric_limits<float>::infinity());
   const auto distance = [&](const Vector3i& voxel, std::int32_t patch) {
@@ -24,15 +24,14 @@ NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool
     return static_cast<float>((center - object.patches[patch].centroid).squaredNorm());
   };
   const auto visit = [&](const Vector3i& voxel) {
-    const auto index = static_cast<std::size_t>(lattice_.index(voxel));
+    const std::int64_t index = lattice_.index(voxel);
     if (patch_of_voxel_[index] >= 0 && squared[index] == 0.0F) return;
     for (int axis = 0; axis < 3; ++axis) {
       for (const int step : {-1, 1}) {
         Vector3i neighbor = voxel;
         neighbor[axis] += step;
         if (neighbor[axis] < 0 || neighbor[axis] >= lattice_.counts[axis]) continue;
-        const std::int32_t patch =
-            patch_of_voxel_[static_cast<std::size_t>(lattice_.index(neighbor))];
+        const std::int32_t patch = patch_of_voxel_[lattice_.index(neighbor)];
         if (patch < 0) continue;
         const float candidate = distance(voxel, patch);
         if (!(candidate < squared[index])) continue;

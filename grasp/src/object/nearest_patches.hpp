@@ -22,7 +22,7 @@ class NearestPatches {
   std::int32_t at(const Eigen::Vector3d& point_O) const {
     const Eigen::Array3d position = (point_O - lattice_.origin).array() / lattice_.voxel_size;
     const Eigen::Array3d inside = position.max(0.0).min(last_voxel_);
-    return patch_of_voxel_[static_cast<std::size_t>(lattice_.index(inside.cast<int>().matrix()))];
+    return patch_of_voxel_[lattice_.index(inside.cast<int>().matrix())];
   }
 
  private:

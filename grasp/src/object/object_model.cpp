@@ -114,9 +114,9 @@ ObjectModel cached_object_model(const geometry::TriangleMesh& mesh,
                         internal::to_bytes)
                   : find();
 
-  std::vector<std::int32_t> patch_of_voxel(static_cast<std::size_t>(lattice.num_voxels()), -1);
-  for (std::size_t i = 0; i < parts.patches.size(); ++i) {
-    patch_of_voxel[parts.patches[i].voxel] = static_cast<std::int32_t>(i);
+  std::vector<std::int32_t> patch_of_voxel(lattice.num_voxels(), -1);
+  for (std::int32_t i = 0; i < std::ssize(parts.patches); ++i) {
+    patch_of_voxel[parts.patches[i].voxel] = i;
   }
   std::optional<geometry::WeakRegions> weak;
   std::vector<bool> is_weak_patch(parts.patches.size(), false);

@@ -55,7 +55,7 @@ class ByteReader {
     std::memcpy(&size, bytes_.data(), sizeof size);
     bytes_.remove_prefix(sizeof size);
     if (size < 0 || static_cast<std::uint64_t>(size) > bytes_.size() / sizeof(T)) return bad<T>();
-    std::vector<T> values(static_cast<std::size_t>(size));
+    std::vector<T> values(size);
     if (size > 0) std::memcpy(values.data(), bytes_.data(), values.size() * sizeof(T));
     bytes_.remove_prefix(values.size() * sizeof(T));
     return values;
@@ -169,7 +169,7 @@ std::optional<ObjectParts> from_bytes(std::string_view bytes, const geometry::Vo
     patch.area_centroid = vector(record.vectors[2]);
     patch.area_weighted_normal = vector(record.vectors[3]);
     patch.plain_normal = vector(record.vectors[4]);
-    const auto begin = faces.begin() + static_cast<std::ptrdiff_t>(first_face);
+    const auto begin = faces.begin() + first_face;
     patch.faces.assign(begin, begin + record.num_faces);
     first_face += static_cast<std::size_t>(record.num_faces);
   }

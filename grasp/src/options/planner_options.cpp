@@ -26,8 +26,8 @@ void PlannerOptions::validate() const {
   const int least_fingers = has_palm ? 1 : 2;
   require(!fingers.empty() || num_contacts >= least_fingers, "num_contacts", num_contacts,
           has_palm ? ">= 1 beside the palm" : ">= 2");
-  require(fingers.empty() || static_cast<int>(fingers.size()) >= least_fingers, "fingers",
-          fingers.size(), has_palm ? "at least one name beside the palm" : "at least two names");
+  require(fingers.empty() || std::ssize(fingers) >= least_fingers, "fingers", fingers.size(),
+          has_palm ? "at least one name beside the palm" : "at least two names");
   if (approach_O) {
     require(approach_O->allFinite() && approach_O->norm() > 0.0, "approach_O",
             shortest_decimal((*approach_O)[0]) + "," + shortest_decimal((*approach_O)[1]) + "," +
@@ -108,13 +108,13 @@ RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOption
   }
   std::vector<int>& fingers = parts.fingers;
   if (options.fingers.empty()) {
-    if (options.num_contacts > static_cast<int>(hand.fingers.size())) {
+    if (options.num_contacts > std::ssize(hand.fingers)) {
       throw InvalidInput("hand " + hand.name + " has " + std::to_string(hand.fingers.size()) +
                          " fingers, " + std::to_string(options.num_contacts) +
                          " contacts were asked for");
     }
     fingers.push_back(hand.thumb());
-    for (int finger = 0; static_cast<int>(fingers.size()) < options.num_contacts; ++finger) {
+    for (int finger = 0; std::ssize(fingers) < options.num_contacts; ++finger) {
       if (finger != hand.thumb()) fingers.push_back(finger);
     }
   } else {

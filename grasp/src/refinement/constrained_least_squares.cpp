@@ -13,13 +13,13 @@ using Eigen::VectorXd;
 namespace {
 
 MatrixXd matrix(const std::vector<RowVectorXd>& rows) {
-  MatrixXd result(static_cast<Eigen::Index>(rows.size()), rows.front().size());
-  for (std::size_t i = 0; i < rows.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = rows[i];
+  MatrixXd result(std::ssize(rows), rows.front().size());
+  for (int i = 0; i < std::ssize(rows); ++i) result.row(i) = rows[i];
   return result;
 }
 
 VectorXd vector(const std::vector<double>& values) {
-  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const VectorXd>(values.data(), std::ssize(values));
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ class Refinement {
 
  private:
   PadRequest request_of(int pad, const TargetContacts* targets) const {
-    base::require(pad >= 0 && pad < static_cast<int>(model_.pads.size()), "refine_contacts",
-                  "requested pad", pad, "an index into the pads of hand " + model_.name);
+    base::require(pad >= 0 && pad < std::ssize(model_.pads), "refine_contacts", "requested pad",
+                  pad, "an index into the pads of hand " + model_.name);
     PadRequest request;
     request.pad = pad;
     request.link = model_.pads[pad].link;
@@ -305,7 +305,7 @@ class Refinement {
   /// first.
   std::vector<PadRequest> near_pads() const {
     std::vector<PadRequest> near;
-    for (int pad = 0; pad < static_cast<int>(model_.pads.size()); ++pad) {
+    for (int pad = 0; pad < std::ssize(model_.pads); ++pad) {
       const bool is_requested =
           std::any_of(requests_.begin(), requests_.end(),
                       [&](const PadRequest& request) { return request.pad == pad; });

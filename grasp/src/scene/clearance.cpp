@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 
 namespace graspfit::grasp::internal {
@@ -35,7 +36,7 @@ Clearance::Clearance(const FittingHand& hand, const ObjectModel& object,
                      const SurroundingsCollision& surroundings)
     : hand_(hand), object_(object), surroundings_(surroundings) {
   const hands::HandModel& model = hand.model();
-  const auto num_links = static_cast<int>(model.links.size());
+  const auto num_links = base::as_index<int>(model.links.size());
   for (int a = 0; a < num_links; ++a) {
     pieces_.emplace_back(hand.pieces(a).size());
     const Eigen::AlignedBox3d box = hand.collision().link_solid(a)
@@ -88,8 +89,8 @@ double Clearance::object_bound(const Vector3d& center_O, double radius, double e
 
 std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
   std::vector<NearPoints> near;
-  for (std::size_t link = 0; link < pieces_.size(); ++link) {
-    const auto& pieces = hand_.pieces(static_cast<int>(link));
+  for (int link = 0; link < std::ssize(pieces_); ++link) {
+    const auto& pieces = hand_.pieces(link);
     const RigidTransform& X = X_OL[link];
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       Known& known = pieces_[link][i];
@@ -104,37 +105,33 @@ std::vector<NearPoints> Clearance::find(const LinkPoses& X_OL, double enough) {
       }
       const auto found = nearest(known, object_.query, piece.surface_L, X, enough);
       if (!found) continue;
-      near.push_back({found->distance, static_cast<int>(link), std::nullopt, found->point_on_b_A,
-                      found->point_on_a_A,
+      near.push_back({found->distance, link, std::nullopt, found->point_on_b_A, found->point_on_a_A,
                       (found->point_on_b_A - found->point_on_a_A).normalized()});
     }
   }
   if (!surroundings_.surroundings().is_empty()) {
-    for (std::size_t link = 0; link < X_OL.size(); ++link) {
-      if (!hand_.collision().link_solid(static_cast<int>(link))) continue;
+    for (int link = 0; link < std::ssize(X_OL); ++link) {
+      if (!hand_.collision().link_solid(link)) continue;
       const SurroundingsDistance found =
-          surroundings_.distance(hand_.collision(), static_cast<int>(link), X_OL[link], enough);
+          surroundings_.distance(hand_.collision(), link, X_OL[link], enough);
       if (found.distance > enough) continue;
-      near.push_back({found.distance, static_cast<int>(link), std::nullopt, found.point_on_link_O,
+      near.push_back({found.distance, link, std::nullopt, found.point_on_link_O,
                       found.point_on_link_O - found.distance * found.normal_O, found.normal_O});
     }
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const auto [a, b] = pairs_[p];
-    const auto index_a = static_cast<std::size_t>(a);
-    const auto index_b = static_cast<std::size_t>(b);
-    const RigidTransform X_AB = geometry::relative_pose(X_OL[index_a], X_OL[index_b]);
+    const RigidTransform X_AB = geometry::relative_pose(X_OL[a], X_OL[b]);
     Known& known = pair_known_[p];
-    if ((centers_L_[index_a] - X_AB * centers_L_[index_b]).norm() >
-        radii_[index_a] + radii_[index_b] + enough) {
+    if ((centers_L_[a] - X_AB * centers_L_[b]).norm() > radii_[a] + radii_[b] + enough) {
       continue;
     }
-    if (surely_beyond(known, X_AB, centers_L_[index_b], radii_[index_b], enough)) continue;
+    if (surely_beyond(known, X_AB, centers_L_[b], radii_[b], enough)) continue;
     const auto found = nearest(known, *hand_.collision().link_solid(a),
                                *hand_.collision().link_solid(b), X_AB, enough);
     if (!found) continue;
-    const Vector3d on_a = X_OL[index_a] * found->point_on_a_A;
-    const Vector3d on_b = X_OL[index_a] * found->point_on_b_A;
+    const Vector3d on_a = X_OL[a] * found->point_on_a_A;
+    const Vector3d on_b = X_OL[a] * found->point_on_b_A;
     near.push_back({found->distance, b, a, on_b, on_a, (on_b - on_a).normalized()});
   }
   return near;
@@ -147,8 +144,8 @@ bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
     return !surely_beyond(known, X, center, radius, least) &&
            geometry::nearest_points(a, b, X, least, known.seed, least);
   };
-  for (std::size_t link = 0; link < pieces_.size(); ++link) {
-    const auto& pieces = hand_.pieces(static_cast<int>(link));
+  for (int link = 0; link < std::ssize(pieces_); ++link) {
+    const auto& pieces = hand_.pieces(link);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       if (is_near(pieces_[link][i], object_.query, pieces[i].surface_L, X_OL[link],
                   pieces[i].center_L, pieces[i].radius)) {
@@ -156,19 +153,16 @@ bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
       }
     }
   }
-  for (std::size_t link = 0; link < X_OL.size(); ++link) {
-    const auto index = static_cast<int>(link);
+  for (int link = 0; link < std::ssize(X_OL); ++link) {
     if (surroundings_.surroundings().is_empty()) break;
-    if (!hand_.collision().link_solid(index)) continue;
-    if (surroundings_.distance(hand_.collision(), index, X_OL[link], least).distance <= least) {
+    if (!hand_.collision().link_solid(link)) continue;
+    if (surroundings_.distance(hand_.collision(), link, X_OL[link], least).distance <= least) {
       return false;
     }
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    const auto a = static_cast<std::size_t>(pairs_[p].first);
-    const auto b = static_cast<std::size_t>(pairs_[p].second);
-    if (is_near(pair_known_[p], *hand_.collision().link_solid(pairs_[p].first),
-                *hand_.collision().link_solid(pairs_[p].second),
+    const auto [a, b] = pairs_[p];
+    if (is_near(pair_known_[p], *hand_.collision().link_solid(a), *hand_.collision().link_solid(b),
                 geometry::relative_pose(X_OL[a], X_OL[b]), centers_L_[b], radii_[b])) {
       return false;
     }
@@ -178,7 +172,7 @@ bool Clearance::is_apart(const LinkPoses& X_OL, double least) const {
 
 Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const {
   Blocked result;
-  for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
+  for (int link = 0; link < std::ssize(X_OL); ++link) {
     const auto& solid = hand_.collision().link_solid(link);
     if (!solid) continue;
     const RigidTransform& X = X_OL[link];
@@ -200,7 +194,7 @@ Clearance::Blocked Clearance::blocked(const LinkPoses& X_OL, double least) const
 }
 
 bool Clearance::is_clear_of_world(const LinkPoses& X_OL) const {
-  for (int link = 0; link < static_cast<int>(X_OL.size()); ++link) {
+  for (int link = 0; link < std::ssize(X_OL); ++link) {
     const RigidTransform& X = X_OL[link];
     if (hand_.collision().link_intersects(object_.query, link, X)) return false;
     if (surroundings_.touches(hand_.collision(), link, X)) return false;

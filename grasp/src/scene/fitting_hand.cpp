@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/pad_surface.hpp"
@@ -25,7 +26,7 @@ constexpr std::size_t kLeafSize =
 constexpr double kPieceSize = 0.012;  // [m]; about a fingertip: its sides and end are pieces apart
 
 /// Into how many parts of `spacing` the longest edge of a face is cut.
-double parts_of_edge(const geometry::TriangleMesh& mesh, std::size_t face, double spacing) {
+double parts_of_edge(const geometry::TriangleMesh& mesh, std::int32_t face, double spacing) {
   const auto [a, b, c] = geometry::corners(mesh, face);
   return std::ceil(std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) / spacing);
 }
@@ -50,7 +51,7 @@ void require_few_points(const hands::HandModel& hand, const hands::Link& link, d
 /// `spacing`; of these, only the first one in each cell of half that size is kept.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
   std::vector<Vector3d> points = mesh.vertices;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     const auto [a, b, c] = geometry::corners(mesh, face);
     const int n = static_cast<int>(parts_of_edge(mesh, face, spacing));
     for (int i = 0; i <= n; ++i) {
@@ -82,17 +83,17 @@ void add_ball(FittingHand::LinkSamples& samples, std::size_t first, std::size_t 
   const std::size_t index = samples.balls.size();
   samples.balls.push_back(ball);
   if (points.size() <= kLeafSize) {
-    samples.balls[index].first = static_cast<std::int32_t>(first);
-    samples.balls[index].count = static_cast<std::int32_t>(points.size());
+    samples.balls[index].first = base::as_index<std::int32_t>(first);
+    samples.balls[index].count = base::as_index<std::int32_t>(points.size());
     return;
   }
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const std::size_t half = points.size() / 2;
-  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(half), points.end(),
+  std::nth_element(points.begin(), points.begin() + half, points.end(),
                    [axis](const Vector3d& a, const Vector3d& b) { return a[axis] < b[axis]; });
   add_ball(samples, first, first + half);
-  samples.balls[index].first = static_cast<std::int32_t>(samples.balls.size());
+  samples.balls[index].first = base::as_index<std::int32_t>(samples.balls.size());
   add_ball(samples, first + half, last);
 }
 
@@ -114,7 +115,7 @@ FittingHand::FittingHand(const hands::HandModel& hand, double sample_spacing)
     if (!samples.points_L.empty()) add_ball(samples, 0, samples.points_L.size());
     pieces_.push_back(internal::pieces_of(link.mesh_L, kPieceSize));
   }
-  for (int pad = 0; pad < static_cast<int>(hand.pads.size()); ++pad) {
+  for (int pad = 0; pad < std::ssize(hand.pads); ++pad) {
     pad_surfaces_.emplace_back(hands::pad_surface_L(hand, pad));
   }
 }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
+
 namespace graspfit::grasp::internal {
 namespace {
 
@@ -41,7 +43,7 @@ FittingHand::Piece piece_of(const std::vector<Corners>& parts, std::size_t begin
   geometry::TriangleMesh mesh;
   Eigen::AlignedBox3d box;
   for (std::size_t i = begin; i < end; ++i) {
-    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    const auto first = base::as_index<std::int32_t>(mesh.vertices.size());
     for (const Vector3d& corner : parts[i]) {
       mesh.vertices.push_back(corner);
       box.extend(corner);
@@ -69,8 +71,7 @@ void gather(std::vector<Corners>& parts, std::size_t begin, std::size_t end, dou
   }
   const double middle = middles.center()[axis];
   const auto at =
-      std::stable_partition(parts.begin() + static_cast<std::ptrdiff_t>(begin),
-                            parts.begin() + static_cast<std::ptrdiff_t>(end),
+      std::stable_partition(parts.begin() + begin, parts.begin() + end,
                             [&](const Corners& part) { return middle_of(part)[axis] <= middle; });
   const auto half = static_cast<std::size_t>(at - parts.begin());
   gather(parts, begin, half, size, pieces);
@@ -81,7 +82,7 @@ void gather(std::vector<Corners>& parts, std::size_t begin, std::size_t end, dou
 
 std::vector<FittingHand::Piece> pieces_of(const geometry::TriangleMesh& mesh, double size) {
   std::vector<Corners> parts;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+  for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
     add_parts(geometry::corners(mesh, face), size, parts);
   }
   std::vector<FittingHand::Piece> pieces;

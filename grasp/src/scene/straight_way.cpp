@@ -60,7 +60,7 @@ StraightWay::StraightWay(const hands::HandModel& hand, const hands::HandConfigur
     levers_.push_back(lever);
     offsets_.push_back(link.parent_link ? offset_of(hand, link, from.q, to.q) : 0.0);
   }
-  for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+  for (int link = 0; link < std::ssize(hand.links); ++link) {
     int root = link;
     double reach = radii_[link];
     while (const auto parent = hand.links[root].parent_link) {
@@ -75,13 +75,12 @@ double StraightWay::speed_in(int link, int ancestor) const {
   double speed = 0.0;
   double reach = radii_[link];  // from the frame of the link `at`
   for (int at = link; at != ancestor;) {
-    const auto index = static_cast<std::size_t>(at);
-    if (const auto joint = hand_.links[index].parent_joint) {
+    if (const auto joint = hand_.links[at].parent_joint) {
       const bool is_revolute = hand_.joints[*joint].type == hands::JointType::Revolute;
-      speed += motion_[*joint] * (!is_revolute ? 1.0 : at == link ? levers_[index] : reach);
+      speed += motion_[*joint] * (!is_revolute ? 1.0 : at == link ? levers_[at] : reach);
     }
-    reach += offsets_[index];
-    at = *hand_.links[index].parent_link;
+    reach += offsets_[at];
+    at = *hand_.links[at].parent_link;
   }
   return speed;
 }

@@ -76,7 +76,7 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
                                                                        double enough) const {
   Lowest lowest{internal::kInfinity, Vector3d::Zero()};
   if (!surroundings_.table_z_O) return lowest;
-  const auto& corners = corners_L_.at(static_cast<std::size_t>(link));
+  const auto& corners = corners_L_.at(link);
   if (corners.empty()) return lowest;
   const double table = *surroundings_.table_z_O;
   const Eigen::AlignedBox3d& box = boxes_L_[link];

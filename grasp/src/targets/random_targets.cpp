@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "targets/target_feasibility.hpp"
 
 namespace graspfit::grasp {
@@ -28,9 +29,9 @@ class GreedySearch {
     result.failure = TargetFailure::NoSecond;
     const int wanted = options_.ideal_m_bias > 0.0 ? options_.ideal_m_draws : 1;
     std::vector<TargetContacts> complete;
-    while (result.seeds_tried < options_.max_seeds && static_cast<int>(complete.size()) < wanted) {
+    while (result.seeds_tried < options_.max_seeds && std::ssize(complete) < wanted) {
       // Seeds that led to a set have not failed.
-      const int failed = result.seeds_tried - static_cast<int>(complete.size());
+      const int failed = result.seeds_tried - base::as_index<int>(complete.size());
       relaxation_ = failed >= options_.relax_after_seeds ? 1.5 : 1.0;
       ++result.seeds_tried;
       const TargetFailure reached = try_seed();
@@ -55,7 +56,7 @@ class GreedySearch {
   TargetFailure try_seed() {
     is_complete_ = false;
     palm_misfit_.reset();
-    chosen_.assign(1, static_cast<std::int32_t>(random_.index(rules_.pool().size())));
+    chosen_.assign(1, base::as_index<std::int32_t>(random_.index(rules_.pool().size())));
     orders_ = TargetRules::seed_orders();
     find_partners();
     while (chosen_.size() < rules_.num_fingers()) {
@@ -70,7 +71,7 @@ class GreedySearch {
   /// Finds the points that form a stable pair with the seed, as every further target must.
   void find_partners() {
     partners_.clear();
-    for (std::int32_t point = 0; point < static_cast<std::int32_t>(rules_.pool().size()); ++point) {
+    for (std::int32_t point = 0; point < std::ssize(rules_.pool()); ++point) {
       if (point != chosen_[0] && rules_.is_stable_pair(chosen_[0], point)) {
         partners_.push_back(point);
       }
@@ -140,7 +141,7 @@ class GreedySearch {
     std::vector<double> misfits;
     std::vector<std::int32_t> with_palm = chosen_;
     with_palm.push_back(0);
-    for (std::int32_t point = 0; point < static_cast<std::int32_t>(rules_.pool().size()); ++point) {
+    for (std::int32_t point = 0; point < std::ssize(rules_.pool()); ++point) {
       const std::optional<double> misfit = rules_.palm_misfit(chosen_, orders_, point);
       if (!misfit) continue;
       with_palm.back() = point;
@@ -160,8 +161,7 @@ class GreedySearch {
       const auto share =
           static_cast<std::size_t>(std::ceil(options_.pool_fraction * static_cast<double>(size)));
       size = std::min(size, std::max<std::size_t>(share, options_.pool_minimum));
-      std::partial_sort(candidates_.begin(),
-                        candidates_.begin() + static_cast<std::ptrdiff_t>(size), candidates_.end(),
+      std::partial_sort(candidates_.begin(), candidates_.begin() + size, candidates_.end(),
                         [](const Candidate& a, const Candidate& b) {
                           return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
                         });

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "targets/target_feasibility.hpp"
 
@@ -64,9 +65,9 @@ struct RankedTargets::Impl {
 
   /// Finds the stable pairs within reach: for each point its partners, by ascending distance.
   void find_partners() {
-    const auto num_points = static_cast<std::int32_t>(rules.pool().size());
+    const auto num_points = base::as_index<std::int32_t>(rules.pool().size());
     if (num_points > 0) failure = TargetFailure::NoSecond;
-    partners.resize(static_cast<std::size_t>(num_points));
+    partners.resize(num_points);
     for (std::int32_t a = 0; a < num_points; ++a) {
       for (std::int32_t b = a + 1; b < num_points; ++b) {
         if (!rules.is_stable_pair(a, b)) continue;
@@ -93,7 +94,7 @@ struct RankedTargets::Impl {
     limit = first_limit;
     is_cut = false;
     has_overflown = false;
-    for (std::int32_t seed = 0; seed < static_cast<std::int32_t>(rules.pool().size()); ++seed) {
+    for (std::int32_t seed = 0; seed < std::ssize(rules.pool()); ++seed) {
       chosen[0] = seed;
       search_seconds(seed);
     }
@@ -270,7 +271,7 @@ struct RankedTargets::Impl {
       return;
     }
     failure = TargetFailure::NoPalm;
-    for (std::int32_t palm = 0; palm < static_cast<std::int32_t>(rules.pool().size()); ++palm) {
+    for (std::int32_t palm = 0; palm < std::ssize(rules.pool()); ++palm) {
       const std::optional<double> misfit = rules.palm_misfit(fingers(), orders, palm);
       if (!misfit) continue;
       chosen[num_fingers] = palm;

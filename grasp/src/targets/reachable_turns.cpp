@@ -113,7 +113,7 @@ Turns ReachableTurns::at(const PointFromPalm& point) const {
   if (ahead < 0.0 || ahead >= num_ahead_ || aside >= num_aside_) return {};
   const Turns& azimuths = azimuths_[static_cast<int>(ahead) * num_aside_ + static_cast<int>(aside)];
   // Turned by k, the point is at azimuth + k.
-  const auto by = static_cast<std::size_t>(point.azimuth);
+  const int by = point.azimuth;
   return (azimuths >> by) | (azimuths << (kTurns - by));
 }
 

@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
+
 namespace graspfit::grasp::internal {
 namespace {
 
@@ -52,7 +54,7 @@ TargetSelection SampleTargets::select(base::Random& random) const {
     ++result.seeds_tried;
     for (int draw = 0; draw < kDrawsPerSeed; ++draw) {
       for (std::size_t i = 0; i < num_parts; ++i) {
-        drawn[i] = static_cast<std::int32_t>(random.index(rules_.pool().size()));
+        drawn[i] = base::as_index<std::int32_t>(random.index(rules_.pool().size()));
       }
       const PointIndices fingers(drawn.data(), rules_.num_fingers());
       if (!are_in_reach(rules_, fingers, orders)) continue;

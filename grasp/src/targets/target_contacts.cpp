@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 namespace {
 
 void require_pad(const hands::HandModel& hand, int pad) {
-  if (pad >= 0 && static_cast<std::size_t>(pad) < hand.pads.size()) return;
+  if (pad >= 0 && pad < std::ssize(hand.pads)) return;
   throw base::InvalidInput("pad " + std::to_string(pad) + " of hand " + hand.name + ", which has " +
                            std::to_string(hand.pads.size()));
 }

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 
@@ -26,7 +27,7 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
     throw InvalidInput("target contacts: " + what);
   };
   const std::vector<int>& fingers = parts.fingers;
-  const int num_fingers = static_cast<int>(distances.tip_to_tip.size());
+  const int num_fingers = base::as_index<int>(distances.tip_to_tip.size());
   if (fingers.size() < 2) {
     refuse(std::to_string(fingers.size()) + " fingers, a grasp needs at least two");
   }
@@ -50,8 +51,7 @@ void check_parts(const PartDistances& distances, const RequestedParts& parts,
       refuse(name + " reaches no distance from the others; has it a fingertip pad?");
     }
   }
-  if (parts.palm &&
-      (!distances.palm || distances.palm_to_tip.size() != static_cast<std::size_t>(num_fingers))) {
+  if (parts.palm && (!distances.palm || std::ssize(distances.palm_to_tip) != num_fingers)) {
     refuse("a target for the palm of a hand without a palm pad");
   }
   if (options.pair_rule == PairRule::AllPairs && fingers.size() >= 5 &&
@@ -89,11 +89,11 @@ void thin(std::vector<PoolPoint>& pool, const ObjectModel& object, double spacin
 std::vector<PoolPoint> pool_of(const ObjectModel& object, const TargetOptions& options) {
   std::vector<PoolPoint> pool;
   const bool knows_weak = options.exclude_weak && !object.is_weak_patch.empty();
-  for (std::size_t p = 0; p < object.patches.size(); ++p) {
+  for (std::int32_t p = 0; p < std::ssize(object.patches); ++p) {
     const geometry::SurfacePatch& patch = object.patches[p];
     if (!patch.has_normal || !(object.scores.scores[p] > options.score_threshold)) continue;
     if (knows_weak && object.is_weak_patch[p]) continue;
-    pool.push_back({patch.centroid, -patch.outward_normal, static_cast<std::int32_t>(p)});
+    pool.push_back({patch.centroid, -patch.outward_normal, p});
   }
   if (options.pool_spacing > 0.0) thin(pool, object, options.pool_spacing);
   return pool;
@@ -176,8 +176,8 @@ bool TargetRules::reaches(int order_a, int order_b, double distance) const {
 }
 
 bool TargetRules::is_in_seed_reach(double distance) const {
-  for (std::size_t finger = 1; finger < num_fingers(); ++finger) {
-    if (reaches(0, static_cast<int>(finger), distance)) return true;
+  for (int finger = 1; finger < std::ssize(parts_.fingers); ++finger) {
+    if (reaches(0, finger, distance)) return true;
   }
   return false;
 }
@@ -195,7 +195,7 @@ std::vector<FingerOrder> TargetRules::extended(const std::vector<FingerOrder>& o
   const std::size_t size = distances.size();
   std::vector<FingerOrder> result;
   for (const FingerOrder& order : orders) {
-    for (int finger = 1; finger < static_cast<int>(num_fingers()); ++finger) {
+    for (int finger = 1; finger < std::ssize(parts_.fingers); ++finger) {
       if (!can_take(order, size, finger, distances)) continue;
       result.push_back(order);
       result.back()[size] = static_cast<std::int8_t>(finger);
@@ -207,7 +207,7 @@ std::vector<FingerOrder> TargetRules::extended(const std::vector<FingerOrder>& o
 bool TargetRules::is_extendable(const std::vector<FingerOrder>& orders,
                                 std::span<const double> distances) const {
   for (const FingerOrder& order : orders) {
-    for (int finger = 1; finger < static_cast<int>(num_fingers()); ++finger) {
+    for (int finger = 1; finger < std::ssize(parts_.fingers); ++finger) {
       if (can_take(order, distances.size(), finger, distances)) return true;
     }
   }
@@ -304,8 +304,8 @@ std::optional<double> TargetRules::tip_misfit(PointIndices fingers,
     std::array<std::array<double, kMostParts>, kMostParts> off{};
     for (std::size_t t = 1; t < fingers.size() && is_reached; ++t) {
       is_reached = false;
-      for (std::size_t f = 1; f < fingers.size(); ++f) {
-        off[t][f] = distance_to_reach(t, static_cast<int>(f));
+      for (int f = 1; f < std::ssize(fingers); ++f) {
+        off[t][f] = distance_to_reach(t, f);
         is_reached = is_reached || off[t][f] <= options_.palm_reach_tolerance;
       }
     }

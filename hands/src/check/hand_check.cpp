@@ -44,7 +44,7 @@ void report_missing_meshes(const JointTree& joints, const std::set<std::string>&
   for (const std::optional<int>& body : bodies) {
     bool has_mesh = false;
     std::vector<std::string> names;
-    for (std::size_t l = 0; l < joints.tree().links.size(); ++l) {
+    for (int l = 0; l < std::ssize(joints.tree().links); ++l) {
       if (joints.above_link(l) != body) continue;
       names.push_back(joints.tree().links[l].name);
       has_mesh = has_mesh || has_geometry.contains(names.back());
@@ -157,7 +157,7 @@ void check_closing_joint(const HandModel& hand, int j, Findings& findings) {
 
 /// Reports a finger whose tip does not come nearer when it closes than when it is open: to the
 /// palm's center line, to the palm center, or to the tips of the other fingers, which close too.
-void check_closing_finger(const HandModel& hand, std::size_t f, Findings& findings) {
+void check_closing_finger(const HandModel& hand, int f, Findings& findings) {
   constexpr double kNearer = 0.9;
   const Finger& finger = hand.fingers[f];
   const std::string item = "finger " + finger.name;
@@ -182,7 +182,7 @@ void check_closing_finger(const HandModel& hand, std::size_t f, Findings& findin
     const Vector3d from_center = tip - hand.palm.center_H;
     std::vector<double> result = {from_center.norm(),
                                   from_center.cross(hand.palm.direction_H).norm()};
-    for (std::size_t other = 0; other < hand.fingers.size(); ++other) {
+    for (int other = 0; other < std::ssize(hand.fingers); ++other) {
       if (other == f || !hand.fingers[other].tip_pad) continue;
       result.push_back(
           (pad_pose(hand, *hand.fingers[other].tip_pad, X_OL).translation() - tip).norm());
@@ -226,7 +226,7 @@ void report_tips_that_never_meet(const HandModel& hand, Findings& findings) {
   // A coarse grid shows whether tips face each other at all, since local search improves its ends.
   constexpr std::int64_t kCoarse = std::int64_t{1} << 16;
   const HandWorkspace workspace = hand_workspace(hand, {.max_configurations = kCoarse});
-  const auto thumb = static_cast<std::size_t>(hand.thumb());
+  const int thumb = hand.thumb();
   const std::string thumb_name = hand.fingers[thumb].name;
   if (workspace.any_graspable_diameter.largest <= 0.0) {
     findings.suspicious("finger " + thumb_name,
@@ -234,7 +234,7 @@ void report_tips_that_never_meet(const HandModel& hand, Findings& findings) {
                         "face each other");
     return;
   }
-  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
+  for (int f = 0; f < std::ssize(hand.fingers); ++f) {
     if (f == thumb || workspace.graspable_diameter[f].largest > 0.0) continue;
     findings.note("finger " + hand.fingers[f].name,
                   "no ball fits between its tip pad and that of " + thumb_name);
@@ -267,11 +267,10 @@ void tell_exclusions(const HandModel& hand, Findings& findings) {
 
 void tell_idle_joints(const HandModel& hand, Findings& findings) {
   std::vector<std::string> idle;
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const bool is_used =
         std::any_of(hand.fingers.begin(), hand.fingers.end(), [&](const Finger& finger) {
-          return std::find(finger.joints.begin(), finger.joints.end(), static_cast<int>(j)) !=
-                 finger.joints.end();
+          return std::find(finger.joints.begin(), finger.joints.end(), j) != finger.joints.end();
         });
     if (!is_used) idle.push_back(hand.joints[j].name);
   }
@@ -279,12 +278,12 @@ void tell_idle_joints(const HandModel& hand, Findings& findings) {
 }
 
 void check_whole(const HandModel& hand, Findings& findings) {
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     if (hand.joints[j].closing_sign != 0 && !hand.joints[j].coupling) {
-      check_closing_joint(hand, static_cast<int>(j), findings);
+      check_closing_joint(hand, j, findings);
     }
   }
-  for (std::size_t f = 0; f < hand.fingers.size(); ++f) check_closing_finger(hand, f, findings);
+  for (int f = 0; f < std::ssize(hand.fingers); ++f) check_closing_finger(hand, f, findings);
   report_tips_that_never_meet(hand, findings);
   report_overlaps(hand, findings);
   report_blocked_fingers(hand, findings);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "description/xml_source.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
@@ -262,7 +263,7 @@ class Reader : private XmlSource {
       number(result.offset);
     }
     if (at != end) complain("is not d#*ratio+offset");
-    if (result.dof >= static_cast<int>(dofs_.size())) {
+    if (result.dof >= std::ssize(dofs_)) {
       complain("uses degree of freedom " + std::to_string(result.dof) + " of " +
                std::to_string(dofs_.size()));
     }
@@ -334,7 +335,7 @@ class Reader : private XmlSource {
     std::vector<ChainJoint> joints;
     for (const XMLElement* at = e.FirstChildElement("joint"); at;
          at = at->NextSiblingElement("joint")) {
-      joints.push_back(joint(*at, index, static_cast<int>(joints.size())));
+      joints.push_back(joint(*at, index, base::as_index<int>(joints.size())));
     }
     std::vector<ChainLink> links;
     int num_used = 0;
@@ -344,7 +345,7 @@ class Reader : private XmlSource {
       num_used += links.back().num_joints;
     }
     if (links.empty()) fail(e, item + ": no links");
-    if (num_used != static_cast<int>(joints.size())) {
+    if (num_used != std::ssize(joints)) {
       fail(e, item + ": its links hang on " + std::to_string(num_used) + " joints, but it has " +
                   std::to_string(joints.size()));
     }

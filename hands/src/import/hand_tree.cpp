@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 
 namespace graspfit::hands::internal {
@@ -91,7 +92,7 @@ class TreeBuilder {
   }
 
   void add(const std::string& name, std::optional<int> parent, const DescribedJoint* above) {
-    const int index = static_cast<int>(model_.links.size());
+    const int index = base::as_index<int>(model_.links.size());
     added_.insert(name);
     Link link;
     link.name = name;
@@ -100,7 +101,7 @@ class TreeBuilder {
     if (above != nullptr && above->type == DescribedJoint::Type::Fixed) {
       link.X_PL_fixed = above->X_PJ;
     } else if (above != nullptr) {
-      link.parent_joint = static_cast<int>(model_.joints.size());
+      link.parent_joint = base::as_index<int>(model_.joints.size());
       Joint joint;
       joint.name = above->name;
       joint.type = above->type == DescribedJoint::Type::Prismatic ? JointType::Prismatic
@@ -128,9 +129,9 @@ class TreeBuilder {
     while (!waiting.empty()) {
       const Next next = waiting.back();
       waiting.pop_back();
-      const int index = static_cast<int>(model_.links.size());
+      const int index = base::as_index<int>(model_.links.size());
       add(next.name, next.parent, next.above);
-      const auto first = static_cast<std::ptrdiff_t>(waiting.size());
+      const auto first = std::ssize(waiting);
       for (const DescribedJoint& joint : description_.joints) {
         if (joint.parent == next.name) waiting.push_back({joint.child, index, &joint});
       }
@@ -144,7 +145,7 @@ class TreeBuilder {
     std::vector<const DescribedJoint*> result;
     std::vector<const DescribedJoint*> waiting;
     const auto wait_for_joints_on = [&](const std::string& name) {
-      const auto first = static_cast<std::ptrdiff_t>(waiting.size());
+      const auto first = std::ssize(waiting);
       for (const DescribedJoint& joint : description_.joints) {
         if (joint.parent == name) waiting.push_back(&joint);
       }
@@ -205,8 +206,8 @@ class TreeBuilder {
   }
 
   int joint(const std::string& name, const std::string& item) const {
-    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-      if (model_.joints[j].name == name) return static_cast<int>(j);
+    for (int j = 0; j < std::ssize(model_.joints); ++j) {
+      if (model_.joints[j].name == name) return j;
     }
     fail(item + ": no movable joint named " + name);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "description/description_package.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/lies_in.hpp"
 #include "graspfit/base/number_text.hpp"
@@ -141,9 +142,8 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
   };
   std::map<std::int32_t, std::int32_t, decltype(less)> first_of(less);
   std::vector<std::int32_t> first_equal(mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto own = static_cast<std::int32_t>(v);
-    first_equal[v] = first_of.emplace(own, own).first->second;
+  for (std::int32_t v = 0; v < std::ssize(mesh.vertices); ++v) {
+    first_equal[v] = first_of.emplace(v, v).first->second;
   }
   std::vector<std::int32_t> above(first_equal);  // union-find over distinct points
   const auto root = [&](std::int32_t v) {
@@ -173,7 +173,7 @@ std::vector<TriangleMesh> connected_parts(const TriangleMesh& mesh) {
     for (std::size_t k = 0; k < 3; ++k) {
       std::int32_t& index = in_part[face[k]];
       if (index < 0) {
-        index = static_cast<std::int32_t>(part.vertices.size());
+        index = base::as_index<std::int32_t>(part.vertices.size());
         part.vertices.push_back(mesh.vertices[face[k]]);
       }
       own[k] = index;

@@ -44,7 +44,7 @@ bool are_parallel(const AxisLine& a, const AxisLine& b) {
 /// A tree of joints, and the joint positions at which it is compared.
 struct Skeleton : JointTree {
   explicit Skeleton(const HandModel& tree)
-      : JointTree(tree), q(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree.joints.size()))) {}
+      : JointTree(tree), q(Eigen::VectorXd::Zero(std::ssize(tree.joints))) {}
 
   std::vector<RigidTransform> poses() const {
     return forward_kinematics(tree(), {.X_OH = RigidTransform::Identity(), .q = q});
@@ -236,7 +236,7 @@ RobotDescription borrowed(const fs::path& file, RobotDescription description, Fi
   const std::vector<RigidTransform> X_HU = theirs.poses();
   for (DescribedLink& link : description.links) {
     if (!link.visual.empty() || !link.collision.empty()) continue;
-    const auto l = static_cast<std::size_t>(our_tree.link_index(link.name));
+    const int l = our_tree.link_index(link.name);
     std::optional<int> body;
     if (const auto above = ours.above_link(l)) {
       body = matcher.match()[*above];
@@ -245,7 +245,7 @@ RobotDescription borrowed(const fs::path& file, RobotDescription description, Fi
     RigidTransform X_with_inertia = RigidTransform::Identity();
     std::string names;
     for (const DescribedLink& source : urdf.links) {
-      const auto u = static_cast<std::size_t>(their_tree.link_index(source.name));
+      const int u = their_tree.link_index(source.name);
       if (theirs.above_link(u) != body) continue;
       const RigidTransform X_LU = geometry::relative_pose(X_HL[l], X_HU[u]);
       for (DescribedGeometry part : source.collision.empty() ? source.visual : source.collision) {

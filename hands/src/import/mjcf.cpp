@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "description/joint_motion.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "import/mjcf_couplings.hpp"
 #include "import/mjcf_files.hpp"
@@ -40,8 +41,8 @@ class MjcfReader {
         mesh_files_(mesh_files),
         file_(file),
         findings_(findings),
-        link_of_(static_cast<std::size_t>(model.nbody), -1),
-        joint_of_(static_cast<std::size_t>(model.njnt), -1) {}
+        link_of_(model.nbody, -1),
+        joint_of_(model.njnt, -1) {}
 
   RobotDescription read() {
     const std::string_view name = model_.names;  // the first one is the model's
@@ -188,7 +189,7 @@ class MjcfReader {
     const std::string& name = link_names_.at(body);
     const std::string item = "link " + name;
     if (body != root_) add_joints(body, item);
-    link_of_[body] = static_cast<int>(description_.links.size());
+    link_of_[body] = base::as_index<int>(description_.links.size());
     DescribedLink link;
     link.name = name;
     const int first = model_.body_geomadr[body];
@@ -239,7 +240,7 @@ class MjcfReader {
                    joint_motion(joint, -model_.qpos0[model_.jnt_qposadr[j]]);
       parent = joint.child;
       X_P = RigidTransform(Eigen::Translation3d(-anchor));
-      joint_of_[j] = static_cast<int>(description_.joints.size());
+      joint_of_[j] = base::as_index<int>(description_.joints.size());
       description_.joints.push_back(std::move(joint));
     }
     if (is_joined) return;
@@ -337,7 +338,7 @@ class MjcfReader {
       const Vector3d vertex(at[0], at[1], at[2]);
       if (!vertex.allFinite()) fail(item + ": mesh " + name + " has a vertex that is not finite");
       const auto [same, is_new] =
-          first_at.emplace(at, static_cast<int>(result.mesh.vertices.size()));
+          first_at.emplace(at, base::as_index<int>(result.mesh.vertices.size()));
       if (is_new) result.mesh.vertices.push_back(vertex);
       welded.push_back(same->second);
     }
@@ -345,7 +346,7 @@ class MjcfReader {
     for (int f = 0; f < model_.mesh_facenum[id]; ++f) {
       geometry::Face face;
       for (std::size_t k = 0; k < 3; ++k) {
-        face[k] = welded.at(static_cast<std::size_t>(faces[3 * f + static_cast<int>(k)]));
+        face[k] = welded.at(faces[3 * f + static_cast<int>(k)]);
       }
       result.mesh.faces.push_back(face);
     }

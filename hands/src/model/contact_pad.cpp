@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
@@ -140,7 +141,7 @@ TriangleMesh clip_volume_mesh_C(const ContactPad& pad, double thickness) {
   std::vector<std::int32_t> number(points.size(), -1);
   TriangleMesh mesh;
   for (const std::size_t vertex : hull.vertices) {
-    number[vertex] = static_cast<std::int32_t>(mesh.vertices.size());
+    number[vertex] = base::as_index<std::int32_t>(mesh.vertices.size());
     mesh.vertices.push_back(points[vertex]);
   }
   for (const geometry::HullFacet& facet : hull.facets) {

@@ -31,7 +31,7 @@ RigidTransform link_pose(const HandModel& model, int link, const std::vector<Rig
 
 std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                                                const HandConfiguration& configuration) {
-  if (configuration.q.size() != static_cast<Eigen::Index>(model.joints.size())) {
+  if (configuration.q.size() != std::ssize(model.joints)) {
     throw base::InvalidInput("hand " + model.name + ": " + std::to_string(configuration.q.size()) +
                              " joint positions for " + std::to_string(model.joints.size()) +
                              " joints");
@@ -41,8 +41,8 @@ std::vector<RigidTransform> forward_kinematics(const HandModel& model,
                              ": palm pose or joint positions are not finite");
   }
   std::vector<RigidTransform> X_OL(model.links.size());
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    X_OL[i] = link_pose(model, static_cast<int>(i), X_OL, configuration);
+  for (int i = 0; i < std::ssize(model.links); ++i) {
+    X_OL[i] = link_pose(model, i, X_OL, configuration);
   }
   return X_OL;
 }
@@ -54,13 +54,13 @@ Eigen::Vector3d pad_contact_point(const HandModel& model, int pad,
 }
 
 std::vector<int> links_moved_by(const HandModel& model, int joint) {
-  if (joint < 0 || joint >= static_cast<int>(model.joints.size())) {
+  if (joint < 0 || joint >= std::ssize(model.joints)) {
     throw base::InvalidInput("hand " + model.name + ": joint " + std::to_string(joint) + " of " +
                              std::to_string(model.joints.size()));
   }
   std::vector<int> moved;
   std::vector<bool> moves(model.links.size(), false);
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
+  for (int i = 0; i < std::ssize(model.links); ++i) {
     const Link& link = model.links[i];
     if (!link.parent_link) continue;
     moves[i] = moves[*link.parent_link];
@@ -69,7 +69,7 @@ std::vector<int> links_moved_by(const HandModel& model, int joint) {
       moves[i] = moves[i] || link.parent_joint == joint ||
                  (own.coupling && own.coupling->leader == joint && own.coupling->ratio != 0.0);
     }
-    if (moves[i]) moved.push_back(static_cast<int>(i));
+    if (moves[i]) moved.push_back(i);
   }
   return moved;
 }

@@ -1,24 +1,26 @@
 #include "model/hand_bodies.hpp"
 
+#include "graspfit/base/as_index.hpp"
+
 namespace graspfit::hands::internal {
 
 std::vector<Body> bodies_of(const HandModel& tree) {
   std::vector<Body> bodies;
   std::vector<int> body_of(tree.links.size());
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+  for (int i = 0; i < std::ssize(tree.links); ++i) {
     const Link& link = tree.links[i];
     std::optional<int> above;
     if (link.parent_link) above = body_of[*link.parent_link];
     if (above && !link.parent_joint) {
       body_of[i] = *above;
     } else {
-      body_of[i] = static_cast<int>(bodies.size());
+      body_of[i] = base::as_index<int>(bodies.size());
       Body& body = bodies.emplace_back();
       body.joint = link.parent_joint;
       body.parent = above;
       if (above) bodies[*above].children.push_back(body_of[i]);
     }
-    bodies[body_of[i]].links.push_back(static_cast<int>(i));
+    bodies[body_of[i]].links.push_back(i);
   }
   for (Body& body : bodies) {
     const std::vector<RigidTransform> X_BL = poses_in_body(tree, body);
@@ -33,8 +35,8 @@ std::vector<Body> bodies_of(const HandModel& tree) {
 
 std::vector<int> body_of_links(const std::vector<Body>& bodies, std::size_t num_links) {
   std::vector<int> body_of(num_links);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    for (const int link : bodies[b].links) body_of[link] = static_cast<int>(b);
+  for (int b = 0; b < std::ssize(bodies); ++b) {
+    for (const int link : bodies[b].links) body_of[link] = b;
   }
   return body_of;
 }

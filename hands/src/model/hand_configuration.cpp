@@ -14,7 +14,7 @@ using base::InvalidInput;
 using base::shortest_decimal;
 
 void require_size(const HandModel& model, const Eigen::VectorXd& q) {
-  if (q.size() == static_cast<Eigen::Index>(model.joints.size())) return;
+  if (q.size() == std::ssize(model.joints)) return;
   throw InvalidInput("hand " + model.name + ": " + std::to_string(q.size()) +
                      " joint positions for " + std::to_string(model.joints.size()) + " joints");
 }
@@ -23,7 +23,7 @@ void require_size(const HandModel& model, const Eigen::VectorXd& q) {
 
 HandConfiguration open_configuration(const HandModel& model) {
   HandConfiguration configuration;
-  configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
+  configuration.q.resize(std::ssize(model.joints));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const Joint& joint = model.joints[j];
     configuration.q[j] =

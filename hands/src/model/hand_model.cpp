@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/list_text.hpp"
@@ -33,8 +34,8 @@ std::string names_of(const Items& items) {
 template <typename Items>
 int index_of(const HandModel& model, const Items& items, const std::string& name,
              const std::string& kind) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (items[i].name == name) return static_cast<int>(i);
+  for (int i = 0; i < std::ssize(items); ++i) {
+    if (items[i].name == name) return i;
   }
   std::vector<std::string> names;
   for (const auto& item : items) names.push_back(item.name);
@@ -57,7 +58,7 @@ class Checker {
   }
 
   void require_index(int index, std::size_t size, const std::string& what) const {
-    require(index >= 0 && static_cast<std::size_t>(index) < size,
+    require(index >= 0 && std::cmp_less(index, size),
             what + " has index " + std::to_string(index) + " of " + std::to_string(size));
   }
 
@@ -90,7 +91,7 @@ class Checker {
   void links() const {
     require(!model_.links.empty(), "no links");
     require_distinct_names(model_.links, "link");
-    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+    for (int i = 0; i < std::ssize(model_.links); ++i) {
       const Link& link = model_.links[i];
       const std::string what = "link " + link.name;
       inertia(link);
@@ -99,13 +100,13 @@ class Checker {
         continue;
       }
       const int parent = link.parent_link.value_or(-1);
-      require(parent >= 0 && parent < static_cast<int>(i),
+      require(parent >= 0 && parent < i,
               what + ": its parent link " + std::to_string(parent) + " does not come before it");
       require_pose(link.X_PL_fixed, what + ": fixed pose");
       if (!link.parent_joint) continue;
       require_index(*link.parent_joint, model_.joints.size(), what + ": parent joint");
       const Joint& joint = model_.joints[*link.parent_joint];
-      require(joint.child_link == static_cast<int>(i) && joint.parent_link == parent,
+      require(joint.child_link == i && joint.parent_link == parent,
               what + ": joint " + joint.name + " joins other links");
     }
   }
@@ -113,12 +114,12 @@ class Checker {
   void joints() const {
     require(!model_.joints.empty(), "no movable joint");
     require_distinct_names(model_.joints, "joint");
-    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+    for (int j = 0; j < std::ssize(model_.joints); ++j) {
       const Joint& joint = model_.joints[j];
       const std::string what = "joint " + joint.name;
       require_index(joint.parent_link, model_.links.size(), what + ": parent link");
       require_index(joint.child_link, model_.links.size(), what + ": child link");
-      require(model_.links[joint.child_link].parent_joint == static_cast<int>(j),
+      require(model_.links[joint.child_link].parent_joint == j,
               what + ": its child link hangs on another joint");
       require_pose(joint.X_PJ, what + ": origin");
       require(joint.axis_J.allFinite() && std::abs(joint.axis_J.norm() - 1.0) < 1e-9,
@@ -133,7 +134,7 @@ class Checker {
       if (!joint.coupling) continue;
       require_index(joint.coupling->leader, model_.joints.size(), what + ": leader");
       const Joint& leader = model_.joints[joint.coupling->leader];
-      require(joint.coupling->leader != static_cast<int>(j), what + " follows itself");
+      require(joint.coupling->leader != j, what + " follows itself");
       require(!leader.coupling, what + ": its leader " + leader.name + " follows another joint");
       require(std::isfinite(joint.coupling->ratio) && std::isfinite(joint.coupling->offset),
               what + ": coupling is not finite");
@@ -147,7 +148,7 @@ class Checker {
     require_distinct_names(model_.fingers, "finger");
     std::set<int> taken;
     int num_thumbs = 0;
-    for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
+    for (int f = 0; f < std::ssize(model_.fingers); ++f) {
       const Finger& finger = model_.fingers[f];
       const std::string what = "finger " + finger.name;
       require(finger.name != kPalmName, what + ": the name palm is taken by the palm");
@@ -179,9 +180,9 @@ class Checker {
       }
       if (finger.tip_pad) {
         require_index(*finger.tip_pad, model_.pads.size(), what + ": tip pad");
-        require(model_.pads[*finger.tip_pad].finger == static_cast<int>(f),
-                what + ": its tip pad " + model_.pads[*finger.tip_pad].name +
-                    " belongs to another finger");
+        require(model_.pads[*finger.tip_pad].finger == f, what + ": its tip pad " +
+                                                              model_.pads[*finger.tip_pad].name +
+                                                              " belongs to another finger");
       }
       num_thumbs += finger.is_thumb ? 1 : 0;
     }
@@ -314,7 +315,7 @@ std::string HandModel::part_name(std::optional<int> finger) const {
 }
 
 int HandModel::tip_pad_of(int finger) const {
-  if (finger < 0 || finger >= static_cast<int>(fingers.size())) {
+  if (finger < 0 || finger >= std::ssize(fingers)) {
     throw InvalidInput("finger " + std::to_string(finger) + " of hand " + name + ", which has " +
                        std::to_string(fingers.size()));
   }
@@ -329,8 +330,8 @@ int HandModel::palm_pad() const {
 }
 
 int HandModel::thumb() const {
-  for (std::size_t f = 0; f < fingers.size(); ++f) {
-    if (fingers[f].is_thumb) return static_cast<int>(f);
+  for (int f = 0; f < std::ssize(fingers); ++f) {
+    if (fingers[f].is_thumb) return f;
   }
   return 0;
 }

@@ -18,7 +18,7 @@ JointVelocity joint_velocity(const Joint& joint, const RigidTransform& X_OJ,
 Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
                                                         const std::vector<RigidTransform>& X_OL,
                                                         int link, const Eigen::Vector3d& point_L) {
-  if (link < 0 || link >= static_cast<int>(model.links.size())) {
+  if (link < 0 || link >= std::ssize(model.links)) {
     throw base::InvalidInput("hand " + model.name + ": link " + std::to_string(link) + " of " +
                              std::to_string(model.links.size()));
   }
@@ -28,8 +28,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
   }
   const Eigen::Vector3d point_O = X_OL[link] * point_L;
   Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian =
-      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(
-          6, static_cast<Eigen::Index>(model.joints.size()));
+      Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, std::ssize(model.joints));
   for (const int index : joints_to(model, link)) {
     const Joint& joint = model.joints[index];
     const JointVelocity velocity = joint_velocity(joint, X_OL[joint.child_link], point_O);
@@ -40,8 +39,8 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> point_jacobian(const HandModel& model,
 
 std::vector<int> independent_joints(const HandModel& model) {
   std::vector<int> joints;
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
-    if (!model.joints[j].coupling) joints.push_back(static_cast<int>(j));
+  for (int j = 0; j < std::ssize(model.joints); ++j) {
+    if (!model.joints[j].coupling) joints.push_back(j);
   }
   return joints;
 }
@@ -76,18 +75,18 @@ double ratio_to_leader(const HandModel& model, int joint, const Eigen::VectorXd&
 Eigen::MatrixXd folded(const HandModel& model, const Eigen::MatrixXd& per_joint,
                        const Eigen::VectorXd& q, Followers followers) {
   const auto require_joints = [&](Eigen::Index given, const char* what) {
-    if (given == static_cast<Eigen::Index>(model.joints.size())) return;
+    if (given == std::ssize(model.joints)) return;
     throw base::InvalidInput("hand " + model.name + ": " + std::to_string(given) + what +
                              std::to_string(model.joints.size()) + " joints");
   };
   require_joints(per_joint.cols(), " columns for ");
   if (followers != Followers::All) require_joints(q.size(), " joint positions for ");
   const std::vector<int> independent = independent_joints(model);
-  Eigen::MatrixXd result(per_joint.rows(), static_cast<Eigen::Index>(independent.size()));
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    auto column = result.col(static_cast<Eigen::Index>(k));
+  Eigen::MatrixXd result(per_joint.rows(), std::ssize(independent));
+  for (int k = 0; k < std::ssize(independent); ++k) {
+    auto column = result.col(k);
     column = per_joint.col(independent[k]);
-    for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    for (int j = 0; j < std::ssize(model.joints); ++j) {
       const std::optional<Coupling>& coupling = model.joints[j].coupling;
       if (!coupling || coupling->leader != independent[k]) continue;
       if (follows_leader(model, j, q, followers)) column += coupling->ratio * per_joint.col(j);

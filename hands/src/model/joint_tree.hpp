@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_model.hpp"
 
@@ -20,18 +21,17 @@ class JointTree {
       const Link& link = tree_.links[i];
       above_[i] = link.parent_joint ? link.parent_joint : above_[*link.parent_link];
     }
-    const HandConfiguration zero{
-        .X_OH = RigidTransform::Identity(),
-        .q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tree_.joints.size()))};
+    const HandConfiguration zero{.X_OH = RigidTransform::Identity(),
+                                 .q = Eigen::VectorXd::Zero(std::ssize(tree_.joints))};
     X_HL_ = forward_kinematics(tree_, zero);
   }
 
   const HandModel& tree() const { return tree_; }
   const Joint& joint(int j) const { return tree_.joints[j]; }
-  int num_joints() const { return static_cast<int>(tree_.joints.size()); }
+  int num_joints() const { return base::as_index<int>(tree_.joints.size()); }
 
   /// The joint that moves a link; empty for the root and links fixed to it.
-  std::optional<int> above_link(std::size_t link) const { return above_[link]; }
+  std::optional<int> above_link(int link) const { return above_[link]; }
   /// The joint before a joint, if there is one.
   std::optional<int> above(int j) const { return above_[joint(j).parent_link]; }
   /// The joints next after a joint; without a joint, those on the root.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 
@@ -37,9 +38,9 @@ Polygon left_of(const Polygon& polygon, const Eigen::Vector2d& a, const Eigen::V
 }
 
 void add_fan(TriangleMesh& mesh, const Polygon& polygon_C, const RigidTransform& X_LC) {
-  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  const auto first = base::as_index<std::int32_t>(mesh.vertices.size());
   for (const Vector3d& corner : polygon_C) mesh.vertices.push_back(X_LC * corner);
-  for (std::int32_t i = 2; i < static_cast<std::int32_t>(polygon_C.size()); ++i) {
+  for (std::int32_t i = 2; i < std::ssize(polygon_C); ++i) {
     mesh.faces.push_back({first, first + i - 1, first + i});
   }
 }
@@ -64,7 +65,7 @@ TriangleMesh modeled_surface_L(const ContactPad& pad) {
 }  // namespace
 
 TriangleMesh pad_surface_L(const HandModel& model, int pad_index) {
-  if (pad_index < 0 || pad_index >= static_cast<int>(model.pads.size())) {
+  if (pad_index < 0 || pad_index >= std::ssize(model.pads)) {
     throw base::InvalidInput("pad_surface_L: hand " + model.name + ": pad " +
                              std::to_string(pad_index) + " of " +
                              std::to_string(model.pads.size()));

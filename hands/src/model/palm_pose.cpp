@@ -38,7 +38,7 @@ Vector3d closing_axis_H(const HandModel& hand) {
   const int thumb = hand.thumb();
   Vector3d others = Vector3d::Zero();
   double count = 0.0;
-  for (int finger = 0; finger < static_cast<int>(tips.size()); ++finger) {
+  for (int finger = 0; finger < std::ssize(tips); ++finger) {
     if (finger == thumb) continue;
     others += tips[finger];
     count += 1.0;

@@ -30,14 +30,14 @@ std::vector<Group> closing_groups(const HandModel& model) {
     group.joints.push_back(moved);
   };
   std::vector<Group> groups;
-  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
-    Group group{static_cast<int>(f), {}};
+  for (int f = 0; f < std::ssize(model.fingers); ++f) {
+    Group group{f, {}};
     for (const int joint : model.fingers[f].joints) take(joint, group);
     if (!group.joints.empty()) groups.push_back(std::move(group));
   }
-  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(model.joints); ++j) {
     Group group;
-    take(static_cast<int>(j), group);
+    take(j, group);
     if (!group.joints.empty()) groups.push_back(std::move(group));
   }
   return groups;

@@ -62,7 +62,7 @@ HandCollision::HandCollision(const HandModel& model) : model_(model) {
 
 bool HandCollision::link_intersects(const geometry::MeshQuery& object, int link,
                                     const RigidTransform& X_OL) const {
-  const auto& query = links_.at(static_cast<std::size_t>(link));
+  const auto& query = links_.at(link);
   return query && may_meet(object.box(), boxes_[link], X_OL) &&
          geometry::do_intersect(object, *query, X_OL);
 }
@@ -70,7 +70,7 @@ bool HandCollision::link_intersects(const geometry::MeshQuery& object, int link,
 geometry::DepthBounds HandCollision::link_depth_above(
     const geometry::MeshQuery& object, int link, const RigidTransform& X_OL, double floor,
     const geometry::PenetrationOptions& options) const {
-  const auto& query = links_.at(static_cast<std::size_t>(link));
+  const auto& query = links_.at(link);
   if (!query || !may_meet(object.box(), boxes_[link], X_OL)) return {};
   return geometry::depth_above(object, *query, X_OL, floor, options);
 }
@@ -79,10 +79,9 @@ HandCollision::Result HandCollision::against_object(const geometry::MeshQuery& o
                                                     const std::vector<RigidTransform>& X_OL) const {
   require_poses(model_, X_OL);
   Result result;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
+  for (int i = 0; i < std::ssize(links_); ++i) {
     if (!links_[i] || !may_meet(object.box(), boxes_[i], X_OL[i])) continue;
-    take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), static_cast<int>(i),
-                std::nullopt);
+    take_deeper(result, geometry::penetration(object, *links_[i], X_OL[i]), i, std::nullopt);
   }
   return result;
 }
@@ -91,13 +90,13 @@ template <class Visit>
 void HandCollision::for_each_near_pair(const std::vector<RigidTransform>& X_OL,
                                        const Visit& visit) const {
   require_poses(model_, X_OL);
-  for (std::size_t a = 0; a < links_.size(); ++a) {
+  for (int a = 0; a < std::ssize(links_); ++a) {
     if (!links_[a]) continue;
-    for (std::size_t b = a + 1; b < links_.size(); ++b) {
-      if (!links_[b] || model_.is_excluded(static_cast<int>(a), static_cast<int>(b))) continue;
+    for (int b = a + 1; b < std::ssize(links_); ++b) {
+      if (!links_[b] || model_.is_excluded(a, b)) continue;
       const RigidTransform X_AB = geometry::relative_pose(X_OL[a], X_OL[b]);
       if (!may_meet(boxes_[a], boxes_[b], X_AB)) continue;
-      if (!visit(static_cast<int>(a), static_cast<int>(b), X_AB)) return;
+      if (!visit(a, b, X_AB)) return;
     }
   }
 }

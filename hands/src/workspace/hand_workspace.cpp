@@ -119,10 +119,10 @@ HandWorkspace hand_workspace(const HandModel& model, const WorkspaceOptions& opt
   const HandCollision collision(model);
   const internal::IsClear is_clear = internal::clear_of_itself(hand, collision, kTouchDepth);
   const int thumb = model.thumb();
-  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+  for (int f = 0; f < std::ssize(model.fingers); ++f) {
     const std::optional<int>& thumb_pad = model.fingers[thumb].tip_pad;
     const std::optional<int>& pad = model.fingers[f].tip_pad;
-    if (static_cast<int>(f) == thumb || !thumb_pad || !pad) continue;
+    if (f == thumb || !thumb_pad || !pad) continue;
     const DistanceRange range =
         internal::facing_distance_range(hand, *thumb_pad, *pad, options, is_clear);
     workspace.graspable_diameter[f] = range;

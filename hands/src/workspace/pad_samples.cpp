@@ -68,19 +68,19 @@ std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<in
       }
     }
     if (samples.num_shared == samples.joints.size()) samples.range_size = 1;
-    samples.positions.resize(static_cast<Eigen::Index>(samples.joints.size()), size);
+    samples.positions.resize(std::ssize(samples.joints), size);
     samples.points_H.resize(3, size);
     samples.normals_H.resize(3, size);
     for (Eigen::Index sample = 0; sample < size; ++sample) {
       Eigen::VectorXd q = hand.open();
       Eigen::Index rest = sample;
-      for (std::size_t j = 0; j < samples.joints.size(); ++j) {
+      for (int j = 0; j < std::ssize(samples.joints); ++j) {
         const Joint& joint = model.joints[samples.joints[j]];
         const int count = counts[j];
         const double share = count == 1 ? 0.0 : static_cast<double>(rest % count) / (count - 1);
         rest /= count;
         q[samples.joints[j]] = joint.lower + share * (joint.upper - joint.lower);
-        samples.positions(static_cast<Eigen::Index>(j), sample) = q[samples.joints[j]];
+        samples.positions(j, sample) = q[samples.joints[j]];
       }
       const internal::Tip tip = hand.tip(samples.pad, hand.poses(q));
       samples.points_H.col(sample) = tip.point;

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -179,18 +180,18 @@ class Pincher {
     const JointSamples only_a = samples_of(joints_.only_a);
     const JointSamples only_b = samples_of(joints_.only_b);
     VectorXd q = hand_.open();
-    std::vector<Side> all_b(static_cast<std::size_t>(only_b.size()));
+    std::vector<Side> all_b(only_b.size());
     for (std::int64_t s = 0; s < shared.size(); ++s) {
       shared.set(s, q);
       for (std::int64_t i = 0; i < only_b.size(); ++i) {
         only_b.set(i, q);
-        all_b[static_cast<std::size_t>(i)] = side_b(hand_.poses(q));
+        all_b[i] = side_b(hand_.poses(q));
       }
       for (std::int64_t i = 0; i < only_a.size(); ++i) {
         only_a.set(i, q);
         const Side a = side_a(hand_.poses(q));
         for (std::int64_t j = 0; j < only_b.size(); ++j) {
-          const std::optional<Facing> facing = facing_of(a, all_b[static_cast<std::size_t>(j)]);
+          const std::optional<Facing> facing = facing_of(a, all_b[j]);
           if (!facing) continue;
           visit(*facing, [&] {
             only_b.set(j, q);
@@ -222,7 +223,7 @@ class Pincher {
     const internal::SearchSteps steps{
         .first_share = has_grid_ ? 1.0 / (per_group_ - 1) : 0.5,
         .finest = kFinest,
-        .num_drawn = kDrawnPerGroup * static_cast<int>(joints_.all.size())};
+        .num_drawn = kDrawnPerGroup * base::as_index<int>(joints_.all.size())};
     const VectorXd squarest =
         internal::move_on(hand_.model(), joints_.all, steps, {value_of(*start), q}, value).q;
     const Facing end = *facing_at(squarest);
@@ -288,15 +289,15 @@ std::vector<Sides> sides_of(const HandModel& model, PinchKind kind) {
   const int thumb = model.thumb();
   const std::optional<int>& thumb_pad = model.fingers[thumb].tip_pad;
   std::vector<int> others;  // tip pads
-  for (std::size_t f = 0; f < model.fingers.size(); ++f) {
+  for (int f = 0; f < std::ssize(model.fingers); ++f) {
     const Finger& finger = model.fingers[f];
-    if (static_cast<int>(f) != thumb && finger.tip_pad) others.push_back(*finger.tip_pad);
+    if (f != thumb && finger.tip_pad) others.push_back(*finger.tip_pad);
   }
   const auto is_tip = [&](int pad) {
     return std::any_of(model.fingers.begin(), model.fingers.end(),
                        [&](const Finger& finger) { return finger.tip_pad == pad; });
   };
-  const auto num_pads = static_cast<int>(model.pads.size());
+  const auto num_pads = base::as_index<int>(model.pads.size());
   switch (kind) {
     case PinchKind::Tips:
       if (!thumb_pad) break;
@@ -400,7 +401,7 @@ PinchChart pinch_chart(const HandModel& model, PinchKind kind, const PinchChartO
   for (std::size_t k = 1; k < found.size(); ++k) improve_from(k, k - 1);
   for (std::size_t k = found.size(); k > 1; --k) improve_from(k - 2, k - 1);
 
-  PinchChart chart{kind, options.step, static_cast<int>(pinchers.size()), {}};
+  PinchChart chart{kind, options.step, base::as_index<int>(pinchers.size()), {}};
   for (std::optional<Found>& one : found) {
     chart.pinches.emplace_back();
     // The search gets into classes beyond the least cosine that the grid is asked for.

@@ -54,7 +54,7 @@ std::optional<PinchChart> chart_from_text(std::string_view text, const HandModel
   chart.kind = kind;
   chart.step = step;
   chart.num_sets = static_cast<int>(in.integer(0, kMost));
-  chart.pinches.resize(static_cast<std::size_t>(in.integer(0, PinchChart::kMostClasses)));
+  chart.pinches.resize(in.integer(0, PinchChart::kMostClasses));
   for (std::optional<Pinch>& pinch : chart.pinches) {
     if (in.integer(0, 1) == 0) continue;
     pinch.emplace();
@@ -62,7 +62,7 @@ std::optional<PinchChart> chart_from_text(std::string_view text, const HandModel
     pinch->lean = in.real(0.0);
     const std::vector<std::int32_t> pads = in.indices(static_cast<std::int64_t>(model.pads.size()));
     pinch->pads.assign(pads.begin(), pads.end());
-    pinch->q.resize(static_cast<Eigen::Index>(model.joints.size()));
+    pinch->q.resize(std::ssize(model.joints));
     for (double& q : pinch->q) q = in.real();
   }
   if (!in.is_finished()) return std::nullopt;

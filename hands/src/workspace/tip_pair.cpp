@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
@@ -115,7 +116,7 @@ class TipPair {
     std::vector<ValuedPositions> bins;
     for_each_row([&](VectorXd& q, const Tip& a, const std::vector<Tip>& all_b,
                      const JointSamples& samples_b) {
-      for (std::size_t i = 0; i < all_b.size(); ++i) {
+      for (std::int64_t i = 0; i < std::ssize(all_b); ++i) {
         const double distance = (all_b[i].point - a.point).norm();
         const std::optional<double> facing = facing_cosine(a, all_b[i], distance);
         if (!facing) continue;
@@ -128,7 +129,7 @@ class TipPair {
         const auto bin = static_cast<std::size_t>(distance / kDiameterStep);
         if (bin >= bins.size()) bins.resize(bin + 1);
         if (!(*facing > bins[bin].value)) continue;
-        samples_b.set(static_cast<std::int64_t>(i), q);
+        samples_b.set(i, q);
         bins[bin] = {*facing, q};
       }
     });
@@ -198,7 +199,7 @@ class TipPair {
     const JointSamples only_a = samples_of(joints_.only_a);
     const JointSamples only_b = samples_of(joints_.only_b);
     VectorXd q = hand_.open();
-    std::vector<Tip> all_b(static_cast<std::size_t>(only_b.size()));
+    std::vector<Tip> all_b(only_b.size());
     for (std::int64_t s = 0; s < shared.size(); ++s) {
       shared.set(s, q);
       for (std::int64_t i = 0; i < only_b.size(); ++i) {
@@ -217,7 +218,7 @@ class TipPair {
                            const Value& value) const {
     const SearchSteps steps{.first_share = per_joint_ > 0 ? 1.0 / (per_joint_ - 1) : 0.5,
                             .finest = kFinest,
-                            .num_drawn = drawn_per_joint * static_cast<int>(joints_.all.size())};
+                            .num_drawn = drawn_per_joint * base::as_index<int>(joints_.all.size())};
     return move_on(hand_.model(), each_alone(joints_.all), steps, start, value);
   }
 

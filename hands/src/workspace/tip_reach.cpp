@@ -64,7 +64,7 @@ std::vector<TipPose> tip_poses(const HandModel& model, const Finger& finger) {
   HandConfiguration configuration = open_configuration(model);
   const Eigen::VectorXd open = configuration.q;
   std::vector<TipPose> poses;
-  poses.reserve(static_cast<std::size_t>(num_samples));
+  poses.reserve(num_samples);
   for (std::int64_t sample = 0; sample < num_samples; ++sample) {
     configuration.q = open;  // a breakaway joint must not keep what an earlier sample closed
     std::int64_t rest = sample;
@@ -102,16 +102,15 @@ TipReach::TipReach(const std::vector<TipPose>& poses, double cell) : cell_(cell)
                              " m: the hand's lengths are in another unit");
   }
   grid.lattice.counts = counts.cast<int>().matrix();
-  std::vector<bool> is_known(static_cast<std::size_t>(grid.lattice.num_voxels()), false);
+  std::vector<bool> is_known(grid.lattice.num_voxels(), false);
   for (const TipPose& pose : poses) {
     const Eigen::Vector3i voxel = grid.lattice.voxel_at(pose.point_H);
-    const auto index = static_cast<std::size_t>(grid.lattice.index(voxel));
+    const std::int64_t index = grid.lattice.index(voxel);
     if (!is_known[index]) visited_H_.push_back(grid.lattice.center(voxel));
     is_known[index] = true;
   }
   for (const Vector3d& direction : looking_directions()) {
-    grid.classes.assign(static_cast<std::size_t>(grid.lattice.num_voxels()),
-                        geometry::VoxelClass::Empty);
+    grid.classes.assign(grid.lattice.num_voxels(), geometry::VoxelClass::Empty);
     bool is_visited = false;
     for (const TipPose& pose : poses) {
       if (pose.normal_H.dot(direction) < kCosLooking) continue;

@@ -33,10 +33,9 @@ class DisjointSets {
   std::vector<std::int32_t> numbered() {
     std::vector<std::int32_t> number(parent_.size());
     std::int32_t next = 0;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      const auto item = static_cast<std::int32_t>(i);
+    for (std::int32_t item = 0; item < std::ssize(number); ++item) {
       const std::int32_t first = root(item);  // Numbered by now, unless it is the item itself.
-      number[i] = first == item ? next++ : number[first];
+      number[item] = first == item ? next++ : number[first];
     }
     return number;
   }

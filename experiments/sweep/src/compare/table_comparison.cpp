@@ -90,7 +90,7 @@ void note_missing_rows(const CsvTable& ours, const CsvTable& theirs, std::size_t
   const std::vector<std::string> names = row_names(theirs, num_labels);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (known.count(names[i]) > 0) continue;
-    const auto labels_end = theirs.rows[i].begin() + static_cast<std::ptrdiff_t>(num_labels);
+    const auto labels_end = theirs.rows[i].begin() + num_labels;
     if (cells && cells->count({theirs.rows[i].begin(), labels_end}) == 0) continue;
     result.missing_rows.push_back(names[i]);
     result.are_same_bytes = false;
@@ -220,7 +220,7 @@ std::vector<PublishedComparison> compare_with_published(const Experiment& experi
   }
   std::set<std::vector<std::string>> cells;
   for (const std::vector<std::string>& row : run.rows) {
-    cells.emplace(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(facts.num_axes));
+    cells.emplace(row.begin(), row.begin() + facts.num_axes);
   }
   compare(".csv", facts.num_axes, cells);
   const bool is_whole = tables.front().comparison.num_not_ours == 0;

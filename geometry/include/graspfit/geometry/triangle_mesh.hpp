@@ -26,14 +26,14 @@ struct TriangleMesh {
 };
 
 /// The three corners of face `face`.
-std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, std::size_t face);
+std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, std::int32_t face);
 
 /// Vector area of a face [m²]: along its outward normal, as long as its area. Zero for a
 /// degenerate face. Rounded.
-Eigen::Vector3d vector_area(const TriangleMesh& mesh, std::size_t face);
+Eigen::Vector3d vector_area(const TriangleMesh& mesh, std::int32_t face);
 
 /// Unit outward normal of a face; the zero vector where the face has no area. Rounded.
-Eigen::Vector3d face_normal(const TriangleMesh& mesh, std::size_t face);
+Eigen::Vector3d face_normal(const TriangleMesh& mesh, std::int32_t face);
 
 /// Box of all vertices; empty for a mesh without vertices. Exact.
 Eigen::AlignedBox3d bounding_box(const TriangleMesh& mesh);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/errors.hpp"
 
@@ -139,7 +140,7 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::Clip
                                                 double distance) {
   base::DisjointSets sets(pieces.size());
   const auto unite = [&sets](std::size_t i, std::size_t j) {
-    sets.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+    sets.unite(base::as_index<std::int32_t>(i), base::as_index<std::int32_t>(j));
   };
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> piece_at;  // by edge
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -154,8 +155,8 @@ std::vector<std::vector<std::size_t>> groups_of(const std::vector<geometry::Clip
     const std::vector<std::int32_t> set_of = sets.numbered();
     std::vector<std::vector<std::size_t>> result;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const auto set = static_cast<std::size_t>(set_of[i]);
-      if (set == result.size()) result.emplace_back();
+      const std::int32_t set = set_of[i];
+      if (set == std::ssize(result)) result.emplace_back();
       result[set].push_back(i);
     }
     return result;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "contacts/clipped_surface.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/convex_clip.hpp"
 #include "graspfit/geometry/surface_proximity.hpp"
@@ -100,7 +101,7 @@ geometry::TriangleMesh faces_of(const std::vector<ClippedPiece>& pieces, const G
                                 const geometry::TriangleMesh& mesh) {
   geometry::TriangleMesh result;
   for (const std::size_t i : group) {
-    const auto first = static_cast<std::int32_t>(result.vertices.size());
+    const auto first = base::as_index<std::int32_t>(result.vertices.size());
     const std::array<Vector3d, 3> corners = geometry::corners(mesh, pieces[i].face);
     result.vertices.insert(result.vertices.end(), corners.begin(), corners.end());
     result.faces.push_back({first, first + 1, first + 2});
@@ -157,8 +158,8 @@ bool are_normals_alike(const FacesInVolume& faces, const geometry::TriangleMesh&
 }
 
 void require_pad(const hands::HandModel& hand, int pad) {
-  base::require(pad >= 0 && pad < static_cast<int>(hand.pads.size()), "estimate_contact", "pad",
-                pad, "an index into the pads of hand " + hand.name);
+  base::require(pad >= 0 && pad < std::ssize(hand.pads), "estimate_contact", "pad", pad,
+                "an index into the pads of hand " + hand.name);
 }
 
 void require_weak_regions_of(const geometry::TriangleMesh& mesh,
@@ -242,7 +243,7 @@ std::vector<Contact> estimate_contacts(const hands::HandModel& hand,
   }
   const Scene scene{hand, object, options, weak_regions};
   std::vector<Contact> contacts;
-  for (int pad = 0; pad < static_cast<int>(hand.pads.size()); ++pad) {
+  for (int pad = 0; pad < std::ssize(hand.pads); ++pad) {
     if (!is_counted(hand, pad, options)) continue;
     const std::vector<Contact> of_pad = contacts_of(pad, hands::pad_pose(hand, pad, X_OL), scene);
     contacts.insert(contacts.end(), of_pad.begin(), of_pad.end());

@@ -16,10 +16,10 @@ constexpr double kPlanarRel = 0.1;      // thickness over extent
 
 ContactHull contact_hull(std::span<const Vector3d> contacts, double merge_distance) {
   base::DisjointSets sets(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
+  for (std::int32_t i = 0; i < std::ssize(contacts); ++i) {
+    for (std::int32_t j = i + 1; j < std::ssize(contacts); ++j) {
       if ((contacts[i] - contacts[j]).norm() < merge_distance) {
-        sets.unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+        sets.unite(i, j);
       }
     }
   }
@@ -28,7 +28,7 @@ ContactHull contact_hull(std::span<const Vector3d> contacts, double merge_distan
   result.num_contacts = contacts.size();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     // Each set has become a point where its first contact was met.
-    if (set_of[i] < static_cast<std::int32_t>(result.points.size())) continue;
+    if (set_of[i] < std::ssize(result.points)) continue;
     Vector3d sum = Vector3d::Zero();
     int count = 0;
     for (std::size_t j = i; j < contacts.size(); ++j) {

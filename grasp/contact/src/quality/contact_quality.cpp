@@ -44,8 +44,8 @@ void check_contacts(std::span<const Contact> contacts) {
 }
 
 const hands::ContactPad& pad_of(const Contact& contact, const hands::HandModel& hand) {
-  base::require(contact.pad >= 0 && contact.pad < static_cast<int>(hand.pads.size()), "Contact",
-                "pad", contact.pad, "an index into the pads of hand " + hand.name);
+  base::require(contact.pad >= 0 && contact.pad < std::ssize(hand.pads), "Contact", "pad",
+                contact.pad, "an index into the pads of hand " + hand.name);
   return hand.pads[contact.pad];
 }
 
@@ -54,8 +54,8 @@ const hands::ContactPad& pad_of(const Contact& contact, const hands::HandModel& 
 const hands::ContactPad& nominal_pad(const Contact& contact, const hands::HandModel& hand) {
   Contact resolved = contact;
   if (resolved.pad < 0) {
-    const bool has_finger = contact.finger && *contact.finger >= 0 &&
-                            *contact.finger < static_cast<int>(hand.fingers.size());
+    const bool has_finger =
+        contact.finger && *contact.finger >= 0 && *contact.finger < std::ssize(hand.fingers);
     const std::optional<int>& pad =
         has_finger ? hand.fingers[*contact.finger].tip_pad : hand.palm.pad;
     resolved.pad = pad.value_or(-1);
@@ -83,14 +83,14 @@ ContactQuality assemble(std::span<const Contact> contacts, std::vector<Sustainab
   quality.m1 /= static_cast<double>(contacts.size());
 
   // M2 = Σ (1 − θ_l / θ_max) over stable pairs
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
+  for (int i = 0; i < std::ssize(contacts); ++i) {
+    for (int j = i + 1; j < std::ssize(contacts); ++j) {
       if (contacts[i].finger == contacts[j].finger) continue;
       const std::optional<double> angle =
           stable_pair_angle(contacts[i].point_O, contacts[i].inward_normal_O, contacts[j].point_O,
                             contacts[j].inward_normal_O, options.theta_max);
       if (!angle) continue;
-      quality.stable_pairs.push_back({static_cast<int>(i), static_cast<int>(j), *angle});
+      quality.stable_pairs.push_back({i, j, *angle});
       quality.m2 += 1.0 - *angle / options.theta_max;
     }
   }

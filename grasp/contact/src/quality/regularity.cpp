@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/disjoint_sets.hpp"
 #include "graspfit/base/option_check.hpp"
 
@@ -100,7 +101,7 @@ class HullFaces {
     }
     base::DisjointSets sets(facets.size());
     const auto unite = [&sets](std::size_t f, std::size_t neighbor) {
-      sets.unite(static_cast<std::int32_t>(f), static_cast<std::int32_t>(neighbor));
+      sets.unite(base::as_index<std::int32_t>(f), base::as_index<std::int32_t>(neighbor));
     };
     for (std::size_t f = 0; f < facets.size(); ++f) {
       const std::optional<Vector3d> normal = unit_normal(f);
@@ -115,8 +116,8 @@ class HullFaces {
         }
       }
     }
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-      groups_[f] = static_cast<std::size_t>(sets.root(static_cast<std::int32_t>(f)));
+    for (std::int32_t f = 0; f < std::ssize(facets); ++f) {
+      groups_[f] = static_cast<std::size_t>(sets.root(f));
     }
     split_groups_without_outline();
   }

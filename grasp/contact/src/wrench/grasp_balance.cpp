@@ -59,7 +59,7 @@ BalanceForces balance_forces(std::span<const Contact> contacts,
   if (!load.allFinite()) throw base::InvalidInput("balance_forces: the load is not finite");
   base::require(!contacts.empty() || options.least_normal_sum == 0.0, "balance_forces",
                 "least_normal_sum", options.least_normal_sum, "0 without contacts");
-  const auto num_contacts = static_cast<Index>(contacts.size());
+  const auto num_contacts = std::ssize(contacts);
   const Index num_edges = options.num_cone_edges;
   Eigen::Matrix3Xd edges(3, num_contacts * num_edges);
   Wrenches wrenches(6, edges.cols());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/option_check.hpp"
 #include "graspfit/contact/contact_estimation.hpp"
 #include "graspfit/contact/grasp_balance.hpp"
@@ -26,7 +27,7 @@ constexpr double kEvenness = 1e-3;
 /// Says for each joint whether it is a coupled one that stands where its leader puts it.
 std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd& q) {
   std::vector<bool> follows;
-  for (int j = 0; j < static_cast<int>(hand.joints.size()); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     follows.push_back(hands::follows_leader(hand, j, q, hands::Followers::InPlace));
   }
   return follows;
@@ -35,12 +36,12 @@ std::vector<bool> following_joints(const hands::HandModel& hand, const VectorXd&
 /// Generalized forces Σ Jᵀ f on the independent joints, in their order [N m or N].
 VectorXd joint_forces(const hands::HandModel& hand, const hands::PosedConfiguration& grasp,
                       std::span<const Contact> contacts, const Eigen::Matrix3Xd& forces_O) {
-  MatrixXd per_joint = MatrixXd::Zero(1, static_cast<Index>(hand.joints.size()));
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  MatrixXd per_joint = MatrixXd::Zero(1, std::ssize(hand.joints));
+  for (int i = 0; i < std::ssize(contacts); ++i) {
     const hands::RigidTransform& X = grasp.X_OL[contacts[i].link];
     const MatrixXd jacobian = hands::point_jacobian(hand, grasp.X_OL, contacts[i].link,
                                                     geometry::inverted(X) * contacts[i].point_O);
-    per_joint += forces_O.col(static_cast<Index>(i)).transpose() * jacobian.topRows(3);
+    per_joint += forces_O.col(i).transpose() * jacobian.topRows(3);
   }
   return hands::folded(hand, per_joint, grasp.configuration.q, hands::Followers::InPlace)
       .transpose();
@@ -52,8 +53,8 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
              const std::vector<bool>& follows, VectorXd& q) {
   bool is_clamped = false;
   const std::vector<int> independent = hands::independent_joints(hand);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    const double change = displacement[static_cast<Index>(k)];
+  for (int k = 0; k < std::ssize(independent); ++k) {
+    const double change = displacement[k];
     if (change == 0.0) continue;
     const hands::Joint& joint = hand.joints[independent[k]];
     const double wanted = q[independent[k]] + change;
@@ -62,13 +63,13 @@ bool command(const hands::HandModel& hand, const VectorXd& displacement,
   }
   // Followers are put where they belong first: the couplings would leave behind a breakaway joint
   // that its leader opens.
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    if (follows[j]) q[static_cast<Index>(j)] = hands::led_position(*hand.joints[j].coupling, q);
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
+    if (follows[j]) q[j] = hands::led_position(*hand.joints[j].coupling, q);
   }
   hands::apply_couplings(hand, q);
-  for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-    const bool is_left_behind = follows[j] && !hands::follows_leader(hand, static_cast<int>(j), q,
-                                                                     hands::Followers::InPlace);
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
+    const bool is_left_behind =
+        follows[j] && !hands::follows_leader(hand, j, q, hands::Followers::InPlace);
     is_clamped = is_clamped || is_left_behind;
   }
   return is_clamped;
@@ -95,7 +96,7 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::PosedCo
   const std::vector<Contact> touching = touching_contacts(contacts, context.bearing_gap);
   base::require(!touching.empty(), "squeeze_configuration", "number of contacts that touch",
                 touching.size(), "at least 1");
-  const int num_links = static_cast<int>(hand.links.size());
+  const int num_links = base::as_index<int>(hand.links.size());
   base::require(grasp.X_OL.size() == hand.links.size(), "squeeze_configuration",
                 "number of link poses", grasp.X_OL.size(),
                 "one per link of hand " + hand.name + ", " + std::to_string(num_links));
@@ -109,22 +110,21 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::PosedCo
                                                 .least_normal_sum = options.normal_sum,
                                                 .torque_scale = context.torque_scale,
                                                 .evenness = kEvenness});
-  Squeeze result{grasp.configuration,
-                 Eigen::Matrix3Xd::Zero(3, static_cast<Index>(contacts.size())),
+  Squeeze result{grasp.configuration, Eigen::Matrix3Xd::Zero(3, std::ssize(contacts)),
                  balance.residual_norm / options.normal_sum, false, false};
   Index next = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+  for (int i = 0; i < std::ssize(contacts); ++i) {
     const bool bears = !context.bearing_gap || contacts[i].gap <= *context.bearing_gap;
-    if (bears) result.forces_O.col(static_cast<Index>(i)) = balance.forces_O.col(next++);
+    if (bears) result.forces_O.col(i) = balance.forces_O.col(next++);
   }
   result.is_balanced = result.residual <= options.largest_residual;
 
   const std::vector<bool> follows = following_joints(hand, grasp.configuration.q);
   VectorXd displacement = joint_forces(hand, grasp, contacts, result.forces_O);
   const std::vector<int> independent = hands::independent_joints(hand);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
+  for (int k = 0; k < std::ssize(independent); ++k) {
     const bool is_slide = hand.joints[independent[k]].type == hands::JointType::Prismatic;
-    displacement[static_cast<Index>(k)] /= is_slide ? options.slide_stiffness : options.stiffness;
+    displacement[k] /= is_slide ? options.slide_stiffness : options.stiffness;
   }
   result.is_clamped = command(hand, displacement, follows, result.configuration.q);
   return result;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/contact/contact.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/grasp/object_model.hpp"
@@ -24,7 +25,7 @@ struct RequestedParts {
   /// Pads with which some of these fingers must touch instead of their fingertips' pads, one of a
   /// finger at most [R].
   std::vector<int> other_pads = {};
-  int size() const { return static_cast<int>(fingers.size()) + (palm ? 1 : 0); }
+  int size() const { return base::as_index<int>(fingers.size()) + (palm ? 1 : 0); }
 };
 
 /// How target sets are found.

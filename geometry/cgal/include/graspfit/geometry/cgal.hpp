@@ -29,6 +29,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/convex_clip.hpp"
 #include "graspfit/geometry/triangle_mesh.hpp"
@@ -118,9 +119,9 @@ TriangleMesh triangle_mesh(const FaceGraph& graph,
   TriangleMesh mesh;
   std::unordered_map<Vertex, std::int32_t> number_of;
   for (const Vertex v : vertices(graph)) {
-    number_of.emplace(v, static_cast<std::int32_t>(mesh.vertices.size()));
     mesh.vertices.push_back(
         internal::checked_vertex("triangle_mesh", vector(get(points, v)), mesh.vertices.size()));
+    number_of.emplace(v, base::as_index<std::int32_t>(mesh.vertices.size() - 1));
   }
   for (const auto f : faces(graph)) {
     Face face{};
@@ -188,7 +189,7 @@ FaceGraph face_graph(const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const Face& face = mesh.faces[f];
     for (const std::int32_t index : face) {
-      if (index < 0 || static_cast<std::size_t>(index) >= vertices.size()) {
+      if (index < 0 || index >= std::ssize(vertices)) {
         internal::refuse_index("face_graph", f, index, vertices.size());
       }
     }
@@ -259,10 +260,9 @@ class FaceTree {
   /// that is not finite.
   explicit FaceTree(const TriangleMesh& mesh) {
     triangles_.reserve(mesh.faces.size());
-    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (std::int32_t f = 0; f < std::ssize(mesh.faces); ++f) {
       for (const auto index : mesh.faces[f]) {
-        if (index < 0 || static_cast<std::size_t>(index) >= mesh.vertices.size() ||
-            !mesh.vertices[static_cast<std::size_t>(index)].allFinite()) {
+        if (index < 0 || index >= std::ssize(mesh.vertices) || !mesh.vertices[index].allFinite()) {
           throw base::InvalidInput("FaceTree: face " + std::to_string(f) + " has vertex " +
                                    std::to_string(index) + ", which is none or is not finite");
         }

@@ -32,14 +32,10 @@ class TableScene {
   const hands::HandModel& hand() const { return hand_; }
   const hands::HandCollision& collision() const { return collision_; }
   const std::vector<SceneObject>& objects() const { return objects_; }
-  const SceneObject& object(int index) const {
-    return objects_.at(static_cast<std::size_t>(index));
-  }
+  const SceneObject& object(int index) const { return objects_.at(index); }
 
   /// The convex hull of an object, exact; its vertices are corners of the object.
-  const geometry::TriangleMesh& hull_O(int index) const {
-    return hulls_O_.at(static_cast<std::size_t>(index));
-  }
+  const geometry::TriangleMesh& hull_O(int index) const { return hulls_O_.at(index); }
 
   /// Returns the height of a link's lowest point over the table [m], or `enough` if the height is
   /// larger; zero where the link touches the table or reaches below it.
