@@ -271,12 +271,12 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   const std::vector<int>& fingers = parts.fingers;
   const grasp::PartDistances distances = grasp::part_distances(hand);
   grasp::TargetOptions target_options = options.targets;
-  if (target_options.min_separation == 0.0) {
-    target_options.min_separation = std::numeric_limits<double>::infinity();
+  if (!target_options.min_separation) {
+    double least_width = std::numeric_limits<double>::infinity();
     for (const int finger : fingers) {
-      target_options.min_separation = std::min(target_options.min_separation,
-                                               pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
+      least_width = std::min(least_width, pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
     }
+    target_options.min_separation = least_width;
   }
   const grasp::SurroundingsCollision surroundings(hand, run.surroundings);
   const grasp::MeasuringScene scene = measuring_scene(run, surroundings);

@@ -41,6 +41,14 @@ class JsonWriter {
       json_[key] = json_of(value);
     }
   }
+  void operator()(const std::optional<double>& value, const OptionRow& row) {
+    const std::string key(row.key);
+    if (row.is_zero_if_empty) {
+      open_number(value.value_or(0.0), key.c_str());
+    } else {
+      json_[key] = json_of(value);
+    }
+  }
   /// A value that no file is without.
   template <class Value>
   void required(const std::optional<Value>& value, const char* key) {
@@ -143,6 +151,15 @@ class JsonReader {
       open_number(value, key.c_str());
     } else {
       read(node_.at(key), value);
+    }
+  }
+  void operator()(std::optional<double>& value, const OptionRow& row) const {
+    const std::string key(row.key);
+    if (!row.is_zero_if_empty) {
+      read(node_.at(key), value);
+    } else {
+      open_number(value.emplace(), key.c_str());
+      if (*value == 0.0) value.reset();
     }
   }
   template <class Value>

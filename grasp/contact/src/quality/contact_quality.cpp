@@ -98,7 +98,8 @@ ContactQuality assemble(std::span<const Contact> contacts, std::vector<Sustainab
   // M3 = R − β D
   std::vector<Vector3d> points;
   for (const Contact& contact : contacts) points.push_back(contact.point_O);
-  const internal::ContactHull hull = internal::contact_hull(points, options.merge_distance);
+  const internal::ContactHull hull =
+      internal::contact_hull(points, options.merge_distance.value_or(0.0));
   Vector3d centroid = hull.hull.centroid;
   if (options.centroid == HullCentroid::Vertices) {
     centroid.setZero();
@@ -137,7 +138,7 @@ void QualityOptions::validate() const {
   require_weight(w3, "w3");
   base::require(theta_max > 0.0 && theta_max < std::numbers::pi / 2, "QualityOptions", "theta_max",
                 theta_max, "above 0 and below pi/2 rad");
-  require_weight(merge_distance, "merge_distance");
+  if (merge_distance) require_weight(*merge_distance, "merge_distance");
 }
 
 std::optional<double> stable_pair_angle(const Vector3d& point_a, const Vector3d& inward_normal_a,
