@@ -85,8 +85,8 @@ inline std::string all_fields(const Grasp& grasp) {
     vector(contact.point_O);
     vector(contact.inward_normal_O);
     out << contact.area << ' ' << contact.pad_boundary_distance << ' ' << contact.gap << ' '
-        << contact.link << ' ' << contact.pad << ' ' << contact.finger.value_or(-1) << ' '
-        << contact.is_target << ' '
+        << contact.link << ' ' << contact.pad.value_or(-1) << ' ' << contact.finger.value_or(-1)
+        << ' ' << contact.is_target << ' '
         << (contact.weak ? (*contact.weak ? "weak" : "strong") : "unknown") << '\n';
   }
   const contact::ContactQuality& quality = grasp.quality;
@@ -358,7 +358,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       if (with_object.intersects || with_itself.intersects) wrong("refined, but intersecting");
       for (const auto& contact : g.contacts) {
         if (contact.is_target && contact.gap > options.refinement.largest_gap) {
-          wrong("gap of ", contact.gap, " at pad ", contact.pad);
+          wrong("gap of ", contact.gap, " at pad ", *contact.pad);
         }
       }
       if (!g.pre_grasp) wrong("no way in");

@@ -68,10 +68,12 @@ class JsonWriter {
   void link(const std::optional<int>& link, const char* key) {
     json_[key] = link ? Json(hand_->links[*link].name) : Json(nullptr);
   }
-  void pad(int pad, const char* key) { json_[key] = hand_->pads[pad].name; }
+  void pad(const std::optional<int>& pad, const char* key) {
+    json_[key] = hand_->pads[pad.value()].name;
+  }
   /// Left out where it is the fingertip's or the palm's.
   void other_pad(const TargetContact& target, const char* key) {
-    if (target.pad) pad(*target.pad, key);
+    if (target.pad) pad(target.pad, key);
   }
   void part(const std::optional<int>& finger, const char* key) {
     json_[key] = hand_->part_name(finger);
@@ -178,7 +180,9 @@ class JsonReader {
   void link(std::optional<int>& link, const char* key) const {
     if (!node_.at(key).is_null()) link = index_by_name(hand_->links, node_.at(key));
   }
-  void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
+  void pad(std::optional<int>& pad, const char* key) const {
+    pad = index_by_name(hand_->pads, node_.at(key));
+  }
   void part(std::optional<int>& finger, const char* key) const {
     const base::JsonValue name = node_.at(key);
     if (name.text() != "palm") finger = index_by_name(hand_->fingers, name);
