@@ -76,7 +76,7 @@ struct TargetOptions {
                                ///< [R]. The ranked search never relaxes them.
   /// Between targets of different parts [m], ≥ 0; empty: as near as they like, but the planner
   /// sets one pad width.
-  std::optional<double> min_separation;
+  std::optional<double> min_separation = {};
   /// Edge of the cubes by which the pool is thinned [m], ≥ 0: of all points in one cube whose
   /// normals have the same largest component, only the one with the best score is kept; 0: all are
   /// kept [P: "sampling by voxels"]. The ranked search needs thinning for four and more targets: a

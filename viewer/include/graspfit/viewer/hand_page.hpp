@@ -22,7 +22,7 @@ struct HandScene {
   std::string description;      ///< A sentence under the title; may be empty.
   std::vector<HandPose> poses;  ///< At least one; the page starts with the first.
   /// Of clip volumes whose pad states none [m], > 0; empty: those are not drawn.
-  std::optional<double> clip_thickness;
+  std::optional<double> clip_thickness = {};
 };
 
 /// The data of the scene for the page and the picture script (viewer/render_hand.py), as JSON: link

@@ -46,7 +46,7 @@ struct QualityOptions {
   HullCentroid centroid = HullCentroid::Measure;  ///< [R]
   /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; empty:
   /// none do, but the planner sets 0.1 voxel.
-  std::optional<double> merge_distance;
+  std::optional<double> merge_distance = {};
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
