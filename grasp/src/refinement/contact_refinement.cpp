@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <optional>
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
