@@ -306,7 +306,7 @@ void compare_distances(const TriangleMesh& mesh, base::Random& random) {
             for (std::size_t i = 0; i < poses.size(); ++i) {
               sum +=
                   geometry::nearest_points(a, b, poses[i], std::numeric_limits<double>::infinity(),
-                                           is_seeded ? seeds[i] : geometry::ProximitySeed())
+                                           is_seeded ? std::optional(seeds[i]) : std::nullopt)
                       ->distance;
             }
             return sum;

@@ -53,8 +53,8 @@ inline contact::Contact ball_contact(const hands::HandModel& hand, int finger,
   if (finger >= 0) contact.finger = finger;
   contact.link = finger + 1;
   contact.pad = finger + 1;
-  contact.area = 0.3 * hands::pad_area(hand.pads[contact.pad]);
-  contact.pad_boundary_distance = hands::largest_boundary_distance(hand.pads[contact.pad]);
+  contact.area = 0.3 * hands::pad_area(hand.pads[*contact.pad]);
+  contact.pad_boundary_distance = hands::largest_boundary_distance(hand.pads[*contact.pad]);
   return contact;
 }
 

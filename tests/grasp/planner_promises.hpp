@@ -85,8 +85,8 @@ inline std::string all_fields(const Grasp& grasp) {
     vector(contact.point_O);
     vector(contact.inward_normal_O);
     out << contact.area << ' ' << contact.pad_boundary_distance << ' ' << contact.gap << ' '
-        << contact.link << ' ' << contact.pad << ' ' << contact.finger.value_or(-1) << ' '
-        << contact.is_target << ' '
+        << contact.link << ' ' << contact.pad.value_or(-1) << ' ' << contact.finger.value_or(-1)
+        << ' ' << contact.is_target << ' '
         << (contact.weak ? (*contact.weak ? "weak" : "strong") : "unknown") << '\n';
   }
   const contact::ContactQuality& quality = grasp.quality;
@@ -271,12 +271,12 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   const std::vector<int>& fingers = parts.fingers;
   const grasp::PartDistances distances = grasp::part_distances(hand);
   grasp::TargetOptions target_options = options.targets;
-  if (target_options.min_separation == 0.0) {
-    target_options.min_separation = std::numeric_limits<double>::infinity();
+  if (!target_options.min_separation) {
+    double least_width = std::numeric_limits<double>::infinity();
     for (const int finger : fingers) {
-      target_options.min_separation = std::min(target_options.min_separation,
-                                               pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
+      least_width = std::min(least_width, pad_width(hand.pads[*hand.fingers[finger].tip_pad]));
     }
+    target_options.min_separation = least_width;
   }
   const grasp::SurroundingsCollision surroundings(hand, run.surroundings);
   const grasp::MeasuringScene scene = measuring_scene(run, surroundings);
@@ -358,7 +358,7 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
       if (with_object.intersects || with_itself.intersects) wrong("refined, but intersecting");
       for (const auto& contact : g.contacts) {
         if (contact.is_target && contact.gap > options.refinement.largest_gap) {
-          wrong("gap of ", contact.gap, " at pad ", contact.pad);
+          wrong("gap of ", contact.gap, " at pad ", *contact.pad);
         }
       }
       if (!g.pre_grasp) wrong("no way in");

@@ -80,6 +80,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
     return broken;
   }
   if (!is_in_reach_of_hand(distances, parts, targets)) report("no fingers reach all targets");
+  const double min_separation = options.min_separation.value_or(0.0);
   // These are the targets of the fingers alone; the palm's comes last.
   std::vector<grasp::TargetContact> contacts = targets.contacts;
   if (parts.palm) {
@@ -89,7 +90,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
     for (const grasp::TargetContact& target : contacts) {
       const Eigen::Vector3d from_palm = target.point_O - palm.point_O;
       if (!(from_palm.dot(palm.outward_normal_O) < 0.0)) report("a target behind the palm");
-      if (from_palm.norm() < options.min_separation - kRounding) report("a target at the palm");
+      if (from_palm.norm() < min_separation - kRounding) report("a target at the palm");
     }
     for (const geometry::SurfacePatch& patch : object.patches) {
       const Eigen::Vector3d offset = patch.centroid - palm.point_O;
@@ -137,7 +138,7 @@ inline std::vector<std::string> broken_requirements(const grasp::ObjectModel& ob
     for (std::size_t j = i + 1; j < contacts.size(); ++j) {
       const Eigen::Vector3d i_to_j = contacts[j].point_O - contacts[i].point_O;
       const double length = i_to_j.norm();
-      if (length < options.min_separation - kRounding) {
+      if (length < min_separation - kRounding) {
         report("targets ", i, " and ", j, ": closer than the separation: ", length);
       }
       if (i == 0 || options.pair_rule == grasp::PairRule::AllPairs) {

@@ -40,7 +40,7 @@ TEST_CASE("A hand's page refuses scenes that do not fit", "[viewer][hand_page]")
   scene = sample_hand_scene();
   scene.poses[1].q.resize(2);
   CHECK_THROWS_WITH(hand_page_html(scene), Contains("closed") && Contains("2 joint positions"));
-  for (const double thickness : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double thickness : {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
     scene = sample_hand_scene();
     scene.clip_thickness = thickness;
     CHECK_THROWS_AS(hand_page_html(scene), base::InvalidInput);

@@ -102,7 +102,7 @@ TEST_CASE("Input that makes no sense is refused in one line", "[viewer][page]") 
     CHECK_THROWS_AS(page_html(input), base::InvalidInput);
   }
   SECTION("thickness") {
-    input.clip_thickness = GENERATE(-0.001, std::numeric_limits<double>::quiet_NaN(),
+    input.clip_thickness = GENERATE(-0.001, 0.0, std::numeric_limits<double>::quiet_NaN(),
                                     std::numeric_limits<double>::infinity());
     CHECK_THROWS_WITH(page_html(input), Contains("clip_thickness"));
   }

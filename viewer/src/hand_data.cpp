@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -54,15 +55,16 @@ Json fingers(const hands::HandModel& hand) {
   return list;
 }
 
-Json pads(const hands::HandModel& hand, double clip_thickness) {
+Json pads(const hands::HandModel& hand, const std::optional<double>& clip_thickness) {
   Json list = Json::array();
   for (const hands::ContactPad& pad : hand.pads) {
-    const double thickness = pad.clip_thickness.value_or(clip_thickness);
+    const std::optional<double> thickness =
+        pad.clip_thickness ? pad.clip_thickness : clip_thickness;
     list.push_back({{"name", pad.name},
                     {"link", pad.link},
                     {"finger", pad.finger.value_or(-1)},
                     {"X_LC", to_json(pad.X_LC)},
-                    {"clip", thickness > 0.0 ? clip_volume(pad, thickness) : Json(nullptr)}});
+                    {"clip", thickness ? clip_volume(pad, *thickness) : Json(nullptr)}});
   }
   return list;
 }
@@ -91,7 +93,7 @@ Json clip_volume(const hands::ContactPad& pad, double thickness) {
   return {{"points", points}, {"faces", faces}, {"edges", edges}};
 }
 
-Json hand_data(const hands::HandModel& hand, double clip_thickness) {
+Json hand_data(const hands::HandModel& hand, const std::optional<double>& clip_thickness) {
   return {{"name", hand.name},
           {"links", links(hand)},
           {"joints", joints(hand)},

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "graspfit/hands/hand_model.hpp"
 #include "page_json.hpp"
 
@@ -7,8 +9,8 @@ namespace graspfit::viewer::internal {
 
 // Data of a hand for both pages and the picture: link meshes, the tree with its joints and
 // couplings, fingers, pads with their clip volumes, palm. `clip_thickness` is for pads that give
-// none [m]; 0: the clip volumes of these pads are left out.
-Json hand_data(const hands::HandModel& hand, double clip_thickness);
+// none [m]; empty: the clip volumes of these pads are left out.
+Json hand_data(const hands::HandModel& hand, const std::optional<double>& clip_thickness);
 
 // Corners, triangles and edges of a pad's clip volume, in the pad's frame; edges are where faces
 // meet at 20 degrees or more.

@@ -1,6 +1,7 @@
 #include "graspfit/viewer/hand_page.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "graspfit/base/atomic_file.hpp"
@@ -20,9 +21,10 @@ void validate(const HandScene& scene) {
     throw base::InvalidInput("hand_scene_json: " + what);
   };
   if (scene.poses.empty()) refuse("no pose of hand " + scene.hand.name);
-  if (!(scene.clip_thickness >= 0.0) || !std::isfinite(scene.clip_thickness)) {
-    refuse("clip_thickness is " + std::to_string(scene.clip_thickness) +
-           ", must be finite and at least 0");
+  if (scene.clip_thickness &&
+      !(*scene.clip_thickness > 0.0 && std::isfinite(*scene.clip_thickness))) {
+    refuse("clip_thickness is " + std::to_string(*scene.clip_thickness) +
+           ", must be finite and above 0");
   }
   for (const HandPose& pose : scene.poses) {
     if (pose.q.size() == std::ssize(scene.hand.joints)) continue;

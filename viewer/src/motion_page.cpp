@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -135,7 +136,7 @@ std::string motion_scene_json(const MotionInput& input) {
     unmoved.push_back({{"object", object.object}, {"reason", object.reason}});
   }
   const Json data = {{"title", file.title},
-                     {"hand", internal::hand_data(input.scene.hand(), 0.0)},
+                     {"hand", internal::hand_data(input.scene.hand(), std::nullopt)},
                      {"objects", objects},
                      {"frame_time", input.frame_step / input.largest_speed},
                      {"num_frames", frames.count()},

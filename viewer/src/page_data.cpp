@@ -169,9 +169,10 @@ Json voxels(const grasp::ObjectModel& model) {
 
 void validate(const PageInput& input) {
   const auto refuse = [](const std::string& what) { throw InvalidInput("write_page: " + what); };
-  if (!(input.clip_thickness >= 0.0) || !std::isfinite(input.clip_thickness)) {
-    refuse("clip_thickness is " + std::to_string(input.clip_thickness) +
-           ", must be finite and at least 0");
+  if (input.clip_thickness &&
+      !(*input.clip_thickness > 0.0 && std::isfinite(*input.clip_thickness))) {
+    refuse("clip_thickness is " + std::to_string(*input.clip_thickness) +
+           ", must be finite and above 0");
   }
   if (input.object_O.faces.empty()) refuse("the object has no faces");
   const auto num_vertices = static_cast<std::int64_t>(input.object_O.vertices.size());

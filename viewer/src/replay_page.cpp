@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "frame_data.hpp"
@@ -183,7 +184,7 @@ std::string replay_scene_json(const ReplayInput& input) {
   Json data = {{"title", input.title},
                {"object", to_json(input.object_O)},
                {"center_of_mass", to_json(input.object.center_of_mass_O)},
-               {"hand", internal::hand_data(input.hand.model, 0.0)},
+               {"hand", internal::hand_data(input.hand.model, std::nullopt)},
                {"pieces",
                 {{"object", pieces_json(input.object.shape)},
                  {"num_object", input.object.shape.pieces.size()},

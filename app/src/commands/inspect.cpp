@@ -232,8 +232,8 @@ void print_weak(const geometry::TriangleMesh& mesh, const geometry::WeakRegions&
 std::vector<float> per_voxel(const grasp::ObjectModel& object, const std::vector<double>& values) {
   std::vector<float> result(object.patch_of_voxel.size(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t voxel = 0; voxel < result.size(); ++voxel) {
-    const std::int32_t patch = object.patch_of_voxel[voxel];
-    if (patch >= 0) result[voxel] = static_cast<float>(values.at(patch));
+    const auto patch = object.patch_in(static_cast<std::int64_t>(voxel));
+    if (patch) result[voxel] = static_cast<float>(values.at(*patch));
   }
   return result;
 }

@@ -140,7 +140,7 @@ double to_six_digits(double value) {
 std::vector<double> area_shares(const hands::HandModel& hand, const grasp::Grasp& grasp) {
   std::vector<double> shares;
   for (const contact::Contact& contact : grasp.contacts) {
-    shares.push_back(contact.area / hands::pad_area(hand.pads[contact.pad]));
+    shares.push_back(contact.area / hands::pad_area(hand.pads[*contact.pad]));
   }
   return shares;
 }

@@ -13,6 +13,7 @@
 // from all sides, none of which is fitted.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -291,7 +292,7 @@ class Collector {
   const grasp::PlannerOptions& options_;
   std::vector<Candidate> candidates_;
   std::vector<sweep::ResultRow> rows_;
-  std::int64_t attempt_ = -1;
+  std::optional<std::int64_t> attempt_;  // of the last candidate
   std::int64_t num_starts_ = 0;
 };
 

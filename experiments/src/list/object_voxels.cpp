@@ -119,8 +119,9 @@ sweep::ResultRow detail_of(const grasp::ObjectModel& object, const Eigen::Vector
   row.set("k", std::int64_t{voxel[2]});
   row.set("class", class_name(object.grid.at(voxel)));
   row.set("distance_voxels", rounded(object.distance.at(voxel), kStepsPerUnit));
-  const std::int32_t index = object.patch_of_voxel[object.grid.lattice.index(voxel)];
-  if (index < 0) return row;
+  const auto found = object.patch_in(object.grid.lattice.index(voxel));
+  if (!found) return row;
+  const std::int32_t index = *found;
   const geometry::SurfacePatch& patch = object.patches[index];
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = kAxes[axis];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -68,19 +69,19 @@ double trimmed_mean(std::vector<double>& lengths, double deviations) {
 
 /// First face that a ray meets, and the ray parameter t there, in units of the direction.
 struct QuickHit {
-  std::int32_t face = -1;  ///< −1: none.
+  std::int32_t face = 0;
   double t = std::numeric_limits<double>::infinity();
 };
 
 /// First hit of the ray from `origin` along `direction` on any face but `skipped_face`, in plain
-/// doubles: for statistics over many rays, not for decisions.
+/// doubles: for statistics over many rays, not for decisions. Empty: none.
 ///
 /// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
 /// of them unless they are seen edge-on or are a millionth of the ray's way in size; a triangle
 /// seen edge-on is missed, but not its neighbors. Of equal hits the one with the lowest face is
 /// returned; for such faces hits within 1e-12 of each other may depend on the tree.
-QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
-                         const Vector3d& direction, std::int32_t skipped_face) {
+std::optional<QuickHit> quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
+                                        const Vector3d& direction, std::int32_t skipped_face) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // Of a triangle's barycentric coordinates, which are off by some 7e-16 |s| |ac| / det.
   constexpr double kMargin = 1e-9;
@@ -129,6 +130,7 @@ QuickHit quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
     if (!(t >= 0.0)) return;
     if (t < best.t || (t == best.t && face < best.face)) best = {face, t};
   });
+  if (!(best.t < kInfinity)) return std::nullopt;
   return best;
 }
 
@@ -186,10 +188,9 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t
     std::vector<double> lengths;
     lengths.reserve(rays.size());
     for (const Vector3d& ray : rays) {
-      const QuickHit hit = quick_first_hit(tree, centroid, frame * ray, face);
-      if (hit.face < 0) continue;
-      if (normals[hit.face].dot(normal) >= 0.0) continue;
-      lengths.push_back(hit.t);
+      const std::optional<QuickHit> hit = quick_first_hit(tree, centroid, frame * ray, face);
+      if (!hit || normals[hit->face].dot(normal) >= 0.0) continue;
+      lengths.push_back(hit->t);
     }
     if (lengths.empty()) return;
     result.num_hits[i] = base::as_index<std::int32_t>(lengths.size());

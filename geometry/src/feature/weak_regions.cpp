@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "feature/solid_opening.hpp"
@@ -25,8 +26,9 @@ using internal::label_sets;
 constexpr int kLeastResolution = 16;               // Enough for any object smaller than a ball.
 constexpr double kFewestVoxelsPerThickness = 2.0;  // Fewer do not resolve a ball.
 
-/// Voxel of the solid in which the middle of a face lies; −1 if there is none near.
-Index voxel_of_face(const TriangleMesh& mesh, std::int32_t face, const VoxelGrid& grid) {
+/// Voxel of the solid in which the middle of a face lies; empty if there is none near.
+std::optional<Index> voxel_of_face(const TriangleMesh& mesh, std::int32_t face,
+                                   const VoxelGrid& grid) {
   const auto [a, b, c] = corners(mesh, face);
   const Vector3d middle = (a + b + c) / 3.0;
   const VoxelLattice& lattice = grid.lattice;
@@ -35,7 +37,7 @@ Index voxel_of_face(const TriangleMesh& mesh, std::int32_t face, const VoxelGrid
   const Index index = lattice.index(voxel);
   if (grid.classes[index] != VoxelClass::Empty) return index;
   // By rounding the point is in an empty voxel, beside the voxel that has the surface.
-  Index best = -1;
+  std::optional<Index> best;
   double best_distance = std::numeric_limits<double>::infinity();
   for_each_neighbor(lattice, index, [&](Index neighbor) {
     if (grid.classes[neighbor] == VoxelClass::Empty) return;
@@ -88,9 +90,9 @@ class RegionSearch {
     faces_of_.resize(pieces_.size());
     std::vector<std::int32_t> faces;
     for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
-      const Index voxel = voxel_of_face(mesh_, face, grid);
-      if (voxel < 0 || label_[voxel] < 0) continue;
-      faces_of_[label_[voxel]].emplace_back(face, voxel);
+      const std::optional<Index> voxel = voxel_of_face(mesh_, face, grid);
+      if (!voxel || label_[*voxel] < 0) continue;
+      faces_of_[label_[*voxel]].emplace_back(face, *voxel);
       faces.push_back(face);
     }
     const std::vector<double> thickness =

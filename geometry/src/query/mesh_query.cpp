@@ -254,7 +254,7 @@ ClosestPoint nearest_point(const internal::IndexedMesh& indexed, const Eigen::Ve
       // differences and squares; only the order of two additions differs: 4 u of 8 u.
       [&] { return best.squared_distance * (1.0 + 0x1p-50); },
       [&](const IndexedTriangle& triangle) { offer(triangle.corners, triangle.face); });
-  if (best.face < 0) {
+  if (!(best.squared_distance < std::numeric_limits<double>::infinity())) {
     throw base::InvalidInput(
         "MeshQuery::closest_point: the point is not finite, or too far for squared distances");
   }

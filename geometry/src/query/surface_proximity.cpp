@@ -73,8 +73,8 @@ class Search {
         squared_best_(squared_enough_),
         squared_limit_(squared_enough_) {}
 
-  void run(const ProximitySeed& seed) {
-    if (seed.face_a >= 0 && seed.face_b >= 0) start_from(seed);
+  void run(const std::optional<ProximitySeed>& seed) {
+    if (seed) start_from(*seed);
     std::vector<Pair> open;
     open.reserve(64);
     push(open, 0, box_of_a(0), 0, box_of_b(0));
@@ -347,20 +347,23 @@ class Search {
   std::optional<SurfaceProximity> best_;
 };
 
-void require_seed(const ProximitySeed& seed, const MeshQuery& a, const MeshQuery& b,
+void require_seed(const std::optional<ProximitySeed>& seed, const MeshQuery& a, const MeshQuery& b,
                   const char* who) {
-  const auto is_face_of = [](std::int32_t face, const MeshQuery& query) {
-    return face < static_cast<std::int64_t>(query.mesh().faces.size());
+  if (!seed) return;
+  const auto require_face = [&](std::int32_t face, const MeshQuery& query, const char* name) {
+    base::require(face >= 0 && face < static_cast<std::int64_t>(query.mesh().faces.size()), who,
+                  name, face, "a face of the mesh");
   };
-  base::require(is_face_of(seed.face_a, a), who, "seed.face_a", seed.face_a, "a face of the mesh");
-  base::require(is_face_of(seed.face_b, b), who, "seed.face_b", seed.face_b, "a face of the mesh");
+  require_face(seed->face_a, a, "seed.face_a");
+  require_face(seed->face_b, b, "seed.face_b");
 }
 
 }  // namespace
 
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
                                                const RigidTransform& X_AB, double enough,
-                                               const ProximitySeed& seed, double near_enough) {
+                                               const std::optional<ProximitySeed>& seed,
+                                               double near_enough) {
   internal::require_finite(X_AB, "nearest_points");
   require_seed(seed, a, b, "nearest_points");
   base::require(!std::isnan(near_enough), "nearest_points", "near_enough", near_enough, "a number");
@@ -372,7 +375,7 @@ std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQue
 
 SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,
-                                   const ProximitySeed& seed) {
+                                   const std::optional<ProximitySeed>& seed) {
   internal::require_finite(X_AB, "surface_clearance");
   require_seed(seed, a, b, "surface_clearance");
   base::require(!std::isnan(enough), "surface_clearance", "enough", enough, "a number");
@@ -380,7 +383,7 @@ SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
   Search search(a, b, X_AB, enough, share, 0.0);
   search.run(seed);
   SurfaceClearance result{search.at_least(), seed};
-  if (search.best()) result.nearest = {search.best()->face_a, search.best()->face_b};
+  if (search.best()) result.nearest = ProximitySeed{search.best()->face_a, search.best()->face_b};
   return result;
 }
 

@@ -99,7 +99,7 @@ int side_of_plane(const Corners& corners, const ExactPoint& point) {
 struct Sides {
   bool is_solid_above = false;
   bool is_solid_below = false;
-  std::int32_t first_face = -1;  ///< The first of the faces that cover the piece.
+  std::optional<std::int32_t> first_face;  ///< The first of the faces that cover the piece.
 };
 
 /// Winding numbers on both sides of a point within a piece, by the crossings of the ray from it
@@ -139,7 +139,7 @@ Sides sides_at(const FaceTree& tree, const ExactPoint& point, std::int32_t own, 
     if (side < 0) above += around;
     if (side != 0) return;
     at += around;
-    if (sides.first_face < 0 || face < sides.first_face) sides.first_face = face;
+    if (!sides.first_face || face < *sides.first_face) sides.first_face = face;
   });
   sides.is_solid_above = above != 0;
   sides.is_solid_below = above + at != 0;

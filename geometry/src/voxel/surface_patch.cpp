@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "query/indexed_triangle.hpp"
@@ -70,8 +71,8 @@ class PatchProjection {
   void visit(std::int32_t piece, const std::array<Eigen::Vector3d, 3>& triangle) {
     const Eigen::Vector3d candidate = internal::closest_on_triangle(point_, triangle);
     const double squared = (candidate - point_).squaredNorm();
-    if (piece_ < 0 || squared < squared_ ||
-        (squared == squared_ && all_.pieces[piece].face < all_.pieces[piece_].face)) {
+    if (!piece_ || squared < squared_ ||
+        (squared == squared_ && all_.pieces[piece].face < all_.pieces[*piece_].face)) {
       squared_ = squared;
       piece_ = piece;
       best_ = candidate;
@@ -83,7 +84,7 @@ class PatchProjection {
   const Eigen::Vector3d& point_;
   Eigen::Vector3d best_ = point_;
   double squared_ = std::numeric_limits<double>::infinity();
-  std::int32_t piece_ = -1;
+  std::optional<std::int32_t> piece_;  // of the best point
 };
 
 // About the number of patches: a surface of area A meets 1.5 A / h² voxels of edge h on average

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <queue>
 
 #include "graspfit/base/as_index.hpp"
@@ -180,16 +181,16 @@ double LongestWay::operator()(std::int32_t name,
     longest = std::max(longest, length);
     const Vector3i voxel = lattice_.voxel(index);
     for (const PathStep& step : steps) {
-      const Index target = member(voxel + step.offset, name);
-      if (target < 0 || length + step.length >= length_[target]) continue;
+      const std::optional<Index> target = member(voxel + step.offset, name);
+      if (!target || length + step.length >= length_[*target]) continue;
       // A step of two voxels must not jump a gap: one of the two beside its middle is inside too.
       if (step.offset.cwiseAbs().maxCoeff() == 2) {
         const Vector3i inner = step.offset / 2;  // Toward zero.
         const Vector3i outer = step.offset - inner;
-        if (member(voxel + inner, name) < 0 && member(voxel + outer, name) < 0) continue;
+        if (!member(voxel + inner, name) && !member(voxel + outer, name)) continue;
       }
-      length_[target] = length + step.length;
-      open.emplace(length_[target], target);
+      length_[*target] = length + step.length;
+      open.emplace(length_[*target], *target);
     }
   }
   return longest;

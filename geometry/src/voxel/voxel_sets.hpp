@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -81,10 +82,11 @@ class LongestWay {
   float length_at(Index voxel) const { return length_[voxel]; }
 
  private:
-  Index member(const Eigen::Vector3i& voxel, std::int32_t name) const {
-    if (!lattice_.contains(voxel)) return -1;
+  /// The index of a voxel, if it is of the set with this name.
+  std::optional<Index> member(const Eigen::Vector3i& voxel, std::int32_t name) const {
+    if (!lattice_.contains(voxel)) return std::nullopt;
     const Index index = lattice_.index(voxel);
-    return label_[index] == name ? index : -1;
+    return label_[index] == name ? std::optional(index) : std::nullopt;
   }
 
   const VoxelLattice& lattice_;

@@ -106,7 +106,7 @@ std::string HoldRun::rejection(const grasp::Grasp& grasp) {
   if (overlap.depth <= protocol_.largest_penetration) return {};
   const auto name = [&](int link) { return hand_.links[link].name; };
   return "at the pre-grasp " + name(overlap.link_a) + " is " + millimeters(overlap.depth) +
-         " deep in " + (overlap.link_b < 0 ? "the object or table" : name(overlap.link_b));
+         " deep in " + (overlap.link_b ? name(*overlap.link_b) : "the object or table");
 }
 
 bool HoldRun::move(const HandConfiguration& from, const HandConfiguration& to, double duration,

@@ -209,17 +209,17 @@ std::vector<HoldFrame> HoldTest::replay(const grasp::Grasp& grasp, int direction
   const double step = impl_->protocol.step;
   const int every =
       base::bounded_integer(std::round(interval / step), 1, std::numeric_limits<int>::max());
-  int num_steps = -1;
+  int num_watched = 0;
   const auto frame = [&] {
     return HoldFrame{impl_->physics.time(), impl_->physics.X_OB(), impl_->physics.hand()};
   };
   const auto watch = [&] {
-    if (++num_steps % every == 0) frames.push_back(frame());
+    if (num_watched++ % every == 0) frames.push_back(frame());
   };
   const HoldVerdict verdict = impl_->run.approach(grasp, watch);
   if (verdict.stage == HoldStage::Rejected) return frames;
   if (verdict.stage == HoldStage::Held) impl_->load(direction, watch);
-  if (num_steps % every != 0) frames.push_back(frame());
+  if ((num_watched - 1) % every != 0) frames.push_back(frame());
   return frames;
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "graspfit/base/errors.hpp"
 #include "import/mujoco_model.hpp"
@@ -60,7 +61,7 @@ struct Physics::Engine {
     data.reset(mj_makeData(model));
     object_body = mj_name2id(model, mjOBJ_BODY, "object");
     palm_body = body_of_link(hand.palm.link);
-    link_of_body.assign(static_cast<std::size_t>(model->nbody), -1);
+    link_of_body.resize(static_cast<std::size_t>(model->nbody));
     for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
       link_of_body[body_of_link(link)] = link;
     }
@@ -95,7 +96,7 @@ struct Physics::Engine {
     model->actuator_biasprm[mjNBIAS * actuator + 1] = -kp;
   }
 
-  int link_of_geom(int geom) const { return link_of_body[model->geom_bodyid[geom]]; }
+  std::optional<int> link_of_geom(int geom) const { return link_of_body[model->geom_bodyid[geom]]; }
 
   struct JointIds {
     int position;  ///< In qpos.
@@ -116,7 +117,7 @@ struct Physics::Engine {
   int palm_body = -1;
   int lift = -1;
   std::vector<JointIds> joints;
-  std::vector<int> link_of_body;
+  std::vector<std::optional<int>> link_of_body;
 };
 
 Physics::Physics(const HoldHand& hand, const HoldObject& object, const HoldProtocol& protocol)
@@ -211,7 +212,7 @@ double Physics::squeeze_force() const {
     const int body_1 = e.model->geom_bodyid[contact.geom1];
     const int body_2 = e.model->geom_bodyid[contact.geom2];
     const bool is_object = body_1 == e.object_body || body_2 == e.object_body;
-    const bool is_hand = e.link_of_geom(contact.geom1) >= 0 || e.link_of_geom(contact.geom2) >= 0;
+    const bool is_hand = e.link_of_geom(contact.geom1) || e.link_of_geom(contact.geom2);
     if (!is_object || !is_hand || contact.efc_address < 0) continue;
     std::array<mjtNum, 6> force{};
     mj_contactForce(e.model, e.data.get(), i, force.data());
@@ -225,11 +226,11 @@ Physics::Overlap Physics::deepest_overlap() const {
   Overlap deepest;
   for (int i = 0; i < e.data->ncon; ++i) {
     const mjContact& contact = e.data->contact[i];
-    int a = e.link_of_geom(contact.geom1);
-    int b = e.link_of_geom(contact.geom2);
-    if (a < 0) std::swap(a, b);
-    if (a < 0 || -contact.dist <= deepest.depth) continue;
-    deepest = {-contact.dist, a, b};
+    std::optional<int> a = e.link_of_geom(contact.geom1);
+    std::optional<int> b = e.link_of_geom(contact.geom2);
+    if (!a) std::swap(a, b);
+    if (!a || -contact.dist <= deepest.depth) continue;
+    deepest = {-contact.dist, *a, b};
   }
   return deepest;
 }

@@ -37,11 +37,12 @@ class Physics {
   hands::HandConfiguration hand() const;  ///< Palm pose and joints as they are.
   double squeeze_force() const;           ///< Normal forces of the hand on the object [N].
 
-  /// Deepest overlap of hand and object, or hand and hand, between the engine's convex pieces.
+  /// Deepest overlap of hand and object, or hand and hand, between the engine's convex pieces; of
+  /// depth 0 if there is none.
   struct Overlap {
     double depth = 0.0;  ///< [m]
-    int link_a = -1;
-    int link_b = -1;  ///< −1: the object (or the table).
+    int link_a = 0;
+    std::optional<int> link_b;  ///< Empty: the object (or the table).
   };
   Overlap deepest_overlap() const;
 

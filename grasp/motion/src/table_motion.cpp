@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -178,7 +179,7 @@ class SegmentProof {
   /// bound is the distance itself.
   static double surface_distance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
                                  const RigidTransform& X_AB, double enough, double clearance,
-                                 geometry::ProximitySeed& seed) {
+                                 std::optional<geometry::ProximitySeed>& seed) {
     auto found =
         geometry::surface_clearance(a, b, X_AB, enough, grasp::internal::kNearEnough, seed);
     if (clearance > 0.0 && found.at_least < enough && found.at_least < 2.0 * clearance) {
@@ -220,7 +221,7 @@ class SegmentProof {
         const RigidTransform X_OB = X_OW * X_WB(posed(scene_, segment_, end));
         if (geometry::do_intersect(object.surface_O, body, X_OB)) return false;
       }
-      geometry::ProximitySeed seed;
+      std::optional<geometry::ProximitySeed> seed;
       return stay_apart(travel, clearance_, tolerance, [&](const Posed& at, double enough) {
         return surface_distance(object.surface_O, body, X_OW * X_WB(at), enough, clearance_, seed);
       });
@@ -245,7 +246,7 @@ class SegmentProof {
         if (b <= a || scene_.hand().is_excluded(a, b)) continue;
         const double travel = travel_.links_apart(a, b);
         if (!(travel > 0.0)) continue;
-        geometry::ProximitySeed seed;
+        std::optional<geometry::ProximitySeed> seed;
         const bool is_apart = stay_apart(travel, 0.0, 0.0, [&](const Posed& at, double enough) {
           const RigidTransform& X_WA = at.X_WL[a];
           const RigidTransform& X_WB = at.X_WL[b];

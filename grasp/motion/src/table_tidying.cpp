@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "graspfit/base/as_index.hpp"
@@ -85,7 +86,7 @@ class TidyingSearch {
   void note(const std::vector<UnmovedObject>& refused) {
     int num_home = 0;
     for (int object = 0; object < num_objects(); ++object) num_home += is_home(object) ? 1 : 0;
-    if (num_home <= best_num_home_) return;
+    if (best_num_home_ && num_home <= *best_num_home_) return;
     best_num_home_ = num_home;
     result_.moves = moves_;
     result_.X_WO_end = at_;
@@ -166,7 +167,7 @@ class TidyingSearch {
   std::vector<bool> was_put_down_;
   std::vector<PlannedMove> moves_;
   std::vector<Refused> refused_;
-  int best_num_home_ = -1;
+  std::optional<int> best_num_home_;  // empty: no arrangement noted yet
   TidyingResult result_;
 };
 

@@ -35,7 +35,8 @@ RigidTransform between(const std::vector<RigidTransform>& X_OL, int a, int b) {
 /// Lower bound of the distance of two surfaces, up to `enough`; starts from the faces that were
 /// near when last measured.
 double clearance(const geometry::MeshQuery& a, const geometry::MeshQuery& b,
-                 const RigidTransform& X_AB, double enough, geometry::ProximitySeed& seed) {
+                 const RigidTransform& X_AB, double enough,
+                 std::optional<geometry::ProximitySeed>& seed) {
   const auto found = geometry::surface_clearance(a, b, X_AB, enough, kNearEnough, seed);
   seed = found.nearest;
   return found.at_least;
@@ -140,7 +141,7 @@ bool PreGraspSearch::is_clear(const LinkPoses& X_OL) {
     if (surroundings_distance(link, X, wanted) < wanted) return false;
     const auto near =
         geometry::nearest_points(scene_.object, solid(link), X, wanted, guarded.seed, wanted);
-    if (near) guarded.seed = {near->face_a, near->face_b};
+    if (near) guarded.seed = geometry::ProximitySeed{near->face_a, near->face_b};
     return !near && !scene_.collision.link_intersects(scene_.object, link, X);
   });
 }

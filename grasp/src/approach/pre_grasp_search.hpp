@@ -37,15 +37,15 @@ class PreGraspSearch {
   struct LinkPair {
     int a;
     int b;
-    geometry::ProximitySeed seed;  ///< Faces near each other when last measured.
+    std::optional<geometry::ProximitySeed> seed;  ///< Faces near each other when last measured.
     SearchedBound in_grasp = {};
   };
 
   /// A link, to be kept from object and surroundings.
   struct GuardedLink {
     int link;
-    geometry::ProximitySeed seed;  ///< With the object.
-    SearchedBound in_grasp = {};   ///< The same.
+    std::optional<geometry::ProximitySeed> seed;  ///< With the object.
+    SearchedBound in_grasp = {};                  ///< The same.
   };
 
   /// The first pre-grasp among all openings of these joints and retreats, in their order.

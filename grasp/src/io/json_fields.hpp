@@ -41,6 +41,14 @@ class JsonWriter {
       json_[key] = json_of(value);
     }
   }
+  void operator()(const std::optional<double>& value, const OptionRow& row) {
+    const std::string key(row.key);
+    if (row.is_zero_if_empty) {
+      open_number(value.value_or(0.0), key.c_str());
+    } else {
+      json_[key] = json_of(value);
+    }
+  }
   /// A value that no file is without.
   template <class Value>
   void required(const std::optional<Value>& value, const char* key) {
@@ -60,10 +68,12 @@ class JsonWriter {
   void link(const std::optional<int>& link, const char* key) {
     json_[key] = link ? Json(hand_->links[*link].name) : Json(nullptr);
   }
-  void pad(int pad, const char* key) { json_[key] = hand_->pads[pad].name; }
+  void pad(const std::optional<int>& pad, const char* key) {
+    json_[key] = hand_->pads[pad.value()].name;
+  }
   /// Left out where it is the fingertip's or the palm's.
   void other_pad(const TargetContact& target, const char* key) {
-    if (target.pad) pad(*target.pad, key);
+    if (target.pad) pad(target.pad, key);
   }
   void part(const std::optional<int>& finger, const char* key) {
     json_[key] = hand_->part_name(finger);
@@ -145,6 +155,15 @@ class JsonReader {
       read(node_.at(key), value);
     }
   }
+  void operator()(std::optional<double>& value, const OptionRow& row) const {
+    const std::string key(row.key);
+    if (!row.is_zero_if_empty) {
+      read(node_.at(key), value);
+    } else {
+      open_number(value.emplace(), key.c_str());
+      if (*value == 0.0) value.reset();
+    }
+  }
   template <class Value>
   void required(std::optional<Value>& value, const char* key) const {
     read(node_.at(key), value.emplace());
@@ -161,7 +180,9 @@ class JsonReader {
   void link(std::optional<int>& link, const char* key) const {
     if (!node_.at(key).is_null()) link = index_by_name(hand_->links, node_.at(key));
   }
-  void pad(int& pad, const char* key) const { pad = index_by_name(hand_->pads, node_.at(key)); }
+  void pad(std::optional<int>& pad, const char* key) const {
+    pad = index_by_name(hand_->pads, node_.at(key));
+  }
   void part(std::optional<int>& finger, const char* key) const {
     const base::JsonValue name = node_.at(key);
     if (name.text() != "palm") finger = index_by_name(hand_->fingers, name);

@@ -56,7 +56,10 @@ struct FieldSchema {
 };
 template <class Value>
 struct FieldSchema<std::optional<Value>> {
-  static Json of(const OptionRow& row) { return or_null_schema(FieldSchema<Value>::of(row)); }
+  static Json of(const OptionRow& row) {
+    const Json schema = FieldSchema<Value>::of(row);
+    return row.is_zero_if_empty ? schema : or_null_schema(schema);
+  }
 };
 
 /// Puts the schemas of a struct's fields into `properties`.

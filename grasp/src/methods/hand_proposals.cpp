@@ -116,7 +116,7 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
   const Facing a_O = facing(a);
   const Facing b_O = facing(b);
   const Vector3d line = b_O.point - a_O.point;
-  if (!(line.norm() > 0.0) || line.norm() < rules_.options().min_separation) return std::nullopt;
+  if (!(line.norm() > 0.0) || rules_.is_too_near(line.norm())) return std::nullopt;
   const auto samples = pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
                                         geometry::angle_between(b_O.normal, -line), random);
   if (!samples) return std::nullopt;

@@ -314,7 +314,7 @@ bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
       // Pads that face each other need no space beside one another.
       const std::vector<PoolPoint>& pool = rules_.pool();
       if (pool[a].inward_normal_O.dot(pool[b].inward_normal_O) < 0.0) continue;
-      if (rules_.distance(a, b) < rules_.options().min_separation) return false;
+      if (rules_.is_too_near(rules_.distance(a, b))) return false;
     }
   }
   return true;

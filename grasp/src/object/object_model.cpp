@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -145,20 +146,21 @@ std::optional<double> contact_score_at(const ObjectModel& object, const Eigen::V
   const geometry::VoxelLattice& lattice = object.grid.lattice;
   const Eigen::Vector3i own = lattice.voxel_at(point_O);
   const auto patch_at = [&](const Eigen::Vector3i& voxel) {
-    return lattice.contains(voxel) ? object.patch_of_voxel[lattice.index(voxel)] : -1;
+    return lattice.contains(voxel) ? object.patch_in(lattice.index(voxel)) : std::nullopt;
   };
-  std::int32_t patch = patch_at(own);
+  if (const auto patch = patch_at(own)) return object.scores.scores[*patch];
+  std::optional<std::int32_t> patch;
   double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; patch_at(own) < 0 && i < 27; ++i) {
-    const std::int32_t other = patch_at(own + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-    if (other < 0) continue;
-    const double distance = (object.patches[other].centroid - point_O).squaredNorm();
+  for (int i = 0; i < 27; ++i) {
+    const auto other = patch_at(own + Eigen::Vector3i(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+    if (!other) continue;
+    const double distance = (object.patches[*other].centroid - point_O).squaredNorm();
     if (distance >= nearest) continue;
     nearest = distance;
     patch = other;
   }
-  if (patch < 0) return std::nullopt;
-  return object.scores.scores[patch];
+  if (!patch) return std::nullopt;
+  return object.scores.scores[*patch];
 }
 
 }  // namespace graspfit::grasp

@@ -42,6 +42,9 @@ void PlannerOptions::validate() const {
           name_of(style), "precision or auto where targets.search is reach: it closes no links");
   require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
           name_of(missing_contact), "fails with refine, which accepts no part without contact");
+  // Grasp files say 0 where these two are empty.
+  require(targets.min_separation != 0.0, "min_separation_m", 0, "> 0, or empty");
+  require(quality.merge_distance != 0.0, "merge_distance_m", 0, "> 0, or empty");
   score.validate();
   if (weak) weak->validate();
   targets.validate();
@@ -72,7 +75,7 @@ FittingOptions fitting_options(const PlannerOptions& options) {
 }
 
 double merge_distance(const PlannerOptions& options, double voxel_size) {
-  return options.quality.merge_distance > 0.0 ? options.quality.merge_distance : 0.1 * voxel_size;
+  return options.quality.merge_distance.value_or(0.1 * voxel_size);
 }
 
 double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand) {

@@ -32,7 +32,7 @@ PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandMo
                                   PlannerOptions options) {
   options.validate();
   const RequestedParts parts = requested_parts(hand, options);
-  if (options.targets.min_separation == 0.0) {
+  if (!options.targets.min_separation) {
     options.targets.min_separation = fingertip_width(hand, parts.fingers);
   }
   options.quality.merge_distance = merge_distance(options, object.grid.lattice.voxel_size);

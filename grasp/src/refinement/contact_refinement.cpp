@@ -83,7 +83,7 @@ struct PadRequest {
   double gap = 0.0;
   Vector3d point_O = Vector3d::Zero();   ///< On the pad, nearest to the object.
   Vector3d normal_O = Vector3d::Zero();  ///< Unit, from the object to it.
-  geometry::ProximitySeed seed;
+  std::optional<geometry::ProximitySeed> seed;
 };
 
 /// One refinement.
@@ -226,7 +226,7 @@ class Refinement {
       request.gap = 2.0 * options_.reach;
       if (!nearest) return false;
       request.gap = nearest->distance;
-      request.seed = {nearest->face_a, nearest->face_b};
+      request.seed = geometry::ProximitySeed{nearest->face_a, nearest->face_b};
       request.point_O = nearest->point_on_b_A;
       request.normal_O = (nearest->point_on_b_A - nearest->point_on_a_A).normalized();
     }

@@ -95,7 +95,8 @@ constexpr auto target_rows = [](auto& at, auto& targets) {
      {.key = "min_separation_m",
       .range = at_least(0),
       .meaning =
-          "of targets of different fingers; 0: the width of the widest requested fingertip pad"});
+          "of targets of different fingers; 0: the width of the widest requested fingertip pad",
+      .is_zero_if_empty = true});
   at(targets.pool_spacing, {"pool_spacing_m", at_least(0), "pool-spacing-mm", "mm", kTargets,
                             "of all candidates in a cube of this size the best one stays; 0: all; "
                             "a pad's width makes ranked searches for four and more targets short",
@@ -259,8 +260,8 @@ constexpr auto quality_rows = [](auto& at, auto& quality) {
   at(quality.merge_distance,
      {.key = "merge_distance_m",
       .range = at_least(0),
-      .meaning =
-          "contacts nearer to each other are one corner of the hull; 0: a tenth of a voxel"});
+      .meaning = "contacts nearer to each other are one corner of the hull; 0: a tenth of a voxel",
+      .is_zero_if_empty = true});
 };
 
 constexpr auto planner_rows = [](auto& at, auto& options) {

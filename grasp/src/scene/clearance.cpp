@@ -70,7 +70,8 @@ std::optional<SurfaceProximity> Clearance::nearest(Known& known, const geometry:
   if (!result) {
     known = {enough, X, known.seed, true, false};
   } else {
-    known = {result->distance, X, {result->face_a, result->face_b}, true, true};
+    known = {result->distance, X, geometry::ProximitySeed{result->face_a, result->face_b}, true,
+             true};
   }
   return result;
 }

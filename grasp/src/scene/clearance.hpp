@@ -59,7 +59,7 @@ class Clearance {
   struct Known {
     double at_least = 0.0;
     hands::RigidTransform X = hands::RigidTransform::Identity();
-    geometry::ProximitySeed seed;
+    std::optional<geometry::ProximitySeed> seed;
     bool is_known = false;
     /// Whether the last query found the bodies nearer than the distance asked for.
     bool is_near = false;

@@ -94,7 +94,7 @@ class GreedySearch {
         chosen_.size() >= 2 ? rules_.distance(chosen_[0], chosen_[1]) : distances[0];
     double edge_error = 0.0;
     for (const double distance : distances) {
-      if (distance < options_.min_separation) return std::nullopt;
+      if (rules_.is_too_near(distance)) return std::nullopt;
       const double error = std::abs(distance - first_edge) / first_edge;
       // The hard cut is for the triangle; with more targets not all edges can agree.
       if (chosen_.size() == 2 && error > options_.edge_tolerance_rel * relaxation_) {

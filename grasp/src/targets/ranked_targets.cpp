@@ -72,8 +72,7 @@ struct RankedTargets::Impl {
       for (std::int32_t b = a + 1; b < num_points; ++b) {
         if (!rules.is_stable_pair(a, b)) continue;
         const double distance = rules.distance(a, b);
-        if (distance < rules.options().min_separation || !rules.is_in_seed_reach(distance))
-          continue;
+        if (rules.is_too_near(distance) || !rules.is_in_seed_reach(distance)) continue;
         partners[a].push_back(b);
         partners[b].push_back(a);
         if (num_fingers > 2) failure = TargetFailure::NoFurther;
@@ -201,7 +200,7 @@ struct RankedTargets::Impl {
     double error = 0.0;
     for (std::size_t i = 0; i < k; ++i) {
       distances[i] = rules.distance(chosen[i], chosen[k]);
-      if (distances[i] < rules.options().min_separation) return;
+      if (rules.is_too_near(distances[i])) return;
       error += std::abs(distances[i] - first_edge) / first_edge;
     }
     least_rank += error / num_rank_edges;

@@ -75,7 +75,7 @@ std::vector<contact::Contact> contacts_at(const TargetContacts& targets,
     contact.point_O = target.point_O;
     contact.inward_normal_O = -target.outward_normal_O;
     contact.finger = target.finger;
-    contact.pad = target.pad.value_or(contact.pad);
+    contact.pad = target.pad;
     if (!target.is_palm && !target.finger && contacts.size() < fingers.size()) {
       contact.finger = fingers[contacts.size()];
     }

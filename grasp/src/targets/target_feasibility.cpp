@@ -136,6 +136,7 @@ TargetRules::TargetRules(const ObjectModel& object, const PartDistances& distanc
       distances_(distances),
       parts_(parts),
       options_(options),
+      min_separation_(options.min_separation.value_or(0.0)),
       stable_pairs_(options.theta_max),
       pool_(std::move(pool)) {
   options.validate();
@@ -334,7 +335,7 @@ std::optional<double> TargetRules::palm_misfit(PointIndices fingers,
     const Vector3d from_palm = pool_[fingers[t]].point_O - point.point_O;
     if (!(from_palm.dot(point.inward_normal_O) > 0.0)) return std::nullopt;
     distances[t] = from_palm.norm();
-    if (distances[t] < options_.min_separation) return std::nullopt;
+    if (is_too_near(distances[t])) return std::nullopt;
   }
   std::vector<FingerOrder> in_reach;
   for (const FingerOrder& order : orders) {

@@ -42,6 +42,9 @@ class TargetRules {
               std::vector<PoolPoint> pool);
 
   const TargetOptions& options() const { return options_; }
+  /// Whether this distance between targets of different parts is below the separation that they
+  /// need.
+  bool is_too_near(double distance) const { return distance < min_separation_; }
   /// The points that may be targets; where they are patches, ascending by patch.
   const std::vector<PoolPoint>& pool() const { return pool_; }
   const std::vector<int>& fingers() const { return parts_.fingers; }
@@ -103,6 +106,7 @@ class TargetRules {
   const PartDistances& distances_;
   const RequestedParts parts_;
   const TargetOptions options_;
+  const double min_separation_;  ///< 0 where the options ask for none.
   const contact::StablePairTest stable_pairs_;
   std::vector<PoolPoint> pool_;
   enum class PalmSpace : signed char { Unknown, Free, Taken };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -41,8 +42,8 @@ class MjcfReader {
         mesh_files_(mesh_files),
         file_(file),
         findings_(findings),
-        link_of_(model.nbody, -1),
-        joint_of_(model.njnt, -1) {}
+        link_of_(model.nbody),
+        joint_of_(model.njnt) {}
 
   RobotDescription read() {
     const std::string_view name = model_.names;  // the first one is the model's
@@ -418,8 +419,8 @@ class MjcfReader {
   std::map<int, std::string> joint_names_;    ///< Of joints.
   std::map<int, std::string> between_names_;  ///< Of the link that a joint moves, if it is no body.
   std::set<std::string> joint_names_taken_;   ///< Names of joints that are taken.
-  std::vector<int> link_of_;
-  std::vector<int> joint_of_;
+  std::vector<std::optional<int>> link_of_;
+  std::vector<std::optional<int>> joint_of_;
   bool has_meshes_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "description/joint_motion.hpp"
@@ -56,8 +57,8 @@ struct Term {
 
 class CouplingReader {
  public:
-  CouplingReader(const mjModel& model, const std::vector<int>& link_of,
-                 const std::vector<int>& joint_of, RobotDescription& description,
+  CouplingReader(const mjModel& model, const std::vector<std::optional<int>>& link_of,
+                 const std::vector<std::optional<int>>& joint_of, RobotDescription& description,
                  Findings& findings)
       : model_(model),
         link_of_(link_of),
@@ -77,8 +78,8 @@ class CouplingReader {
     return what + " " + (name && *name ? std::string(name) : std::to_string(id));
   }
 
-  bool is_kept(int joint) const { return joint_of_[joint] >= 0; }
-  DescribedJoint& described(int joint) { return description_.joints[joint_of_[joint]]; }
+  bool is_kept(int joint) const { return joint_of_[joint].has_value(); }
+  DescribedJoint& described(int joint) { return description_.joints[*joint_of_[joint]]; }
   double ref(int joint) const { return model_.qpos0[model_.jnt_qposadr[joint]]; }
 
   void equality(int e) {
@@ -110,7 +111,7 @@ class CouplingReader {
 
   void closed_loop(int first, int second, const std::string& item) {
     const auto text = [&](int body) { return name_of(mjOBJ_BODY, body, "body"); };
-    if (link_of_[first] >= 0 && link_of_[second] >= 0) {
+    if (link_of_[first] && link_of_[second]) {
       findings_.suspicious(item, "joins " + text(first) + " and " + text(second) +
                                      ": closed loops are not kept; couple the joints by "
                                      "\"couplings\" in the sidecar");
@@ -312,8 +313,8 @@ class CouplingReader {
   }
 
   const mjModel& model_;
-  const std::vector<int>& link_of_;
-  const std::vector<int>& joint_of_;
+  const std::vector<std::optional<int>>& link_of_;
+  const std::vector<std::optional<int>>& joint_of_;
   RobotDescription& description_;
   Findings& findings_;
   std::map<std::string, double> fixed_;  ///< Joints that constraints hold, and their positions.
@@ -321,9 +322,9 @@ class CouplingReader {
 
 }  // namespace
 
-void read_mjcf_couplings(const mjModel& model, const std::vector<int>& link_of,
-                         const std::vector<int>& joint_of, RobotDescription& description,
-                         Findings& findings) {
+void read_mjcf_couplings(const mjModel& model, const std::vector<std::optional<int>>& link_of,
+                         const std::vector<std::optional<int>>& joint_of,
+                         RobotDescription& description, Findings& findings) {
   CouplingReader(model, link_of, joint_of, description, findings).read();
 }
 

@@ -401,7 +401,7 @@ TEST_CASE("The ideal measure takes its terms as given", "[contact][contact_quali
   const hands::HandModel hand = pad_hand(3);
   std::vector<Contact> contacts = ball_contacts(hand, equator(120, 120));
   for (Contact& contact : contacts) {
-    contact.pad = -1;
+    contact.pad.reset();
     contact.area = 0.0;
     contact.pad_boundary_distance = 0.0;
   }

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "geometry/rational_distance.hpp"
+#include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -60,7 +62,7 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
     CHECK(a.closest_point(nearest->point_on_a_A).squared_distance < 1e-28);
     CHECK(b.closest_point(X_AB.inverse() * nearest->point_on_b_A).squared_distance < 1e-28);
     // A seed, even a bad one, changes nothing.
-    const auto seeded = nearest_points(a, b, X_AB, kNoLimit, {i % 100, i % 12});
+    const auto seeded = nearest_points(a, b, X_AB, kNoLimit, ProximitySeed{i % 100, i % 12});
     REQUIRE(seeded);
     CHECK(seeded->distance == Approx(nearest->distance).margin(1e-15));
     // Any pair within a limit is allowed, but there must be one exactly where there is a nearer
@@ -70,7 +72,8 @@ TEST_CASE("Nearest points agree with the distance of solids that are apart",
     CHECK(any->distance <= 1.5 * nearest->distance);
     CHECK(any->distance >= nearest->distance - 1e-15);
     // Neither does one that is farther away than the limit.
-    for (const ProximitySeed& seed : {ProximitySeed(), ProximitySeed{i % 100, i % 12}}) {
+    for (const std::optional<ProximitySeed>& seed :
+         {std::optional<ProximitySeed>(), std::optional(ProximitySeed{i % 100, i % 12})}) {
       CHECK_FALSE(nearest_points(a, b, X_AB, 0.999 * nearest->distance, seed));
       const auto limited = nearest_points(a, b, X_AB, 1.001 * nearest->distance + 1e-12, seed);
       REQUIRE(limited);
@@ -145,7 +148,9 @@ TEST_CASE("Round surfaces that nearly touch anywhere are as far apart as all pai
     ++num_near;
     const double expected = distance_of_all_pairs(a.mesh(), b.mesh(), X_AB);
     CHECK(expected <= 1.001e-3);
-    for (const ProximitySeed& seed : {ProximitySeed(), ProximitySeed{away->face_a, away->face_b}}) {
+    for (const std::optional<ProximitySeed>& seed :
+         {std::optional<ProximitySeed>(),
+          std::optional(ProximitySeed{away->face_a, away->face_b})}) {
       const auto nearest = nearest_points(a, b, X_AB, kNoLimit, seed);
       REQUIRE(nearest);
       CHECK(nearest->distance == Approx(expected).margin(1e-13));
@@ -236,6 +241,16 @@ TEST_CASE("A surface inside another has a distance from it", "[geometry][surface
   const auto nearest = nearest_points(outer, inner, X, kNoLimit);
   REQUIRE(nearest);
   CHECK(nearest->distance == Approx(0.25).margin(1e-15));  // It is 1 − (0.5 + 0.25).
+}
+
+TEST_CASE("A seed that is not of the meshes is refused", "[geometry][surface_proximity]") {
+  const MeshQuery a(box({2, 2, 2}));  // of twelve faces
+  const RigidTransform at = RigidTransform::Identity();
+  for (const ProximitySeed& seed :
+       {ProximitySeed{-1, 0}, ProximitySeed{0, -1}, ProximitySeed{12, 0}, ProximitySeed{0, 12}}) {
+    CHECK_THROWS_AS(nearest_points(a, a, at, kNoLimit, seed), InvalidInput);
+    CHECK_THROWS_AS(surface_clearance(a, a, at, kNoLimit, 1.0, seed), InvalidInput);
+  }
 }
 
 TEST_CASE("An open surface pierced in its middle is at distance zero",

@@ -200,12 +200,12 @@ std::vector<std::string> broken_guarantees(const Scene& scene, const TargetConta
 
   const std::vector<contact::Contact> contacts = scene.contacts(result);
   for (const contact::Contact& contact : contacts) {
-    const hands::ContactPad& pad = hand.pads[contact.pad];
+    const hands::ContactPad& pad = hand.pads[*contact.pad];
     const double thickness = pad.clip_thickness.value_or(scene.contact_options.clip_thickness);
-    const Vector3d point_C = hands::pad_pose(hand, contact.pad, X_OL).inverse() * contact.point_O;
+    const Vector3d point_C = hands::pad_pose(hand, *contact.pad, X_OL).inverse() * contact.point_O;
     const double distance = distance_to_clip_volume(pad, thickness, point_C);
     if (distance > scene.voxel_size()) {
-      report("contact of pad ", contact.pad, ": ", distance, " from its volume");
+      report("contact of pad ", *contact.pad, ": ", distance, " from its volume");
     }
   }
   if (result.stop == FittingStop::Contact) {

@@ -298,6 +298,21 @@ TEST_CASE("Numbers of a grasp file are as short as they can be", "[grasp][grasp_
   CHECK_THAT(json, Contains("\"score\": \"infinity\""));
 }
 
+TEST_CASE("Distances that are left to the planner are 0 in a grasp file", "[grasp][grasp_io]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "distances.json";
+  const std::string left_open = grasp::to_json(sample_file(folder.path() / "ball.off"));
+  CHECK(refusal(path, replaced(left_open, "\"min_separation_m\": 0,",
+                               "\"min_separation_m\": 0.25,")) == "accepted");
+  CHECK(grasp::read_grasps(path).options.targets.min_separation == 0.25);
+  CHECK_THAT(
+      refusal(path, replaced(left_open, "\"min_separation_m\": 0,", "\"min_separation_m\": null,")),
+      Contains("min_separation_m: is null, must be a number"));
+  CHECK(refusal(path, left_open) == "accepted");
+  CHECK_FALSE(grasp::read_grasps(path).options.targets.min_separation);
+  CHECK_FALSE(grasp::read_grasps(path).options.quality.merge_distance);
+}
+
 TEST_CASE("Files of version 5 are read: their convention of graspfit had another name",
           "[grasp][grasp_io]") {
   const TemporaryFolder folder;

@@ -82,6 +82,11 @@ TEST_CASE("Planner options out of range are refused by name and value", "[grasp]
         "");
   CHECK(unsaid(message_after([](auto& o) { o.targets.score_threshold = 1.5; }), "score_threshold",
                "1.5") == "");
+  // Grasp files say 0 where these are empty.
+  CHECK(unsaid(message_after([](auto& o) { o.targets.min_separation = 0.0; }),
+               "min_separation_m = 0", "") == "");
+  CHECK(unsaid(message_after([](auto& o) { o.quality.merge_distance = 0.0; }),
+               "merge_distance_m = 0", "") == "");
   CHECK(unsaid(message_after([](auto& o) { o.fitting.small_step = -0.5; }), "small_step", "-0.5") ==
         "");
   CHECK(unsaid(message_after([](auto& o) { o.quality.theta_max = 1.75; }), "theta_max", "1.75") ==

@@ -206,7 +206,7 @@ void CellJournal::append(std::size_t cell, const std::string& key, const CellRec
 
 std::string CellJournal::line_of(std::size_t cell) const {
   std::ifstream stream(file_, std::ios::binary);
-  stream.seekg(content_.cells[cell].offset);
+  stream.seekg(content_.cells[cell].offset.value());
   std::string line;
   std::getline(stream, line);
   if (!checked_content(line)) fail("was changed while it was in use");

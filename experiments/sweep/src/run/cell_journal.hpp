@@ -28,7 +28,7 @@ using JournalIdentity = std::map<std::string, std::string>;
 struct JournalContent {
   /// The last line of a cell; only a final line replaces a final one.
   struct Line {
-    std::int64_t offset = -1;  ///< Offset of its beginning in the file; −1: none.
+    std::optional<std::int64_t> offset;  ///< Of its beginning in the file; empty: none.
     bool is_final = false;
     bool is_failed = false;
   };
@@ -67,7 +67,7 @@ class CellJournal {
   std::size_t num_cells() const { return content_.cells.size(); }
   bool has(std::size_t cell) const { return content_.cells[cell].is_final; }
   /// Whether there is any record of a cell, final or not.
-  bool is_known(std::size_t cell) const { return content_.cells[cell].offset >= 0; }
+  bool is_known(std::size_t cell) const { return content_.cells[cell].offset.has_value(); }
   /// Whether a cell's final record is of a failure.
   bool is_failed(std::size_t cell) const { return has(cell) && content_.cells[cell].is_failed; }
   const std::map<std::string, std::string>& inputs() const { return content_.inputs; }

@@ -99,7 +99,7 @@ SweepStatus status_of(const JournalContent& content, const std::string& name,
   for (const JournalContent::Line& line : content.cells) {
     if (line.is_final) ++status.num_done;
     if (line.is_final && line.is_failed) ++status.num_failed;
-    if (line.offset >= 0 && !line.is_final) ++status.num_tried_again;
+    if (line.offset && !line.is_final) ++status.num_tried_again;
   }
   const double seconds = content.last_cell_s - content.last_start_s;
   if (content.num_cells_since_start > 0 && seconds > 0.0) {
@@ -121,7 +121,7 @@ void add_to(JournalContent& whole, const JournalContent& content, const fs::path
   }
   for (std::size_t i = 0; i < whole.cells.size(); ++i) {
     const JournalContent::Line& line = content.cells[i];
-    if (line.offset < 0 || whole.cells[i].is_final) continue;
+    if (!line.offset || whole.cells[i].is_final) continue;
     whole.cells[i] = line;
   }
 }

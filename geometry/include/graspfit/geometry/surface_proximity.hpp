@@ -21,8 +21,8 @@ struct SurfaceProximity {
 /// starts with a good bound. A seed changes the time only, except for ties, and except where
 /// `near_enough` above 0 or a `share` below 1 lets the search end early.
 struct ProximitySeed {
-  std::int32_t face_a = -1;  ///< −1: none.
-  std::int32_t face_b = -1;
+  std::int32_t face_a = 0;
+  std::int32_t face_b = 0;
 };
 
 /// Nearest points of two surfaces as they are: surfaces may be open, and a surface inside a closed
@@ -37,14 +37,14 @@ struct ProximitySeed {
 /// is not of these meshes.
 std::optional<SurfaceProximity> nearest_points(const MeshQuery& a, const MeshQuery& b,
                                                const RigidTransform& X_AB, double enough,
-                                               const ProximitySeed& seed = {},
+                                               const std::optional<ProximitySeed>& seed = {},
                                                double near_enough = 0.0);
 
 /// What a search for a lower bound finds.
 struct SurfaceClearance {
   double at_least = 0.0;  ///< The bound [m].
-  ProximitySeed nearest;  ///< A pair of faces near each other as seed of the next search; if none
-                          ///< was found, the given seed.
+  /// A pair of faces near each other as seed of the next search; if none was found, the given seed.
+  std::optional<ProximitySeed> nearest;
 };
 
 /// A lower bound of the distance d between two surfaces [m], for proofs that bodies stay apart. The
@@ -58,6 +58,6 @@ struct SurfaceClearance {
 /// @throws InvalidInput as `nearest_points`, and for another `share`.
 SurfaceClearance surface_clearance(const MeshQuery& a, const MeshQuery& b,
                                    const RigidTransform& X_AB, double enough, double share,
-                                   const ProximitySeed& seed = {});
+                                   const std::optional<ProximitySeed>& seed = {});
 
 }  // namespace graspfit::geometry

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "graspfit/base/option_check.hpp"
@@ -43,24 +44,19 @@ void check_contacts(std::span<const Contact> contacts) {
   }
 }
 
-const hands::ContactPad& pad_of(const Contact& contact, const hands::HandModel& hand) {
-  base::require(contact.pad >= 0 && contact.pad < std::ssize(hand.pads), "Contact", "pad",
-                contact.pad, "an index into the pads of hand " + hand.name);
-  return hand.pads[contact.pad];
+const hands::ContactPad& pad_of(const std::optional<int>& pad, const hands::HandModel& hand) {
+  base::require(pad && *pad >= 0 && *pad < std::ssize(hand.pads), "Contact", "pad",
+                pad ? std::to_string(*pad) : "none", "an index into the pads of hand " + hand.name);
+  return hand.pads[*pad];
 }
 
 /// Returns the pad that a target contact stands for: its own or, if it has none, the tip pad of its
 /// finger or the pad of the palm, which precision grasps use.
 const hands::ContactPad& nominal_pad(const Contact& contact, const hands::HandModel& hand) {
-  Contact resolved = contact;
-  if (resolved.pad < 0) {
-    const bool has_finger =
-        contact.finger && *contact.finger >= 0 && *contact.finger < std::ssize(hand.fingers);
-    const std::optional<int>& pad =
-        has_finger ? hand.fingers[*contact.finger].tip_pad : hand.palm.pad;
-    resolved.pad = pad.value_or(-1);
-  }
-  return pad_of(resolved, hand);
+  if (contact.pad) return pad_of(contact.pad, hand);
+  const bool has_finger =
+      contact.finger && *contact.finger >= 0 && *contact.finger < std::ssize(hand.fingers);
+  return pad_of(has_finger ? hand.fingers[*contact.finger].tip_pad : hand.palm.pad, hand);
 }
 
 std::string finger_text(const Contact& contact) {
@@ -98,7 +94,8 @@ ContactQuality assemble(std::span<const Contact> contacts, std::vector<Sustainab
   // M3 = R − β D
   std::vector<Vector3d> points;
   for (const Contact& contact : contacts) points.push_back(contact.point_O);
-  const internal::ContactHull hull = internal::contact_hull(points, options.merge_distance);
+  const internal::ContactHull hull =
+      internal::contact_hull(points, options.merge_distance.value_or(0.0));
   Vector3d centroid = hull.hull.centroid;
   if (options.centroid == HullCentroid::Vertices) {
     centroid.setZero();
@@ -137,7 +134,7 @@ void QualityOptions::validate() const {
   require_weight(w3, "w3");
   base::require(theta_max > 0.0 && theta_max < std::numbers::pi / 2, "QualityOptions", "theta_max",
                 theta_max, "above 0 and below pi/2 rad");
-  require_weight(merge_distance, "merge_distance");
+  if (merge_distance) require_weight(*merge_distance, "merge_distance");
 }
 
 std::optional<double> stable_pair_angle(const Vector3d& point_a, const Vector3d& inward_normal_a,
@@ -187,7 +184,7 @@ ContactQuality contact_quality(std::span<const Contact> contacts, const QualityC
     base::require(
         contact.pad_boundary_distance >= 0.0 && std::isfinite(contact.pad_boundary_distance),
         "Contact", "pad_boundary_distance", contact.pad_boundary_distance, "finite and at least 0");
-    const hands::ContactPad& pad = pad_of(contact, *context.hand);
+    const hands::ContactPad& pad = pad_of(contact.pad, *context.hand);
     SustainabilityTerm term;
     term.strength = strength(contact);
     if (options.units == MeasureUnits::Normalized) {

@@ -61,6 +61,11 @@ struct ObjectModel {
   ObjectModelTimings timings;       ///< Never part of results.
 
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
+  /// Index into patches of the one in a voxel of the lattice, given by index; empty: not partial.
+  std::optional<std::int32_t> patch_in(std::int64_t voxel) const {
+    const std::int32_t patch = patch_of_voxel[static_cast<std::size_t>(voxel)];
+    return patch >= 0 ? std::optional(patch) : std::nullopt;
+  }
 };
 
 /// Contact score at `point_O`, a point on the surface: the score of the patch in the voxel that

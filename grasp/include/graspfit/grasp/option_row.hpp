@@ -35,7 +35,8 @@ struct OptionRow {
   bool is_setting = true;        ///< Whether experiments may have it.
   std::string_view yes = "yes";  ///< What the values of its flag are called, if it is yes or no.
   std::string_view no = "no";
-  bool may_be_infinite = false;  ///< Whether the number may be infinite in grasp files.
+  bool may_be_infinite = false;   ///< Whether the number may be infinite in grasp files.
+  bool is_zero_if_empty = false;  ///< Whether grasp files say 0, not null, of an empty number.
 };
 
 /// The number of a field, in SI units, from one in `unit`: "mm" and "deg" are converted.

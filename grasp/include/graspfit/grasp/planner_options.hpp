@@ -138,7 +138,7 @@ struct PlannerOptions {
   /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
   /// for and S = 1 everywhere.
   std::optional<geometry::WeakRegionOptions> weak = geometry::WeakRegionOptions{};
-  TargetOptions targets;  ///< min_separation 0: one pad width is set by the planner.
+  TargetOptions targets;  ///< min_separation > 0, or empty: the planner sets one pad width.
   /// Target sets drawn per attempt, ≥ 1; the one on which the fingertip pads would lie flattest is
   /// fitted: contacts "the hand can plausibly reach" (paper section 1) read through the hand's
   /// kinematics [R]. 1: the paper's random set, first from the side on which the object protrudes
@@ -173,7 +173,7 @@ struct PlannerOptions {
   /// Friction coefficient of the narrower cones to which the forces of the squeeze are limited, ≥ 0
   /// [R]; the friction beyond it is left for loads.
   double squeeze_friction = 0.2;
-  contact::QualityOptions quality;  ///< merge_distance 0: a tenth of a voxel is set by the planner.
+  contact::QualityOptions quality;  ///< merge_distance > 0, or empty: `merge_distance` below.
   void validate() const;            ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -187,7 +187,8 @@ FittingOptions fitting_options(const PlannerOptions& options);
 /// The planner's rule for deviations from targets [m].
 double largest_deviation(const PlannerOptions& options, const hands::HandModel& hand);
 
-/// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` say 0.
+/// The planner's rule for contacts that count as one [m]: a tenth of a voxel where `options` leave
+/// it open.
 double merge_distance(const PlannerOptions& options, double voxel_size);
 
 /// Which contacts of `options` count, and how they are estimated. @param clip_thickness [m]

@@ -75,8 +75,9 @@ struct TargetOptions {
   int max_seeds = 200;
   int relax_after_seeds = 50;  ///< Failed seeds after which edge and centroid limits grow by half
                                ///< [R]. The ranked search never relaxes them.
-  /// Between targets of different parts [m], ≥ 0; the planner sets one pad width.
-  double min_separation = 0.0;
+  /// Between targets of different parts [m], ≥ 0; empty: as near as they like, but the planner
+  /// sets one pad width.
+  std::optional<double> min_separation = {};
   /// Edge of the cubes by which the pool is thinned [m], ≥ 0: of all points in one cube whose
   /// normals have the same largest component, only the one with the best score is kept; 0: all are
   /// kept [P: "sampling by voxels"]. The ranked search needs thinning for four and more targets: a

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,15 @@ struct HandScene {
   hands::HandModel hand;
   std::string description;      ///< A sentence under the title; may be empty.
   std::vector<HandPose> poses;  ///< At least one; the page starts with the first.
-  double clip_thickness = 0.0;  ///< Of clip volumes whose pad states none [m]; 0: not drawn.
+  /// Of clip volumes whose pad states none [m], > 0; empty: those are not drawn.
+  std::optional<double> clip_thickness = {};
 };
 
 /// The data of the scene for the page and the picture script (viewer/render_hand.py), as JSON: link
 /// meshes, tree, joints and couplings, fingers, pads, palm, and each pose with its link poses in
 /// the palm's frame H. The same input gives the same bytes.
 /// @throws InvalidInput if there is no pose, a pose does not fit the hand, or the thickness is
-/// negative or NaN.
+/// not finite and above 0.
 std::string hand_scene_json(const HandScene& scene);
 
 /// The page: one self-contained HTML document for any browser with WebGL 2, from disk and without a

@@ -24,8 +24,8 @@ struct PageInput {
   std::vector<grasp::Grasp> grasps;  ///< Numbered from 1 in this order, listed by M; may be none.
   /// Voxels, patches and scores; without it the page has no voxel and score map layers.
   const grasp::ObjectModel* model = nullptr;
-  /// Of clip volumes whose pad states none [m]; 0: those are not drawn.
-  double clip_thickness = 0.0;
+  /// Of clip volumes whose pad states none [m], > 0; empty: those are not drawn.
+  std::optional<double> clip_thickness = {};
   /// Table and obstacles, drawn where there are any; null: none.
   const grasp::Surroundings* surroundings = nullptr;
   /// Center of mass to draw; empty: the model's, or none without a model.
@@ -39,8 +39,8 @@ struct PageInput {
 /// besides: 2.2 MB for 35 000 vertices and the Barrett hand. Nothing is decimated; coordinates are
 /// rounded to float (relative 6e-8).
 /// @throws InvalidInput if the object has no faces or an index of it is out of range, if a grasp
-/// does not fit the hand (number of joints, indices of contacts), or for a negative or NaN
-/// thickness.
+/// does not fit the hand (number of joints, indices of contacts), or for a thickness that
+/// is not finite and above 0.
 std::string page_html(const PageInput& input);
 
 /// Writes `page_html` atomically. @throws IoError if that fails; InvalidInput as `page_html`.

@@ -15,7 +15,8 @@ struct Contact {
   double gap = 0.0;  ///< Distance between the pad's surface on its link's mesh and the object [m],
                      ///< ≥ 0: `pad_gap`.
   int link = -1;     ///< Index of the link in the hand model.
-  int pad = -1;      ///< Index of the pad in the hand model.
+  std::optional<int> pad;  ///< Index of the pad in the hand model; empty only for points that stand
+                           ///< for contacts, such as targets.
   std::optional<int> finger;  ///< Index of the finger in the hand model; empty for the palm.
   bool is_target = false;     ///< The pad had a target contact.
   std::optional<bool> weak;   ///< Whether it is on a weak feature of the object (paper: S = 0);

@@ -44,9 +44,9 @@ struct QualityOptions {
   MeasureUnits units = MeasureUnits::Normalized;  ///< [R]
   Regularity regularity = Regularity::Combined;   ///< [R]
   HullCentroid centroid = HullCentroid::Measure;  ///< [R]
-  /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; the
-  /// planner sets 0.1 voxel.
-  double merge_distance = 0.0;
+  /// Contacts linked by distances below this count as one hull point, their mean [m], ≥ 0; empty:
+  /// none do, but the planner sets 0.1 voxel.
+  std::optional<double> merge_distance = {};
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
