@@ -122,11 +122,9 @@ class Search {
     Vector3d half_A;  ///< Of the box along the axes of A about it.
   };
   static BoxOfA box_of_a(const BoxTree::Node& node) { return {node, center(node), half(node)}; }
-  BoxOfA box_of_a(std::int32_t i) const {
-    return box_of_a(tree_a_.nodes[static_cast<std::size_t>(i)]);
-  }
+  BoxOfA box_of_a(std::int32_t i) const { return box_of_a(tree_a_.nodes[i]); }
   BoxOfB box_of_b(std::int32_t j) const {
-    const BoxTree::Node& node = tree_b_.nodes[static_cast<std::size_t>(j)];
+    const BoxTree::Node& node = tree_b_.nodes[j];
     const Vector3d half_B = half(node);
     return {node, X_AB_ * center(node), half_B, turn_ * half_B};
   }
@@ -135,8 +133,8 @@ class Search {
   /// not.
   void start_from(const ProximitySeed& seed) {
     squared_best_ = std::numeric_limits<double>::infinity();
-    improve(corners(a_.mesh, static_cast<std::size_t>(seed.face_a)), seed.face_a,
-            mapped(corners(b_.mesh, static_cast<std::size_t>(seed.face_b))), seed.face_b);
+    improve(corners(a_.mesh, seed.face_a), seed.face_a, mapped(corners(b_.mesh, seed.face_b)),
+            seed.face_b);
     if (squared_best_ < squared_enough_) return;
     best_.reset();
     squared_best_ = squared_enough_;

@@ -23,7 +23,7 @@ namespace {
 
 std::vector<bool> following_joints(const hands::HandModel& hand, const Eigen::VectorXd& q) {
   std::vector<bool> follows(hand.joints.size(), false);
-  for (int j = 0; j < static_cast<int>(hand.joints.size()); ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const auto& coupling = hand.joints[j].coupling;
     if (!coupling) continue;
     follows[j] =

@@ -61,8 +61,8 @@ struct Physics::Engine {
     data.reset(mj_makeData(model));
     object_body = mj_name2id(model, mjOBJ_BODY, "object");
     palm_body = body_of_link(hand.palm.link);
-    link_of_body.resize(static_cast<std::size_t>(model->nbody));
-    for (int link = 0; link < static_cast<int>(hand.links.size()); ++link) {
+    link_of_body.resize(model->nbody);
+    for (int link = 0; link < std::ssize(hand.links); ++link) {
       link_of_body[body_of_link(link)] = link;
     }
     const int object_joint = model->body_jntadr[object_body];
@@ -73,7 +73,7 @@ struct Physics::Engine {
       model->dof_damping[object_dof + 3 + i] =
           protocol.object_angular_damping * protocol.object_mass * object.inertia_per_mass_O(i, i);
     }
-    for (int j = 0; j < static_cast<int>(hand.joints.size()); ++j) {
+    for (int j = 0; j < std::ssize(hand.joints); ++j) {
       const std::string name = joint_name(j);
       joints.push_back({model->jnt_qposadr[mj_name2id(model, mjOBJ_JOINT, name.c_str())],
                         mj_name2id(model, mjOBJ_ACTUATOR, name.c_str()),
@@ -197,7 +197,7 @@ hands::HandConfiguration Physics::hand() const {
     result.X_OH.translation().z() += e.data->qpos[e.model->jnt_qposadr[lift_joint]];
   }
   result.X_OH.linear() = quaternion(e.model->body_quat + 4 * e.palm_body).toRotationMatrix();
-  result.q.resize(static_cast<Eigen::Index>(e.joints.size()));
+  result.q.resize(std::ssize(e.joints));
   for (std::size_t j = 0; j < e.joints.size(); ++j) {
     result.q[j] = e.data->qpos[e.joints[j].position];
   }

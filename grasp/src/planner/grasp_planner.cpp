@@ -106,8 +106,7 @@ class Search {
     if (run_.progress) {
       run_.progress(statistics.attempts, static_cast<std::int64_t>(result_.grasps.size()));
     }
-    if (options_.search == SearchRule::First &&
-        static_cast<int>(result_.grasps.size()) >= options_.count) {
+    if (options_.search == SearchRule::First && std::ssize(result_.grasps) >= options_.count) {
       end(PlannerStop::Count);
     } else if (num_taken_ == options_.max_attempts) {
       end(PlannerStop::Attempts);
@@ -152,7 +151,7 @@ class Search {
     for (Grasp& grasp : ranked) {
       if (!is_unlike(grasp, selected)) {
         ++result_.statistics.duplicates;
-      } else if (static_cast<int>(selected.size()) < options_.count) {
+      } else if (std::ssize(selected) < options_.count) {
         selected.push_back(std::move(grasp));
       }
     }

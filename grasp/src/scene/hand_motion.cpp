@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/jacobian.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
@@ -24,35 +25,33 @@ MotionEntries::MotionEntries(const hands::HandModel& hand, bool palm_translates,
       palm_turns_(palm_turns),
       breakaway_(breakaway) {
   constexpr double kShortestLever = 0.02;  // [m]; a shorter one would let a joint spin
-  const auto num_joints = hand.joints.size();
-  entry_of_joint_.assign(num_joints, 0);
-  lever_.assign(num_joints, 1.0);
+  entry_of_joint_.assign(hand.joints.size(), 0);
+  lever_.assign(hand.joints.size(), 1.0);
   const hands::HandConfiguration open = hands::open_configuration(hand);
   open_q_ = open.q;
   const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, open);
-  for (std::size_t link = 0; link < hand.links.size(); ++link) {
-    joints_above_.push_back(hands::joints_to(hand, static_cast<int>(link)));
+  for (int link = 0; link < std::ssize(hand.links); ++link) {
+    joints_above_.push_back(hands::joints_to(hand, link));
     std::reverse(joints_above_.back().begin(), joints_above_.back().end());
   }
-  for (std::size_t j = 0; j < num_joints; ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (joint.type == hands::JointType::Revolute) {
       const Vector3d origin = X_OL[joint.child_link].translation();
       double reach = kShortestLever;
-      for (const int link : hands::links_moved_by(hand, static_cast<int>(j))) {
-        const auto index = static_cast<std::size_t>(link);
-        for (const Vector3d& vertex : hand.links[index].mesh_L.vertices) {
-          reach = std::max(reach, (X_OL[index] * vertex - origin).norm());
+      for (const int link : hands::links_moved_by(hand, j)) {
+        for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
+          reach = std::max(reach, (X_OL[link] * vertex - origin).norm());
         }
       }
       lever_[j] = reach;
     }
     if (!joint.coupling || joint.coupling->breakaway) {
-      entry_of_joint_[j] = 6 + static_cast<int>(free_joints_.size());
-      free_joints_.push_back(static_cast<int>(j));
+      entry_of_joint_[j] = base::as_index<int>(6 + free_joints_.size());
+      free_joints_.push_back(j);
     }
   }
-  for (std::size_t j = 0; j < num_joints; ++j) {
+  for (int j = 0; j < std::ssize(hand.joints); ++j) {
     const hands::Joint& joint = hand.joints[j];
     if (!joint.coupling || joint.coupling->breakaway) continue;
     entry_of_joint_[j] = entry_of_joint_[joint.coupling->leader];
@@ -120,14 +119,14 @@ RowVectorXd HandMotion::turn_row(int link, const Vector3d& axis) const {
 
 HandMotion::Bounds HandMotion::bounds(double trust) const {
   Bounds bounds{VectorXd::Constant(size(), -trust), VectorXd::Constant(size(), trust)};
-  for (std::size_t k = 0; k < entries_.free_joints_.size(); ++k) {
-    const auto j = static_cast<std::size_t>(entries_.free_joints_[k]);
+  for (Index k = 0; k < std::ssize(entries_.free_joints_); ++k) {
+    const int j = entries_.free_joints_[k];
     const hands::Joint& joint = hand_.joints[j];
-    const double q = configuration_.q[entries_.free_joints_[k]];
-    const auto entry = static_cast<Index>(6 + k);
+    const double q = configuration_.q[j];
+    const Index entry = 6 + k;
     bounds.lower[entry] = std::max(-trust, std::min(0.0, (joint.lower - q) * entries_.lever_[j]));
     bounds.upper[entry] = std::min(trust, std::max(0.0, (joint.upper - q) * entries_.lever_[j]));
-    if (!entries_.is_beyond(entries_.free_joints_[k])) continue;
+    if (!entries_.is_beyond(j)) continue;
     const double back =
         (hands::followed_position(joint, configuration_.q) - q) * entries_.lever_[j];
     double& least = joint.closing_sign > 0 ? bounds.lower[entry] : bounds.upper[entry];
@@ -139,13 +138,13 @@ HandMotion::Bounds HandMotion::bounds(double trust) const {
 
 std::vector<HandMotion::Limit> HandMotion::breakaway_rows() const {
   std::vector<Limit> limits;
-  for (std::size_t j = 0; j < hand_.joints.size(); ++j) {
+  for (int j = 0; j < std::ssize(hand_.joints); ++j) {
     const hands::Joint& joint = hand_.joints[j];
     if (!joint.coupling || !joint.coupling->breakaway) continue;
-    const auto leader = static_cast<std::size_t>(joint.coupling->leader);
+    const int leader = joint.coupling->leader;
     const double sign = joint.closing_sign;
     const double follows = hands::followed_position(joint, configuration_.q);
-    const double beyond = sign * (configuration_.q[static_cast<Index>(j)] - follows);
+    const double beyond = sign * (configuration_.q[j] - follows);
     RowVectorXd row = RowVectorXd::Zero(size());
     row[entries_.entry_of_joint_[j]] += sign / entries_.lever_[j];
     row[entries_.entry_of_joint_[leader]] -= sign * joint.coupling->ratio / entries_.lever_[leader];
@@ -157,12 +156,11 @@ std::vector<HandMotion::Limit> HandMotion::breakaway_rows() const {
 VectorXd HandMotion::opening(int link, double step) const {
   VectorXd motion = VectorXd::Zero(size());
   for (const int j : entries_.joints_above_[link]) {
-    const auto index = static_cast<std::size_t>(j);
-    const hands::Joint& joint = hand_.joints[index];
+    const hands::Joint& joint = hand_.joints[j];
     const bool is_against_entry =
         joint.coupling && !joint.coupling->breakaway && joint.coupling->ratio < 0.0;
     const double sign = -joint.closing_sign * (is_against_entry ? -1.0 : 1.0);
-    if (sign != 0.0) motion[entries_.entry_of_joint_[index]] = sign * step;
+    if (sign != 0.0) motion[entries_.entry_of_joint_[j]] = sign * step;
   }
   const auto [lower, upper] = bounds(step);
   return motion.cwiseMax(lower).cwiseMin(upper);
@@ -195,9 +193,9 @@ hands::HandConfiguration HandMotion::moved(const VectorXd& motion) const {
     }
   }
   if (entries_.palm_translates_) result.X_OH.translation() += motion.head<3>();
-  for (std::size_t k = 0; k < entries_.free_joints_.size(); ++k) {
-    result.q[entries_.free_joints_[k]] +=
-        motion[static_cast<Index>(6 + k)] / entries_.lever_[entries_.free_joints_[k]];
+  for (Index k = 0; k < std::ssize(entries_.free_joints_); ++k) {
+    const int j = entries_.free_joints_[k];
+    result.q[j] += motion[6 + k] / entries_.lever_[j];
   }
   for (std::size_t k = 0; k < entries_.free_joints_.size(); ++k) {
     const int j = entries_.free_joints_[k];

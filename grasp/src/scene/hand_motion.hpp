@@ -26,7 +26,7 @@ class MotionEntries {
   MotionEntries(const hands::HandModel& hand, bool palm_translates, bool palm_turns,
                 Breakaway breakaway = Breakaway::Alone);
 
-  Eigen::Index size() const { return 6 + static_cast<Eigen::Index>(free_joints_.size()); }
+  Eigen::Index size() const { return 6 + std::ssize(free_joints_); }
 
  private:
   friend class HandMotion;

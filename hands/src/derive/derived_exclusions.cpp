@@ -40,7 +40,7 @@ bool meet(const Surfaces& surfaces, std::size_t a, std::size_t b,
 HandConfiguration random_configuration(const HandModel& model, std::size_t sample) {
   base::Random random = base::Random::stream(kPostureSeed, sample);
   HandConfiguration configuration;
-  configuration.q.resize(static_cast<Eigen::Index>(model.joints.size()));
+  configuration.q.resize(std::ssize(model.joints));
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     configuration.q[j] = random.uniform(model.joints[j].lower, model.joints[j].upper);
   }

@@ -51,7 +51,7 @@ std::vector<RigidTransform> Deriver::poses(const VectorXd& q) const {
 }
 
 VectorXd Deriver::rest() const {
-  VectorXd q(static_cast<Eigen::Index>(tree_.joints.size()));
+  VectorXd q(std::ssize(tree_.joints));
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     q[j] = std::clamp(0.0, tree_.joints[j].lower, tree_.joints[j].upper);
   }
@@ -71,7 +71,7 @@ VectorXd Deriver::closed_by(double share) const {
 
 const RigidTransform& Deriver::pose_of_body(const std::vector<RigidTransform>& X_HL,
                                             int body) const {
-  return X_HL[at(bodies_[at(body)].links.front())];
+  return X_HL[bodies_[body].links.front()];
 }
 
 Vector3d Deriver::tip(const Chain& chain, const std::vector<RigidTransform>& X_HL) const {
@@ -80,8 +80,8 @@ Vector3d Deriver::tip(const Chain& chain, const std::vector<RigidTransform>& X_H
 
 Vector3d Deriver::axis_H(int joint, const std::vector<RigidTransform>& X_HL) const {
   // The axis does not turn under its own joint.
-  const Joint& j = tree_.joints[at(joint)];
-  return X_HL[at(j.child_link)].linear() * j.axis_J;
+  const Joint& j = tree_.joints[joint];
+  return X_HL[j.child_link].linear() * j.axis_J;
 }
 
 }  // namespace graspfit::hands::internal

@@ -28,8 +28,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using geometry::MeshQuery;
 
-inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 /// A finger: its bodies from the palm to the tip, and the joints that move them.
 struct Chain {
   std::vector<int> bodies;

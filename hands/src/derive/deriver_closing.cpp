@@ -15,7 +15,7 @@ constexpr double kParallel = 0.64;  // cosine of 50°: axes that bend a finger t
 
 VectorXd Deriver::sampled(std::size_t sample) const {
   base::Random random = base::Random::stream(kSeed, sample);
-  VectorXd q(static_cast<Eigen::Index>(tree_.joints.size()));
+  VectorXd q(std::ssize(tree_.joints));
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     q[j] = random.uniform(tree_.joints[j].lower, tree_.joints[j].upper);
   }
@@ -40,7 +40,7 @@ void Deriver::signs() {
     palm_middle_ = geometry::bounding_box(bodies_[0].mesh).center();
   } else {
     for (const Chain& chain : chains_) {
-      palm_middle_ += tree_.joints[at(chain.joints.front())].X_PJ.translation() /
+      palm_middle_ += tree_.joints[chain.joints.front()].X_PJ.translation() /
                       static_cast<double>(chains_.size());
     }
   }
@@ -50,10 +50,10 @@ void Deriver::signs() {
   for (const Chain& chain : chains_) {
     const int last = chain.joints.back();
     for (const int joint : chain.joints) {
-      const bool bends = tree_.joints[at(joint)].type == JointType::Prismatic ||
-                         tree_.joints[at(last)].type == JointType::Prismatic ||
+      const bool bends = tree_.joints[joint].type == JointType::Prismatic ||
+                         tree_.joints[last].type == JointType::Prismatic ||
                          std::abs(axis_H(joint, X_rest).dot(axis_H(last, X_rest))) >= kParallel;
-      Role& role = role_[at(leader_of(tree_, joint))];
+      Role& role = role_[leader_of(tree_, joint)];
       if (bends) {
         role = Role::Bend;
       } else if (role == Role::None) {
@@ -79,12 +79,12 @@ void Deriver::signs() {
     double sum = 0.0;
     std::vector<std::pair<int, double>> turned;
     for (const int leader : chain.leaders) {
-      if (role_[at(leader)] != Role::Bend) continue;
+      if (role_[leader] != Role::Bend) continue;
       const double side = side_of(chain, leader, X_rest);
       turned.emplace_back(leader, side);
-      sum += side * gain[at(leader)];
+      sum += side * gain[leader];
     }
-    for (const auto& [leader, side] : turned) vote[at(leader)] += side * sum;
+    for (const auto& [leader, side] : turned) vote[leader] += side * sum;
   }
   for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
     if (role_[j] == Role::Bend) sign_[j] = vote[j] >= 0.0 ? 1 : -1;
@@ -96,10 +96,10 @@ double Deriver::side_of(const Chain& chain, int leader,
   const int last = chain.joints.back();
   for (const int joint : chain.joints) {
     if (leader_of(tree_, joint) != leader) continue;
-    const auto& coupling = tree_.joints[at(joint)].coupling;
+    const auto& coupling = tree_.joints[joint].coupling;
     const double ratio = coupling && coupling->ratio < 0.0 ? -1.0 : 1.0;
-    if (tree_.joints[at(joint)].type == JointType::Prismatic ||
-        tree_.joints[at(last)].type == JointType::Prismatic) {
+    if (tree_.joints[joint].type == JointType::Prismatic ||
+        tree_.joints[last].type == JointType::Prismatic) {
       return ratio;
     }
     return axis_H(joint, X_HL).dot(axis_H(last, X_HL)) < 0.0 ? -ratio : ratio;
@@ -123,15 +123,14 @@ void Deriver::take_signs(const std::map<std::string, int>& signs) {
   for (Joint& joint : tree_.joints) {
     if (!joint.coupling || signs.contains(joint.name)) continue;
     const double ratio = joint.coupling->ratio;
-    joint.closing_sign =
-        tree_.joints[at(joint.coupling->leader)].closing_sign * (ratio > 0.0   ? 1
-                                                                 : ratio < 0.0 ? -1
-                                                                               : 0);
+    joint.closing_sign = tree_.joints[joint.coupling->leader].closing_sign * (ratio > 0.0   ? 1
+                                                                              : ratio < 0.0 ? -1
+                                                                                            : 0);
   }
   bool closes = false;
   for (const Chain& chain : chains_) {
     for (const int joint : chain.joints) {
-      closes = closes || tree_.joints[at(joint)].closing_sign != 0;
+      closes = closes || tree_.joints[joint].closing_sign != 0;
     }
   }
   if (!closes) fail("no joint of any finger closes it; write \"closing\" into the sidecar");

@@ -14,7 +14,7 @@ constexpr double kTipShare = 0.2;  // of a link's length: what counts as its tip
 }  // namespace
 
 Vector3d Deriver::tip_of(const Body& body) const {
-  const bool is_slide = tree_.joints[at(*body.joint)].type == JointType::Prismatic;
+  const bool is_slide = tree_.joints[*body.joint].type == JointType::Prismatic;
   Vector3d far = Vector3d::Zero();
   for (const Vector3d& v : body.mesh.vertices) {
     if (v.squaredNorm() > far.squaredNorm()) far = v;
@@ -41,12 +41,12 @@ void Deriver::chains() {
     std::vector<bool> has_end_below(bodies_.size(), false);
     for (std::size_t b = bodies_.size(); b-- > 1;) {
       is_end[b] = !has_end_below[b] && !bodies_[b].mesh.faces.empty();
-      if (is_end[b] || has_end_below[b]) has_end_below[at(*bodies_[b].parent)] = true;
+      if (is_end[b] || has_end_below[b]) has_end_below[*bodies_[b].parent] = true;
     }
     for (std::size_t b = 1; b < bodies_.size(); ++b) {
       if (!is_end[b]) continue;
       std::vector<int> bodies;
-      for (int up = static_cast<int>(b); up > 0; up = *bodies_[at(up)].parent) {
+      for (int up = static_cast<int>(b); up > 0; up = *bodies_[up].parent) {
         bodies.insert(bodies.begin(), up);
       }
       chains_.push_back(chain_of(std::move(bodies)));
@@ -83,14 +83,14 @@ Chain Deriver::chain_of(std::vector<int> bodies) const {
   Chain chain;
   chain.bodies = std::move(bodies);
   for (const int body : chain.bodies) {
-    const int joint = *bodies_[at(body)].joint;
+    const int joint = *bodies_[body].joint;
     chain.joints.push_back(joint);
     const int leader = leader_of(tree_, joint);
     if (std::find(chain.leaders.begin(), chain.leaders.end(), leader) == chain.leaders.end()) {
       chain.leaders.push_back(leader);
     }
   }
-  chain.tip_B = tip_of(bodies_[at(chain.bodies.back())]);
+  chain.tip_B = tip_of(bodies_[chain.bodies.back()]);
   return chain;
 }
 
@@ -100,7 +100,7 @@ void Deriver::drop_linkage_members() {
   std::vector<Chain> kept;
   for (const Chain& chain : chains_) {
     const bool only_follows = std::all_of(chain.joints.begin(), chain.joints.end(), [&](int j) {
-      return tree_.joints[at(j)].coupling.has_value();
+      return tree_.joints[j].coupling.has_value();
     });
     const Chain* carrier = nullptr;
     for (const Chain& other : chains_) {
@@ -121,7 +121,7 @@ void Deriver::drop_linkage_members() {
 
 double Deriver::reach_from_palm(const Chain& chain) const {
   const auto X_HL = poses(rest());
-  const Body& body = bodies_[at(chain.bodies.back())];
+  const Body& body = bodies_[chain.bodies.back()];
   double reach = 0.0;
   for (const Vector3d& v : body.mesh.vertices) {
     reach = std::max(reach, (pose_of_body(X_HL, chain.bodies.back()) * v).norm());
@@ -136,8 +136,8 @@ bool Deriver::always_touch(const Chain& a, const Chain& b,
     for (const int body_a : a.bodies) {
       for (const int body_b : b.bodies) {
         if (touch || body_a == body_b) continue;
-        const TriangleMesh& mesh_a = bodies_[at(body_a)].mesh;
-        const TriangleMesh& mesh_b = bodies_[at(body_b)].mesh;
+        const TriangleMesh& mesh_a = bodies_[body_a].mesh;
+        const TriangleMesh& mesh_b = bodies_[body_b].mesh;
         if (mesh_a.faces.empty() || mesh_b.faces.empty()) continue;
         touch = geometry::do_intersect(
             MeshQuery(mesh_a), MeshQuery(mesh_b),
@@ -164,11 +164,11 @@ void Deriver::share_out_trunks() {
 }
 
 std::string Deriver::name_of_body(int body) const {
-  const Body& b = bodies_[at(body)];
+  const Body& b = bodies_[body];
   for (const int link : b.links) {
-    if (!tree_.links[at(link)].mesh_L.faces.empty()) return tree_.links[at(link)].name;
+    if (!tree_.links[link].mesh_L.faces.empty()) return tree_.links[link].name;
   }
-  return tree_.links[at(b.links.front())].name;
+  return tree_.links[b.links.front()].name;
 }
 
 std::optional<int> Deriver::thumb() const {
@@ -209,8 +209,8 @@ std::vector<std::string> Deriver::names() const {
     std::string prefix;
     bool is_first = true;
     for (const int body : chain.bodies) {
-      for (const int link : bodies_[at(body)].links) {
-        const std::string& name = tree_.links[at(link)].name;
+      for (const int link : bodies_[body].links) {
+        const std::string& name = tree_.links[link].name;
         if (is_first) prefix = name;
         is_first = false;
         const auto differ = std::mismatch(prefix.begin(), prefix.end(), name.begin(), name.end());
@@ -243,8 +243,8 @@ std::vector<SidecarFinger> Deriver::fingers() {
     finger.name = its_names[f];
     finger.is_thumb = static_cast<int>(f) == its_thumb;
     for (const int body : chain.bodies) {
-      for (const int link : bodies_[at(body)].links) {
-        finger.links.push_back(tree_.links[at(link)].name);
+      for (const int link : bodies_[body].links) {
+        finger.links.push_back(tree_.links[link].name);
       }
     }
     // Bodies are complete subtrees of fixed links, which may interleave with the next joint's.
@@ -252,17 +252,17 @@ std::vector<SidecarFinger> Deriver::fingers() {
               [&](const std::string& a, const std::string& b) {
                 return tree_.link_index(a) < tree_.link_index(b);
               });
-    for (const int joint : chain.joints) finger.joints.push_back(tree_.joints[at(joint)].name);
+    for (const int joint : chain.joints) finger.joints.push_back(tree_.joints[joint].name);
     // The swing joint is, of the joints that neither close nor open, the one whose axis is nearest
     // to the palm's direction. If cosines differ by less than a tenth, the proximal joint is.
     double nearest = -0.1;
     for (const int joint : chain.joints) {
-      if (tree_.joints[at(joint)].closing_sign != 0) continue;
-      if (tree_.joints[at(joint)].type == JointType::Prismatic) continue;
+      if (tree_.joints[joint].closing_sign != 0) continue;
+      if (tree_.joints[joint].type == JointType::Prismatic) continue;
       const double cosine = std::abs(axis_H(joint, X_rest).dot(palm_direction_));
       if (cosine <= nearest + 0.1) continue;
       nearest = cosine;
-      finger.swing_joint = tree_.joints[at(joint)].name;
+      finger.swing_joint = tree_.joints[joint].name;
     }
     if (given_.pads) {  // pads that are given name their fingers
       for (const SidecarPad& pad : *given_.pads) {

@@ -16,26 +16,25 @@ std::vector<SidecarPad> Deriver::pads(const std::vector<SidecarFinger>& fingers)
     for (std::size_t i = 0; i < chain.bodies.size(); ++i) {
       const auto faces = facing(chain, i, q);
       if (!faces) continue;
-      const Body& body = bodies_[at(chain.bodies[i])];
+      const Body& body = bodies_[chain.bodies[i]];
       for (const int link : body.links) {
-        if (tree_.links[at(link)].mesh_L.faces.empty()) continue;
-        if (std::find(fingers[f].links.begin(), fingers[f].links.end(),
-                      tree_.links[at(link)].name) == fingers[f].links.end()) {
+        if (tree_.links[link].mesh_L.faces.empty()) continue;
+        if (std::find(fingers[f].links.begin(), fingers[f].links.end(), tree_.links[link].name) ==
+            fingers[f].links.end()) {
           continue;
         }
         std::vector<MeshQuery> others;
         for (const int other : body.links) {
-          if (other == link || tree_.links[at(other)].mesh_L.faces.empty()) continue;
-          others.emplace_back(
-              transformed(tree_.links[at(other)].mesh_L,
-                          geometry::relative_pose(X_HL[at(link)], X_HL[at(other)])));
+          if (other == link || tree_.links[other].mesh_L.faces.empty()) continue;
+          others.emplace_back(transformed(tree_.links[other].mesh_L,
+                                          geometry::relative_pose(X_HL[link], X_HL[other])));
         }
-        const Eigen::Matrix3d R_LH = X_HL[at(link)].linear().transpose();
+        const Eigen::Matrix3d R_LH = X_HL[link].linear().transpose();
         PadSearch search{R_LH * faces->direction_H, R_LH * faces->along_H, std::nullopt, 0.0};
-        const auto found = fit_pad(MeshQuery(tree_.links[at(link)].mesh_L), others, search);
+        const auto found = fit_pad(MeshQuery(tree_.links[link].mesh_L), others, search);
         const bool is_tip = i + 1 == chain.bodies.size();
         if (found && !is_tip && is_shut_in(*found, link, chain)) continue;
-        add_pad(result, found, tree_.links[at(link)].name, fingers[f].name);
+        add_pad(result, found, tree_.links[link].name, fingers[f].name);
       }
     }
   }
@@ -75,7 +74,7 @@ bool Deriver::is_shut_in(const FittedPad& pad, int link, const Chain& chain) con
   for (const Vector3d& point : pad.surface) height = std::max(height, point.z());
   for (const double share : {0.0, 0.5}) {
     const auto X_HL = poses(closed_by(share));
-    const RigidTransform X_HC = X_HL[at(link)] * pad.X_LC;
+    const RigidTransform X_HC = X_HL[link] * pad.X_LC;
     bool is_hit = false;
     for (std::size_t b = 0; b < bodies_.size() && !is_hit; ++b) {
       const int body = static_cast<int>(b);

@@ -17,15 +17,15 @@ constexpr double kTranslation = 0.2;
 
 std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
                                       const VectorXd& q) const {
-  const Body& body = bodies_[at(chain.bodies[number])];
+  const Body& body = bodies_[chain.bodies[number]];
   if (body.mesh.faces.empty()) return std::nullopt;
   // The body is driven by the nearest closing joint before it. A body that only an opposing joint
   // moves faces nothing: its leading side faces away from the palm.
   std::optional<int> leader;
   for (std::size_t i = 0; i <= number; ++i) {
     const int candidate = leader_of(tree_, chain.joints[i]);
-    if (tree_.joints[at(chain.joints[i])].closing_sign == 0) continue;
-    if (role_[at(candidate)] == Role::Bend) leader = candidate;
+    if (tree_.joints[chain.joints[i]].closing_sign == 0) continue;
+    if (role_[candidate] == Role::Bend) leader = candidate;
   }
   if (!leader) return std::nullopt;
   const auto X_HL = poses(q);
@@ -45,7 +45,7 @@ std::optional<Facing> Deriver::facing(const Chain& chain, std::size_t number,
   const std::vector<int> independent = independent_joints(tree_);
   const auto column =
       std::find(independent.begin(), independent.end(), *leader) - independent.begin();
-  const int sign = tree_.joints[at(*leader)].closing_sign;
+  const int sign = tree_.joints[*leader].closing_sign;
   const Vector3d velocity = sign * jacobian.col(column).head<3>();
   const Vector3d turning = sign * jacobian.col(column).tail<3>();
   const Vector3d along = X_HB.linear() * (end_B - start_B);
@@ -168,7 +168,7 @@ void Deriver::find_palm_direction_by_view() {
     const Vector3d ray(r * std::cos(turn), r * std::sin(turn), z);
     const auto hit = palm.first_hit(eye, ray);
     if (!hit) continue;
-    const Vector3d normal = geometry::face_normal(palm.mesh(), at(hit->face));
+    const Vector3d normal = geometry::face_normal(palm.mesh(), hit->face);
     if (normal.dot(ray) < 0.0) seen.push_back({normal, -normal.dot(ray)});
   }
   if (seen.empty()) return;
@@ -194,7 +194,7 @@ void Deriver::fore_joints() {
   for (const Chain& chain : chains_) {
     std::vector<int> open;
     for (const int leader : chain.leaders) {
-      if (role_[at(leader)] == Role::Other && sign_[at(leader)] == 0) open.push_back(leader);
+      if (role_[leader] == Role::Other && sign_[leader] == 0) open.push_back(leader);
     }
     while (!open.empty()) {
       std::optional<int> best;
@@ -206,8 +206,8 @@ void Deriver::fore_joints() {
         best = leader;
       }
       if (!best) break;
-      sign_[at(*best)] = farthest > 0.0 ? 1 : -1;
-      tree_.joints[at(*best)].closing_sign = sign_[at(*best)];
+      sign_[*best] = farthest > 0.0 ? 1 : -1;
+      tree_.joints[*best].closing_sign = sign_[*best];
       std::erase(open, *best);
     }
   }
@@ -215,7 +215,7 @@ void Deriver::fore_joints() {
 
 double Deriver::forward_of(const Chain& chain, int leader) const {
   constexpr int kNumSteps = 16;
-  const Joint& joint = tree_.joints[at(leader)];
+  const Joint& joint = tree_.joints[leader];
   VectorXd q = closed_by(0.5);
   double way = 0.0;
   Vector3d first = Vector3d::Zero();

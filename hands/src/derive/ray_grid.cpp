@@ -34,8 +34,7 @@ Sample probe(const MeshQuery& link, const std::vector<MeshQuery>& others,
   }
   sample.is_hit = true;
   sample.point = R_LS.transpose() * hit->point;
-  sample.normal =
-      R_LS.transpose() * geometry::face_normal(link.mesh(), static_cast<std::size_t>(hit->face));
+  sample.normal = R_LS.transpose() * geometry::face_normal(link.mesh(), hit->face);
   return sample;
 }
 
