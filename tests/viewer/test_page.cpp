@@ -75,6 +75,23 @@ TEST_CASE("A written page is what page_html returns", "[viewer][page]") {
   std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("A pad without a thickness of its own has a clip volume if one is given",
+          "[viewer][page]") {
+  viewer::PageInput input = sample_input();
+  for (hands::ContactPad& pad : input.hand.pads) pad.clip_thickness.reset();
+  const auto num_without = [&] {
+    const std::string html = page_html(input);
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = html.find("\"clip\":null", at)) != std::string::npos; ++at) {
+      ++count;
+    }
+    return count;
+  };
+  CHECK(num_without() == 0);
+  input.clip_thickness.reset();
+  CHECK(num_without() == input.hand.pads.size());
+}
+
 TEST_CASE("Input that makes no sense is refused in one line", "[viewer][page]") {
   viewer::PageInput input = sample_input();
   SECTION("object without faces") {

@@ -175,7 +175,7 @@ void validate(const PageInput& input) {
            ", must be finite and above 0");
   }
   if (input.object_O.faces.empty()) refuse("the object has no faces");
-  const auto num_vertices = static_cast<std::int64_t>(input.object_O.vertices.size());
+  const auto num_vertices = std::ssize(input.object_O.vertices);
   for (std::size_t face = 0; face < input.object_O.faces.size(); ++face) {
     for (const std::int32_t vertex : input.object_O.faces[face]) {
       if (vertex < 0 || vertex >= num_vertices) {
@@ -185,7 +185,7 @@ void validate(const PageInput& input) {
     }
   }
   const auto is_index = [](int index, std::size_t size) {
-    return index >= 0 && index < static_cast<int>(size);
+    return index >= 0 && std::cmp_less(index, size);
   };
   const hands::HandModel& hand = input.hand;
   const auto has_no_finger = [&](const std::optional<int>& finger) {

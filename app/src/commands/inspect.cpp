@@ -231,8 +231,8 @@ void print_weak(const geometry::TriangleMesh& mesh, const geometry::WeakRegions&
 /// Values of patches as one value per voxel; NaN where there is no surface.
 std::vector<float> per_voxel(const grasp::ObjectModel& object, const std::vector<double>& values) {
   std::vector<float> result(object.patch_of_voxel.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t voxel = 0; voxel < result.size(); ++voxel) {
-    const auto patch = object.patch_in(static_cast<std::int64_t>(voxel));
+  for (std::int64_t voxel = 0; voxel < std::ssize(result); ++voxel) {
+    const auto patch = object.patch_in(voxel);
     if (patch) result[voxel] = static_cast<float>(values.at(*patch));
   }
   return result;

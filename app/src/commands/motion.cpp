@@ -124,7 +124,7 @@ bool check(const viewer::MotionInput& input, double step, ProgressBar& progress)
   for (std::int64_t k = 0; k < std::ssize(file.moves); ++k) {
     const motion::RecordedMove& move = file.moves[k];
     const std::string& name = input.scene.object(move.object).name;
-    progress.show(k, static_cast<std::int64_t>(file.moves.size()), "checking " + name);
+    progress.show(k, std::ssize(file.moves), "checking " + name);
     const CheckedMove found = checked(input.scene, poses[k], move, file.clearance, step);
     rows.push_back({std::to_string(k + 1), name, fixed_decimal(move.grasp_m, 4),
                     std::to_string(move.segments.size()), std::to_string(found.frames),

@@ -146,10 +146,9 @@ class Decomposer {
   }
 
   void remove(std::size_t index) {
-    const auto at = static_cast<std::ptrdiff_t>(index);
-    pieces_.erase(pieces_.begin() + at);
-    parts_.erase(parts_.begin() + at);
-    can_split_.erase(can_split_.begin() + at);
+    pieces_.erase(pieces_.begin() + index);
+    parts_.erase(parts_.begin() + index);
+    can_split_.erase(can_split_.begin() + index);
   }
 
   void split(std::size_t index) {

@@ -281,7 +281,7 @@ double sampled_depth(const PieceHull& hull, const OutsideDepth& depth, double li
   const std::vector<Vector3d>& vertices = hull.mesh.vertices;
   double deepest = deepest_segment(vertices, vertices, depth, 4 * vertices.size(), limit);
   const double spacing = sample_spacing(hull);
-  for (std::size_t f = 0; f < hull.mesh.faces.size() && deepest <= limit; ++f) {
+  for (std::int32_t f = 0; f < std::ssize(hull.mesh.faces) && deepest <= limit; ++f) {
     deepest = std::max(deepest, deepest_on(corners(hull.mesh, f), spacing, depth));
   }
   return deepest;

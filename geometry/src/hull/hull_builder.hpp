@@ -185,7 +185,7 @@ class HullBuilder {
     return std::sqrt(squared);
   }
 
-  bool is_alive(std::size_t facet) const { return visible_step_[facet] == kNever; }
+  bool is_alive(int facet) const { return visible_step_[facet] == kNever; }
 
   double side_value(int facet, int point) const {
     const Plane& plane = planes_[facet];
@@ -364,11 +364,11 @@ class HullBuilder {
     first_outside_[facet] = point;
   }
 
-  int farthest_outside(std::size_t facet) const {
+  int farthest_outside(int facet) const {
     int best = first_outside_[facet];
-    double largest = side_value(static_cast<int>(facet), best);
+    double largest = side_value(facet, best);
     for (int p = next_outside_[best]; p >= 0; p = next_outside_[p]) {
-      const double value = side_value(static_cast<int>(facet), p);
+      const double value = side_value(facet, p);
       if (value > largest || (value == largest && p < best)) {
         best = p;
         largest = value;

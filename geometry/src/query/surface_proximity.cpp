@@ -349,8 +349,8 @@ void require_seed(const std::optional<ProximitySeed>& seed, const MeshQuery& a, 
                   const char* who) {
   if (!seed) return;
   const auto require_face = [&](std::int32_t face, const MeshQuery& query, const char* name) {
-    base::require(face >= 0 && face < static_cast<std::int64_t>(query.mesh().faces.size()), who,
-                  name, face, "a face of the mesh");
+    base::require(face >= 0 && face < std::ssize(query.mesh().faces), who, name, face,
+                  "a face of the mesh");
   };
   require_face(seed->face_a, a, "seed.face_a");
   require_face(seed->face_b, b, "seed.face_b");

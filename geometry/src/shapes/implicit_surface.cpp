@@ -350,19 +350,19 @@ class Flipper {
     constexpr int kMostSweeps = 6;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       bool is_changed = false;
-      for (std::size_t h = 0; h < twin_.size(); ++h) is_changed |= flip(h);
+      for (std::int32_t h = 0; h < std::ssize(twin_); ++h) is_changed |= flip(h);
       if (!is_changed) return;
     }
   }
 
  private:
-  std::int32_t from(std::size_t h) const { return mesh_.faces[h / 3][h % 3]; }
-  std::int32_t to(std::size_t h) const { return mesh_.faces[h / 3][(h + 1) % 3]; }
-  static std::size_t next(std::size_t h) { return h - h % 3 + (h + 1) % 3; }
-  static std::size_t previous(std::size_t h) { return h - h % 3 + (h + 2) % 3; }
+  std::int32_t from(std::int32_t h) const { return mesh_.faces[h / 3][h % 3]; }
+  std::int32_t to(std::int32_t h) const { return mesh_.faces[h / 3][(h + 1) % 3]; }
+  static std::int32_t next(std::int32_t h) { return h - h % 3 + (h + 1) % 3; }
+  static std::int32_t previous(std::int32_t h) { return h - h % 3 + (h + 2) % 3; }
 
-  bool has_edge(std::size_t leaving, std::int32_t target) const {
-    std::size_t h = leaving;
+  bool has_edge(std::int32_t leaving, std::int32_t target) const {
+    std::int32_t h = leaving;
     do {
       if (to(h) == target) return true;
       h = twin_[previous(h)];
@@ -375,8 +375,8 @@ class Flipper {
   //   a--+--b   to   a  |  b
   //    \   /          \ | /
   //      d              d
-  bool flip(std::size_t h) {
-    const std::size_t g = twin_[h];
+  bool flip(std::int32_t h) {
+    const std::int32_t g = twin_[h];
     if (h > g) return false;
     const std::int32_t a = from(h);
     const std::int32_t b = to(h);
@@ -396,17 +396,17 @@ class Flipper {
                                 (v[a] - v[b]).cross(v[d] - v[b]).normalized();
     if (left.dot(old_normal) <= 0.0 || right.dot(old_normal) <= 0.0) return false;
     if (has_edge(previous(h), d)) return false;
-    const std::size_t f = h / 3;
-    const std::size_t k = g / 3;
+    const std::int32_t f = h / 3;
+    const std::int32_t k = g / 3;
     const std::int32_t bc = twin_[next(h)];
     const std::int32_t ca = twin_[previous(h)];
     const std::int32_t ad = twin_[next(g)];
     const std::int32_t db = twin_[previous(g)];
     mesh_.faces[f] = {a, d, c};
     mesh_.faces[k] = {d, b, c};
-    const auto join = [&](std::size_t x, std::size_t y) {
-      twin_[x] = static_cast<std::int32_t>(y);
-      twin_[y] = static_cast<std::int32_t>(x);
+    const auto join = [&](std::int32_t x, std::int32_t y) {
+      twin_[x] = y;
+      twin_[y] = x;
     };
     join(3 * f, ad);
     join(3 * f + 1, 3 * k + 2);

@@ -134,7 +134,7 @@ std::size_t remove_unused_vertices(TriangleMesh& mesh) {
     mesh.vertices[next] = mesh.vertices[v];
     new_index[v] = next++;
   }
-  const std::size_t removed = mesh.vertices.size() - static_cast<std::size_t>(next);
+  const std::size_t removed = mesh.vertices.size() - next;
   mesh.vertices.resize(next);
   for (Face& face : mesh.faces) {
     for (std::int32_t& vertex : face) vertex = new_index[vertex];

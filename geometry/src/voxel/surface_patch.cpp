@@ -92,9 +92,9 @@ class PatchProjection {
 // sheets lie close, voxels share them, so that the number is limited to that of the surface of a
 // box of the lattice's size.
 std::size_t expected_patches(const TriangleMesh& mesh, const VoxelLattice& lattice) {
-  constexpr std::size_t kStride = 16;
+  constexpr std::int32_t kStride = 16;
   double area = 0.0;
-  for (std::size_t face = 0; face < mesh.faces.size(); face += kStride) {
+  for (std::int64_t face = 0; face < std::ssize(mesh.faces); face += kStride) {
     area += kStride * vector_area(mesh, face).norm();
   }
   const Eigen::Vector3d n = lattice.counts.cast<double>();

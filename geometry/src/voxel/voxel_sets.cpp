@@ -44,7 +44,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   const int nz = lattice.counts[2];
   std::vector<Run> runs;
   std::vector<std::size_t> first_of_row;  // First run of each row, and the end of the last.
-  for (std::size_t row = 0; row < is_member.size(); row += static_cast<std::size_t>(nx)) {
+  for (std::size_t row = 0; row < is_member.size(); row += nx) {
     first_of_row.push_back(runs.size());
     const auto begin = is_member.begin() + row;
     for (auto at = begin; (at = std::find(at, begin + nx, 1)) != begin + nx;) {
@@ -56,7 +56,7 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   first_of_row.push_back(runs.size());
 
   base::DisjointSets sets(runs.size());
-  const auto unite_rows = [&](std::size_t row, std::size_t other) {
+  const auto unite_rows = [&](int row, int other) {
     std::size_t b = first_of_row[other];
     for (std::size_t a = first_of_row[row]; a < first_of_row[row + 1]; ++a) {
       while (b < first_of_row[other + 1] && runs[b].last + 1 < runs[a].first) ++b;
@@ -69,11 +69,11 @@ void keep_largest_set(const VoxelLattice& lattice, std::vector<char>& is_member)
   };
   for (int k = 0; k < nz; ++k) {
     for (int j = 0; j < ny; ++j) {
-      const auto row = static_cast<std::size_t>(j + ny * k);
+      const int row = j + ny * k;
       if (j > 0) unite_rows(row, row - 1);
       if (k == 0) continue;
       for (int other = std::max(0, j - 1); other <= std::min(ny - 1, j + 1); ++other) {
-        unite_rows(row, static_cast<std::size_t>(other + ny * (k - 1)));
+        unite_rows(row, other + ny * (k - 1));
       }
     }
   }

@@ -48,6 +48,8 @@ HandConfiguration interpolated(const HandConfiguration& from, const HandConfigur
 
 std::optional<PreGrasp> find_pre_grasp(const PreGraspScene& scene, const HandConfiguration& grasp,
                                        const PreGraspOptions& options) {
+  options.validate();
+  hands::validate(scene.hand, grasp);
   const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(scene.hand, grasp);
   return find_pre_grasp(scene, hands::PosedConfiguration{grasp, X_OL}, options);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fitting/finger_alignment.hpp"
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/angle.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/jacobian.hpp"
@@ -71,11 +72,11 @@ class Search {
         if (variable_of_[leader] || hand.joints[leader].upper <= hand.joints[leader].lower) {
           continue;
         }
-        variable_of_[leader] = 4 + static_cast<int>(joints_.size());
+        variable_of_[leader] = base::as_index<int>(4 + joints_.size());
         joints_.push_back(leader);
       }
     }
-    num_residuals_ = 6 * static_cast<int>(tips_.size()) + 3 + 1 + static_cast<int>(joints_.size());
+    num_residuals_ = base::as_index<int>(6 * tips_.size() + 3 + 1 + joints_.size());
   }
 
   TargetPosture run() const {
@@ -168,23 +169,23 @@ class Search {
   }
 
   /// The derivative of the residual over the variables.
-  MatrixXd jacobian_at(const Evaluated& evaluated) const {
-    MatrixXd jacobian = MatrixXd::Zero(num_residuals_, 4 + static_cast<int>(joints_.size()));
+  MatrixXd jacobian_at(const Evaluated& from) const {
+    MatrixXd jacobian = MatrixXd::Zero(num_residuals_, 4 + std::ssize(joints_));
     int row = 0;
-    const Vector3d palm = evaluated.at.X_OH * hand_.palm.center_H;
+    const Vector3d palm = from.at.X_OH * hand_.palm.center_H;
     for (const Tip& tip : tips_) {
-      const auto [point, normal] = contact_of(tip, evaluated.X_OL);
+      const auto [point, normal] = contact_of(tip, from.X_OL);
       jacobian.block<3, 3>(row, 0).setIdentity();
       jacobian.block<3, 1>(row, 3) = direction_.cross(point - palm) / kMissUnit;
       jacobian.block<3, 1>(row + 3, 3) = kTiltWeight * direction_.cross(normal);
       for (const int joint : tip.joints) {
         const std::optional<int> column = variable_of_[hands::leader_of(hand_, joint)];
         const double ratio =
-            hands::ratio_to_leader(hand_, joint, evaluated.at.q, hands::Followers::BetweenLimits);
+            hands::ratio_to_leader(hand_, joint, from.at.q, hands::Followers::BetweenLimits);
         if (!column || ratio == 0.0) continue;
-        const hands::Joint& moved = hand_.joints[joint];
+        const hands::Joint& driven = hand_.joints[joint];
         const hands::JointVelocity velocity =
-            hands::joint_velocity(moved, evaluated.X_OL[moved.parent_link] * moved.X_PJ, point);
+            hands::joint_velocity(driven, from.X_OL[driven.parent_link] * driven.X_PJ, point);
         jacobian.block<3, 1>(row, *column) += ratio * velocity.linear / kMissUnit;
         jacobian.block<3, 1>(row + 3, *column) +=
             ratio * kTiltWeight * velocity.angular.cross(normal);
@@ -202,6 +203,7 @@ class Search {
     return jacobian;
   }
 
+  /// Where a pad is to touch.
   struct TipContact {
     Vector3d point_O;
     Vector3d normal_O;  ///< Of the pad, outward.
@@ -211,21 +213,22 @@ class Search {
     return {X_OC * tip.contact_C, X_OC.linear().col(2)};
   }
 
-  /// Distance of the palm from the targets along its direction, where it is less than wanted.
-  std::optional<double> distance_below_wanted(const Vector3d& palm) const {
-    const double distance = (centroid_ - palm).dot(direction_);
+  /// Distance of the palm from the targets along its direction [m], where it is less than wanted.
+  std::optional<double> distance_below_wanted(const Vector3d& palm_O) const {
+    const double distance = (centroid_ - palm_O).dot(direction_);
     if (!wanted_distance_ || !(distance < *wanted_distance_)) return std::nullopt;
     return distance;
   }
 
+  /// [rad or m]
   double range(int joint) const { return hand_.joints[joint].upper - hand_.joints[joint].lower; }
 
   TargetPosture measured(const Evaluated& best) const {
     TargetPosture result;
     result.configuration = best.at;
     const VectorXd& residual = best.residual;
-    for (std::size_t i = 0; i < tips_.size(); ++i) {
-      const Eigen::Index row = 6 * static_cast<Eigen::Index>(i);
+    for (Eigen::Index i = 0; i < std::ssize(tips_); ++i) {
+      const Eigen::Index row = 6 * i;
       result.largest_miss =
           std::max(result.largest_miss, residual.segment<3>(row).norm() * kMissUnit);
       const double chord = residual.segment<3>(row + 3).norm() / kTiltWeight;
@@ -233,7 +236,7 @@ class Search {
           std::max(result.largest_tilt, 2.0 * std::asin(std::min(1.0, chord / 2.0)));
     }
     if (palm_target_) {
-      const Eigen::Index row = 6 * static_cast<Eigen::Index>(tips_.size());
+      const Eigen::Index row = 6 * std::ssize(tips_);
       result.largest_miss =
           std::max(result.largest_miss, residual.segment<3>(row).norm() * kMissUnit);
     }

@@ -14,8 +14,6 @@ namespace graspfit::grasp::internal {
 struct PosedGrasp {
   Grasp grasp;
   std::vector<hands::RigidTransform> X_OL;
-
-  hands::PosedConfiguration posed_configuration() const { return {grasp.configuration, X_OL}; }
 };
 
 /// Contacts and M.

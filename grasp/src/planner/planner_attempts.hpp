@@ -20,9 +20,10 @@ struct AttemptResult {
   AttemptOutcome outcome = AttemptOutcome::NoTargets;
   bool is_exhausted = false;  ///< The method had nothing left to try: not an attempt at all.
   std::optional<std::string> target_failure;
-  std::optional<Grasp> grasp;               ///< Where the outcome is Valid or UsableOnly.
-  std::vector<hands::RigidTransform> X_OL;  ///< Of the grasp's configuration, if there is a grasp.
-  bool is_accepted = false;                 ///< Whether the options accept the grasp.
+  std::optional<Grasp> grasp;  ///< Where the outcome is Valid or UsableOnly.
+  /// Of the grasp's configuration, while starts of the attempt are compared; empty once it is made.
+  std::vector<hands::RigidTransform> X_OL;
+  bool is_accepted = false;  ///< Whether the options accept the grasp.
   /// The grasp's pre-grasp was not searched for yet, nor perhaps its squeeze; until then it is
   /// assumed to exist.
   bool is_way_in_open_question = false;

@@ -46,8 +46,8 @@ class MotionEntries {
   Eigen::VectorXd open_q_;     ///< Of the open hand.
 };
 
-/// Small motions of a hand from one configuration, as vectors of `MotionEntries`. Nothing is
-/// computed or copied to make one: it is made anew for every configuration.
+/// Small motions of a hand from one configuration, as vectors of `MotionEntries`. Cheap to make:
+/// it is made anew for every configuration.
 class HandMotion {
  public:
   /// Refers to `entries`, to the configuration that motions start from and to its link poses
@@ -90,7 +90,7 @@ class HandMotion {
 
  private:
   double share_of_entry(int joint) const;
-  /// Adds what every joint above a link does to a row: `rate` of its `hands::JointVelocity`.
+  /// `row` with what every joint above a link does: `rate` of its `hands::JointVelocity`.
   template <class Rate>
   Eigen::RowVectorXd with_joints(Eigen::RowVectorXd row, int link, const Eigen::Vector3d& point_O,
                                  const Rate& rate) const;

@@ -43,10 +43,10 @@ void Deriver::chains() {
       is_end[b] = !has_end_below[b] && !bodies_[b].mesh.faces.empty();
       if (is_end[b] || has_end_below[b]) has_end_below[*bodies_[b].parent] = true;
     }
-    for (std::size_t b = 1; b < bodies_.size(); ++b) {
+    for (int b = 1; b < std::ssize(bodies_); ++b) {
       if (!is_end[b]) continue;
       std::vector<int> bodies;
-      for (int up = static_cast<int>(b); up > 0; up = *bodies_[up].parent) {
+      for (int up = b; up > 0; up = *bodies_[up].parent) {
         bodies.insert(bodies.begin(), up);
       }
       chains_.push_back(chain_of(std::move(bodies)));
@@ -184,15 +184,15 @@ std::optional<int> Deriver::thumb() const {
   std::optional<int> least;
   double agreement = 0.0;
   double second = 0.0;
-  for (std::size_t f = 0; f < way.size(); ++f) {
+  for (int f = 0; f < std::ssize(way); ++f) {
     double sum = 0.0;
-    for (std::size_t g = 0; g < way.size(); ++g) {
+    for (int g = 0; g < std::ssize(way); ++g) {
       if (g != f) sum += way[f].dot(way[g]) / static_cast<double>(way.size() - 1);
     }
     if (!least || sum < agreement) {
       second = agreement;
       agreement = sum;
-      least = static_cast<int>(f);
+      least = f;
     } else if (least == 0 && f == 1) {
       second = sum;
     } else {
@@ -237,11 +237,11 @@ std::vector<SidecarFinger> Deriver::fingers() {
   const std::optional<int> its_thumb = thumb();
   const std::vector<std::string> its_names = names();
   const auto X_rest = poses(rest());
-  for (std::size_t f = 0; f < chains_.size(); ++f) {
+  for (int f = 0; f < std::ssize(chains_); ++f) {
     const Chain& chain = chains_[f];
     SidecarFinger finger;
     finger.name = its_names[f];
-    finger.is_thumb = static_cast<int>(f) == its_thumb;
+    finger.is_thumb = f == its_thumb;
     for (const int body : chain.bodies) {
       for (const int link : bodies_[body].links) {
         finger.links.push_back(tree_.links[link].name);

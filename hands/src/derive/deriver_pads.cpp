@@ -76,21 +76,20 @@ bool Deriver::is_shut_in(const FittedPad& pad, int link, const Chain& chain) con
     const auto X_HL = poses(closed_by(share));
     const RigidTransform X_HC = X_HL[link] * pad.X_LC;
     bool is_hit = false;
-    for (std::size_t b = 0; b < bodies_.size() && !is_hit; ++b) {
-      const int body = static_cast<int>(b);
+    for (int body = 0; body < std::ssize(bodies_) && !is_hit; ++body) {
       const bool is_other_finger =
           std::any_of(chains_.begin(), chains_.end(), [&](const Chain& other) {
             return &other != &chain &&
                    std::find(other.bodies.begin(), other.bodies.end(), body) != other.bodies.end();
           });
-      const std::vector<int>& own = bodies_[b].links;
-      if (is_other_finger || bodies_[b].mesh.faces.empty() ||
+      const std::vector<int>& own = bodies_[body].links;
+      if (is_other_finger || bodies_[body].mesh.faces.empty() ||
           std::find(own.begin(), own.end(), link) != own.end()) {
         continue;
       }
       const RigidTransform X_BC = geometry::relative_pose(pose_of_body(X_HL, body), X_HC);
       const auto hit =
-          MeshQuery(bodies_[b].mesh)
+          MeshQuery(bodies_[body].mesh)
               .first_hit(X_BC * Vector3d(0.0, 0.0, height + kStart), X_BC.linear().col(2));
       is_hit = hit && hit->distance < kClose;
     }

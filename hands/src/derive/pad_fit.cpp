@@ -41,7 +41,7 @@ Eigen::Matrix3d axes(const Vector3d& direction, const Vector3d& along) {
 }
 
 std::size_t num_set(const std::vector<bool>& cells) {
-  return static_cast<std::size_t>(std::count(cells.begin(), cells.end(), true));
+  return std::count(cells.begin(), cells.end(), true);
 }
 
 /// Convex hull of points of the plane, counter-clockwise from its leftmost corner; corners that
@@ -64,7 +64,7 @@ std::vector<Vector2d> hull_of(const std::vector<Vector2d>& points) {
     const Vector2d& before = outline[(i + outline.size() - 1) % outline.size()];
     const Vector2d& after = outline[(i + 1) % outline.size()];
     if (cross(outline[i] - before, after - outline[i]) <= least) {
-      outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(i));
+      outline.erase(outline.begin() + i);
       i = i > 0 ? i - 1 : 0;  // the corner before may stand out no longer
     } else {
       ++i;
@@ -88,7 +88,7 @@ std::vector<Vector2d> simplified(std::vector<Vector2d> outline, std::size_t coun
         least = i;
       }
     }
-    outline.erase(outline.begin() + static_cast<std::ptrdiff_t>(least));
+    outline.erase(outline.begin() + least);
   }
   return outline;
 }
@@ -121,7 +121,7 @@ double fill_share(const RayGrid& grid, const std::vector<bool>& cells,
 std::vector<Vector2d> largest_rectangle(const RayGrid& grid, const std::vector<bool>& cells) {
   int best = 0;
   int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-  std::vector<int> height(static_cast<std::size_t>(grid.nx), 0);
+  std::vector<int> height(grid.nx, 0);
   for (int y = 0; y < grid.ny; ++y) {
     for (int x = 0; x < grid.nx; ++x) {
       int& h = height[x];

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 
 namespace graspfit::hands::internal {
@@ -34,22 +35,22 @@ class SidecarResolver {
   [[noreturn]] void fail(const std::string& what) const { throw InvalidInput(file_ + ": " + what); }
 
   int link(const std::string& name, const std::string& item) const {
-    for (std::size_t i = 0; i < model_.links.size(); ++i) {
-      if (model_.links[i].name == name) return static_cast<int>(i);
+    for (int i = 0; i < std::ssize(model_.links); ++i) {
+      if (model_.links[i].name == name) return i;
     }
     fail(item + ": the description has no link named " + name);
   }
 
   int joint(const std::string& name, const std::string& item) const {
-    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
-      if (model_.joints[j].name == name) return static_cast<int>(j);
+    for (int j = 0; j < std::ssize(model_.joints); ++j) {
+      if (model_.joints[j].name == name) return j;
     }
     fail(item + ": the description has no movable joint named " + name);
   }
 
   int pad(const std::string& name, const std::string& item) const {
-    for (std::size_t p = 0; p < model_.pads.size(); ++p) {
-      if (model_.pads[p].name == name) return static_cast<int>(p);
+    for (int p = 0; p < std::ssize(model_.pads); ++p) {
+      if (model_.pads[p].name == name) return p;
     }
     fail(item + ": no pad named " + name);
   }
@@ -100,8 +101,8 @@ class SidecarResolver {
       result.name = source.name;
       result.link = link(source.link, item);
       if (source.finger != "palm") {
-        for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
-          if (model_.fingers[f].name == source.finger) result.finger = static_cast<int>(f);
+        for (int f = 0; f < std::ssize(model_.fingers); ++f) {
+          if (model_.fingers[f].name == source.finger) result.finger = f;
         }
         if (!result.finger) fail(item + ": no finger named " + source.finger);
       }
@@ -118,17 +119,17 @@ class SidecarResolver {
   /// Sets the tip pads. Where the sidecar names none, it is the last pad on the most distal link
   /// that has one.
   void tip_pads() {
-    for (std::size_t f = 0; f < model_.fingers.size(); ++f) {
+    for (int f = 0; f < std::ssize(model_.fingers); ++f) {
       Finger& finger = model_.fingers[f];
       if ((*sidecar_.fingers)[f].tip_pad) {
         finger.tip_pad = pad(*(*sidecar_.fingers)[f].tip_pad, "finger " + finger.name);
         continue;
       }
-      for (std::size_t p = 0; p < model_.pads.size(); ++p) {
+      for (int p = 0; p < std::ssize(model_.pads); ++p) {
         const ContactPad& candidate = model_.pads[p];
-        if (candidate.finger != static_cast<int>(f)) continue;
+        if (candidate.finger != f) continue;
         if (!finger.tip_pad || candidate.link >= model_.pads[*finger.tip_pad].link) {
-          finger.tip_pad = static_cast<int>(p);
+          finger.tip_pad = p;
         }
       }
     }
@@ -150,16 +151,13 @@ class SidecarResolver {
     // surface cannot collide and are not listed; there may be many.
     std::vector<int> body(model_.links.size());
     std::map<int, std::vector<int>> solid_links;  // of each body
-    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+    for (int i = 0; i < std::ssize(model_.links); ++i) {
       const Link& own = model_.links[i];
-      const int index = static_cast<int>(i);
-      body[i] = own.parent_link && !own.parent_joint ? body[*own.parent_link] : index;
+      body[i] = own.parent_link && !own.parent_joint ? body[*own.parent_link] : i;
       if (own.mesh_L.faces.empty()) continue;
       std::vector<int>& before = solid_links[body[i]];
-      for (const int other : before) {
-        exclude(other, index);
-      }
-      before.push_back(index);
+      for (const int other : before) exclude(other, i);
+      before.push_back(i);
     }
   }
 
@@ -174,11 +172,12 @@ void set_couplings(const std::vector<SidecarCoupling>& couplings, const std::str
                    HandModel& model) {
   const auto fail = [&](const std::string& what) { throw InvalidInput(file + ": " + what); };
   const auto joint = [&](const std::string& name, const std::string& item) {
-    for (std::size_t j = 0; j < model.joints.size(); ++j) {
-      if (model.joints[j].name == name) return static_cast<int>(j);
+    const auto found = std::find_if(model.joints.begin(), model.joints.end(),
+                                    [&](const Joint& one) { return one.name == name; });
+    if (found == model.joints.end()) {
+      fail(item + ": the description has no movable joint named " + name);
     }
-    fail(item + ": the description has no movable joint named " + name);
-    return -1;
+    return base::as_index<int>(found - model.joints.begin());
   };
   std::set<std::string> seen;
   for (const SidecarCoupling& source : couplings) {

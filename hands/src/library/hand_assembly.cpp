@@ -57,7 +57,7 @@ HandSources read_sources(const fs::path& description_file, Findings& findings) {
       sources.sidecar = parse_sidecar(sidecar_text, sidecar_file.string());
     });
   }
-  // An unknown link is left for `resolve` to complain about.
+  // An unknown link is left for `resolved` to complain about.
   std::optional<std::string> palm_link;
   for (const DescribedLink& link : links) {
     if (sources.sidecar.palm && sources.sidecar.palm->link == link.name) palm_link = link.name;

@@ -483,6 +483,8 @@ TEST_CASE("Contacts and context that make no sense are refused", "[contact][cont
   SECTION("pad") {
     contacts[1].pad = 7;
     CHECK_THROWS_WITH(measure(), Contains("pad = 7"));
+    contacts[1].pad.reset();
+    CHECK_THROWS_WITH(measure(), Contains("pad = none"));
   }
   SECTION("normal") {
     contacts[1].inward_normal_O *= 2;

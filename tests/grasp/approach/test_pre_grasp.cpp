@@ -32,6 +32,7 @@ using geometry::TriangleMesh;
 using grasp::internal::are_apart_on_way;
 using hands::HandConfiguration;
 using hands::HandModel;
+using testing::Contains;
 
 namespace {
 
@@ -537,6 +538,28 @@ TEST_CASE("Options and grasps that make no sense are refused", "[grasp][pre_gras
   }
   Pinch beyond(0.03);
   CHECK_THROWS_AS(beyond.find({}), InvalidInput);
+}
+
+TEST_CASE("Link poses that are known are not computed again", "[grasp][pre_grasp]") {
+  const Pinch scene(2e-5);
+  const SurroundingsCollision surroundings(scene.hand, {});
+  const auto find = [&](const std::vector<RigidTransform>& X_OL) {
+    return find_pre_grasp({scene.hand, scene.collision, scene.object, surroundings},
+                          hands::PosedConfiguration{scene.grasp, X_OL}, {});
+  };
+  std::vector<RigidTransform> X_OL = hands::forward_kinematics(scene.hand, scene.grasp);
+  const std::optional<PreGrasp> expected = scene.find({});
+  const std::optional<PreGrasp> found = find(X_OL);
+  REQUIRE(expected);
+  REQUIRE(found);
+  CHECK(found->configuration.q == expected->configuration.q);
+  CHECK(found->configuration.X_OH.matrix() == expected->configuration.X_OH.matrix());
+  CHECK(found->clearance == expected->clearance);
+  // The poses are those that are given: with jaws in the object there is no way.
+  for (RigidTransform& X : X_OL) X.translation().x() += 0.01;
+  CHECK_FALSE(find(X_OL));
+  X_OL.pop_back();
+  CHECK_THROWS_WITH(find(X_OL), Contains("number of link poses"));
 }
 
 }  // namespace test_pre_grasp

@@ -308,6 +308,9 @@ TEST_CASE("Distances that are left to the planner are 0 in a grasp file", "[gras
   CHECK_THAT(
       refusal(path, replaced(left_open, "\"min_separation_m\": 0,", "\"min_separation_m\": null,")),
       Contains("min_separation_m: is null, must be a number"));
+  CHECK_THAT(refusal(path, replaced(left_open, "\"merge_distance_m\": 0",
+                                    "\"merge_distance_m\": null", "\"quality\"")),
+             Contains("merge_distance_m: is null, must be a number"));
   CHECK(refusal(path, left_open) == "accepted");
   CHECK_FALSE(grasp::read_grasps(path).options.targets.min_separation);
   CHECK_FALSE(grasp::read_grasps(path).options.quality.merge_distance);

@@ -117,7 +117,7 @@ class HullFaces {
       }
     }
     for (std::int32_t f = 0; f < std::ssize(facets); ++f) {
-      groups_[f] = static_cast<std::size_t>(sets.root(f));
+      groups_[f] = sets.root(f);
     }
     split_groups_without_outline();
   }

@@ -133,6 +133,8 @@ Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::PosedCo
 Squeeze squeeze_configuration(const hands::HandModel& hand, const hands::HandConfiguration& grasp,
                               std::span<const Contact> contacts, const SqueezeContext& context,
                               const SqueezeOptions& options) {
+  options.validate();
+  hands::validate(hand, grasp);
   const std::vector<hands::RigidTransform> X_OL = hands::forward_kinematics(hand, grasp);
   return squeeze_configuration(hand, hands::PosedConfiguration{grasp, X_OL}, contacts, context,
                                options);

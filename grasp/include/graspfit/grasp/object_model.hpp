@@ -63,7 +63,7 @@ struct ObjectModel {
   const geometry::TriangleMesh& mesh() const { return query.mesh(); }
   /// Index into patches of the one in a voxel of the lattice, given by index; empty: not partial.
   std::optional<std::int32_t> patch_in(std::int64_t voxel) const {
-    const std::int32_t patch = patch_of_voxel[static_cast<std::size_t>(voxel)];
+    const std::int32_t patch = patch_of_voxel[voxel];
     return patch >= 0 ? std::optional(patch) : std::nullopt;
   }
 };

@@ -48,9 +48,8 @@ enum class Followers {
   /// count.
   BetweenLimits,
   /// Those that stand where their leader puts them, to 1e-9 rad or m (the rounding of positions
-  /// that
-  /// were written as text, as in `validate`): one that is held by its limit, or has broken away,
-  /// stays.
+  /// that were written as text, as in `validate`): one that is held by its limit, or has broken
+  /// away, stays.
   InPlace,
 };
 
@@ -70,7 +69,8 @@ double ratio_to_leader(const HandModel& model, int joint, const Eigen::VectorXd&
 ///
 /// A folded Jacobian is the derivative of `apply_couplings` followed by forward kinematics, for
 /// `InPlace` where no follower stands exactly at its limit; there it is a derivative to one side.
-/// @throws InvalidInput if the columns or the positions `q` are not the model's joints.
+/// @throws InvalidInput if the columns or, unless `All` move, the positions `q` are not
+/// the model's joints.
 Eigen::MatrixXd folded(const HandModel& model, const Eigen::MatrixXd& per_joint,
                        const Eigen::VectorXd& q, Followers followers);
 

@@ -39,8 +39,8 @@ struct PageInput {
 /// besides: 2.2 MB for 35 000 vertices and the Barrett hand. Nothing is decimated; coordinates are
 /// rounded to float (relative 6e-8).
 /// @throws InvalidInput if the object has no faces or an index of it is out of range, if a grasp
-/// does not fit the hand (number of joints, indices of contacts), or for a thickness that
-/// is not finite and above 0.
+/// does not fit the hand (number of joints, indices of contacts), or for a thickness that is not
+/// finite and above 0.
 std::string page_html(const PageInput& input);
 
 /// Writes `page_html` atomically. @throws IoError if that fails; InvalidInput as `page_html`.
