@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <system_error>
 #include <thread>
 
 #include "counting_experiment.hpp"
@@ -55,13 +58,20 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
   REQUIRE(config.sweep.num_cells() == 204);
   run_sweep(counting_experiment(), config, {}, {folder.path() / "undisturbed", 1});
 
+  const fs::path begun = folder.path() / "begun";  // It has a byte for every cell of a run.
   Experiment slow = counting_experiment();
-  slow.run = [run = slow.run](const Cell& cell, const fs::path& cells) {
+  slow.run = [run = slow.run, begun](const Cell& cell, const fs::path& cells) {
+    std::ofstream(begun, std::ios::app) << '.';
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return run(cell, cells);
   };
-  // The moments range from the very beginning of a run to well within it; another seed is another
-  // test.
+  const auto num_begun = [&] {
+    std::error_code none;
+    const auto size = fs::file_size(begun, none);
+    return none ? 0 : static_cast<int>(size);
+  };
+  // The moments range from the very beginning of a run to well within it: every second one comes
+  // after a cell that has ended, however slow the machine is. Another seed is another test.
   std::mt19937_64 random(20181012);
   const fs::path out = folder.path() / "killed";
   int num_killed = 0;
@@ -69,7 +79,12 @@ TEST_CASE("After 20 kills at random moments a sweep of 204 cells ends in the sam
     REQUIRE(i < 200);
     const auto moment = std::chrono::microseconds(random() % 80000);
     const int jobs = 1 + static_cast<int>(random() % 3);
+    fs::remove(begun);
     const pid_t child = start([&] { run_sweep(slow, config, {}, {out, jobs}); });
+    // More cells than there are jobs begin only after one has ended.
+    for (int wait = 0; i % 2 == 1 && wait < 60000 && num_begun() <= jobs; ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     std::this_thread::sleep_for(moment);
     ::kill(child, SIGKILL);
     int status = 0;
