@@ -431,6 +431,19 @@ TEST_CASE("The union of a solid's convex pieces", "[!benchmark][union_of_pieces]
   }
 }
 
+TEST_CASE("The union of overlapping parts", "[!benchmark][union_of_pieces]") {
+  const auto file = testing::find_data("meshes/paper/cage.obj");
+  if (!file) GRASPFIT_SKIP_TEST("meshes/paper/cage.obj is not in the data folder");
+  const TriangleMesh read = geometry::repair_mesh(geometry::read_mesh(*file).mesh).mesh;
+  const TriangleMesh cage = geometry::scaled(read, 0.15 / geometry::longest_extent(read));
+  TriangleMesh boundary;
+  const double seconds = seconds_of([&] { boundary = geometry::solid_boundary(cage); });
+  std::printf("\n  union of a bird cage's parts, %zu faces: %.2f s, %zu faces, %.6g m3\n",
+              cage.faces.size(), seconds, boundary.faces.size(), geometry::signed_volume(boundary));
+  // Where parts overlap they count once.
+  CHECK(geometry::signed_volume(boundary) < geometry::signed_volume(cage));
+}
+
 TEST_CASE("Questions about meshes and points beside CGAL", "[!benchmark][queries]") {
   const auto file = testing::packaged_mesh("bunny00.off");
   if (!file)
