@@ -224,10 +224,10 @@ class Builder {
   }
 
   bool are_coplanar(std::int32_t first, std::int32_t second) const {
-    const auto [a, b, c] = geometry::corners(mesh_, first);
+    const Corners plane = geometry::corners(mesh_, first);
     const Corners other = geometry::corners(mesh_, second);
     return std::all_of(other.begin(), other.end(), [&](const Vector3d& corner) {
-      return internal::orientation(a, b, c, corner) == 0;
+      return internal::orientation(plane[0], plane[1], plane[2], corner) == 0;
     });
   }
 

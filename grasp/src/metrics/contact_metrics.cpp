@@ -95,7 +95,7 @@ std::vector<GraspMetric> contact_metrics() {
                        .unit = "m",
                        .meaning = meaning,
                        .better = BetterValue::Smaller,
-                       .value = [is_mean](const GraspMetricInput& input) -> Value {
+                       .value = [is_mean = is_mean](const GraspMetricInput& input) -> Value {
                          return distance_from_targets(input, is_mean);
                        },
                        .convention = nullptr});

@@ -79,9 +79,10 @@ TEST_CASE("Every start that is tried is shown with what became of it", "[grasp][
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
       // A valid one without a way in is followed by others.
       if (starts[i].outcome != AttemptOutcome::Valid) continue;
-      CHECK(std::none_of(result.grasps.begin(), result.grasps.end(), [&](const Grasp& grasp) {
-        return grasp.attempt == attempt && grasp.quality.m == starts[i].m;
-      }));
+      CHECK(std::none_of(result.grasps.begin(), result.grasps.end(),
+                         [attempt = attempt, m = starts[i].m](const Grasp& grasp) {
+                           return grasp.attempt == attempt && grasp.quality.m == m;
+                         }));
     }
   }
   for (const Grasp& grasp : result.grasps) {
