@@ -80,8 +80,8 @@ class GuardedHand {
   double distance_to_surroundings(int link, double enough) const;
   /// Whether the true meshes overlap by more than the guard lets them.
   bool cuts_object(int link, float d_min, const geometry::RigidTransform& X_OL);
-  /// Whether a link may be in the object by more than a voxel's edge: false is certain, true is
-  /// wrong by the tolerance at most.
+  /// Whether a link may be in the object by more than a voxel's edge: false is right to rounding,
+  /// true to the tolerance, or to what the steps that a measurement may take leave open.
   bool is_too_deep(int link, const geometry::RigidTransform& X_OL);
   /// Of any point of a link between two poses, or a little more [m].
   double largest_motion(int link, const geometry::RigidTransform& X_from,

@@ -34,7 +34,8 @@ struct MinkowskiInradiusOptions {
 /// Bounds of the radius of the largest ball around the origin in a sum of polytopes.
 struct InradiusBounds {
   double lower = 0.0;
-  double upper = 0.0;  ///< Equal to `lower` up to `relative_gap`, unless `max_points` was reached.
+  double upper = 0.0;  ///< Equal to `lower` up to `relative_gap`, unless `max_points` was reached
+                       ///< or what is left is rounding.
   Eigen::VectorXd direction;  ///< Unit direction in which the sum's support function is `upper`;
                               ///< empty where both bounds are 0.
   int num_points = 0;         ///< Number of points of the sum that were examined.
