@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "feature/shape_diameter.hpp"
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -73,22 +74,24 @@ struct QuickHit {
   double t = std::numeric_limits<double>::infinity();
 };
 
-/// First hit of the ray from `origin` along `direction` on any face but `skipped_face`, in plain
-/// doubles: for statistics over many rays, not for decisions. Empty: none.
+/// First hit of the ray from `origin` along `direction`, before the parameter `limit`, on any face
+/// but `skipped_face`, in plain doubles: for statistics over many rays, not for decisions. Empty:
+/// none.
 ///
 /// Approximate: triangles are taken larger by 1e-9 of their size, so that no ray slips between two
 /// of them unless they are seen edge-on or are a millionth of the ray's way in size; a triangle
 /// seen edge-on is missed, but not its neighbors. Of equal hits the one with the lowest face is
 /// returned; for such faces hits within 1e-12 of each other may depend on the tree.
 std::optional<QuickHit> quick_first_hit(const internal::FaceTree& tree, const Vector3d& origin,
-                                        const Vector3d& direction, std::int32_t skipped_face) {
+                                        const Vector3d& direction, std::int32_t skipped_face,
+                                        double limit) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // Of a triangle's barycentric coordinates, which are off by some 7e-16 |s| |ac| / det.
   constexpr double kMargin = 1e-9;
   // By so much more than the best t a box is entered, so that equally far triangles are all seen.
   constexpr double kSlack = 1.0 + 1e-12;
   const Eigen::Array3d inverse = direction.array().inverse();
-  QuickHit best;
+  QuickHit best{-1, limit};
   // Where the ray enters a box; infinity if it misses it. A zero direction gives infinite bounds,
   // or NaN in a plane of the box, which the ray then does not leave: no bound.
   const auto entry = [&](const Eigen::AlignedBox3d& box) {
@@ -130,9 +133,53 @@ std::optional<QuickHit> quick_first_hit(const internal::FaceTree& tree, const Ve
     if (!(t >= 0.0)) return;
     if (t < best.t || (t == best.t && face < best.face)) best = {face, t};
   });
-  if (!(best.t < kInfinity)) return std::nullopt;
+  if (best.face < 0) return std::nullopt;
   return best;
 }
+
+/// The rays from the faces of a mesh into what they bound.
+class FaceRays {
+ public:
+  /// @throws InvalidInput for options out of range and faces that are none.
+  FaceRays(const MeshQuery& mesh, std::span<const std::int32_t> faces,
+           const ShapeDiameterOptions& options)
+      : mesh_(mesh.mesh()), tree_(mesh.indexed().tree()), normals_(mesh_.faces.size()) {
+    options.validate();
+    for (const std::int32_t face : faces) {
+      if (face < 0 || std::cmp_greater_equal(face, normals_.size())) {
+        throw base::InvalidInput("shape_diameter: face " + std::to_string(face) + " of " +
+                                 std::to_string(normals_.size()));
+      }
+    }
+    rays_ = cone_of_rays(options);
+    for (std::int32_t face = 0; face < std::ssize(normals_); ++face) {
+      normals_[face] = face_normal(mesh_, face);
+    }
+  }
+
+  /// Calls visit(length) for the rays of a face that meet one which faces it before `limit` [m],
+  /// until it says no.
+  template <class Visit>
+  void visit(std::int32_t face, double limit, const Visit& visit) const {
+    const Vector3d& normal = normals_[face];
+    if (normal.isZero()) return;
+    const auto [a, b, c] = corners(mesh_, face);
+    const Vector3d centroid = (a + b + c) / 3.0;
+    const Eigen::Matrix3d frame = frame_around(-normal);
+    for (const Vector3d& ray : rays_) {
+      const std::optional<QuickHit> hit =
+          quick_first_hit(tree_, centroid, frame * ray, face, limit);
+      if (!hit || normals_[hit->face].dot(normal) >= 0.0) continue;
+      if (!visit(hit->t)) return;
+    }
+  }
+
+ private:
+  const TriangleMesh& mesh_;
+  const internal::FaceTree& tree_;
+  std::vector<Vector3d> normals_;
+  std::vector<Vector3d> rays_;
+};
 
 }  // namespace
 
@@ -162,41 +209,37 @@ ShapeDiameter shape_diameter(const MeshQuery& mesh, const ShapeDiameterOptions& 
 
 ShapeDiameter shape_diameter(const MeshQuery& mesh, std::span<const std::int32_t> faces,
                              const ShapeDiameterOptions& options) {
-  options.validate();
-  const std::size_t num_faces = mesh.mesh().faces.size();
-  for (const std::int32_t face : faces) {
-    if (face < 0 || std::cmp_greater_equal(face, num_faces)) {
-      throw base::InvalidInput("shape_diameter: face " + std::to_string(face) + " of " +
-                               std::to_string(num_faces));
-    }
-  }
-  const internal::FaceTree& tree = mesh.indexed().tree();
-  const std::vector<Vector3d> rays = cone_of_rays(options);
-  std::vector<Vector3d> normals(num_faces);
-  for (std::int32_t face = 0; face < std::ssize(normals); ++face) {
-    normals[face] = face_normal(mesh.mesh(), face);
-  }
+  const FaceRays rays(mesh, faces, options);
   ShapeDiameter result{std::vector<double>(faces.size(), std::numeric_limits<double>::infinity()),
                        std::vector<std::int32_t>(faces.size(), 0)};
   base::parallel_for(faces.size(), options.num_threads, [&](std::size_t i) {
-    const std::int32_t face = faces[i];
-    const Vector3d& normal = normals[face];
-    if (normal.isZero()) return;
-    const auto [a, b, c] = corners(mesh.mesh(), face);
-    const Vector3d centroid = (a + b + c) / 3.0;
-    const Eigen::Matrix3d frame = frame_around(-normal);
     std::vector<double> lengths;
-    lengths.reserve(rays.size());
-    for (const Vector3d& ray : rays) {
-      const std::optional<QuickHit> hit = quick_first_hit(tree, centroid, frame * ray, face);
-      if (!hit || normals[hit->face].dot(normal) >= 0.0) continue;
-      lengths.push_back(hit->t);
-    }
+    lengths.reserve(options.num_rays);
+    rays.visit(faces[i], std::numeric_limits<double>::infinity(), [&](double length) {
+      lengths.push_back(length);
+      return true;
+    });
     if (lengths.empty()) return;
     result.num_hits[i] = base::as_index<std::int32_t>(lengths.size());
     result.thickness[i] = trimmed_mean(lengths, options.trim_deviations);
   });
   return result;
+}
+
+std::vector<char> internal::may_be_thinner(const MeshQuery& mesh,
+                                           std::span<const std::int32_t> faces, double limit,
+                                           const ShapeDiameterOptions& options) {
+  // A mean of lengths above the limit may be rounded to below it.
+  constexpr double kSlack = 1.0 + 1e-9;
+  const FaceRays rays(mesh, faces, options);
+  std::vector<char> may_be(faces.size(), 0);
+  base::parallel_for(faces.size(), options.num_threads, [&](std::size_t i) {
+    rays.visit(faces[i], kSlack * limit, [&](double) {
+      may_be[i] = 1;
+      return false;
+    });
+  });
+  return may_be;
 }
 
 }  // namespace graspfit::geometry

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/parallel_for.hpp"
-#include "graspfit/geometry/distance_map.hpp"
+#include "voxel/bounded_distance.hpp"
 #include "voxel/voxel_sets.hpp"
 
 namespace graspfit::geometry::internal {
@@ -38,60 +40,42 @@ bool holds_ball_center(const MeshQuery& object, const VoxelLattice& lattice, Ind
   return false;
 }
 
-/// The voxels near some given ones, by blocks.
-class NearVoxels {
+/// The box of some voxels of a lattice, with a margin.
+class LatticePart {
  public:
-  /// All voxels at most `reach` voxels from one that is added are near, and some farther ones: all
-  /// voxels, where `reach` is as large as the lattice.
-  NearVoxels(const VoxelLattice& lattice, double reach)
-      : edge_(base::bounded_integer(std::ceil(reach), 1, lattice.counts.maxCoeff())),
-        counts_((lattice.counts.array() + edge_ - 1) / edge_),
-        is_near_(counts_.prod(), 0) {}
-
-  void add(const Vector3i& voxel) {
-    const Vector3i block = voxel / edge_;
-    const Vector3i low = (block.array() - 1).max(0);
-    const Vector3i high = (block.array() + 1).min(counts_.array() - 1);
-    for_each_in_block(low, high, [&](const Vector3i& other) { is_near_[at(other)] = 1; });
+  LatticePart(const VoxelLattice& lattice, const std::vector<Index>& voxels, double margin)
+      : whole_(lattice), low_(lattice.counts) {
+    Vector3i high = Vector3i::Zero();
+    for (const Index index : voxels) {
+      low_ = low_.cwiseMin(lattice.voxel(index));
+      high = high.cwiseMax(lattice.voxel(index));
+    }
+    const int most = base::bounded_integer(std::ceil(margin), 0, lattice.counts.maxCoeff());
+    low_ = (low_.array() - most).max(0);
+    high = (high.array() + most).min(lattice.counts.array() - 1);
+    part_ = {lattice.origin, lattice.voxel_size, high - low_ + Vector3i::Ones()};
   }
-  bool has(const Vector3i& voxel) const { return is_near_[at(voxel / edge_)] != 0; }
+
+  /// Index in the part of a voxel of the lattice; empty outside it.
+  std::optional<Index> at(Index index) const {
+    const Vector3i voxel = whole_.voxel(index) - low_;
+    return part_.contains(voxel) ? std::optional<Index>(part_.index(voxel)) : std::nullopt;
+  }
+
+  /// Distances of the part's voxels from those of `voxels` that are in it.
+  BoundedDistance distance_from(const std::vector<Index>& voxels, double bound) const {
+    std::vector<char> is_source(part_.num_voxels(), 0);
+    for (const Index index : voxels) {
+      if (const std::optional<Index> own = at(index)) is_source[*own] = 1;
+    }
+    return {part_, is_source, bound};
+  }
 
  private:
-  std::size_t at(const Vector3i& block) const {
-    return block[0] + counts_[0] * (block[1] + static_cast<std::size_t>(counts_[1]) * block[2]);
-  }
-
-  int edge_;
-  Vector3i counts_;
-  std::vector<char> is_near_;
+  const VoxelLattice& whole_;
+  Vector3i low_;
+  VoxelLattice part_;
 };
-
-/// Lowers distances at `voxels` to those from `centers`, where these are at most `reach` voxels.
-void take_nearer(const VoxelLattice& lattice, const std::vector<Index>& voxels,
-                 const std::vector<Index>& centers, double reach, std::vector<float>& distance) {
-  Vector3i low = lattice.counts;
-  Vector3i high = Vector3i::Zero();
-  for (const Index index : voxels) {
-    low = low.cwiseMin(lattice.voxel(index));
-    high = high.cwiseMax(lattice.voxel(index));
-  }
-  const int margin = base::bounded_integer(std::ceil(reach), 0, lattice.counts.maxCoeff());
-  low = (low.array() - margin).max(0);
-  high = (high.array() + margin).min(lattice.counts.array() - 1);
-  VoxelGrid part;
-  part.lattice = {lattice.origin, lattice.voxel_size, high - low + Vector3i::Ones()};
-  part.classes.assign(part.lattice.num_voxels(), VoxelClass::Empty);
-  for (const Index index : centers) {
-    const Vector3i voxel = lattice.voxel(index) - low;
-    if (part.lattice.contains(voxel)) {
-      part.classes[part.lattice.index(voxel)] = VoxelClass::Partial;
-    }
-  }
-  const SignedDistanceMap map = signed_distance_map(part);
-  for (const Index index : voxels) {
-    distance[index] = std::min(distance[index], map.at(Vector3i(lattice.voxel(index) - low)));
-  }
-}
 
 }  // namespace
 
@@ -108,39 +92,49 @@ std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid&
     return in_voxels + slack + (grid.classes[i] == VoxelClass::Partial ? kHalfDiagonal : 0.0);
   };
 
+  // Farther centers neither open a voxel nor are nearest to one next to an opened one.
+  const double farthest = in_voxels + slack + 3.0 * kHalfDiagonal;
+
   // Voxels that surely hold a ball's center, and voxels that only the surface can decide.
   SolidOpening result;
   std::vector<Index> unsure;
+  std::vector<char> is_sure(grid.classes.size(), 0);
   {
-    const SignedDistanceMap map = signed_distance_map(grid);
-    VoxelGrid sure{lattice, std::vector<VoxelClass>(grid.classes.size(), VoxelClass::Empty)};
+    std::vector<char> is_partial(grid.classes.size());
+    std::transform(grid.classes.begin(), grid.classes.end(), is_partial.begin(),
+                   [](VoxelClass c) { return static_cast<char>(c == VoxelClass::Partial); });
+    const BoundedDistance to_surface(lattice, is_partial, in_voxels + 2.0 * kHalfDiagonal);
     for (Index i = 0; i < std::ssize(grid.classes); ++i) {
       if (grid.classes[i] == VoxelClass::Empty) continue;
       // Surface lies within half a diagonal of each partial voxel's center, and only there.
-      const double depth = std::abs(map.values[i]);
+      const double depth = to_surface.at(i);
       if (grid.classes[i] == VoxelClass::Full && depth - kHalfDiagonal >= in_voxels) {
-        sure.classes[i] = VoxelClass::Partial;
+        is_sure[i] = 1;
       } else if (depth + 2.0 * kHalfDiagonal >= in_voxels) {
         unsure.push_back(i);
       }
     }
-    result.to_center = signed_distance_map(sure).values;
   }
+  const BoundedDistance to_sure(lattice, is_sure, farthest);
+  result.to_center.assign(grid.classes.size(), std::numeric_limits<float>::infinity());
   result.is_opened.assign(grid.classes.size(), 0);
   std::vector<Index> residue;
   for (Index i = 0; i < std::ssize(grid.classes); ++i) {
     if (grid.classes[i] == VoxelClass::Empty) continue;
+    result.to_center[i] = to_sure.at(i);
     result.is_opened[i] = result.to_center[i] <= reach(i);
     if (!result.is_opened[i]) residue.push_back(i);
   }
   if (residue.empty()) return result;
 
-  // Other voxels matter only where they may open a voxel, or be nearest to one next to an opened
-  // one.
-  const double farthest = in_voxels + slack + 3.0 * kHalfDiagonal;
-  NearVoxels near(lattice, farthest);
-  for (const Index index : residue) near.add(lattice.voxel(index));
-  std::erase_if(unsure, [&](Index index) { return !near.has(lattice.voxel(index)); });
+  const LatticePart part(lattice, residue, farthest);
+  {
+    const BoundedDistance to_residue = part.distance_from(residue, farthest);
+    std::erase_if(unsure, [&](Index index) {
+      const std::optional<Index> own = part.at(index);
+      return !own || std::isinf(to_residue.at(*own));
+    });
+  }
   std::vector<char> is_center(unsure.size(), 0);
   base::parallel_for(unsure.size(), num_threads, [&](std::size_t k) {
     const Index i = unsure[k];
@@ -154,8 +148,9 @@ std::optional<SolidOpening> open_solid(const MeshQuery& object, const VoxelGrid&
     if (is_center[k]) centers.push_back(unsure[k]);
   }
   if (!centers.empty()) {
-    take_nearer(lattice, residue, centers, farthest, result.to_center);
+    const BoundedDistance to_further = part.distance_from(centers, farthest);
     for (const Index index : residue) {
+      result.to_center[index] = std::min(result.to_center[index], to_further.at(*part.at(index)));
       result.is_opened[index] = result.to_center[index] <= reach(index);
     }
   } else if (std::find(result.is_opened.begin(), result.is_opened.end(), 1) ==

@@ -14,7 +14,7 @@ struct SolidOpening {
   std::vector<char> is_opened;   ///< One per voxel.
   std::vector<float> to_center;  ///< Distance [voxels] to the nearest voxel that holds a ball's
                                  ///< center, where the voxel is not opened but next to one that
-                                 ///< is; elsewhere at least that distance.
+                                 ///< is; elsewhere at least that distance, or infinite.
 };
 
 /// Opens a solid by a ball of `radius` [m]; empty if no ball fits. `grid` holds the classes of the

@@ -8,7 +8,7 @@ namespace graspfit::geometry {
 namespace {
 
 // Raised whenever the same input may give another result.
-constexpr std::string_view kAlgorithm = "weak regions 4";
+constexpr std::string_view kAlgorithm = "weak regions 5";
 
 std::string to_text(const WeakRegions& result) {
   base::NumberWriter out;

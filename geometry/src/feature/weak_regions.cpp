@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "feature/shape_diameter.hpp"
 #include "feature/solid_opening.hpp"
 #include "graspfit/base/bounded_integer.hpp"
 #include "graspfit/base/option_check.hpp"
@@ -95,9 +96,32 @@ class RegionSearch {
       faces_of_[label_[*voxel]].emplace_back(face, *voxel);
       faces.push_back(face);
     }
-    const std::vector<double> thickness =
-        shape_diameter(object, faces, options.shape_diameter).thickness;
-    for (std::size_t i = 0; i < faces.size(); ++i) result_.thickness[faces[i]] = thickness[i];
+    // Faces that may be thin first: pieces without a thin face are no regions.
+    const std::vector<char> may_be_thin =
+        internal::may_be_thinner(object, faces, options.weak_thickness, options.shape_diameter);
+    std::vector<char> is_measured(mesh_.faces.size(), 0);
+    const auto measure = [&](const std::vector<std::int32_t>& chosen) {
+      const std::vector<double> thickness =
+          shape_diameter(object, chosen, options.shape_diameter).thickness;
+      for (std::size_t i = 0; i < chosen.size(); ++i) {
+        result_.thickness[chosen[i]] = thickness[i];
+        is_measured[chosen[i]] = 1;
+      }
+    };
+    std::vector<std::int32_t> chosen;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (may_be_thin[i] != 0) chosen.push_back(faces[i]);
+    }
+    measure(chosen);
+    chosen.clear();
+    for (const Faces& own : faces_of_) {
+      const bool is_region = has_thin(own);
+      for (const auto& [face, voxel] : own) {
+        if (!is_region) result_.thickness[face] = std::numeric_limits<double>::infinity();
+        if (is_region && is_measured[face] == 0) chosen.push_back(face);
+      }
+    }
+    measure(chosen);
   }
 
   void run() {

@@ -7,6 +7,7 @@
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/geometry/surface_patch.hpp"
 #include "support/catch.hpp"
+#include "voxel/bounded_distance.hpp"
 
 namespace test_distance_map {
 
@@ -55,6 +56,36 @@ TEST_CASE("The distance map is that of brute force on random grids", "[geometry]
       }
     }
     REQUIRE(signed_distance_map(grid).values == brute_force(grid));
+  }
+}
+
+TEST_CASE("Bounded distances are those of the distance map as far as their bound",
+          "[geometry][distance_map]") {
+  Random random(5);
+  for (int round = 0; round < 60; ++round) {
+    const Eigen::Vector3i counts(1 + static_cast<int>(random.index(40)),
+                                 1 + static_cast<int>(random.index(12)),
+                                 1 + static_cast<int>(random.index(12)));
+    VoxelGrid grid = grid_of(counts, VoxelClass::Empty);
+    const double density = random.uniform() < 0.5 ? 0.003 : 0.1;
+    std::vector<char> is_source(grid.classes.size(), 0);
+    for (std::size_t i = 0; i < is_source.size(); ++i) {
+      if (random.uniform() >= density) continue;
+      grid.classes[i] = VoxelClass::Partial;
+      is_source[i] = 1;
+    }
+    const std::vector<float> whole = signed_distance_map(grid).values;
+    for (const double bound : {0.0, 1.0, 2.5, random.uniform(0.0, 12.0), 1e9}) {
+      CAPTURE(round, bound);
+      const internal::BoundedDistance bounded(grid.lattice, is_source, bound);
+      std::vector<float> values;
+      std::vector<float> expected;
+      for (std::int64_t i = 0; i < grid.lattice.num_voxels(); ++i) {
+        values.push_back(bounded.at(i));
+        expected.push_back(whole[i] <= bound ? whole[i] : std::numeric_limits<float>::infinity());
+      }
+      CHECK(values == expected);
+    }
   }
 }
 

@@ -63,8 +63,9 @@ enum class WeakOutcome : std::uint8_t {
 
 /// Fragile features of an object.
 struct WeakRegions {
-  /// Local thickness of each face outside the body, as by `shape_diameter` [m]. It is infinity for
-  /// all other faces, which are not measured: balls of diameter weak_thickness fit beneath them.
+  /// Local thickness, as by `shape_diameter` [m], of each face on a connected piece outside the
+  /// body that has a thin face. It is infinity for all other faces, which are not thin: balls of
+  /// diameter weak_thickness fit beneath them, or their thickness is no less.
   std::vector<double> thickness;
   std::vector<bool> is_weak;        ///< One per face: thin, in a region with the verdict Weak.
   std::vector<WeakRegion> regions;  ///< Regions with a thin face, ordered by their first face.
