@@ -58,8 +58,8 @@ class Describe(ProgramTest):
         changed = self.settings_of("table1", "--set", "resolution=20,40", "--set", "alpha=3")
         self.assertEqual(changed["resolution"][0], "axis resolution")
         strong = self.settings_of("planner_everyday", "--set", "preset=strong")
-        self.assertEqual([strong[name][0] for name in ("keep", "max-placements", "search")],
-                         ["axis preset", "axis preset", "best"])
+        self.assertEqual([strong[name][0] for name in ("keep", "search", "max-placements")],
+                         ["axis preset", "axis preset", "4"])
         self.assertEqual(self.settings_of("table1", "--quick")["count"][0],
                          json.dumps(config["quick"]["settings"]["count"]))
 

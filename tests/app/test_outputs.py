@@ -232,7 +232,7 @@ class Interrupts(program.ProgramTest):
                 said, shown = ended()
                 self.assertEqual(process.returncode, 128 + interrupt)
                 self.assertEqual(len(re.findall(r"(?m)^graspfit plan: interrupted: ", shown)), 1, shown)
-                self.assertRegex(said, r"grasps in \d+ attempts \(interrupted\)")
+                self.assertRegex(said, r"grasps, .*closed, in \d+ attempts \(interrupted\)")
                 file = json.loads((self.folder / "new/out/grasps.json").read_text())
                 self.assertEqual(file["results"]["stop"], "interrupted")
                 self.assertTrue(file["results"]["grasps"])

@@ -10,7 +10,7 @@ import subprocess
 import program
 
 # With these flags the first grasps with M > 0 of a few attempts count.
-FAST = ("--accept", "usable", "--search", "first")
+FAST = ("--preset", "exact", "--accept", "usable", "--search", "first")
 
 
 def results_text(path):
@@ -29,6 +29,13 @@ class Plan(program.ProgramTest):
     def setUp(self):
         super().setUp()
         self.write_torus()
+
+    def options(self, *flags):
+        """The preset and the options that are recorded."""
+        done = program.run("plan", self.folder / "torus.off", *flags, "--out", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        planner = json.loads((self.folder / "out/grasps.json").read_text())["planner"]
+        return planner["preset"], planner["options"]
 
     def test_every_planner_plans_and_is_recorded(self):
         for planner, said in (("fitting", None), ("gs", "guided by samples"),
@@ -72,23 +79,62 @@ class Plan(program.ProgramTest):
         self.assertIn("two fingertips of barrett pinch nothing squarely at friction 0\n", done.stdout)
 
     def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
-        def options(*flags):
-            self.plan(*flags)
-            file = json.loads((self.folder / "out/grasps.json").read_text())
-            return file["planner"].get("preset"), file["planner"]["options"]
-
-        preset, strong = options("--preset", "strong", "--max-placements", "2")
-        self.assertEqual((preset, strong["kept_candidate"], strong["max_placements"]),
-                         ("strong", "strongest", 2))
-        preset, none = options()
-        self.assertEqual((preset, none["kept_candidate"]), (None, "first"))
-        # A default that is written out counts as well.
-        preset, fast = options("--preset", "paper", "--pre-grasps", "yes")
-        self.assertEqual((preset, fast["refine"], fast["pre_grasps"], fast["search"]),
-                         ("paper", False, True, "first"))
+        keys = ("style", "kept_candidate", "count", "search", "rank", "idle_fingers")
+        strong = ("auto", "balanced", 5, "first", "epsilon", "close")
+        exact = ("precision", "first", 1, "best", "m", "stay")
+        for flags, expected_preset, expected in (
+                ((), "strong", strong),
+                (("--preset", "strong"), "strong", strong),
+                (("--target-search", "reach", "--planner", "fitting"), "strong", strong),
+                # A default that is written out counts as well.
+                (("--count", "1"), "strong", (*strong[:2], 1, *strong[3:])),
+                (("--preset", "exact"), "exact", exact),
+                (("--target-search", "random"), "exact", exact),
+                (("--planner", "gs"), "exact", exact)):
+            with self.subTest(flags):
+                preset, options = self.options("--max-attempts", "20", *flags)
+                self.assertEqual(preset, expected_preset)
+                self.assertEqual(tuple(options[key] for key in keys), expected)
+        preset, paper = self.options("--preset", "paper", "--pre-grasps", "yes")
+        self.assertEqual((preset, paper["refine"], paper["pre_grasps"], paper["rank"]),
+                         ("paper", False, True, "m"))
         self.assert_refused("plan", self.folder / "torus.off", "--preset", "stronk",
-                            says='--preset "stronk" is not one of paper|fast|strong; did you mean '
-                                 '"strong"?')
+                            says='--preset "stronk" is not one of paper|exact|fast|strong; did you '
+                                 'mean "strong"?')
+
+    def test_without_flags_grasps_close_and_the_hardest_to_break_comes_first(self):
+        done = program.run("plan", self.folder / "torus.off", "--out", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0].split(),
+                         ["rank", "M", "M1", "M2", "M3", "epsilon", "epsilon_mu0.2", "closed",
+                          "contacts", "gap_mm", "penetration_mm", "touches", "clear"])
+        rows = [line.split() for line in lines[1:6]]
+        strengths = [float(row[6]) for row in rows]
+        self.assertEqual(strengths, sorted(strengths, reverse=True))
+        self.assertEqual([row[7] for row in rows], ["yes"] * 5)
+        self.assertEqual([row[-2:] for row in rows], [["yes", "yes"]] * 5)
+        self.assertRegex(lines[6], r"^5 of 5 grasps, all closed, in \d+ attempts \(")
+        grasps = json.loads((self.folder / "out/grasps.json").read_text())["results"]["grasps"]
+        for row, grasp in zip(rows, grasps):
+            self.assertEqual(row[5], f"{grasp['wrench']['epsilon']:.4f}")
+            self.assertGreater(grasp["wrench"]["epsilon"], 0)
+
+    def test_where_no_posture_is_found_targets_are_drawn_at_random(self):
+        # A rod of 16 by 20 mm is not two voxels thick, which the postures of a gripper are too coarse for.
+        rod = self.write("rod.off", program.off_text(*program.box(16, 20, 330)))
+        arguments = ["plan", rod, "--mesh-unit", "mm", "--hand", "parallel_gripper", "--out", self.folder / "out"]
+        done = program.run(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.splitlines(), [
+            f"graspfit plan: {rod}: no grasp at targets by the hand's reach; these are at random "
+            "targets (--target-search random)"])
+        options = json.loads((self.folder / "out/grasps.json").read_text())["planner"]["options"]
+        self.assertEqual((options["targets"]["search"], options["style"], options["rank"]),
+                         ("random", "precision", "epsilon"))
+        # Who asks for the search by reach gets no other.
+        for flags in (("--preset", "strong"), ("--target-search", "reach"), ("--style", "auto")):
+            self.assert_refused(*arguments, *flags, says="no target set 50", code=3)
 
     def test_a_solid_that_differs_from_the_file_is_said_everywhere(self):
         # One face of the torus is missing: 1 of 512 pairs, about 14 mm wide, which repair fills
@@ -128,14 +174,15 @@ class Plan(program.ProgramTest):
         self.assertEqual(names, sorted(posed + meshes + ["grasps.csv", "grasps.json"]))
 
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0].split(), ["rank", "M", "M1", "M2", "M3", "epsilon", "contacts",
-                                            "gap_mm", "penetration_mm", "valid"])
+        self.assertEqual(lines[0].split(),
+                         ["rank", "M", "M1", "M2", "M3", "epsilon", "epsilon_mu0.2", "closed",
+                          "contacts", "gap_mm", "penetration_mm", "touches", "clear"])
         self.assertEqual([line.split()[0] for line in lines[1:3]], ["1", "2"])
         file = json.loads((self.folder / "out/grasps.json").read_text())
         grasps = file["results"]["grasps"]
         for grasp, line in zip(grasps, lines[1:3]):
             self.assertEqual(f"{grasp['m']:.4f}", line.split()[1])
-            self.assertEqual(line.split()[-1], "yes" if grasp["valid"] else "no")
+            self.assertEqual("no" not in line.split()[-2:], grasp["valid"])
             self.assertTrue(grasp["usable"])
         self.assertEqual(sorted(grasps, key=lambda grasp: -grasp["m"]), grasps)
 
@@ -145,7 +192,7 @@ class Plan(program.ProgramTest):
         self.assertEqual(file["object"]["used_mesh_file"], "object.ply")
         self.assertEqual([link["used_mesh_file"] for link in file["hand"]["links"]],
                          sorted(meshes)[:-1])
-        self.assertRegex(lines[3], r"grasps in \d+ attempts \(.*\): ")
+        self.assertRegex(lines[3], r"grasps, .*closed, in \d+ attempts \(.*\): ")
         for column in ("m", "epsilon", "largest_requested_gap_m", "largest_penetration_m", "palm_x_m",
                        "palm_qw", "pre_grasp_clearance_m", "squeeze_residual"):
             self.assertIn(column, header)
@@ -324,7 +371,7 @@ class Help(program.ProgramTest):
         self.assertLessEqual(len(short), 20)
         self.assertGreater(len(full), 90)
         text = program.run("plan", "--help").stdout
-        for part in ("--preset paper|fast|strong", "refine off", "max-placements 24", "--help-all"):
+        for part in ("--preset paper|exact|fast|strong", "refine off", "rank epsilon", "--help-all"):
             self.assertIn(part, " ".join(text.split()))
         # Other commands have one help.
         self.assertEqual(program.run("evaluate", "--help").stdout,
@@ -334,7 +381,7 @@ class Help(program.ProgramTest):
         done = program.run("options")
         self.assertEqual(done.stdout, (program.SOURCE_DIR / "docs/options.md").read_text(),
                          "build the target write_generated")
-        listed = set(re.findall(r"(?m)^\| `([a-z][a-z0-9-]+)` \|", done.stdout)) - {"paper", "fast", "strong"}
+        listed = set(re.findall(r"(?m)^\| `([a-z][a-z0-9-]+)` \|", done.stdout)) - {"paper", "exact", "fast", "strong"}
         flags = set(re.findall(r"(?m)^  --([a-z][a-z0-9-]+)", program.run("plan", "--help-all").stdout))
         self.assertLess(listed, flags)
         self.assertGreater(len(listed), 70)

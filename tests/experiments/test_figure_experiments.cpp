@@ -293,7 +293,7 @@ TEST_CASE("Every candidate of an attempt is looked at, and a row sums them up",
           "[experiments][candidate_prediction]") {
   const std::string settings =
       R"("shape": "torus", "size_m": 0.12, "hand": "barrett", "contacts": 3, "weak-thickness-mm": 0,
-         "max-attempts": 2, "count": 2, "preset": "strong", "max-placements": 6,
+         "max-attempts": 2, "count": 2, "candidate-order": "balance", "keep": "strongest", "max-placements": 6,
          "reach_attempts": 1)";
   const Result result = run("candidate_prediction", "{" + settings + "}");
   CHECK(result.row.at("attempts") == "2");

@@ -85,11 +85,11 @@ TEST_CASE("The paper's angle keeps its bits on the way through degrees",
 }
 
 TEST_CASE("A preset is applied before the settings beside it", "[experiments][planning_settings]") {
-  // "max-placements" comes before "preset" in the order of names.
+  // "keep" comes before "preset" in the order of names.
   const grasp::PlannerOptions options =
-      settings_with(R"(, "max-placements": 3, "preset": "strong")").options;
-  CHECK(options.kept == grasp::KeptCandidate::Strongest);
-  CHECK(options.max_placements == 3);
+      settings_with(R"(, "keep": "first", "preset": "strong")").options;
+  CHECK(options.style == grasp::GraspStyle::Auto);
+  CHECK(options.kept == grasp::KeptCandidate::First);
 }
 
 TEST_CASE("Settings that cannot be used say which and what is allowed",
@@ -104,7 +104,7 @@ TEST_CASE("Settings that cannot be used say which and what is allowed",
       {R"(, "approach": [0, 0, 0])", {"approach", "without length"}},
       {R"(, "missing-contact": "measured")", {"missing-contact", "turn refine off"}},
       {R"(, "size_m": 0)", {"size_m", "is 0, must be > 0"}},
-      {R"(, "preset": "weak")", {"preset", "is \"weak\", must be one of paper|fast|strong"}},
+      {R"(, "preset": "weak")", {"preset", "is \"weak\", must be one of paper|exact|fast|strong"}},
       {R"(, "size_axis": "w")", {"size_axis", "must be one of x|y|z"}},
       {R"(, "approach": [0, 1])", {"approach", "must be three numbers [x, y, z]"}},
       {R"(, "fingers": [])", {"fingers", "at least one value"}},

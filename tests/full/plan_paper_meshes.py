@@ -35,7 +35,7 @@ def run(program, mesh, arguments, folder):
     start = time.monotonic()
     done = subprocess.run(
         [program, "plan", str(mesh), "--hand", "barrett", "--longest", str(arguments.longest),
-         "--seed", "1", "--contacts", "3", "--accept", "usable",
+         "--preset", "exact", "--seed", "1", "--contacts", "3", "--accept", "usable",
          "--count", str(arguments.attempts), "--max-attempts", str(arguments.attempts),
          "--out", str(out)],
         capture_output=True, text=True)

@@ -177,37 +177,37 @@ class GraspsInBrowser(PageInBrowser):
         self.assertEqual(self.browser.find_element(By.TAG_NAME, "h1").text, self.browser.title)
         self.assertIn("3 grasps, 2 usable, 1 valid", self.text("summary"))
         self.assertIn("80 × 80 × 80 mm", self.text("summary"))
-        # The rows are ordered by M, largest first.
+        # The rows are in the order of the file.
         rows = self.browser.find_elements(By.CSS_SELECTOR, "#list > div")
-        self.assertEqual([row.get_attribute("id") for row in rows], ["grasp-2", "grasp-1", "grasp-3"])
+        self.assertEqual([row.get_attribute("id") for row in rows], ["grasp-1", "grasp-2", "grasp-3"])
         badges = [row.find_element(By.CLASS_NAME, "badge").text for row in rows]
-        self.assertEqual(badges, ["usable", "valid", "unusable"])
+        self.assertEqual(badges, ["valid", "usable", "unusable"])
         for part in ("M 0.600", "M1 0.600", "M2 1.000", "M3 1.000"):
-            self.assertIn(part, rows[0].text)
+            self.assertIn(part, rows[1].text)
         self.assertEqual(rows[0].get_attribute("aria-selected"), "true")
 
     def test_click_and_arrow_keys_select(self):
         self.open("ball.html")
         before = self.picture()
-        self.assertEqual(self.text("m"), "M 0.6000")
-        self.assertIn("4.70 to 4.90 mm", self.text("penetration"))
-        self.element("grasp-1").click()
         self.assertEqual(self.text("m"), "M 0.4000")
         self.assertIn("none", self.text("penetration"))
-        self.assert_differs(before, self.picture("valid"), "another grasp, the same picture")
+        self.element("grasp-2").click()
+        self.assertEqual(self.text("m"), "M 0.6000")
+        self.assertIn("4.70 to 4.90 mm", self.text("penetration"))
+        self.assert_differs(before, self.picture("usable"), "another grasp, the same picture")
         self.element("grasp-3").click()
         self.assertEqual(self.text("m"), "M 0.0000")
         self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#contacts tbody tr")), 2)
         selected = self.browser.find_elements(By.CSS_SELECTOR, '#list [aria-selected="true"]')
         self.assertEqual([row.get_attribute("id") for row in selected], ["grasp-3"])
 
-        self.element("grasp-2").click()
+        self.element("grasp-1").click()
         body = self.browser.find_element(By.TAG_NAME, "body")
         shown = []
         for key in (Keys.ARROW_DOWN, Keys.ARROW_DOWN, Keys.ARROW_DOWN, Keys.ARROW_UP):
             body.send_keys(key)
             shown.append(self.text("m"))
-        self.assertEqual(shown, ["M 0.4000", "M 0.0000", "M 0.0000", "M 0.4000"])
+        self.assertEqual(shown, ["M 0.6000", "M 0.0000", "M 0.0000", "M 0.6000"])
 
     def test_every_measure_is_shown(self):
         self.open("ball.html")

@@ -59,12 +59,9 @@ if (voxels) {
 }
 const relativeScore = (i) => Math.min(voxels.scores[i] / scoreTop, 1);
 
-// Best M first; equal ones in the order of the file.
-const order = data.grasps.map((_, i) => i);
-order.sort((a, b) => (data.grasps[b].quality.m - data.grasps[a].quality.m) || (a - b));
-let selected = 0;       // position in `order`
+let selected = 0;       // of the grasps, which come in the order of the file
 let highlighted = -1;   // contact under the pointer in the table
-const current = () => data.grasps[order[selected]];
+const current = () => data.grasps[selected];
 
 // What of a grasp the hand is shown in; the grasp itself where there is no such configuration.
 const kConfigurations = [

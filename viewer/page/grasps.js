@@ -12,12 +12,12 @@ function listenToKeys() {
     if (event.target.matches('select, input[type=range]')) return;
     const step = {ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1}[event.key];
     if (step && data.grasps.length > 0) {
-      select(Math.min(Math.max(selected + step, 0), order.length - 1));
+      select(Math.min(Math.max(selected + step, 0), data.grasps.length - 1));
       event.preventDefault();
     } else if (event.key === 'Home' && data.grasps.length > 0) {
       select(0);
     } else if (event.key === 'End' && data.grasps.length > 0) {
-      select(order.length - 1);
+      select(data.grasps.length - 1);
     } else if (event.key === 'f' || event.key === 'F') {
       view('fit');
     }
@@ -38,8 +38,7 @@ function makeList() {
   list.setAttribute('role', 'listbox');
   list.setAttribute('aria-label', 'Grasps');
   makeSection('grasps', 'Grasps, best first', list);
-  order.forEach((index, position) => {
-    const grasp = data.grasps[index];
+  data.grasps.forEach((grasp, index) => {
     const {m, m1, m2, m3} = grasp.quality;
     const row = element('div', {id: `grasp-${index + 1}`},
         element('span', {className: 'number'}, `#${index + 1}`),
@@ -50,15 +49,15 @@ function makeList() {
                     (grasp.wrench ? `   ε ${closes(grasp) ? fixed(grasp.wrench.epsilon, 3) : 'open'}`
                                   : '')));
     row.setAttribute('role', 'option');
-    row.addEventListener('click', () => select(position));
+    row.addEventListener('click', () => select(index));
     list.append(row);
   });
-  if (order.length === 0) list.append(element('p', {className: 'soft'}, 'No grasps.'));
+  if (data.grasps.length === 0) list.append(element('p', {className: 'soft'}, 'No grasps.'));
   const valid = data.grasps.filter((grasp) => grasp.is_valid).length;
   const usable = data.grasps.filter((grasp) => grasp.is_usable).length;
   const size = subtract(objectBounds.high, objectBounds.low).map((s) => (1000 * s).toFixed(0));
   byId('summary').textContent =
-      `${data.hand.name} hand · ${order.length} grasp${order.length === 1 ? '' : 's'}, ` +
+      `${data.hand.name} hand · ${data.grasps.length} grasp${data.grasps.length === 1 ? '' : 's'}, ` +
       `${usable} usable, ${valid} valid · object ${size.join(' × ')} mm`;
 }
 
@@ -133,7 +132,7 @@ function showMeasures() {
   }
   const grasp = current();
   const {quality, penetration} = grasp;
-  panel.append(element('h2', {}, `Grasp #${order[selected] + 1}`));
+  panel.append(element('h2', {}, `Grasp #${selected + 1}`));
   panel.append(element('div', {className: 'headline', title: kKinds[kind(grasp)]},
       element('span', {className: 'value', id: 'm'}, `M ${fixed(quality.m, 4)}`), badge(grasp)));
   panel.append(element('p', {className: 'soft'}, kKinds[kind(grasp)]));
@@ -252,13 +251,13 @@ function highlight(contact) {
   draw();
 }
 
-function select(position) {
-  selected = position;
+function select(index) {
+  selected = index;
   highlighted = -1;
   const list = byId('list');
   [...list.children].forEach((row, i) => {
-    row.setAttribute('aria-selected', String(i === position));
-    if (i === position) {
+    row.setAttribute('aria-selected', String(i === index));
+    if (i === index) {
       list.setAttribute('aria-activedescendant', row.id);
       row.scrollIntoView({block: 'nearest'});
     }

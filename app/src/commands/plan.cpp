@@ -12,9 +12,12 @@
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/number_text.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/grasp/grasp_guidance.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/grasp_measure.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/object_difference.hpp"
 #include "graspfit/viewer/page.hpp"
@@ -64,10 +67,12 @@ Command plan_command() {
       "docs/readings.md.\n",
       option_group(),
       "Lengths are meters and directions are in the object's own frame unless a flag's "
-      "name says otherwise.\nUsable: M > 0. Valid: usable, penetrates nothing on the "
-      "true meshes, every requested finger and\nthe palm, if requested, touches. epsilon: in "
-      "GraspIt!'s convention; open: the contacts\ndo not close. gap_mm: the largest of a requested "
-      "contact.\n"};
+      "name says otherwise.\nUsable: M > 0. Valid: usable, touches, clear. touches: every finger "
+      "that was asked for, and the\npalm if it was; with style auto or power what the targets are "
+      "for. clear: penetrates nothing on the\ntrue meshes. closed: force closure at --friction. "
+      "epsilon: in GraspIt!'s convention, 0 where not\nclosed. epsilon_mu: how hard the grasp is "
+      "to break, in graspfit's convention at squeeze-friction,\nnegative where not closed there. "
+      "gap_mm: the largest of a requested contact.\n"};
   command.options.add(object_options())
       .add(surroundings_options())
       .add(planner_options())
@@ -100,17 +105,26 @@ std::string outcomes_text(const grasp::PlannerStatistics& statistics) {
   return text;
 }
 
-std::string table_of(const grasp::GraspFile& file) {
+std::string table_of(const grasp::GraspFile& file, const grasp::ObjectModel& object) {
+  const contact::WrenchObject wrench_object =
+      contact::wrench_object(object.mesh(), object.mass.center_of_mass);
+  const auto yes_or_no = [](bool is_so) { return is_so ? "yes" : "no"; };
   std::vector<std::vector<std::string>> rows = {
-      {"rank", "M", "M1", "M2", "M3", "epsilon", "contacts", "gap_mm", "penetration_mm", "valid"}};
+      {"rank", "M", "M1", "M2", "M3", "epsilon",
+       "epsilon_mu" + base::plain_decimal(file.options.squeeze_friction), "closed", "contacts",
+       "gap_mm", "penetration_mm", "touches", "clear"}};
   for (const grasp::Grasp& grasp : file.grasps) {
+    const double epsilon = grasp.is_closed() ? grasp.epsilon() : 0.0;
+    const double strength = grasp::grasp_strength(
+        grasp, wrench_object, file.options.squeeze_friction, grasp::bearing_gap(file));
     rows.push_back({std::to_string(rows.size()), fixed_decimal(grasp.quality.m, 4),
                     fixed_decimal(grasp.quality.m1, 4), fixed_decimal(grasp.quality.m2, 4),
-                    fixed_decimal(grasp.quality.m3, 4), epsilon_text(grasp, 4),
+                    fixed_decimal(grasp.quality.m3, 4), fixed_decimal(epsilon, 4),
+                    fixed_decimal(strength, 4), yes_or_no(grasp.is_closed()),
                     std::to_string(grasp.contacts.size()),
                     fixed_decimal(1000.0 * grasp::largest_requested_gap(grasp), 4),
                     fixed_decimal(1000.0 * grasp::largest_penetration(grasp), 3),
-                    grasp.is_valid() ? "yes" : "no"});
+                    yes_or_no(grasp.has_all_contacts), yes_or_no(!grasp.penetration.is_any())});
   }
   if (file.hold && !file.hold->margins.empty()) {
     rows[0].push_back("margin_N");
@@ -258,6 +272,16 @@ std::string attempts_text(const grasp::PlannerResult& result) {
   return found.empty() ? text : text + "; guided by " + found;
 }
 
+/// Whether targets by reach are only asked for by the preset that nobody asked for: where voxels
+/// are large beside what the hand is to hold, as a gripper a long thin handle, random targets may
+/// do.
+bool is_search_of_default(const Flags& flags, const grasp::PlannerOptions& options) {
+  const bool is_auto_asked_for =
+      !flags.is_default("style") && options.style == grasp::GraspStyle::Auto;
+  return !flags.has("preset") && flags.is_default("target-search") && !is_auto_asked_for &&
+         options.targets.search == grasp::TargetSearch::Reach;
+}
+
 /// Exit code of the program: that of an interrupt, if one requested a stop, else `code`.
 ExitCode ended_with(ExitCode code) {
   const std::optional<int> signal = interrupt_heard();
@@ -311,10 +335,25 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   {
     const StopOnInterrupt stop(
         "graspfit plan: interrupted: the attempts under way are finished; once more ends at once");
-    result = grasp::plan_grasps(object, hand, options, around.surroundings,
+    const auto planned = [&] {
+      return grasp::plan_grasps(object, hand, options, around.surroundings,
                                 {.num_threads = num_threads,
                                  .progress = shown_by(progress, options),
                                  .stop = stop.token()});
+    };
+    result = planned();
+    if (result.grasps.empty() && !interrupt_heard() && is_search_of_default(flags, options)) {
+      if (options.style == grasp::GraspStyle::Auto) options.style = grasp::GraspStyle::Precision;
+      options.targets.search = grasp::TargetSearch::Random;
+      result = planned();
+      progress.clear();
+      if (!result.grasps.empty()) {
+        std::fprintf(stderr,
+                     "graspfit plan: %s: no grasp at targets by the hand's reach; these are at "
+                     "random targets (--target-search random)\n",
+                     flags.positional().c_str());
+      }
+    }
   }
   progress.clear();
 
@@ -343,12 +382,12 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   grasp::GraspFile file =
       grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
   file.hold = std::move(hold);
-  if (flags.has("preset")) file.preset = flags.text("preset");
+  file.preset = preset_name(flags);
   if (out) write_files(file, object, around.surroundings, flags, *out, progress);
   progress.clear();
   if (!flags.has("quiet")) {
-    std::printf("%s%zu of %d grasps %s\n", table_of(file).c_str(), file.grasps.size(),
-                options.count, attempts_text(result).c_str());
+    std::printf("%s%zu of %d grasps, %s, %s\n", table_of(file, object).c_str(), file.grasps.size(),
+                options.count, closed_text(file).c_str(), attempts_text(result).c_str());
     if (const std::string grips = grip_text(file); !grips.empty()) {
       std::printf("%s\n", grips.c_str());
     }

@@ -92,7 +92,8 @@ std::string preset_description() {
     text += ' ' + std::string(preset.name) + ": " + std::string(preset.meaning) + " (" +
             preset_values_text(preset) + ").";
   }
-  return text + " Without: the defaults";
+  return text + " Without: " + std::string(grasp::kDefaultPreset) +
+         ", or exact with another planner or target-search than that has";
 }
 
 po::options_description flags_of(std::string_view group) {
@@ -208,6 +209,18 @@ void read_score_map_flags(const Flags& flags, PlannerOptions& options) {
   read_flags(flags, groups::kScores, options);
 }
 
+std::string preset_name(const Flags& flags) {
+  if (flags.has("preset")) return flags.text("preset");
+  PlannerOptions options;
+  grasp::apply_preset(options, *grasp::preset_named(grasp::kDefaultPreset));
+  const auto is_kept = [&](const char* flag, std::string_view value) {
+    return !flags.has(flag) || flags.is_default(flag) || flags.text(flag) == value;
+  };
+  const bool is_kept_whole = is_kept("planner", options.planner) &&
+                             is_kept("target-search", grasp::name_of(options.targets.search));
+  return std::string(is_kept_whole ? grasp::kDefaultPreset : "exact");
+}
+
 PlannerOptions read_planner_flags(const Flags& flags) {
   if (flags.has("fingers") && !flags.is_default("contacts") &&
       flags.integer("contacts") != std::ssize(flags.words("fingers"))) {
@@ -215,12 +228,10 @@ PlannerOptions read_planner_flags(const Flags& flags) {
                      std::to_string(flags.words("fingers").size()) + " named by --fingers");
   }
   PlannerOptions options;
-  if (flags.has("preset")) {
-    const std::string& name = flags.text("preset");
-    const grasp::PlannerPreset* const preset = grasp::preset_named(name);
-    if (preset == nullptr) fail_choice("preset", name, preset_names("|"));
-    grasp::apply_preset(options, *preset);
-  }
+  const std::string name = preset_name(flags);
+  const grasp::PlannerPreset* const preset = grasp::preset_named(name);
+  if (preset == nullptr) fail_choice("preset", name, preset_names("|"));
+  grasp::apply_preset(options, *preset);
   read_flags(flags, "", options);
   options.seed = flags.unsigned_integer("seed");
   require_compatible_flags(flags, options);

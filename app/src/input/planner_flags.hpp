@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/program_options/options_description.hpp>
+#include <string>
 
 #include "cli/command_line.hpp"
 #include "graspfit/grasp/planner_options.hpp"
@@ -18,6 +19,10 @@ boost::program_options::options_description planner_options();
 /// Sets the options that the flags of `score_map_options` give, and checks each.
 /// @throws UsageError, InvalidInput with flag, value and range.
 void read_score_map_flags(const Flags& flags, grasp::PlannerOptions& options);
+
+/// The preset that the options start from: the one asked for; else `grasp::kDefaultPreset`, or
+/// "exact" where another planner or target search is asked for than that has.
+std::string preset_name(const Flags& flags);
 
 /// The options that all planner flags give, validated. @throws UsageError, InvalidInput.
 grasp::PlannerOptions read_planner_flags(const Flags& flags);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 
 #include "graspfit/base/number_text.hpp"
 #include "output/text_table.hpp"
@@ -10,6 +11,14 @@ namespace graspfit::app {
 
 std::string epsilon_text(const grasp::Grasp& grasp, int decimals) {
   return grasp.is_closed() ? fixed_decimal(grasp.epsilon(), decimals) : "open";
+}
+
+std::string closed_text(const grasp::GraspFile& file) {
+  const auto num_closed =
+      std::count_if(file.grasps.begin(), file.grasps.end(),
+                    [](const grasp::Grasp& grasp) { return grasp.is_closed(); });
+  if (num_closed == std::ssize(file.grasps)) return "all closed";
+  return (num_closed == 0 ? "none" : std::to_string(num_closed)) + " closed";
 }
 
 std::string grip_text(const grasp::GraspFile& file) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/grasp/grasp_measure.hpp"
 
 namespace graspfit::grasp {
@@ -83,6 +84,12 @@ Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration&
              scene, internal::with_self_penetration(
                         scene, internal::with_contacts(scene, configuration, requested)))
       .grasp;
+}
+
+double grasp_strength(const Grasp& grasp, const contact::WrenchObject& object, double friction,
+                      const std::optional<double>& bearing_gap) {
+  return contact::signed_epsilon(contact::touching_contacts(grasp.contacts, bearing_gap), object,
+                                 friction);
 }
 
 }  // namespace graspfit::grasp

@@ -92,12 +92,16 @@ double wanted_strength(int num_postures) {
 
 GripRule grip_rule(const GuidanceScene& scene) {
   const PlannerOptions& options = scene.options;
-  if (options.style != GraspStyle::Auto) return {};
+  GripRule rule;
   // Without refinement hands are fitted, which only fingertips' pads can be.
-  return {.may_add_finger = true,
-          .may_add_palm = options.palm.value_or(true),
-          .may_exchange = options.fingers.empty(),
-          .may_wrap = options.refine && scene.contact_options.pads == contact::CountedPads::All};
+  rule.may_wrap = options.style != GraspStyle::Precision && options.refine &&
+                  scene.contact_options.pads == contact::CountedPads::All;
+  if (options.style == GraspStyle::Auto) {
+    rule.may_add_finger = true;
+    rule.may_add_palm = options.palm.value_or(true);
+    rule.may_exchange = options.fingers.empty();
+  }
+  return rule;
 }
 
 bool are_different(std::vector<std::int32_t> patches) {

@@ -38,8 +38,6 @@ void PlannerOptions::validate() const {
           name_of(style), "precision or power unless targets.search is reach");
   require(style != GraspStyle::Auto || planner == PlannerOptions().planner, "style", name_of(style),
           "precision or power unless planner is " + PlannerOptions().planner);
-  require(style != GraspStyle::Power || targets.search != TargetSearch::Reach, "style",
-          name_of(style), "precision or auto where targets.search is reach: it closes no links");
   require(!refine || missing_contact == MissingContact::Fails, "missing_contact",
           name_of(missing_contact), "fails with refine, which accepts no part without contact");
   // Grasp files say 0 where these two are empty.
@@ -99,7 +97,9 @@ std::optional<double> bearing_gap(const PlannerOptions& options) {
 
 RequestedParts parts_to_touch(const PlannerOptions& options, const RequestedParts& requested,
                               const TargetContacts& targets) {
-  return options.style == GraspStyle::Auto ? parts_of(targets) : requested;
+  const bool may_be_others =
+      options.style != GraspStyle::Precision && options.targets.search == TargetSearch::Reach;
+  return may_be_others ? parts_of(targets) : requested;
 }
 
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options) {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "fitting/idle_fingers.hpp"
 #include "grasp/grasp_measure.hpp"
 #include "graspfit/base/stopwatch.hpp"
-#include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/grasp/grasp_measure.hpp"
 #include "graspfit/grasp/planner_result.hpp"
@@ -105,6 +105,16 @@ std::optional<AttemptOutcome> failure_of(RefinementStop stop) {
   return AttemptOutcome::GapLeft;
 }
 
+/// The fingers that touch with their tips' pads.
+std::vector<int> fingers_with_tips(const hands::HandModel& hand, const RequestedParts& parts) {
+  std::vector<int> fingers = parts.fingers;
+  std::erase_if(fingers, [&](int finger) {
+    return std::any_of(parts.other_pads.begin(), parts.other_pads.end(),
+                       [&](int pad) { return hand.pads[pad].finger == finger; });
+  });
+  return fingers;
+}
+
 /// Residual of the grasp's squeeze; infinite without one.
 double squeeze_residual(const AttemptResult& result) {
   return result.grasp && result.grasp->squeeze ? result.grasp->squeeze->residual
@@ -166,8 +176,7 @@ PlannerAttempts::PlannerAttempts(const ObjectModel& object, const hands::HandMod
 }
 
 double PlannerAttempts::strength(const Grasp& grasp) const {
-  return contact::signed_epsilon(contact::touching_contacts(grasp.contacts, scene_.bearing_gap),
-                                 scene_.wrench_object, options_.squeeze_friction);
+  return grasp_strength(grasp, scene_.wrench_object, options_.squeeze_friction, scene_.bearing_gap);
 }
 
 AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserver& observer) const {
@@ -273,6 +282,12 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
     const bool is_drawn = start.draws_to_targets && !start.targets.contacts.empty();
     reached = refine(reached.configuration, requested_pads(hand_, parts),
                      is_drawn ? &start.targets : nullptr, result);
+    if (!reached.failure && options_.idle_fingers == IdleFingers::Close) {
+      const base::Stopwatch watch(result.timings.refinement_s);
+      reached.configuration = with_idle_fingers_closed(
+          {fitting_hand_, object_, surroundings_, scene_.contact_options}, reached.configuration,
+          fingers_with_tips(hand_, parts), options_.fitting);
+    }
   }
   const std::optional<AttemptOutcome>& failure = reached.failure;
   const bool is_measured =

@@ -28,12 +28,21 @@ const std::vector<PlannerPreset>& planner_presets() {
         {"accept", named("usable")},
         {"reject", named("deviation")},
         {"pre-grasps", false}}},
-      {"fast", "the first valid grasps", {{"search", named("first")}}},
-      {"strong",
-       "grasps that close and hold: of many sides an attempt keeps the one that withstands most",
-       {{"candidate-order", named("balance")},
-        {"keep", named("strongest")},
-        {"max-placements", std::int64_t{24}}}}};
+      {"exact",
+       "the paper's method with exact contacts: grasps that touch where asked, are clear of "
+       "everything and can be reached",
+       {}},
+      {"fast", "as exact, the first valid grasps", {{"search", named("first")}}},
+      {kDefaultPreset,
+       "grasps that close and hold: the hand is laid onto the object first, and targets are where "
+       "its pads lie, those that withstand most first",
+       {{"style", named("auto")},
+        {"target-search", named("reach")},
+        {"keep", named("balanced")},
+        {"idle-fingers", named("close")},
+        {"count", std::int64_t{5}},
+        {"search", named("first")},
+        {"rank", named("epsilon")}}}};
   return presets;
 }
 

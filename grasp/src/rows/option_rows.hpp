@@ -387,6 +387,11 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                       "paper's grasp, at the level of voxels",
                       "", "", true, "on", "off"});
   at.group("refinement", options.refinement, refinement_rows);
+  at(options.idle_fingers,
+     {"idle_fingers", kAny, "idle-fingers", "", kContacts,
+      "what fingers do that need not touch: they stay as the search left them; or, with refine, "
+      "each closes onto the object where its fingertip's pad meets it",
+      "R"});
   at(options.self_overlap, {"self_overlap_m", at_least(0)});
   at(options.contact_score_threshold,
      {"contact_score_threshold", kBelowOne, "contact-score-threshold", "1", kContacts,

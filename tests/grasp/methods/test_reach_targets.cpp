@@ -211,8 +211,7 @@ TEST_CASE("A grip is chosen among targets by reach only", "[grasp][reach_targets
                     Catch::Matchers::Contains("style") && Catch::Matchers::Contains("fitting"));
   options.planner = "fitting";
   options.style = GraspStyle::Power;
-  CHECK_THROWS_WITH(options.validate(),
-                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("reach"));
+  CHECK_NOTHROW(options.validate());
 }
 
 TEST_CASE("Targets by reach are on the palm only where it may touch", "[grasp][reach_targets]") {

@@ -39,7 +39,7 @@ TEST_CASE("Presets are options of the table with values that they may have",
     }
     CHECK_NOTHROW(options_of(preset.name).validate());
   }
-  CHECK(names == std::set<std::string_view>{"paper", "fast", "strong"});
+  CHECK(names == std::set<std::string_view>{"paper", "exact", "fast", "strong"});
   CHECK(preset_named("Strong") == nullptr);
 }
 
@@ -55,13 +55,18 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   CHECK(options_of("fast").search == SearchRule::First);
   CHECK(options_of("fast").kept == KeptCandidate::First);
   const PlannerOptions strong = options_of("strong");
-  CHECK(strong.candidate_order == CandidateOrder::Balance);
-  CHECK(preset_named("strong")->values.size() == 3);
-  CHECK(preset_named("fast")->values.size() == 1);
-  CHECK(strong.kept == KeptCandidate::Strongest);
-  CHECK(strong.max_placements == 24);
-  CHECK(strong.search == SearchRule::Best);
+  CHECK(strong.style == GraspStyle::Auto);
+  CHECK(strong.targets.search == TargetSearch::Reach);
+  CHECK(strong.kept == KeptCandidate::Balanced);
+  CHECK(strong.idle_fingers == IdleFingers::Close);
+  CHECK(strong.count == 5);
+  CHECK(strong.search == SearchRule::First);
+  CHECK(strong.rank == RankRule::Epsilon);
   CHECK(strong.refine);
+  CHECK(preset_named("strong")->values.size() == 7);
+  CHECK(preset_named("fast")->values.size() == 1);
+  CHECK(preset_named("exact")->values.empty());
+  CHECK(paper.rank == RankRule::M);
 }
 
 }  // namespace

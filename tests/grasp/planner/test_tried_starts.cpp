@@ -7,7 +7,6 @@
 
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
-#include "graspfit/grasp/planner_presets.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
@@ -122,7 +121,9 @@ TEST_CASE("What an observer throws ends the run", "[grasp][tried_starts]") {
 
 TEST_CASE("Starts that nobody tries are those that a run would try", "[grasp][tried_starts]") {
   Fixture fixture;
-  apply_preset(fixture.options, *preset_named("strong"));
+  fixture.options.kept = KeptCandidate::Strongest;
+  fixture.options.candidate_order = CandidateOrder::Balance;
+  fixture.options.max_placements = 24;
   fixture.options.max_attempts = 1;
   std::vector<Seen> tried;
   fixture.plan(tried, 1);

@@ -39,4 +39,12 @@ struct MeasuringScene {
 Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
                     const RequestedParts& requested);
 
+/// How hard a grasp is to break [R], by which grasps are kept (`KeptCandidate::Strongest`) and
+/// ranked (`RankRule::Epsilon`): `contact::signed_epsilon` of the contacts that bear forces.
+///
+/// @param friction the planner's is `PlannerOptions::squeeze_friction`
+/// @param bearing_gap as in `MeasuringScene` [m]
+double grasp_strength(const Grasp& grasp, const contact::WrenchObject& object, double friction,
+                      const std::optional<double>& bearing_gap);
+
 }  // namespace graspfit::grasp

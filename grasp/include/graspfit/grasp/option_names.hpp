@@ -58,6 +58,9 @@ inline constexpr std::array kNames<RankRule> = {NamedValue{RankRule::M, "m"},
                                                 NamedValue{RankRule::Epsilon, "epsilon"},
                                                 NamedValue{RankRule::Margin, "margin"}};
 template <>
+inline constexpr std::array kNames<IdleFingers> = {NamedValue{IdleFingers::Stay, "stay"},
+                                                   NamedValue{IdleFingers::Close, "close"}};
+template <>
 inline constexpr std::array kNames<CandidateOrder> = {
     NamedValue{CandidateOrder::Pads, "pads"}, NamedValue{CandidateOrder::Balance, "balance"}};
 template <>

@@ -93,6 +93,12 @@ enum class KeptCandidate {
   Strongest,
 };
 
+/// What fingers do that a refined grasp does not need [R].
+enum class IdleFingers {
+  Stay,   ///< They are where the search left them.
+  Close,  ///< Each closes onto the object, where its fingertip's pad meets it.
+};
+
 /// Everything that decides what the planner does. Same options, object, hand and seed: same grasps,
 /// on one build and processor.
 struct PlannerOptions {
@@ -158,6 +164,7 @@ struct PlannerOptions {
   /// voxel-level grasp.
   bool refine = true;
   RefinementOptions refinement;
+  IdleFingers idle_fingers = IdleFingers::Stay;
   /// Without refinement: overlap of links of different fingers that a formed grasp may have before
   /// it is rejected as a self-collision [m], ≥ 0 [R].
   double self_overlap = 0.001;
@@ -204,7 +211,7 @@ std::optional<double> bearing_gap(const PlannerOptions& options);
 RequestedParts requested_parts(const hands::HandModel& hand, const PlannerOptions& options);
 
 /// The parts by which a grasp with these targets must touch: those that were requested; of style
-/// auto those of its targets.
+/// auto, and of style power by reach, those of its targets.
 RequestedParts parts_to_touch(const PlannerOptions& options, const RequestedParts& requested,
                               const TargetContacts& targets);
 

@@ -13,11 +13,15 @@ namespace graspfit::grasp {
 struct PlannerPreset {
   std::string_view name;
   std::string_view meaning;  ///< A sentence without its full stop.
-  /// Names of options of the table with their values.
+  /// Names of options of the table with their values; the others have their defaults.
   std::vector<std::pair<std::string_view, OptionValue>> values;
 };
 
-/// "paper", "fast" and "strong". Without a preset all options have their defaults.
+/// The preset of `graspfit plan` without flags that contradict it: "strong". Programs that use the
+/// library start from the defaults of `PlannerOptions`, which are those of the preset "exact".
+inline constexpr std::string_view kDefaultPreset = "strong";
+
+/// "paper", "exact", "fast" and "strong".
 const std::vector<PlannerPreset>& planner_presets();
 
 /// The preset of that name; null if there is none.
