@@ -19,6 +19,8 @@ function(graspfit_target_defaults target)
     -ffp-contract=off
     # GCC 12 warns of overlaps in std::string's own operator+ (its bug 105329).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    # GCC 13 and later take a reference to what a view points at for one to the view itself.
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>
     # It takes the sources that a unity build includes for headers, whose anonymous namespaces would
     # be a mistake.
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
