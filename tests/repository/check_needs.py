@@ -1,5 +1,6 @@
 """Checks that the packages which the two commands install, the table of docs/building.md, what
-CMake looks for, and what sources include and scripts import all agree.
+CMake looks for, and what sources include and scripts import all agree; and that tests use the names
+that stand for those of both versions of Catch2.
 
   check_needs.py SOURCE_DIR
 """
@@ -20,6 +21,8 @@ POSIX = {"dlfcn.h", "fcntl.h", "malloc.h", "signal.h", "spawn.h", "stdlib.h", "s
          "time.h", "unistd.h"}
 # These are CMake's own package, and ours, which consumers look for.
 OWN_PACKAGES = {"Threads", "graspfit"}
+# Only this header uses what versions 2 and 3 of Catch2 call differently.
+CATCH_HEADER = pathlib.Path("tests/support/catch.hpp")
 
 faults = []
 
@@ -98,7 +101,11 @@ def compare_sources(rows):
         for name in names:
             groups.setdefault(name, set()).add(group)
     for file in sources(".cpp", ".hpp"):
-        for header in re.findall(r"^#include <([^>]+)>", (SOURCE / file).read_text(), re.M):
+        text = (SOURCE / file).read_text()
+        if file != CATCH_HEADER and re.search(r"\bCatch::|<catch2/", text):
+            faults.append("%s: names Catch2, which %s does for both versions of it"
+                          % (file, CATCH_HEADER))
+        for header in re.findall(r"^#include <([^>]+)>", text, re.M):
             name = header.split("/")[0]
             if ("/" in header or header.endswith(".h")) and name not in POSIX:
                 compare(file, name, "header", groups)

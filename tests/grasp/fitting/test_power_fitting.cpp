@@ -204,7 +204,7 @@ TEST_CASE("A palm's target is assigned to the palm and refused where it cannot b
   TargetContacts behind_tip = assigned;
   behind_tip.contacts.front().pad = scene.hand.pad_index("thumb_proximal_pad");
   CHECK_THROWS_WITH(scene.fit(behind_tip, placement),
-                    Catch::Matchers::Contains("only fingertips' pads can be fitted"));
+                    testing::Contains("only fingertips' pads can be fitted"));
 }
 
 TEST_CASE("A seed on the palm's axis leaves eight turns open", "[grasp][power_fitting]") {

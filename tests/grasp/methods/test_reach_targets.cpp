@@ -202,13 +202,11 @@ TEST_CASE("Postures and grasps by reach keep off an obstacle beside the object",
 TEST_CASE("A grip is chosen among targets by reach only", "[grasp][reach_targets]") {
   PlannerOptions options;
   options.style = GraspStyle::Auto;
-  CHECK_THROWS_WITH(options.validate(),
-                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("reach"));
+  CHECK_THROWS_WITH(options.validate(), testing::Contains("style") && testing::Contains("reach"));
   options.targets.search = TargetSearch::Reach;
   CHECK_NOTHROW(options.validate());
   options.planner = "gs";
-  CHECK_THROWS_WITH(options.validate(),
-                    Catch::Matchers::Contains("style") && Catch::Matchers::Contains("fitting"));
+  CHECK_THROWS_WITH(options.validate(), testing::Contains("style") && testing::Contains("fitting"));
   options.planner = "fitting";
   options.style = GraspStyle::Power;
   CHECK_NOTHROW(options.validate());
