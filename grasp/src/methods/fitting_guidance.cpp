@@ -42,15 +42,18 @@ class FittingGuidance : public GraspGuidance {
   explicit FittingGuidance(const GuidanceScene& scene)
       : scene_(scene),
         torque_scale_(
-            geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)),
-        distances_(part_distances(scene.hand.model())) {
-    if (scene.options.targets.search == TargetSearch::Ranked) {
-      ranked_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
-    } else if (scene.options.targets.search == TargetSearch::Reach) {
-      rules_.emplace(scene.object, distances_, scene.parts, scene.options.targets);
-      reach_.emplace(scene_, *rules_);
+            geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)) {
+    const TargetOptions& targets = scene.options.targets;
+    if (targets.search == TargetSearch::Reach) {
+      places_.emplace(scene.object, scene.parts, targets, pool_of(scene.object, targets));
+      reach_.emplace(scene_, *places_);
+      return;
+    }
+    distances_ = part_distances(scene.hand.model());
+    if (targets.search == TargetSearch::Ranked) {
+      ranked_.emplace(scene.object, distances_, scene.parts, targets);
     } else {
-      selector_.emplace(scene.object, distances_, scene.parts, scene.options.targets,
+      selector_.emplace(scene.object, distances_, scene.parts, targets,
                         IdealMeasure{&scene.hand.model(), scene.options.quality});
     }
   }
@@ -126,9 +129,9 @@ class FittingGuidance : public GraspGuidance {
         base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number));
     std::vector<TargetSide> sides = reach_->draw(random);
     if (sides.empty()) {
-      result.failure = failure_name(rules_->pool().empty()       ? TargetFailure::NoSeed
-                                    : rules_->pool().size() == 1 ? TargetFailure::NoSecond
-                                                                 : TargetFailure::NoFurther);
+      result.failure = failure_name(places_->pool().empty()       ? TargetFailure::NoSeed
+                                    : places_->pool().size() == 1 ? TargetFailure::NoSecond
+                                                                  : TargetFailure::NoFurther);
     }
     return sides;
   }
@@ -208,9 +211,9 @@ class FittingGuidance : public GraspGuidance {
 
   const GuidanceScene scene_;
   const double torque_scale_;               ///< The torque scale of squeezes [m].
-  const PartDistances distances_;           ///< Outlives the searches, which refer to it.
+  PartDistances distances_;                 ///< Outlives the other searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
-  std::optional<TargetRules> rules_;
+  std::optional<TargetPlaces> places_;      ///< Of the search by reach, which refers to it.
   std::optional<ReachSides> reach_;
   mutable std::mutex ranked_lock_;
   mutable std::optional<RankedTargets> ranked_;

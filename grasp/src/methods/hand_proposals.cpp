@@ -84,9 +84,9 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
 }  // namespace
 
 HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& object,
-                             const TargetRules& rules, const HandGrips& grips,
+                             const TargetPlaces& targets, const HandGrips& grips,
                              const NearestPatches& places)
-    : hand_(hand), object_(object), rules_(rules), grips_(grips), places_(places) {}
+    : hand_(hand), object_(object), targets_(targets), grips_(grips), places_(places) {}
 
 std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
                                                 base::Random& random) const {
@@ -109,14 +109,14 @@ std::optional<HandProposal> HandProposals::completed(const HandGrips::Grip& grip
 /// Two fingers of the grip on two points of the pool, if its tables know that they can be there.
 std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
                                                  base::Random& random) const {
-  const std::vector<PoolPoint>& pool = rules_.pool();
+  const std::vector<PoolPoint>& pool = targets_.pool();
   const HandGrips::Pinch& pinch = grips_.pinches()[grip.pinches[random.index(grip.pinches.size())]];
   const PoolPoint& a = pool[random.index(pool.size())];
   const PoolPoint& b = pool[random.index(pool.size())];
   const Facing a_O = facing(a);
   const Facing b_O = facing(b);
   const Vector3d line = b_O.point - a_O.point;
-  if (!(line.norm() > 0.0) || rules_.is_too_near(line.norm())) return std::nullopt;
+  if (!(line.norm() > 0.0) || targets_.is_too_near(line.norm())) return std::nullopt;
   const auto samples = pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
                                         geometry::angle_between(b_O.normal, -line), random);
   if (!samples) return std::nullopt;
@@ -136,7 +136,7 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
 
 /// The palm on a point of the pool, leaning a little, turned anyhow.
 HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random& random) const {
-  const PoolPoint& point = rules_.pool()[random.index(rules_.pool().size())];
+  const PoolPoint& point = targets_.pool()[random.index(targets_.pool().size())];
   const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
   const auto sample = base::as_index<std::int32_t>(random.index(palm.size()));
   const Facing pad = facing(palm, sample);

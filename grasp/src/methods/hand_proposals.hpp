@@ -9,7 +9,7 @@
 #include "graspfit/hands/hand_configuration.hpp"
 #include "methods/hand_grips.hpp"
 #include "object/nearest_patches.hpp"
-#include "targets/target_feasibility.hpp"
+#include "targets/target_places.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -27,8 +27,8 @@ struct HandProposal {
 class HandProposals {
  public:
   /// Refers to all of them. `places` are the pool's.
-  HandProposals(const hands::HandModel& hand, const ObjectModel& object, const TargetRules& rules,
-                const HandGrips& grips, const NearestPatches& places);
+  HandProposals(const hands::HandModel& hand, const ObjectModel& object,
+                const TargetPlaces& targets, const HandGrips& grips, const NearestPatches& places);
 
   /// With the palm of the grip on a point, or two of its fingers on two points; empty where the
   /// hand's tables do not know that they can be there. Most draws are.
@@ -56,7 +56,7 @@ class HandProposals {
 
   const hands::HandModel& hand_;
   const ObjectModel& object_;
-  const TargetRules& rules_;
+  const TargetPlaces& targets_;
   const HandGrips& grips_;
   const NearestPatches& places_;
 };

@@ -68,9 +68,9 @@ constexpr double kMostGap = 0.003;           // [m]
 constexpr double kMostDepth = 0.003;         // [m]
 constexpr double kMostDepthOfWraps = 0.001;  // [m]
 
-std::vector<bool> is_in_pool(const TargetRules& rules, std::size_t num_patches) {
+std::vector<bool> is_in_pool(const TargetPlaces& targets, std::size_t num_patches) {
   std::vector<bool> is_in(num_patches, false);
-  for (const PoolPoint& point : rules.pool()) is_in[*point.patch] = true;
+  for (const PoolPoint& point : targets.pool()) is_in[*point.patch] = true;
   return is_in;
 }
 
@@ -111,26 +111,26 @@ bool are_different(std::vector<std::int32_t> patches) {
 
 }  // namespace
 
-ReachSides::ReachSides(const GuidanceScene& scene, const TargetRules& rules)
+ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
     : scene_(scene),
-      rules_(rules),
+      targets_(targets),
       grips_(scene.hand.model(), scene.parts, grip_rule(scene)),
       nearest_(scene.object, have_normal(scene.object.patches)),
-      places_(scene.object, is_in_pool(rules, scene.object.patches.size())),
+      places_(scene.object, is_in_pool(targets, scene.object.patches.size())),
       search_(scene.hand, scene.object, nearest_, places_),
       clearance_(scene.hand, scene.object, scene.surroundings),
-      proposals_(scene.hand.model(), scene.object, rules, grips_, places_),
+      proposals_(scene.hand.model(), scene.object, targets, grips_, places_),
       // Between that of closure and that within which a squeeze is to balance: what is strong there
       // still closes where normals turn out a little different.
-      strength_(scene.object, rules.pool(),
+      strength_(scene.object, targets.pool(),
                 0.5 * (scene.options.friction + scene.options.squeeze_friction)),
       pool_of_patch_(scene.object.patches.size(), -1) {
-  for (std::int32_t p = 0; p < std::ssize(rules.pool()); ++p) {
-    pool_of_patch_[*rules.pool()[p].patch] = p;
+  for (std::int32_t p = 0; p < std::ssize(targets.pool()); ++p) {
+    pool_of_patch_[*targets.pool()[p].patch] = p;
   }
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
-  if (num_grips == 1 || rules.pool().size() < 2) return;
+  if (num_grips == 1 || targets.pool().size() < 2) return;
   const std::size_t num_searches = std::max<std::size_t>(1, kSearchesOfAllGrips / num_grips);
   const double asked = kAims.front().strength;
   for (std::size_t i = 0; i < num_grips; ++i) {
@@ -156,7 +156,7 @@ bool ReachSides::Work::is_done() const {
 }
 
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
-  if (rules_.pool().size() < 2) return {};
+  if (targets_.pool().size() < 2) return {};
   std::vector<TargetSide> sides;
   for (const Candidate& candidate : strongest(
            nullptr, {.most_proposals = kMostProposals, .most_postures = kMostPostures}, random)) {
@@ -316,9 +316,9 @@ bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
       const std::int32_t a = point_of(patches[i]);
       const std::int32_t b = point_of(patches[j]);
       // Pads that face each other need no space beside one another.
-      const std::vector<PoolPoint>& pool = rules_.pool();
+      const std::vector<PoolPoint>& pool = targets_.pool();
       if (pool[a].inward_normal_O.dot(pool[b].inward_normal_O) < 0.0) continue;
-      if (rules_.is_too_near(rules_.distance(a, b))) return false;
+      if (targets_.is_too_near(targets_.distance(a, b))) return false;
     }
   }
   return true;
@@ -327,7 +327,7 @@ bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
 bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const {
   for (std::size_t i = 0; i < patches.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (rules_.is_stable_pair(point_of(patches[j]), point_of(patches[i]))) return true;
+      if (targets_.is_stable_pair(point_of(patches[j]), point_of(patches[i]))) return true;
     }
   }
   return false;
@@ -361,7 +361,7 @@ TargetSide ReachSides::side_of(const Candidate& candidate) const {
     points.push_back(point_of(patch));
   }
   TargetSide side;
-  side.targets = rules_.as_targets(points, std::nullopt, 0);
+  side.targets = targets_.as_targets(points, std::nullopt, 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     TargetContact& target = side.targets.contacts[i];
     const HandGrips::Part& part = grips_.parts()[candidate.grip->parts[i]];

@@ -12,7 +12,7 @@
 #include "methods/place_strength.hpp"
 #include "methods/target_sides.hpp"
 #include "scene/clearance.hpp"
-#include "targets/target_feasibility.hpp"
+#include "targets/target_places.hpp"
 
 /// \file
 /// Targets that the hand can meet [R]. Many times a hand is proposed that is about where its pads
@@ -26,8 +26,8 @@ namespace graspfit::grasp::internal {
 /// Draws candidates for one object and hand. Const members are safe to call from several threads.
 class ReachSides {
  public:
-  /// Refers to the scene and the rules.
-  ReachSides(const GuidanceScene& scene, const TargetRules& rules);
+  /// Refers to the scene and the targets.
+  ReachSides(const GuidanceScene& scene, const TargetPlaces& targets);
 
   /// The strongest candidates of an attempt, the strongest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
@@ -80,7 +80,7 @@ class ReachSides {
   TargetSide side_of(const Candidate& candidate) const;
 
   const GuidanceScene& scene_;
-  const TargetRules& rules_;
+  const TargetPlaces& targets_;
   const HandGrips grips_;
   const NearestPatches nearest_;
   const NearestPatches places_;  ///< The pool's.

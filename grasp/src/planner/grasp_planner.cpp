@@ -191,9 +191,7 @@ class Search {
 std::optional<std::string> size_refusal(const geometry::TriangleMesh& mesh,
                                         const hands::HandModel& hand,
                                         const PlannerOptions& options) {
-  const RequestedParts parts = requested_parts(hand, options);
-  return internal::size_refusal(mesh, hand, parts.fingers,
-                                internal::widest_opening(part_distances(hand), parts));
+  return internal::size_refusal(mesh, hand, requested_parts(hand, options));
 }
 
 ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const PlannerOptions& options,

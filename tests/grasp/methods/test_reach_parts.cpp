@@ -98,10 +98,10 @@ TEST_CASE("The cheapest hand is found with or without knowing what another costs
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   std::vector<bool> all(scene.object.patches.size(), true);
   const internal::NearestPatches places(scene.object, all);
-  const PartDistances distances = part_distances(scene.hand, scene.parts);
-  const internal::TargetRules rules(scene.object, distances, scene.parts, TargetOptions());
+  const internal::TargetPlaces targets(scene.object, scene.parts, TargetOptions(),
+                                       internal::pool_of(scene.object, TargetOptions()));
   const internal::HandGrips grips(scene.hand, scene.parts, internal::GripRule());
-  const internal::HandProposals proposals(scene.hand, scene.object, rules, grips, places);
+  const internal::HandProposals proposals(scene.hand, scene.object, targets, grips, places);
   const internal::HandGrips::Grip& grip = grips.grips().front();
   base::Random random(4);
   int num_drawn = 0;

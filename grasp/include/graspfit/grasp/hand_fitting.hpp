@@ -15,7 +15,7 @@ enum class GraspStyle {
   Power,      ///< Targets go to the fingertips and the palm; the palm is brought to the surface
               ///< first and links behind the tips are closed onto it. With
               ///< `TargetSearch::Reach` to the palm and the fingertips, or the pads behind these,
-              ///< and nothing closes [R].
+              ///< and no link is closed onto it but by `IdleFingers` [R].
   Auto,       ///< Targets go to fingertips alone, to them and the palm, or to one finger more, of
               ///< any fingers beside the thumb unless they are named, or to the palm and the pads
               ///< behind the tips: where the strongest posture is found [R]; with
