@@ -55,6 +55,10 @@ void sort_names(std::vector<CutPieceName>& names, std::vector<CutPieceName>& scr
   order_by(&CutPieceName::cell, num_cells);
 }
 
+[[noreturn]] void refuse(std::int32_t face) {
+  throw base::InvalidInput("face " + std::to_string(face) + " of the mesh leaves the lattice");
+}
+
 Eigen::Vector3d centroid_of(const std::array<Eigen::Vector3d, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return a + ((b - a) + (c - a)) / 3.0;
@@ -83,17 +87,19 @@ void VoxelCutter::run(const std::function<void(const CutLayer&, std::int64_t)>& 
   layers_.resize(num_layers);
 
   // The faces by the layer in which they begin, ascending in each.
+  std::vector<std::int32_t> layer_of(mesh_.faces.size());
   std::vector<std::size_t> begin(num_layers + 2, 0);
   for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
-    find_cells(face);
-    ++begin[first_[2] + 2];
+    const Face& f = mesh_.faces[face];
+    const int low = std::min({codes_[f[0]][2], codes_[f[1]][2], codes_[f[2]][2]});
+    if (low < 0 || low >= 2 * lattice_.counts[2]) refuse(face);
+    layer_of[face] = low >> 1;
+    ++begin[layer_of[face] + 2];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<std::int32_t> faces(mesh_.faces.size());
   for (std::int32_t face = 0; face < std::ssize(mesh_.faces); ++face) {
-    const Face& f = mesh_.faces[face];
-    const int low = std::min({codes_[f[0]][2], codes_[f[1]][2], codes_[f[2]][2]});
-    faces[begin[(low >> 1) + 1]++] = face;
+    faces[begin[layer_of[face] + 1]++] = face;
   }
 
   const std::int32_t num_cells = lattice_.counts[0] * lattice_.counts[1];
@@ -131,7 +137,7 @@ void VoxelCutter::find_cells(std::int32_t face) {
     first_[axis] = low >> 1;
     last_[axis] = std::max(first_[axis], (high - 1) >> 1);
     if (low < 0 || last_[axis] >= lattice_.counts[axis]) {
-      throw base::InvalidInput("face " + std::to_string(face) + " of the mesh leaves the lattice");
+      refuse(face);
     }
   }
 }
