@@ -68,7 +68,7 @@ class VoxelCutter {
   VoxelCutter(const TriangleMesh& mesh, const VoxelLattice& lattice);
 
   /// Calls `take(layer, first voxel)` for every layer that holds pieces, from below.
-  /// @throws InvalidInput if a face leaves the lattice.
+  /// @throws InvalidInput if a face leaves the lattice, perhaps after layers were taken.
   void run(const std::function<void(const CutLayer&, std::int64_t)>& take);
 
  private:
