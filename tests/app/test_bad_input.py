@@ -212,7 +212,8 @@ class BadFlags(program.ProgramTest):
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
                      "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
-                     "reject", "guard-self", "pre-grasp-open-neutral", "candidate-order", "keep", "rank"):
+                     "reject", "guard-self", "pre-grasp-open-neutral",
+                     "pre-grasp-leave-pressing", "candidate-order", "keep", "rank"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

@@ -90,6 +90,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.pre_grasp.retreat_step = 0.02;
   options.pre_grasp.opening_steps = 11;
   options.pre_grasp.open_neutral = true;
+  options.pre_grasp.leave_pressing = true;
   options.pre_grasp.way_tolerance = 2e-5;
   options.squeeze.normal_sum = 12.0;
   options.squeeze.stiffness = 4.0;

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/jacobian.hpp"
 #include "scene/infinity.hpp"
-#include "scene/straight_way.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -16,8 +17,12 @@ namespace {
 
 // A search ends after so many distances of bodies that are not proven to stay apart: where links
 // slide along the object with hardly a gap every way takes hundreds, and few such searches find
-// one.
+// one. A way that is stopped where an earlier one was counts for one.
 constexpr int kMostInVain = 8000;
+
+// A link so near to the object in the grasp should not be moved towards it.
+constexpr double kNearlyTouching = 0.001;  // [m]
+constexpr double kStill = 1e-6;            // of a motion towards it [m]
 
 /// Whether all items pass; an item that fails moves to the front, to be tested first the next time.
 template <class T, class Test>
@@ -52,20 +57,25 @@ PreGraspSearch::PreGraspSearch(const PreGraspScene& scene, const hands::PosedCon
       open_q_(hands::open_configuration(scene.hand).q),
       X_OL_grasp_(grasp.X_OL) {
   for (int link = 0; link < std::ssize(scene.hand.links); ++link) {
-    if (scene.collision.link_solid(link)) links_.push_back({link, {}, {}});
+    if (scene.collision.link_solid(link)) links_.push_back({link, {}});
   }
   for (const GuardedLink& a : links_) {
     for (const GuardedLink& b : links_) {
       if (b.link <= a.link || scene.hand.is_excluded(a.link, b.link)) continue;
       const bool touch = geometry::do_intersect(solid(a.link), solid(b.link),
                                                 between(X_OL_grasp_, a.link, b.link));
-      if (!touch) pairs_.push_back({a.link, b.link, {}, {}});
+      if (!touch) pairs_.push_back({a.link, b.link, {}});
     }
   }
 }
 
 std::optional<PreGrasp> PreGraspSearch::find() {
   std::optional<PreGrasp> found = least_opening(Joints::Closing);
+  if (!found && options_.leave_pressing) {
+    leaves_ = leaving_joints();
+    const bool is_any_left = std::find(leaves_.begin(), leaves_.end(), false) != leaves_.end();
+    if (is_any_left) found = least_opening(Joints::Leaving);
+  }
   if (!found && options_.open_neutral) found = least_opening(Joints::All);
   return found;
 }
@@ -100,10 +110,42 @@ std::optional<PreGrasp> PreGraspSearch::least_opening(Joints joints) {
   return std::nullopt;
 }
 
+std::vector<bool> PreGraspSearch::leaving_joints() const {
+  const auto num_joints = base::as_index<int>(scene_.hand.joints.size());
+  // What opens with each joint: itself, and those that follow it.
+  Eigen::MatrixXd openings(num_joints, num_joints);
+  for (int j = 0; j < num_joints; ++j) {
+    Eigen::VectorXd q = grasp_.q;
+    q[j] = open_q_[j];
+    hands::apply_couplings(scene_.hand, q);
+    openings.col(j) = q - grasp_.q;
+  }
+  std::vector<bool> leaves(scene_.hand.joints.size(), true);
+  for (const GuardedLink& guarded : links_) {
+    const RigidTransform& X_OL = X_OL_grasp_[guarded.link];
+    const auto near =
+        geometry::nearest_points(scene_.object, solid(guarded.link), X_OL, kNearlyTouching);
+    if (!near || near->distance == 0.0) continue;
+    const Eigen::Vector3d outward = (near->point_on_b_A - near->point_on_a_A).normalized();
+    const Eigen::RowVectorXd motions =
+        outward.transpose() *
+        hands::point_jacobian(scene_.hand, X_OL_grasp_, guarded.link,
+                              geometry::inverted(X_OL) * near->point_on_b_A)
+            .topRows<3>() *
+        openings;
+    for (int j = 0; j < num_joints; ++j) {
+      if (motions[j] < -kStill) leaves[j] = false;
+    }
+  }
+  return leaves;
+}
+
 Eigen::VectorXd PreGraspSearch::opened(double opening, Joints joints) const {
   Eigen::VectorXd q = grasp_.q;
   for (std::size_t j = 0; j < scene_.hand.joints.size(); ++j) {
-    if (scene_.hand.joints[j].closing_sign == 0 && joints == Joints::Closing) continue;
+    const bool is_neutral = scene_.hand.joints[j].closing_sign == 0;
+    if (is_neutral && (joints == Joints::Closing || !options_.open_neutral)) continue;
+    if (joints == Joints::Leaving && !leaves_[j]) continue;
     double& position = q[j];
     position = (1.0 - opening) * position + opening * open_q_[j];
   }
@@ -139,9 +181,9 @@ bool PreGraspSearch::is_clear(const LinkPoses& X_OL) {
     const int link = guarded.link;
     const RigidTransform& X = X_OL[link];
     if (surroundings_distance(link, X, wanted) < wanted) return false;
-    const auto near =
-        geometry::nearest_points(scene_.object, solid(link), X, wanted, guarded.seed, wanted);
-    if (near) guarded.seed = geometry::ProximitySeed{near->face_a, near->face_b};
+    const auto near = geometry::nearest_points(scene_.object, solid(link), X, wanted,
+                                               guarded.of_object.seed, wanted);
+    if (near) guarded.of_object.seed = geometry::ProximitySeed{near->face_a, near->face_b};
     return !near && !scene_.collision.link_intersects(scene_.object, link, X);
   });
 }
@@ -152,41 +194,74 @@ double PreGraspSearch::nearest_distance(const LinkPoses& X_OL) const {
     const RigidTransform& X = X_OL[guarded.link];
     nearest = std::min(nearest, surroundings_distance(guarded.link, X, nearest));
     nearest = geometry::surface_clearance(scene_.object, solid(guarded.link), X, nearest, 1.0,
-                                          guarded.seed)
+                                          guarded.of_object.seed)
                   .at_least;
   }
   return nearest;
 }
 
+bool PreGraspSearch::meet_again(const HandConfiguration& start, const StraightWay& way) const {
+  // Where they meet on this way, if not on its last segment, on which they may.
+  const auto share_of = [&](const Bodies& bodies, double speed) -> std::optional<double> {
+    if (!bodies.met_at || (1.0 - *bodies.met_at) * speed <= options_.way_tolerance) {
+      return std::nullopt;
+    }
+    return bodies.met_at;
+  };
+  const auto at = [&](double share) {
+    return hands::forward_kinematics(scene_.hand, interpolated(start, grasp_, share));
+  };
+  const auto link_meets = [&](const GuardedLink& guarded) {
+    const auto share = share_of(guarded.of_object, way.speed(guarded.link));
+    return share &&
+           scene_.collision.link_intersects(scene_.object, guarded.link, at(*share)[guarded.link]);
+  };
+  const auto pair_meets = [&](const LinkPair& pair) {
+    const auto share = share_of(pair.bodies, way.relative_speed(pair.a, pair.b));
+    return share && geometry::do_intersect(solid(pair.a), solid(pair.b),
+                                           between(at(*share), pair.a, pair.b));
+  };
+  return std::any_of(links_.begin(), links_.end(), link_meets) ||
+         std::any_of(pairs_.begin(), pairs_.end(), pair_meets);
+}
+
 bool PreGraspSearch::is_free(const HandConfiguration& start, const LinkPoses& X_OL_start) {
   const StraightWay way(scene_.hand, start, grasp_);
-  const auto stays_apart = [&](double speed, SearchedBound& in_grasp, const auto& distance) {
+  if (meet_again(start, way)) {
+    ++num_in_vain_;
+    return false;
+  }
+  const auto stays_apart = [&](double speed, Bodies& bodies, const auto& distance) {
     int num_distances = 0;
     const bool are_apart =
         are_apart_on_way(speed, options_.way_tolerance, [&](double share, double enough) {
           ++num_distances;
-          if (share == 0.0) return std::min(distance(X_OL_start, enough), enough);
           if (share == 1.0) {
             // All ways end there.
+            SearchedBound& in_grasp = bodies.in_grasp;
             if (in_grasp.at_least >= in_grasp.searched && enough > in_grasp.searched) {
               in_grasp = {distance(X_OL_grasp_, enough), enough};
             }
             return std::min(in_grasp.at_least, enough);
           }
-          const auto X_OL =
-              hands::forward_kinematics(scene_.hand, interpolated(start, grasp_, share));
-          return std::min(distance(X_OL, enough), enough);
+          const double found = distance(
+              share == 0.0
+                  ? X_OL_start
+                  : hands::forward_kinematics(scene_.hand, interpolated(start, grasp_, share)),
+              enough);
+          if (found == 0.0) bodies.met_at = share;
+          return std::min(found, enough);
         });
     if (!are_apart) num_in_vain_ += num_distances;
     return are_apart;
   };
   const auto is_link_free = [&](GuardedLink& guarded) {
     const int link = guarded.link;
-    SearchedBound of_surroundings;
-    return stays_apart(way.speed(link), guarded.in_grasp,
+    Bodies of_surroundings;
+    return stays_apart(way.speed(link), guarded.of_object,
                        [&](const LinkPoses& X_OL, double enough) {
                          return clearance(scene_.object, solid(link), X_OL[link], enough,
-                                          guarded.seed);
+                                          guarded.of_object.seed);
                        }) &&
            (scene_.surroundings.surroundings().is_empty() ||
             stays_apart(way.speed(link), of_surroundings,
@@ -195,10 +270,10 @@ bool PreGraspSearch::is_free(const HandConfiguration& start, const LinkPoses& X_
                         }));
   };
   const auto is_pair_free = [&](LinkPair& pair) {
-    return stays_apart(way.relative_speed(pair.a, pair.b), pair.in_grasp,
+    return stays_apart(way.relative_speed(pair.a, pair.b), pair.bodies,
                        [&](const LinkPoses& X_OL, double enough) {
                          return clearance(solid(pair.a), solid(pair.b),
-                                          between(X_OL, pair.a, pair.b), enough, pair.seed);
+                                          between(X_OL, pair.a, pair.b), enough, pair.bodies.seed);
                        });
   };
   return all_pass(links_, is_link_free) && all_pass(pairs_, is_pair_free);

@@ -397,7 +397,10 @@ AttemptResult PlannerAttempts::with_way_in(AttemptResult result) const {
     const base::Stopwatch watch(result.timings.pre_grasp_s);
     PreGraspOptions pre_grasp = options_.pre_grasp;
     // Targets by reach are met by whatever the joints can do.
-    if (options_.targets.search == TargetSearch::Reach) pre_grasp.open_neutral = true;
+    if (options_.targets.search == TargetSearch::Reach) {
+      pre_grasp.open_neutral = true;
+      pre_grasp.leave_pressing = true;
+    }
     grasp.pre_grasp =
         find_pre_grasp({hand_, fitting_hand_.collision(), object_.query, surroundings_},
                        hands::PosedConfiguration{grasp.configuration, result.X_OL}, pre_grasp);

@@ -212,6 +212,10 @@ constexpr auto pre_grasp_rows = [](auto& at, auto& pre_grasp) {
                               "where no other way is free, joints that neither open nor close "
                               "(spread, abduction) go along to where the open hand has them; "
                               "always with target-search reach"});
+  at(pre_grasp.leave_pressing, {"leave_pressing", kAny, "pre-grasp-leave-pressing", "", kContacts,
+                                "where no other way is free, joints whose opening would move what "
+                                "touches further onto the object stay as they are in the grasp; "
+                                "always with target-search reach"});
   at(pre_grasp.way_tolerance, {"way_tolerance_m", above(0)});
 };
 

@@ -462,6 +462,52 @@ TEST_CASE("Neutral joints open along where that is allowed and nothing else is f
   CHECK(found->configuration.q[1] == -0.01);
 }
 
+TEST_CASE("A joint whose opening moves a finger onto the object stays", "[grasp][pre_grasp]") {
+  // A finger before a wall: the first slide opens away from the wall, the second one, which it
+  // carries, opens towards it, and farther.
+  HandModel hand;
+  hand.name = "slides";
+  hand.links.resize(3);
+  hand.palm.link = 0;
+  const auto slide = [&](const char* name, int parent, int child, const Vector3d& axis, int sign) {
+    hands::Joint joint;
+    joint.name = name;
+    joint.type = hands::JointType::Prismatic;
+    joint.parent_link = parent;
+    joint.child_link = child;
+    joint.axis_J = axis;
+    joint.lower = -0.05;
+    joint.upper = 0.1;
+    joint.closing_sign = sign;
+    hand.links[static_cast<std::size_t>(child)].parent_link = parent;
+    hand.links[static_cast<std::size_t>(child)].parent_joint = static_cast<int>(hand.joints.size());
+    hand.joints.push_back(joint);
+  };
+  slide("away", 0, 1, Vector3d::UnitX(), 1);
+  slide("onto", 1, 2, Vector3d::UnitX(), -1);
+  HandConfiguration grasp{RigidTransform::Identity(), Eigen::Vector2d(0.0, 0.0149)};
+  SECTION("by itself") {}
+  SECTION("as it follows a joint that moves nothing near the object") {
+    hand.links.resize(4);
+    slide("leader", 0, 3, Vector3d::UnitY(), -1);
+    hand.joints[1].coupling = hands::Coupling{.leader = 2};
+    grasp.q = Eigen::Vector3d(0.0, 0.0149, 0.0149);
+  }
+  hand.links[2].mesh_L = geometry::box({0.01, 0.01, 0.01});
+  const MeshQuery wall(box_at({0.01, 0.1, 0.1}, {0.025, 0.0, 0.0}));
+  const auto find = [&](bool leave_pressing) {
+    return find_pre_grasp(
+        {hand, hands::HandCollision(hand), wall, SurroundingsCollision(hand, {})}, grasp,
+        {.largest_retreat = 0.0, .open_neutral = true, .leave_pressing = leave_pressing});
+  };
+  CHECK_FALSE(find(false));
+  const auto found = find(true);
+  REQUIRE(found);
+  CHECK(found->configuration.q[0] == Approx(-0.005));
+  CHECK(found->configuration.q[1] == 0.0149);
+  CHECK(found->clearance == Approx(0.0051));
+}
+
 TEST_CASE(
     "Ways of the Barrett and the human hand are clear wherever they are looked at, and no "
     "option before them is",

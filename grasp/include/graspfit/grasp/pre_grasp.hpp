@@ -26,10 +26,13 @@ struct PreGraspOptions {
   double largest_retreat = 0.1;  ///< Of the palm, against its direction [m], in [0, 10].
   double retreat_step = 0.01;    ///< [m], > 0; at most 1000 of them up to `largest_retreat`.
   int opening_steps = 10;        ///< From the grasp's joints to open ones, in [1, 1000].
-  /// Whether neutral joints (spread, abduction) may open together with the closing ones where no
-  /// pre-grasp is found otherwise: fingers that a grasp draws together around an object would cross
-  /// each other as they straighten.
+  /// Whether neutral joints (spread, abduction) may open, too, where no pre-grasp is found without:
+  /// fingers that a grasp draws together around an object would cross each other as they
+  /// straighten.
   bool open_neutral = false;
+  /// Whether joints may stay, where no pre-grasp is found by opening them, whose opening moves what
+  /// touches the object further onto it, as that of a thumb that lies across the object may.
+  bool leave_pressing = false;
   /// Length of the end of the path over which bodies that touch in the grasp, or nearly do, may
   /// already touch [m], > 0; the default is half of the gap that refinement leaves.
   double way_tolerance = 1e-5;
@@ -61,10 +64,12 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// Openings are 1/n, 2/n, …, 1 (n = `opening_steps`) of the motion of every closing joint to its
 /// position in `open_configuration`; followers move by their couplings, and neutral joints (spread,
 /// abduction) stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`.
-/// Every combination is tried in that order, then, with `open_neutral`, every one again with
-/// neutral joints opened by the same share; the result is empty if none of them is a pre-grasp.
-/// Either round ends, too, once it has asked for more than 8000 distances of bodies that were not
-/// proven to stay apart.
+/// Every combination is tried in that order. With `leave_pressing` there is another round, in which
+/// joints stay whose opening moves the point of a link that is nearest to the object, and within
+/// 1 mm of it, towards it (in the grasp, to first order; each joint with its followers, and without
+/// the others); with `open_neutral` neutral joints open by the same share in that round, and in a
+/// last one all do. The result is empty if no combination is a pre-grasp. A round ends, too, once
+/// it has asked for more than 8000 distances of bodies that were not proven to stay apart.
 ///
 /// That the path is free is proven, not sampled, by conservative advancement: two bodies at a
 /// distance cannot meet before the fastest points of both have together moved by that distance.
