@@ -192,7 +192,7 @@ class Interrupts(program.ProgramTest):
         primary, secondary = pty.openpty()
         self.addCleanup(os.close, primary)
         process = subprocess.Popen(
-            [program.PROGRAM, "plan", str(self.write_torus()), "--count", "3",
+            [program.PROGRAM, "plan", str(self.write_torus()), "--count", "1000",
              "--max-attempts", "1000000", "--out", str(self.folder / "new/out")],
             stdout=subprocess.PIPE, stderr=secondary, env={**os.environ, "TERM": "xterm"})
         self.addCleanup(process.stdout.close)
