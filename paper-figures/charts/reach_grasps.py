@@ -1,13 +1,14 @@
-"""Closure, distance from targets and attempts of the first valid grasps at targets that the hand can meet."""
+"""Closure, epsilon, distance from targets and attempts of the first valid grasps at targets that the hand can meet."""
 
 from figure_style import CYCLE, MARKERS, panels
 from object_names import note_for, short_name
 
 COLUMNS = (
-    "object", "size", "hand", "friction", "grasps", "attempts", "force_closed_share", "median_target_distance_m",
+    "object", "size", "hand", "friction", "grasps", "attempts", "force_closed_share", "median_epsilon", "median_target_distance_m",
 )  # fmt: skip
 ROWS = (
     ("force_closed_share", 1.0, "share that closes", (0.0, 1.05)),
+    ("median_epsilon", 1.0, "median epsilon", (0.0, None)),
     ("median_target_distance_m", 1000.0, "contact to target [mm]", (0.0, None)),
     ("attempts_per_grasp", 1.0, "attempts per valid grasp", (0.0, None)),
 )

@@ -45,8 +45,9 @@ double cost(double gap, const Vector3d& pad_normal, const Vector3d& inward_norma
 std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, const Facing& a_O,
                                       const Facing& b_O, base::Random& random) {
   const Vector3d line_O = (b_O.point - a_O.point).normalized();
-  const Matrix3d onto =
-      Eigen::Quaterniond::FromTwoVectors(b_H.point - a_H.point, line_O).toRotationMatrix();
+  const Matrix3d onto = Eigen::Quaterniond::FromTwoVectors(b_H.point - a_H.point, line_O)
+                            .normalized()  // of nearly opposite vectors Eigen's is not
+                            .toRotationMatrix();
   const Vector3d normal_a = onto * a_H.normal;
   const Vector3d normal_b = onto * b_H.normal;
   const auto lean = [&](double turn) {
@@ -147,9 +148,10 @@ HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random
   const Vector3d across = point.inward_normal_O.unitOrthogonal();
   const Eigen::AngleAxisd tilt(lean, Eigen::AngleAxisd(around, point.inward_normal_O) * across);
   RigidTransform X_OH = RigidTransform::Identity();
-  X_OH.linear() =
-      (tilt * roll).toRotationMatrix() *
-      Eigen::Quaterniond::FromTwoVectors(pad.normal, point.inward_normal_O).toRotationMatrix();
+  X_OH.linear() = (tilt * roll).toRotationMatrix() *
+                  Eigen::Quaterniond::FromTwoVectors(pad.normal, point.inward_normal_O)
+                      .normalized()
+                      .toRotationMatrix();
   X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
   // The palm lies where it was put: that costs nothing.
   return with(proposal_at(X_OH), {grip.parts.back(), sample, *point.patch, 0.0});

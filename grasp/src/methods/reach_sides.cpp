@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "graspfit/base/units.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/palm_pose.hpp"
 
 namespace graspfit::grasp::internal {
@@ -18,36 +19,36 @@ using Eigen::Vector3d;
 using geometry::RigidTransform;
 
 // An attempt ends with a candidate that is strong enough for the postures that were tried, or after
-// so much work. Nearly all candidates of a strength of 0.035 close; 0.05 costs a twentieth more and
-// is what grasps are to have. Where none is found soon, what hundreds of further postures add is
-// seldom 0.01, so that less is asked.
+// so much work. Nearly all candidates of a strength of 0.035 close. To ask for 0.05 after half as
+// many postures takes a quarter less time of planning, and grasps are weaker by a twentieth. Where
+// none is found soon, what hundreds of further postures add is seldom 0.01, so that less is asked.
 constexpr double kEnough = 0.1;
 struct Aim {
   int postures;
   double strength;
 };
-constexpr std::array<Aim, 3> kAims = {{{90, 0.05}, {200, 0.02}, {1000, 0.005}}};
+constexpr std::array<Aim, 3> kAims = {{{60, 0.06}, {120, 0.03}, {1000, 0.005}}};
 constexpr int kMostPostures = kAims.back().postures;  // large and small objects need some of them
 constexpr int kMostPairs = 500000;                    // of points, or points for the palm
-constexpr int kMostProposals = 10000;  // small objects and wide fingertips need most of them
+constexpr int kMostProposals = 20000;  // small objects and wide fingertips need most of them
 // Further candidates cost little unless the first ones fail.
 constexpr std::size_t kMostStarts = 3;
-constexpr int kProposals = 4;  // of new candidates, of which one is laid onto the surface
+constexpr int kProposals = 16;      // of new candidates, of which one is laid onto the surface
+constexpr double kMostCost = 0.03;  // of one of them [m]
+constexpr int kVariations = 4;      // of the strongest candidate, of which one is laid
 
 // A posture that is in the object is lifted off it: refinement closes gaps more often than it frees
 // a hand, and moves contacts less.
 constexpr double kLiftStep = 0.2;  // [voxels]
 constexpr int kMostLifts = 6;
 
-// Grips are drawn by the squares of the strengths that short searches find for each, where none
-// counts for more than is asked for after the first postures: their mean, as a single search finds
-// a strong candidate or none by chance. Few places let a hand wrap an object: drawn oftener, grasps
-// are alike.
-constexpr int kPosturesOfSearch = 50;
-constexpr int kProposalsOfSearch = 2000;
-constexpr std::size_t kSearchesOfAllGrips = 18;
-constexpr double kShareOfWraps = 0.6;
-constexpr double kLeastShare = 0.03;  // of the share of the strongest grip
+// Grips are drawn by the squares of the strengths that the strongest of some proposals find for
+// each, in the mean, times the squared share of the attempt's tries that gave a candidate: where
+// the strongest places are such that a hand can never be laid there, as in a small mug, nearly all
+// postures would be spent on them.
+constexpr int kProposalsOfGrip = 200;
+constexpr int kStrongestOfGrip = 5;
+constexpr double kLeastShare = 0.1;  // of the share of the strongest grip
 
 // Variations of the strongest candidate. Three times as many of them are good as of new ones.
 constexpr double kShareVaried = 0.6;  // of all postures
@@ -131,24 +132,27 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
   if (num_grips == 1 || targets.pool().size() < 2) return;
-  const std::size_t num_searches = std::max<std::size_t>(1, kSearchesOfAllGrips / num_grips);
-  const double asked = kAims.front().strength;
+  base::Random random(scene.options.seed);
   for (std::size_t i = 0; i < num_grips; ++i) {
-    const Grip& grip = grips_.grips()[i];
-    base::Random random(1);
-    double sum = 0.0;
-    for (std::size_t search = 0; search < num_searches; ++search) {
-      const std::vector<Candidate> best = strongest(&grip,
-                                                    {.most_proposals = kProposalsOfSearch,
-                                                     .most_postures = kPosturesOfSearch,
-                                                     .enough = asked},
-                                                    random);
-      if (!best.empty()) sum += std::clamp(best.front().strength, 0.0, asked);
-    }
-    shares_[i] = (grip.wraps ? kShareOfWraps : 1.0) * sum * sum;
+    const double strength = strength_of(grips_.grips()[i], random);
+    shares_[i] = strength * strength;
   }
   const double most = *std::max_element(shares_.begin(), shares_.end());
   for (double& share : shares_) share = most > 0.0 ? std::max(share, kLeastShare * most) : 1.0;
+}
+
+/// How strong the places of some proposals of the grip are: the mean of the strongest few, of which
+/// none counts for less than 0.
+double ReachSides::strength_of(const Grip& grip, base::Random& random) const {
+  std::array<double, kStrongestOfGrip> strongest{};  // the strongest first
+  Work work{.most_proposals = kProposalsOfGrip, .most_postures = 1};
+  while (std::optional<HandProposal> begun = this->proposal(grip, random, work)) {
+    const auto rated = completed(grip, std::move(*begun), strongest.back());
+    if (!rated || rated->second <= strongest.back()) continue;
+    strongest.back() = rated->second;
+    std::sort(strongest.rbegin(), strongest.rend());
+  }
+  return std::accumulate(strongest.begin(), strongest.end(), 0.0) / kStrongestOfGrip;
 }
 
 bool ReachSides::Work::is_done() const {
@@ -157,25 +161,34 @@ bool ReachSides::Work::is_done() const {
 
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   if (targets_.pool().size() < 2) return {};
+  std::vector<Candidate> best = strongest(random);
+  if (scene_.options.style == GraspStyle::Auto) {
+    std::erase_if(best, [](const Candidate& candidate) { return !(candidate.strength > 0.0); });
+  }
+  bool is_any_clear = false;
+  for (Candidate& candidate : best) is_any_clear = clear(candidate) || is_any_clear;
   std::vector<TargetSide> sides;
-  for (const Candidate& candidate : strongest(
-           nullptr, {.most_proposals = kMostProposals, .most_postures = kMostPostures}, random)) {
-    const bool is_to_close = scene_.options.style == GraspStyle::Auto;
-    if (is_to_close && !(candidate.strength > 0.0)) continue;
-    sides.push_back(side_of(cleared(candidate)));
+  for (const Candidate& candidate : best) {
+    // Refinement frees few hands that are in the object.
+    if (candidate.is_clear || !is_any_clear) sides.push_back(side_of(candidate));
   }
   return sides;
 }
 
-/// The strongest of some candidates of a grip, or of grips as they are drawn, the strongest first.
-std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, Work work,
-                                                         base::Random& random) const {
+/// The strongest candidates of an attempt, the strongest first.
+std::vector<ReachSides::Candidate> ReachSides::strongest(base::Random& random) const {
   std::vector<Candidate> best;
+  Work work{.most_proposals = kMostProposals, .most_postures = kMostPostures};
   const auto is_enough = [&] {
-    if (best.empty()) return false;
-    return best.front().strength >= std::min(work.enough, wanted_strength(work.postures));
+    return !best.empty() && best.front().strength >= wanted_strength(work.postures);
   };
-  while (!work.is_done() && !is_enough()) {
+  std::vector<Tries> tries(shares_.size());
+  while (!work.is_done()) {
+    if (is_enough()) {
+      if (clear(best.front())) break;
+      best.erase(best.begin());
+      continue;
+    }
     if (!best.empty() && random.uniform() < kShareVaried) {
       std::optional<Candidate> candidate = varied(best.front(), random, work);
       if (candidate) best.front() = std::move(*candidate);
@@ -183,9 +196,11 @@ std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, Work 
     }
     const double least =
         best.size() < kMostStarts ? -std::numeric_limits<double>::infinity() : best.back().strength;
-    std::optional<Candidate> candidate =
-        drawn(grip ? *grip : drawn_grip(random), least, random, work);
+    const std::size_t grip = drawn_grip(tries, random);
+    std::optional<Candidate> candidate = drawn(grips_.grips()[grip], least, random, work);
+    ++tries[grip].all;
     if (!candidate) continue;
+    ++tries[grip].good;
     const auto position = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
       return candidate->strength > other.strength;
     });
@@ -195,46 +210,83 @@ std::vector<ReachSides::Candidate> ReachSides::strongest(const Grip* grip, Work 
   return best;
 }
 
-/// A grip, by the shares.
-const ReachSides::Grip& ReachSides::drawn_grip(base::Random& random) const {
-  double left = random.uniform(0.0, std::accumulate(shares_.begin(), shares_.end(), 0.0));
-  for (std::size_t i = 0; i + 1 < shares_.size(); ++i) {
-    if (left < shares_[i]) return grips_.grips()[i];
-    left -= shares_[i];
+/// A grip, by the shares and by how often the attempt's tries of it were good.
+std::size_t ReachSides::drawn_grip(const std::vector<Tries>& tries, base::Random& random) const {
+  std::vector<double> weights(shares_.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double rate = (tries[i].good + 1.0) / (tries[i].all + 1.0);
+    weights[i] = shares_[i] * rate * rate;
   }
-  return grips_.grips().back();
+  double left = random.uniform(0.0, std::accumulate(weights.begin(), weights.end(), 0.0));
+  std::size_t i = 0;
+  while (i + 1 < weights.size() && left >= weights[i]) left -= weights[i++];
+  return i;
 }
 
-/// Of some proposals that may become a grasp the one that costs least, laid; empty if there was
-/// none, or it is not good or not stronger than `least`.
+/// Of some proposals that may become a grasp the one whose places are strongest, laid; empty if
+/// there was none, or it is not good or not stronger than `least`.
 std::optional<ReachSides::Candidate> ReachSides::drawn(const Grip& grip, double least,
                                                        base::Random& random, Work& work) const {
   std::optional<HandProposal> best;
+  double strongest = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < kProposals; ++i) {
-    const double most = best ? best->largest_cost : std::numeric_limits<double>::infinity();
     std::optional<HandProposal> begun = this->proposal(grip, random, work);
     if (!begun) break;
-    std::optional<HandProposal> proposal = proposals_.completed(grip, most, std::move(*begun));
-    if (!proposal) continue;
-    std::vector<std::int32_t> patches;
-    for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
-    if (are_apart(patches) && has_stable_pair(patches)) best = std::move(proposal);
+    auto rated = completed(grip, std::move(*begun), strongest);
+    if (!rated || (best && rated->second <= strongest)) continue;
+    best = std::move(rated->first);
+    strongest = rated->second;
   }
   if (!best) return std::nullopt;
   return laid(grip, best->configuration, least, work);
 }
 
-/// A candidate's posture moved a little, and laid again.
+/// The proposal with all parts of the grip placed, and how strong its places are (of what is no
+/// more than `least` only so much is known); empty if that costs too much or cannot become a grasp.
+std::optional<std::pair<HandProposal, double>> ReachSides::completed(const Grip& grip,
+                                                                     HandProposal begun,
+                                                                     double least) const {
+  std::optional<HandProposal> proposal = proposals_.completed(grip, kMostCost, std::move(begun));
+  if (!proposal) return std::nullopt;
+  std::vector<std::int32_t> patches;
+  for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
+  if (!are_apart(patches) || !has_stable_pair(patches)) return std::nullopt;
+  return std::pair(std::move(*proposal), strength_.nominal(patches, least));
+}
+
+/// A candidate's posture moved a little, and laid again: of some such motions the one after which
+/// the places nearest to the pads are strongest.
 std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, base::Random& random,
                                                         Work& work) const {
   const hands::HandModel& hand = scene_.hand.model();
+  const std::vector<int> pads = pads_of(*from.grip);
+  std::optional<hands::HandConfiguration> best;
+  double strongest = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kVariations; ++i) {
+    hands::HandConfiguration configuration = moved(from.posture, random);
+    const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
+    std::vector<std::int32_t> patches;
+    for (const int pad : pads) {
+      patches.push_back(places_.at(hands::pad_contact_point(hand, pad, X_OL)));
+    }
+    const double strength = strength_.nominal(patches, strongest);
+    if (best && strength <= strongest) continue;
+    strongest = strength;
+    best = std::move(configuration);
+  }
+  return laid(*from.grip, *best, from.strength, work);
+}
+
+/// A posture moved a little, palm and joints.
+hands::HandConfiguration ReachSides::moved(const SurfacePosture& posture,
+                                           base::Random& random) const {
+  const hands::HandModel& hand = scene_.hand.model();
   const double scale = random.uniform(kLeastScale, 1.0);
   const auto drawn = [&](double most) { return scale * random.uniform(-most, most); };
-  hands::HandConfiguration configuration = from.posture.configuration;
+  hands::HandConfiguration configuration = posture.configuration;
   Vector3d pivot = Vector3d::Zero();
-  for (const std::int32_t patch : from.posture.patches) {
-    pivot +=
-        scene_.object.patches[patch].centroid / static_cast<double>(from.posture.patches.size());
+  for (const std::int32_t patch : posture.patches) {
+    pivot += scene_.object.patches[patch].centroid / static_cast<double>(posture.patches.size());
   }
   Vector3d shift, turn;
   for (double& x : shift) x = drawn(kMostShift);
@@ -247,7 +299,8 @@ std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, b
   X_OH.translation() = pivot + rotation * Vector3d(X_OH.translation() - pivot) + shift;
   for (double& q : configuration.q) q += drawn(kMostTurn);
   hands::clamp_to_limits(hand, configuration.q);
-  return laid(*from.grip, configuration, from.strength, work);
+  hands::apply_couplings(hand, configuration.q);
+  return configuration;
 }
 
 /// Empty if the posture that is laid from there is not good, or not stronger than `least`.
@@ -268,20 +321,24 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
   return Candidate{&grip, std::move(posture), strength};
 }
 
-/// The candidate, lifted off the object until it is clear of it, exactly; as it is where that takes
-/// too much, or pads then lie where they should not.
-ReachSides::Candidate ReachSides::cleared(Candidate candidate) const {
+/// Lifts the candidate off the object until it is clear of it, exactly, and says whether that was
+/// possible; leaves it as it is where it takes too much, or pads then lie where they should not.
+bool ReachSides::clear(Candidate& candidate) const {
+  if (candidate.is_clear) return true;
   const std::vector<int> pads = pads_of(*candidate.grip);
   const double step = kLiftStep * scene_.object.grid.lattice.voxel_size;
   SurfacePosture posture = candidate.posture;
-  for (int i = 1;; ++i) {
-    if (clearance_.is_clear_of_world(posture.X_OL) && clearance_.is_clear_of_itself(posture.X_OL)) {
-      if (is_good(posture)) candidate.posture = std::move(posture);
-      return candidate;
+  for (int i = 0; i <= kMostLifts; ++i) {
+    if (i > 0) posture = search_.lay(pads, posture.configuration, i * step);
+    if (!clearance_.is_clear_of_world(posture.X_OL) ||
+        !clearance_.is_clear_of_itself(posture.X_OL)) {
+      continue;
     }
-    if (i > kMostLifts) return candidate;
-    posture = search_.lay(pads, posture.configuration, i * step);
+    candidate.is_clear = is_good(posture);
+    if (candidate.is_clear) candidate.posture = std::move(posture);
+    break;
   }
+  return candidate.is_clear;
 }
 
 std::vector<int> ReachSides::pads_of(const Grip& grip) const {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fitting/surface_posture.hpp"
@@ -17,9 +17,9 @@
 /// \file
 /// Targets that the hand can meet [R]. Many times a hand is proposed that is about where its pads
 /// lie on points that may be targets: by two pads that can face each other as the points do, or by
-/// the palm. Of some such proposals the one that fits best is laid onto the surface, and where its
-/// pads then lie are the targets: the hand meets them before anything is decided exactly. The
-/// strongest such posture is then varied and laid again.
+/// the palm. Of some such proposals the one whose places are strongest is laid onto the surface,
+/// and where its pads then lie are the targets: the hand meets them before anything is decided
+/// exactly. The strongest such posture is then varied and laid again.
 
 namespace graspfit::grasp::internal {
 
@@ -31,10 +31,11 @@ class ReachSides {
 
   /// The strongest candidates of an attempt, the strongest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
-  /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
-  /// one take turns, at random, until one is strong enough, for which less is asked the more
-  /// postures were tried, or a budget of work is spent. Empty if none was found, or with
-  /// `GraspStyle::Auto` none with a strength above 0.
+  /// Those that cannot be are left out, unless none can. Strength is that which `PlaceStrength`
+  /// expects. New candidates and variations of the strongest one take turns, at random, until one
+  /// that can be clear is strong enough, for which less is asked the more postures were tried, or a
+  /// budget of work is spent. Empty if none was found, or with `GraspStyle::Auto` none with a
+  /// strength above 0.
   std::vector<TargetSide> draw(base::Random& random) const;
 
   const HandGrips& grips() const { return grips_; }
@@ -47,6 +48,7 @@ class ReachSides {
     const Grip* grip = nullptr;
     SurfacePosture posture;
     double strength = 0.0;
+    bool is_clear = false;  ///< Of the object, exactly; false: perhaps not.
   };
 
   /// Work done in an attempt.
@@ -56,21 +58,29 @@ class ReachSides {
     int postures = 0;
     int most_proposals = 0;
     int most_postures = 0;
-    /// Strength of a candidate with which it may end at any time.
-    double enough = std::numeric_limits<double>::infinity();
     bool is_done() const;
   };
 
-  const Grip& drawn_grip(base::Random& random) const;
-  std::vector<Candidate> strongest(const Grip* grip, Work work, base::Random& random) const;
+  /// Tries of a grip in an attempt, and how many of them gave a candidate.
+  struct Tries {
+    int all = 0;
+    int good = 0;
+  };
+
+  std::size_t drawn_grip(const std::vector<Tries>& tries, base::Random& random) const;
+  double strength_of(const Grip& grip, base::Random& random) const;
+  std::vector<Candidate> strongest(base::Random& random) const;
+  std::optional<std::pair<HandProposal, double>> completed(const Grip& grip, HandProposal begun,
+                                                           double least) const;
   std::optional<Candidate> drawn(const Grip& grip, double least, base::Random& random,
                                  Work& work) const;
   std::optional<Candidate> varied(const Candidate& from, base::Random& random, Work& work) const;
+  hands::HandConfiguration moved(const SurfacePosture& posture, base::Random& random) const;
   std::optional<Candidate> laid(const Grip& grip, hands::HandConfiguration start, double least,
                                 Work& work) const;
   bool is_from_approach(const hands::HandConfiguration& configuration) const;
   std::optional<HandProposal> proposal(const Grip& grip, base::Random& random, Work& work) const;
-  Candidate cleared(Candidate candidate) const;
+  bool clear(Candidate& candidate) const;
   std::vector<int> pads_of(const Grip& grip) const;
   bool is_good(const SurfacePosture& posture) const;
   bool is_clear_of_surroundings(const SurfacePosture& posture) const;
@@ -89,7 +99,7 @@ class ReachSides {
   const HandProposals proposals_;
   const PlaceStrength strength_;
   std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.
-  std::vector<double> shares_;               ///< Per grip: how often it is drawn.
+  std::vector<double> shares_;               ///< Per grip: how often it is drawn first.
 };
 
 }  // namespace graspfit::grasp::internal
