@@ -10,7 +10,7 @@ ROWS = (
     ("force_closed_share", 1.0, "share that closes", (0.0, 1.05)),
     ("median_epsilon", 1.0, "median epsilon", (0.0, None)),
     ("median_target_distance_m", 1000.0, "contact to target [mm]", (0.0, None)),
-    ("attempts_per_grasp", 1.0, "attempts per valid grasp", (0.0, None)),
+    ("attempts_per_grasp", 1.0, "attempts per grasp", (0.0, None)),
 )
 
 
@@ -22,7 +22,7 @@ def draw(source):
     objects = list(dict.fromkeys(table["object"]))
     hands = list(dict.fromkeys(table["hand"]))
     figure, axes = panels(
-        f"Targets that the hand can meet: the first {table['grasps'].max():.0f} valid grasps, all attempts counted", len(ROWS), len(objects), 9.0, 6.0,
+        f"Targets that the hand can meet: the first {table['grasps'].max():.0f} valid grasps, all attempts counted", len(ROWS), len(objects), 9.0, 8.0,
         note_for(objects, f"Closure by contacts that touch, at friction {friction} (dotted: 80 %, asked for). Distances: median of a cell's contacts."),
         left=0.07, right=0.98, head=0.75, foot=0.35, wspace=0.08, hspace=0.14,
     )  # fmt: skip

@@ -257,8 +257,14 @@ def reach_grasps(tables):
     closed, attempts, grasps = bunny["closed"].sum(), bunny["attempts"].sum(), bunny["grasps"].sum()
     yield (f"In the {len(bunny)} cells of the bunny {percent(closed / attempts)} of the attempts end with a closed grasp ({closed} of {attempts}), and "
            f"{percent(closed / grasps)} of the valid grasps close ({closed} of {grasps})")
+    timed = table.merge(tables.table("reach_grasps.timing")[["object", "size", "hand", "plan_s"]], on=["object", "size", "hand"])
+    for hand, group in timed.groupby("hand", sort=False):
+        closed, attempts = group["closed"].sum(), group["attempts"].sum()
+        yield (f"| {hand} | {closed} ({attempts}) | {percent(closed / attempts)} | {group['median_epsilon'].median():.3f} "
+               f"| {1000 * group['median_target_distance_m'].median():.1f} | {1000 * group['plan_s'].sum() / closed:.0f} |")
     for (name, hand), group in table.groupby(["object", "hand"], sort=False):
-        cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.median_target_distance_m:.1f}" for row in group.itertuples())
+        cells = " | ".join(f"{row.closed} ({row.attempts}), {1000 * row.median_target_distance_m:.1f}, {max(row.median_epsilon, 0.0):.3f}"
+                           for row in group.itertuples())
         yield f"| {name} | {hand} | {cells} |"
 
 
