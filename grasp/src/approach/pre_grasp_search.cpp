@@ -73,7 +73,10 @@ std::optional<PreGrasp> PreGraspSearch::find() {
   std::optional<PreGrasp> found = least_opening(Joints::Closing);
   if (!found && options_.leave_pressing) {
     leaves_ = leaving_joints();
-    const bool is_any_left = std::find(leaves_.begin(), leaves_.end(), false) != leaves_.end();
+    bool is_any_left = false;
+    for (std::size_t j = 0; j < leaves_.size(); ++j) {
+      is_any_left = is_any_left || (!leaves_[j] && may_open(j));
+    }
     if (is_any_left) found = least_opening(Joints::Leaving);
   }
   if (!found && options_.open_neutral) found = least_opening(Joints::All);
@@ -104,7 +107,8 @@ std::optional<PreGrasp> PreGraspSearch::least_opening(Joints joints) {
       const HandConfiguration start{retreated(retreat), q};
       const LinkPoses X_OL = hands::forward_kinematics(scene_.hand, start);
       if (!is_clear(X_OL) || !is_free(start, X_OL)) continue;
-      return PreGrasp{start, nearest_distance(X_OL), opening, retreat};
+      const double share = joints == Joints::Leaving ? opening_of(q) : opening;
+      return PreGrasp{start, nearest_distance(X_OL), share, retreat};
     }
   }
   return std::nullopt;
@@ -112,11 +116,15 @@ std::optional<PreGrasp> PreGraspSearch::least_opening(Joints joints) {
 
 std::vector<bool> PreGraspSearch::leaving_joints() const {
   const auto num_joints = base::as_index<int>(scene_.hand.joints.size());
-  // What opens with each joint: itself, and those that follow it.
+  // What opens with each joint: itself, and those that follow it, clutched or not.
   Eigen::MatrixXd openings(num_joints, num_joints);
   for (int j = 0; j < num_joints; ++j) {
     Eigen::VectorXd q = grasp_.q;
     q[j] = open_q_[j];
+    for (int follower = 0; follower < num_joints; ++follower) {
+      const auto& coupling = scene_.hand.joints[follower].coupling;
+      if (coupling && coupling->leader == j) q[follower] = open_q_[follower];
+    }
     hands::apply_couplings(scene_.hand, q);
     openings.col(j) = q - grasp_.q;
   }
@@ -144,7 +152,7 @@ Eigen::VectorXd PreGraspSearch::opened(double opening, Joints joints) const {
   Eigen::VectorXd q = grasp_.q;
   for (std::size_t j = 0; j < scene_.hand.joints.size(); ++j) {
     const bool is_neutral = scene_.hand.joints[j].closing_sign == 0;
-    if (is_neutral && (joints == Joints::Closing || !options_.open_neutral)) continue;
+    if (!may_open(j) || (is_neutral && joints == Joints::Closing)) continue;
     if (joints == Joints::Leaving && !leaves_[j]) continue;
     double& position = q[j];
     position = (1.0 - opening) * position + opening * open_q_[j];
@@ -152,6 +160,10 @@ Eigen::VectorXd PreGraspSearch::opened(double opening, Joints joints) const {
   hands::clamp_to_limits(scene_.hand, q);
   hands::apply_couplings(scene_.hand, q);
   return q;
+}
+
+bool PreGraspSearch::may_open(std::size_t joint) const {
+  return options_.open_neutral || scene_.hand.joints[joint].closing_sign != 0;
 }
 
 double PreGraspSearch::opening_of(const Eigen::VectorXd& q) const {

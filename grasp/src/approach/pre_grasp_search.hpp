@@ -64,6 +64,8 @@ class PreGraspSearch {
   const geometry::MeshQuery& solid(int link) const { return *scene_.collision.link_solid(link); }
   /// Per joint: whether its opening moves no point that nearly touches the object towards it.
   std::vector<bool> leaving_joints() const;
+  /// Neutral joints may only by option.
+  bool may_open(std::size_t joint) const;
   Eigen::VectorXd opened(double opening, Joints joints) const;
   /// The largest share, over the closing joints, of the motion to the joint's position in the open
   /// hand, in [0, 1].

@@ -31,11 +31,11 @@ class ReachSides {
 
   /// The strongest candidates of an attempt, the strongest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
-  /// Those that cannot be are left out, unless none can. Strength is that which `PlaceStrength`
-  /// expects. New candidates and variations of the strongest one take turns, at random, until one
-  /// that can be clear is strong enough, for which less is asked the more postures were tried, or a
-  /// budget of work is spent. Empty if none was found, or with `GraspStyle::Auto` none with a
-  /// strength above 0.
+  /// Those that cannot be are left out, unless none of them can, and do not end the search.
+  /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
+  /// one take turns, at random, until one that can be clear is strong enough, for which less is
+  /// asked the more postures were tried, or a budget of work is spent. Empty if none was found, or
+  /// with `GraspStyle::Auto` none with a strength above 0.
   std::vector<TargetSide> draw(base::Random& random) const;
 
   const HandGrips& grips() const { return grips_; }
@@ -48,7 +48,7 @@ class ReachSides {
     const Grip* grip = nullptr;
     SurfacePosture posture;
     double strength = 0.0;
-    bool is_clear = false;  ///< Of the object, exactly; false: perhaps not.
+    bool is_clear = false;  ///< Of the world and of itself, exactly; false: perhaps not.
   };
 
   /// Work done in an attempt.

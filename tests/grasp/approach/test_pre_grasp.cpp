@@ -487,12 +487,14 @@ TEST_CASE("A joint whose opening moves a finger onto the object stays", "[grasp]
   slide("onto", 1, 2, Vector3d::UnitX(), -1);
   HandConfiguration grasp{RigidTransform::Identity(), Eigen::Vector2d(0.0, 0.0149)};
   SECTION("by itself") {}
-  SECTION("as it follows a joint that moves nothing near the object") {
+  const auto follow = [&](bool breakaway) {
     hand.links.resize(4);
     slide("leader", 0, 3, Vector3d::UnitY(), -1);
-    hand.joints[1].coupling = hands::Coupling{.leader = 2};
+    hand.joints[1].coupling = hands::Coupling{.leader = 2, .breakaway = breakaway};
     grasp.q = Eigen::Vector3d(0.0, 0.0149, 0.0149);
-  }
+  };
+  SECTION("as it follows a joint that moves nothing near the object") { follow(false); }
+  SECTION("as it follows such a joint by a clutch") { follow(true); }
   hand.links[2].mesh_L = geometry::box({0.01, 0.01, 0.01});
   const MeshQuery wall(box_at({0.01, 0.1, 0.1}, {0.025, 0.0, 0.0}));
   const auto find = [&](bool leave_pressing) {

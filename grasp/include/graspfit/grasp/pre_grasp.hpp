@@ -44,8 +44,8 @@ struct PreGraspOptions {
 struct PreGrasp {
   hands::HandConfiguration configuration;
   double clearance = 0.0;  ///< Distance of the nearest link [m], ≥ the wanted clearance.
-  /// Share of the motion from the grasp's joint positions to the open ones, in (0, 1]; 0 where an
-  /// imported pre-grasp opens no joint.
+  /// Share of the motion from the grasp's joint positions to the open ones, in [0, 1]; 0 where no
+  /// joint opens that opens or closes the hand.
   double opening = 0.0;
   double retreat = 0.0;  ///< Of the palm, against its direction [m].
 };
@@ -64,12 +64,14 @@ hands::HandConfiguration interpolated(const hands::HandConfiguration& from,
 /// Openings are 1/n, 2/n, …, 1 (n = `opening_steps`) of the motion of every closing joint to its
 /// position in `open_configuration`; followers move by their couplings, and neutral joints (spread,
 /// abduction) stay. Retreats are 0 and the multiples of `retreat_step` up to `largest_retreat`.
-/// Every combination is tried in that order. With `leave_pressing` there is another round, in which
-/// joints stay whose opening moves the point of a link that is nearest to the object, and within
-/// 1 mm of it, towards it (in the grasp, to first order; each joint with its followers, and without
-/// the others); with `open_neutral` neutral joints open by the same share in that round, and in a
-/// last one all do. The result is empty if no combination is a pre-grasp. A round ends, too, once
-/// it has asked for more than 8000 distances of bodies that were not proven to stay apart.
+/// Every combination is tried in that order. Where none is a pre-grasp, there is with
+/// `leave_pressing` another round, in which joints stay whose opening moves the point of a link
+/// that is nearest to the object, within 1 mm of it and not on it, towards it (in the grasp, to
+/// first order; each joint with its followers, and without the others); with `open_neutral` neutral
+/// joints open by the same share in that round, and in a last one all do. The result is empty if no
+/// combination is a pre-grasp. A round ends, too, once it has asked for more than 8000 distances of
+/// bodies that were not proven to stay apart, where a way on which bodies meet as they did on one
+/// before counts for one.
 ///
 /// That the path is free is proven, not sampled, by conservative advancement: two bodies at a
 /// distance cannot meet before the fastest points of both have together moved by that distance.
