@@ -413,6 +413,28 @@ TEST_CASE("Links do not pass through each other on the way", "[grasp][pre_grasp]
   CHECK(find(at_once));
 }
 
+namespace {
+
+/// A slide along an axis of its parent, from 50 mm below its origin to `upper` [m].
+void add_slide(HandModel& hand, const char* name, int parent, int child, const Vector3d& axis,
+               int closing_sign, double upper) {
+  hands::Joint joint;
+  joint.name = name;
+  joint.type = hands::JointType::Prismatic;
+  joint.parent_link = parent;
+  joint.child_link = child;
+  joint.axis_J = axis;
+  joint.lower = -0.05;
+  joint.upper = upper;
+  joint.closing_sign = closing_sign;
+  hands::Link& link = hand.links[static_cast<std::size_t>(child)];
+  link.parent_link = parent;
+  link.parent_joint = static_cast<int>(hand.joints.size());
+  hand.joints.push_back(joint);
+}
+
+}  // namespace
+
 TEST_CASE("Neutral joints open along where that is allowed and nothing else is free",
           "[grasp][pre_grasp]") {
   // Two blocks on slides along x change places as they open; one of them stands on a slide along y
@@ -422,19 +444,7 @@ TEST_CASE("Neutral joints open along where that is allowed and nothing else is f
   hand.links.resize(4);
   hand.palm.link = 0;
   const auto slide = [&](const char* name, int parent, int child, const Vector3d& axis, int sign) {
-    hands::Joint joint;
-    joint.name = name;
-    joint.type = hands::JointType::Prismatic;
-    joint.parent_link = parent;
-    joint.child_link = child;
-    joint.axis_J = axis;
-    joint.lower = -0.05;
-    joint.upper = 0.05;
-    joint.closing_sign = sign;
-    hands::Link& link = hand.links[static_cast<std::size_t>(child)];
-    link.parent_link = parent;
-    link.parent_joint = static_cast<int>(hand.joints.size());
-    hand.joints.push_back(joint);
+    add_slide(hand, name, parent, child, axis, sign, 0.05);
   };
   slide("to_right", 0, 1, Vector3d::UnitX(), 1);
   slide("aside", 0, 2, Vector3d::UnitY(), 0);
@@ -470,18 +480,7 @@ TEST_CASE("A joint whose opening moves a finger onto the object stays", "[grasp]
   hand.links.resize(3);
   hand.palm.link = 0;
   const auto slide = [&](const char* name, int parent, int child, const Vector3d& axis, int sign) {
-    hands::Joint joint;
-    joint.name = name;
-    joint.type = hands::JointType::Prismatic;
-    joint.parent_link = parent;
-    joint.child_link = child;
-    joint.axis_J = axis;
-    joint.lower = -0.05;
-    joint.upper = 0.1;
-    joint.closing_sign = sign;
-    hand.links[static_cast<std::size_t>(child)].parent_link = parent;
-    hand.links[static_cast<std::size_t>(child)].parent_joint = static_cast<int>(hand.joints.size());
-    hand.joints.push_back(joint);
+    add_slide(hand, name, parent, child, axis, sign, 0.1);
   };
   slide("away", 0, 1, Vector3d::UnitX(), 1);
   slide("onto", 1, 2, Vector3d::UnitX(), -1);
