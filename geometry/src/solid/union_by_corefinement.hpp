@@ -13,7 +13,7 @@ namespace graspfit::geometry::internal {
 using FacePair = std::pair<std::int32_t, std::int32_t>;
 
 /// The union of the parts of a mesh by CGAL's corefinement with exact points, which are rounded
-/// once at the end; a fraction of the time of `solid_boundary`'s own cuts. As there, faces that
+/// once at the end; half the time of `solid_boundary`'s own cuts. As there, faces that
 /// cross nothing stay as they are, the first of the result; the vertices of the mesh keep their
 /// order, and new ones come after them, ascending.
 ///

@@ -50,7 +50,7 @@ constexpr int kProposalsOfGrip = 200;
 constexpr int kStrongestOfGrip = 5;
 constexpr double kLeastShare = 0.1;  // of the share of the strongest grip
 
-// Variations of the strongest candidate. Three times as many of them are good as of new ones.
+// Variations of the strongest candidate. Two to four times as many of them are good as of new ones.
 constexpr double kShareVaried = 0.6;  // of all postures
 constexpr double kLeastScale = 0.1;   // of a variation; drawn, as small and large ones help
 constexpr double kMostShift = 0.012;  // of the palm [m]

@@ -6,11 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "approach/checked_pre_grasp.hpp"
 #include "contact/random_contacts.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/mesh_intersection.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/pre_grasp.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
@@ -132,6 +134,37 @@ HandConfiguration closed_onto(const Scene& scene, HandConfiguration at) {
         closed(std::max(0.0, low - 0.002));
   }
   return at;
+}
+
+/// The hand's configurations from which ways to a grasp are tried while neutral joints stay, in
+/// their order.
+std::vector<HandConfiguration> openings_and_retreats(const HandModel& hand,
+                                                     const HandConfiguration& grasp,
+                                                     const PreGraspOptions& options) {
+  const HandConfiguration open = hands::open_configuration(hand);
+  const auto num_retreats = std::lround(options.largest_retreat / options.retreat_step);
+  std::vector<HandConfiguration> all;
+  for (int step = 1; step <= options.opening_steps; ++step) {
+    for (int i = 0; i <= num_retreats; ++i) {
+      HandConfiguration from = grasp;
+      for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+        const auto index = static_cast<Eigen::Index>(j);
+        if (hand.joints[j].closing_sign == 0) continue;
+        from.q[index] +=
+            static_cast<double>(step) / options.opening_steps * (open.q[index] - grasp.q[index]);
+      }
+      hands::apply_couplings(hand, from.q);
+      from.X_OH.translation() -=
+          options.retreat_step * i * (grasp.X_OH.linear() * hand.palm.direction_H);
+      all.push_back(from);
+    }
+  }
+  return all;
+}
+
+bool is_found_there(const std::optional<PreGrasp>& found, const HandConfiguration& at) {
+  return found && (found->configuration.q - at.q).norm() < 1e-12 &&
+         found->configuration.X_OH.isApprox(at.X_OH, 1e-12);
 }
 
 }  // namespace
@@ -292,6 +325,12 @@ TEST_CASE("A grasp that touches has a way in, one that cuts the object has none"
   CHECK(Pinch(1e-6).find(options));
   CHECK(Pinch(0.0).find(options));
   CHECK(Pinch(-5e-6).find(options));  // It is less than the tolerance.
+  // Drawn back at once, the pads slide along the box farther than the tolerance. That they meet
+  // there stops no way on which they come as near only within it.
+  const auto opened = Pinch(-8e-6).find({});
+  REQUIRE(opened);
+  CHECK(opened->opening == Approx(0.3));
+  CHECK(opened->retreat == 0.0);
   CHECK_FALSE(Pinch(-1e-4).find(options));
 }
 
@@ -543,34 +582,62 @@ TEST_CASE(
       };
       INFO(name << " " << trial << " found " << found.has_value());
       bool is_before = true;
-      const HandConfiguration open = hands::open_configuration(hand);
-      for (int step = 1; step <= 3 && is_before; ++step) {
-        for (int i = 0; i <= 2 && is_before; ++i) {
-          HandConfiguration option = grasp;
-          for (std::size_t j = 0; j < hand.joints.size(); ++j) {
-            const auto index = static_cast<Eigen::Index>(j);
-            if (hand.joints[j].closing_sign != 0) {
-              option.q[index] += step / 3.0 * (open.q[index] - option.q[index]);
-            }
-          }
-          option.X_OH.translation() -= 0.03 * i * (grasp.X_OH.linear() * hand.palm.direction_H);
-          const double clearance = scene.clearance(option);
-          if (found && std::abs(found->opening - step / 3.0) < 1e-9 &&
-              std::abs(found->retreat - 0.03 * i) < 1e-9) {
-            is_before = false;
-            CHECK((option.q - found->configuration.q).norm() < 1e-12);
-            CHECK(found->clearance == Approx(clearance).epsilon(1e-9));
-            CHECK(looks_free(found->configuration));
-            ++num_found;
-          } else {
-            CHECK((clearance < options.clearance || !looks_free(option)));
-          }
+      for (const HandConfiguration& option : openings_and_retreats(hand, grasp, options)) {
+        const double clearance = scene.clearance(option);
+        if (is_found_there(found, option)) {
+          is_before = false;
+          CHECK(found->clearance == Approx(clearance).epsilon(1e-9));
+          CHECK(looks_free(found->configuration));
+          ++num_found;
+          break;
         }
+        CHECK((clearance < options.clearance || !looks_free(option)));
       }
       CHECK(found.has_value() != is_before);
     }
   }
   CHECK(num_found >= 2);
+}
+
+TEST_CASE("What stopped one way does not change what is said of another", "[grasp][pre_grasp]") {
+  // A search asks first whether bodies meet as they did before; a way that is checked alone has no
+  // before.
+  PlannerOptions planning;
+  planning.targets.search = TargetSearch::Reach;
+  planning.style = GraspStyle::Auto;
+  planning.max_attempts = 8;
+  planning.count = 8;
+  planning.pre_grasps = false;
+  planning.weak.reset();
+  const PreGraspOptions options{.retreat_step = 0.02, .opening_steps = 6};
+  int num_after_others = 0;
+  int num_found_after_others = 0;
+  for (const char* name : {"barrett", "human_hand"}) {
+    const HandModel hand = hands::find_hand(name);
+    const hands::HandCollision collision(hand);
+    const SurroundingsCollision surroundings(hand, {});
+    const ObjectModel object = prepare_object(geometry::torus(0.03, 0.015), hand, planning);
+    const PreGraspScene scene{hand, collision, object.query, surroundings};
+    for (const Grasp& planned :
+         plan_grasps(object, hand, planning, {}, {.num_threads = 1}).grasps) {
+      const HandConfiguration& grasp = planned.configuration;
+      const auto found = find_pre_grasp(scene, grasp, options);
+      int num_stopped = 0;
+      bool is_there = false;
+      for (const HandConfiguration& from : openings_and_retreats(hand, grasp, options)) {
+        const auto alone = grasp::internal::checked_pre_grasp(scene, from, grasp, options);
+        is_there = is_found_there(found, from);
+        CHECK(alone.has_value() == is_there);
+        if (is_there) break;
+        ++num_stopped;
+      }
+      CHECK(found.has_value() == is_there);
+      num_after_others += std::max(0, num_stopped - 1);
+      num_found_after_others += is_there && num_stopped > 0 ? 1 : 0;
+    }
+  }
+  CHECK(num_after_others >= 50);
+  CHECK(num_found_after_others >= 5);
 }
 
 TEST_CASE("Options and grasps that make no sense are refused", "[grasp][pre_grasp]") {
