@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "graspfit/base/as_index.hpp"
@@ -39,10 +40,10 @@ struct Bounds {
   }
 };
 
+/// Splits the faces of a mesh, box by box.
 class Builder {
  public:
-  Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes)
-      : mesh_(mesh), nodes_(nodes) {
+  Builder(const TriangleMesh& mesh, std::vector<BoxTree::Node>& nodes) : nodes_(nodes) {
     items_.reserve(mesh.faces.size());
     for (std::int32_t face = 0; face < std::ssize(mesh.faces); ++face) {
       const auto [a, b, c] = corners(mesh, face);
@@ -60,8 +61,8 @@ class Builder {
   const std::vector<Item>& items() const { return items_; }
 
  private:
-  /// Adds the nodes of some items; returns the sum of their triangles' normals by area.
-  Eigen::Vector3d build(std::int32_t begin, std::int32_t end, int depth) {
+  /// Adds the nodes of some items.
+  void build(std::int32_t begin, std::int32_t end, int depth) {
     const std::size_t index = nodes_.size();
     nodes_.emplace_back();
     Bounds box;
@@ -75,39 +76,12 @@ class Builder {
     if (end - begin <= kLeafSize) {
       nodes_[index].first = begin;
       nodes_[index].count = end - begin;
-      Eigen::Vector3d normals = Eigen::Vector3d::Zero();
-      for (std::int32_t i = begin; i < end; ++i) {
-        const auto [a, b, c] = corners(mesh_, items_[i].face);
-        normals += (b - a).cross(c - a);
-      }
-      set_slab(index, begin, end, normals);
-      return normals;
+      return;
     }
     const std::int32_t middle = split(begin, end, middles, depth);
-    Eigen::Vector3d normals = build(begin, middle, depth + 1);
+    build(begin, middle, depth + 1);
     nodes_[index].first = base::as_index<std::int32_t>(nodes_.size());
-    normals += build(middle, end, depth + 1);
-    set_slab(index, begin, end, normals);
-    return normals;
-  }
-
-  void set_slab(std::size_t index, std::int32_t begin, std::int32_t end,
-                const Eigen::Vector3d& normals) {
-    BoxTree::Node& node = nodes_[index];
-    const double length = normals.norm();
-    node.normal =
-        length > kLeastNormal ? Eigen::Vector3d(normals / length) : Eigen::Vector3d::UnitZ();
-    node.low = std::numeric_limits<double>::infinity();
-    node.high = -std::numeric_limits<double>::infinity();
-    for (std::int32_t i = begin; i < end; ++i) {
-      for (const Eigen::Vector3d& corner : corners(mesh_, items_[i].face)) {
-        const double height = node.normal.dot(corner);
-        node.low = std::min(node.low, height);
-        node.high = std::max(node.high, height);
-      }
-    }
-    const double of_box = node.normal.cwiseAbs().dot(node.upper - node.lower);
-    node.is_flat = node.high - node.low < kFlat * of_box;
+    build(middle, end, depth + 1);
   }
 
   // Splits where the surface area heuristic is least among equal bins of the longest axis; halves
@@ -163,10 +137,38 @@ class Builder {
     return half;
   }
 
-  const TriangleMesh& mesh_;
   std::vector<BoxTree::Node>& nodes_;
   std::vector<Item> items_;
 };
+
+/// The slab of a node around some triangles, whose normals by area add up to `normals`.
+void set_slab(BoxTree::Node& node, std::span<const IndexedTriangle> triangles,
+              const Eigen::Vector3d& normals) {
+  const double length = normals.norm();
+  node.normal =
+      length > kLeastNormal ? Eigen::Vector3d(normals / length) : Eigen::Vector3d::UnitZ();
+  node.low = std::numeric_limits<double>::infinity();
+  node.high = -std::numeric_limits<double>::infinity();
+  const double thick = kFlat * node.normal.cwiseAbs().dot(node.upper - node.lower);
+  const auto add = [&](const IndexedTriangle& triangle) {
+    for (const Eigen::Vector3d& corner : triangle.corners) {
+      const double height = node.normal.dot(corner);
+      node.low = std::min(node.low, height);
+      node.high = std::max(node.high, height);
+    }
+    return node.high - node.low < thick;
+  };
+  // Most nodes of many triangles are seen not to be flat by some of them.
+  const std::size_t stride = std::max<std::size_t>(1, triangles.size() / kNumBins);
+  node.is_flat = true;
+  for (std::size_t i = 0; i < triangles.size() && node.is_flat; i += stride) {
+    node.is_flat = add(triangles[i]);
+  }
+  if (stride == 1) return;
+  for (std::size_t i = 0; i < triangles.size() && node.is_flat; ++i) {
+    node.is_flat = add(triangles[i]);
+  }
+}
 
 }  // namespace
 
@@ -175,6 +177,29 @@ BoxTree::BoxTree(const TriangleMesh& mesh) {
   triangles.reserve(mesh.faces.size());
   for (const Item& item : builder.items()) {
     triangles.push_back({corners(mesh, item.face), item.face});
+  }
+  // Per node: how many triangles are below it, and the sum of their normals by area. Children come
+  // after their parents.
+  struct Below {
+    std::int32_t first = 0;
+    std::int32_t count = 0;
+    Eigen::Vector3d normals = Eigen::Vector3d::Zero();
+  };
+  std::vector<Below> below(nodes.size());
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    Node& node = nodes[i];
+    if (node.count > 0) {
+      below[i] = {node.first, node.count};
+      for (std::int32_t t = node.first; t < node.first + node.count; ++t) {
+        const auto& [a, b, c] = triangles[t].corners;
+        below[i].normals += (b - a).cross(c - a);
+      }
+    } else {
+      const Below& left = below[i + 1];
+      const Below& right = below[node.first];
+      below[i] = {left.first, left.count + right.count, left.normals + right.normals};
+    }
+    set_slab(node, std::span(triangles).subspan(below[i].first, below[i].count), below[i].normals);
   }
 }
 

@@ -19,8 +19,8 @@ struct BoxTree {
     Eigen::Vector3d upper;
     /// Unit; the mean of the triangles' normals by area, some direction if that is zero.
     Eigen::Vector3d normal;
-    double low = 0.0;        ///< Least n · p of the corners below, to rounding.
-    double high = 0.0;       ///< Greatest.
+    double low = 0.0;        ///< If flat: least n · p of the corners below, to rounding.
+    double high = 0.0;       ///< If flat: greatest.
     std::int32_t first = 0;  ///< Leaf: first of its triangles. Inner node: its second child; the
                              ///< first child follows the node itself.
     std::int32_t count = 0;  ///< Leaf: number of triangles, > 0. Inner node: 0.

@@ -330,7 +330,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
   const auto motion_from = [&](const Evaluated& at) {
     return HandMotion(entries_, at.posture.configuration, at.posture.X_OL, at.pivot_O);
   };
-  Evaluated best = evaluated(pads, start, lift);
+  Evaluated best = evaluated(pads, start, lift, std::numeric_limits<double>::infinity());
   NormalEquations equations(best.wishes, motion_from(best));
   double damping = kFirstDamping;
   int num_steps = 0;
@@ -340,7 +340,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > kLongestStep) step *= kLongestStep / longest;
     if (equations.gain(step) < kLeastGain * best.sum) break;
-    Evaluated trial = evaluated(pads, motion.moved(step), lift);
+    Evaluated trial = evaluated(pads, motion.moved(step), lift, best.sum);
     if (!(trial.sum < best.sum)) {
       damping *= 8.0;
       continue;
@@ -357,15 +357,20 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
   return std::move(best.posture);
 }
 
-/// The posture of a configuration, and what a step from there should do.
+/// The posture of a configuration, and what a step from there should do; as soon as its sum is seen
+/// to be no less than `most`, only so much of it.
 SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
                                                   const hands::HandConfiguration& configuration,
-                                                  double lift) const {
+                                                  double lift, double most) const {
   const hands::HandModel& model = hand_.model();
   const double voxel_size = object_.grid.lattice.voxel_size;
   const double margin = kMargin * voxel_size + lift;
   const double depth_margin = kDepthMargin * voxel_size + lift;
   Evaluated result;
+  const auto add = [&](const Wish& wish) {
+    result.wishes.push_back(wish);
+    result.sum += wish.weight * wish.weight * wish.value * wish.value;
+  };
   SurfacePosture& posture = result.posture;
   posture.configuration = configuration;
   posture.X_OL = hands::forward_kinematics(model, configuration);
@@ -386,29 +391,26 @@ SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
     const Vector3d turn = cross.norm() > 0.0 ? Vector3d(lean / cross.norm() * cross) : cross;
     const Vector3d u = normal.unitOrthogonal();
     for (const Vector3d& axis : {u, Vector3d(normal.cross(u))}) {
-      result.wishes.push_back({link, point, axis, turn.dot(axis), kLeanLever, true});
+      add({link, point, axis, turn.dot(axis), kLeanLever, true});
     }
     // Across the patch the pad is free to move.
     const double along = patch.outward_normal.dot(way);
-    result.wishes.push_back({link, point, patch.outward_normal, along + margin});
+    add({link, point, patch.outward_normal, along + margin});
     const Vector3d across = way - along * patch.outward_normal;
     const double beyond = across.norm();
-    if (beyond > 0.0) result.wishes.push_back({link, point, across / beyond, beyond});
+    if (beyond > 0.0) add({link, point, across / beyond, beyond});
     posture.largest_gap = std::max(posture.largest_gap, std::hypot(along + margin, beyond));
   }
   for (int link = 0; link < std::ssize(model.links); ++link) {
+    if (result.sum >= most) return result;
     const DeepPoint deep = deepest_point(link, posture.X_OL[link], lift);
     posture.largest_depth = std::max(posture.largest_depth, deep.depth);
     if (deep.depth + depth_margin > 0.0) {
-      result.wishes.push_back(
-          {link, deep.point_O, deep.outward_O, deep.depth + depth_margin, kDepthWeight});
+      add({link, deep.point_O, deep.outward_O, deep.depth + depth_margin, kDepthWeight});
     }
   }
   for (const auto& [a, b] : neighbors_) {
-    if (std::optional<Wish> apart = overlap(a, b, posture.X_OL)) result.wishes.push_back(*apart);
-  }
-  for (const Wish& wish : result.wishes) {
-    result.sum += wish.weight * wish.weight * wish.value * wish.value;
+    if (const std::optional<Wish> apart = overlap(a, b, posture.X_OL)) add(*apart);
   }
   return result;
 }

@@ -88,7 +88,7 @@ class SurfaceSearch {
   DeepPoint deepest_point(int link, const hands::RigidTransform& X_OL, double lift) const;
   Eigen::Vector3d touching_point(int pad, const hands::RigidTransform& X_OL) const;
   Evaluated evaluated(const std::vector<int>& pads, const hands::HandConfiguration& configuration,
-                      double lift) const;
+                      double lift, double most) const;
 
   const FittingHand& hand_;
   const ObjectModel& object_;

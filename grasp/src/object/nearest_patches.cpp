@@ -14,49 +14,54 @@ NearestPatches::NearestPatches(const ObjectModel& object, const std::vector<bool
     : lattice_(object.grid.lattice),
       last_voxel_((lattice_.counts.array() - 1).cast<double>()),
       patch_of_voxel_(object.patch_of_voxel) {
-  for (std::int32_t& patch : patch_of_voxel_) {
-    if (patch >= 0 && !is_meant[patch]) patch = -1;
-  }
-  std::vector<float> squared(patch_of_voxel_.size(), std::numeric_limits<float>::infinity());
-  const auto distance = [&](const Vector3i& voxel, std::int32_t patch) {
-    const Vector3d center =
-        lattice_.origin + lattice_.voxel_size * (voxel.cast<double>().array() + 0.5).matrix();
-    return static_cast<float>((center - object.patches[patch].centroid).squaredNorm());
+  struct Nearest {
+    std::int32_t patch = -1;
+    float squared = std::numeric_limits<float>::infinity();
   };
-  const auto visit = [&](const Vector3i& voxel) {
-    const std::int64_t index = lattice_.index(voxel);
-    if (patch_of_voxel_[index] >= 0 && squared[index] == 0.0F) return;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int step : {-1, 1}) {
-        Vector3i neighbor = voxel;
-        neighbor[axis] += step;
-        if (neighbor[axis] < 0 || neighbor[axis] >= lattice_.counts[axis]) continue;
-        const std::int32_t patch = patch_of_voxel_[lattice_.index(neighbor)];
-        if (patch < 0) continue;
-        const float candidate = distance(voxel, patch);
-        if (!(candidate < squared[index])) continue;
-        squared[index] = candidate;
-        patch_of_voxel_[index] = patch;
-      }
-    }
-  };
-  for (std::size_t i = 0; i < squared.size(); ++i) {
-    if (patch_of_voxel_[i] >= 0) squared[i] = 0.0F;  // a partial voxel keeps its own
-  }
   const Vector3i n = lattice_.counts;
-  const auto sweep = [&](bool is_back) {
+  // In the order of the sweeps, in which the third axis is the fastest.
+  const std::array<std::int64_t, 3> strides = {std::int64_t{n[1]} * n[2], n[2], 1};
+  std::vector<Nearest> nearest(patch_of_voxel_.size());
+  const auto for_each_voxel = [&](bool is_back, const auto& visit) {
+    const auto number = [&](int i, int axis) { return is_back ? n[axis] - 1 - i : i; };
     for (int a = 0; a < n[0]; ++a) {
       for (int b = 0; b < n[1]; ++b) {
         for (int c = 0; c < n[2]; ++c) {
-          visit(is_back ? Vector3i(n[0] - 1 - a, n[1] - 1 - b, n[2] - 1 - c) : Vector3i(a, b, c));
+          const Vector3i voxel(number(a, 0), number(b, 1), number(c, 2));
+          visit(voxel, voxel[0] * strides[0] + voxel[1] * strides[1] + voxel[2]);
         }
       }
     }
   };
+  for_each_voxel(false, [&](const Vector3i& voxel, std::int64_t index) {
+    const std::int32_t patch = patch_of_voxel_[lattice_.index(voxel)];
+    // A partial voxel keeps its own.
+    if (patch >= 0 && is_meant[patch]) nearest[index] = {patch, 0.0F};
+  });
+  std::vector<Vector3d> centroids;
+  for (const geometry::SurfacePatch& patch : object.patches) centroids.push_back(patch.centroid);
+  const auto visit = [&](const Vector3i& voxel, std::int64_t index) {
+    Nearest& own = nearest[index];
+    if (own.squared == 0.0F) return;
+    const Vector3d center =
+        lattice_.origin + lattice_.voxel_size * (voxel.cast<double>().array() + 0.5).matrix();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int step : {-1, 1}) {
+        if (voxel[axis] + step < 0 || voxel[axis] + step >= n[axis]) continue;
+        const std::int32_t patch = nearest[index + step * strides[axis]].patch;
+        if (patch < 0 || patch == own.patch) continue;
+        const auto squared = static_cast<float>((center - centroids[patch]).squaredNorm());
+        if (squared < own.squared) own = {patch, squared};
+      }
+    }
+  };
   for (int round = 0; round < 2; ++round) {
-    sweep(false);
-    sweep(true);
+    for_each_voxel(false, visit);
+    for_each_voxel(true, visit);
   }
+  for_each_voxel(false, [&](const Vector3i& voxel, std::int64_t index) {
+    patch_of_voxel_[lattice_.index(voxel)] = nearest[index].patch;
+  });
 }
 
 }  // namespace graspfit::grasp::internal

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
-#include <set>
 #include <span>
+#include <unordered_set>
 
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
@@ -47,6 +48,17 @@ void require_few_points(const hands::HandModel& hand, const hands::Link& link, d
                      "for it");
 }
 
+/// Whole numbers, of any size.
+using Cell = std::array<double, 3>;
+
+struct CellHash {
+  std::size_t operator()(const Cell& cell) const {
+    std::size_t hash = 0;
+    for (const double x : cell) hash = 31 * hash + std::hash<double>{}(x);
+    return hash;
+  }
+};
+
 /// Points on the surface of a mesh: vertices, and a barycentric lattice in faces longer than
 /// `spacing`; of these, only the first one in each cell of half that size is kept.
 std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double spacing) {
@@ -61,10 +73,11 @@ std::vector<Vector3d> surface_points(const geometry::TriangleMesh& mesh, double 
       }
     }
   }
-  std::set<std::array<double, 3>> taken;  // whole numbers, of any size
+  std::unordered_set<Cell, CellHash> taken;
+  taken.reserve(points.size());
   std::erase_if(points, [&](const Vector3d& point) {
     const Vector3d cell = (point / (0.5 * spacing)).array().floor();
-    return !taken.insert({cell[0], cell[1], cell[2]}).second;
+    return !taken.insert(Cell{cell[0], cell[1], cell[2]}).second;
   });
   return points;
 }
