@@ -162,9 +162,6 @@ bool ReachSides::Work::is_done() const {
 std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   if (targets_.pool().size() < 2) return {};
   std::vector<Candidate> best = strongest(random);
-  if (scene_.options.style == GraspStyle::Auto) {
-    std::erase_if(best, [](const Candidate& candidate) { return !(candidate.strength > 0.0); });
-  }
   bool is_any_clear = false;
   for (Candidate& candidate : best) is_any_clear = clear(candidate) || is_any_clear;
   std::vector<TargetSide> sides;

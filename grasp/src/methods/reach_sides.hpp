@@ -34,8 +34,9 @@ class ReachSides {
   /// Those that cannot be are left out, unless none of them can, and do not end the search.
   /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
   /// one take turns, at random, until one that can be clear is strong enough, for which less is
-  /// asked the more postures were tried, or a budget of work is spent. Empty if none was found, or
-  /// with `GraspStyle::Auto` none with a strength above 0.
+  /// asked the more postures were tried, or a budget of work is spent: on thin and jagged objects
+  /// even the strongest may not be expected to close, of which about half do. Empty if none was
+  /// found.
   std::vector<TargetSide> draw(base::Random& random) const;
 
   const HandGrips& grips() const { return grips_; }

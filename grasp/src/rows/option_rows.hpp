@@ -279,8 +279,7 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
       "behind the tips are closed onto the object; auto, with target-search reach: "
       "to those of the fingertips, or to them and the palm or one finger more, or "
       "to the palm and the pads behind the tips, the oftener the stronger such grips are; "
-      "where no fingers are named, to any; to none where no grasp that closes is "
-      "expected",
+      "where no fingers are named, to any",
       "P; how: R", "A39"});
   at(options.fingers,
      {"fingers", kAny, "fingers", "", kRequest,
