@@ -128,8 +128,8 @@ TEST_CASE("Postures from which grasps by reach are refined are clear of the obje
   const Starts starts = tried_starts(hands::find_hand("barrett"), geometry::torus(0.04, 0.02), 12);
   CHECK(starts.num >= 12);
   CHECK(starts.num_clear >= starts.num - starts.num / 10);
-  // Only such are tried as are expected to close.
-  CHECK(starts.num_closed >= starts.num / 2);
+  // Of the attempts most close.
+  CHECK(starts.num_closed >= 8);
 }
 
 TEST_CASE("Postures that cannot be clear are left out where others of an attempt can be",
