@@ -76,7 +76,8 @@ TEST_CASE("Pipeline from mesh file to grasps", "[!benchmark][pipeline]") {
                 {"score map", median(scores)}});
 
   const grasp::ObjectModel object = grasp::prepare_object(mesh, hand, options);
-  const grasp::PlannerResult result = grasp::plan_grasps(object, hand, options);
+  const grasp::PlannerResult result =
+      grasp::plan_grasps(object, hand, options, {}, {.num_threads = 1});
   const double usable = std::max<double>(1.0, static_cast<double>(result.statistics.usable()));
   const grasp::PlannerTimings& t = result.timings;
   print_shares("Per usable grasp (" + std::to_string(result.statistics.attempts) + " attempts, " +
