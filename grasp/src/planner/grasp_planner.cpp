@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -106,7 +107,7 @@ class Search {
     if (run_.progress) {
       run_.progress(statistics.attempts, static_cast<std::int64_t>(result_.grasps.size()));
     }
-    if (options_.search == SearchRule::First && std::ssize(result_.grasps) >= options_.count) {
+    if (options_.search != SearchRule::Best && num_counted() >= options_.count) {
       end(PlannerStop::Count);
     } else if (num_taken_ == options_.max_attempts) {
       end(PlannerStop::Attempts);
@@ -120,20 +121,33 @@ class Search {
     }
   }
 
+  /// Whether an accepted grasp is one of those that are wanted.
+  bool counts(const Grasp& grasp) const {
+    return options_.search != SearchRule::Closed || grasp.is_closed();
+  }
+  std::int64_t num_counted() const {
+    return std::count_if(result_.grasps.begin(), result_.grasps.end(),
+                         [&](const Grasp& grasp) { return counts(grasp); });
+  }
+
   void end(PlannerStop stop) {
     result_.stop = stop;
     is_over_ = true;
   }
 
-  bool is_unlike(const Grasp& grasp, const std::vector<Grasp>& others) const {
-    return std::all_of(others.begin(), others.end(), [&](const Grasp& other) {
-      return are_distinct(hand_, grasp.configuration, other.configuration, options_.distinct);
-    });
+  bool are_unlike(const Grasp& a, const Grasp& b) const {
+    return are_distinct(hand_, a.configuration, b.configuration, options_.distinct);
   }
 
-  /// Keeps a grasp; in the search for the first grasps, only one that differs from all before it.
+  /// Keeps a grasp; in the search for the first grasps, only one that differs from all that count
+  /// before it.
   void keep(Grasp grasp) {
-    if (options_.search == SearchRule::Best || is_unlike(grasp, result_.grasps)) {
+    const bool is_new =
+        options_.search == SearchRule::Best || !counts(grasp) ||
+        std::none_of(result_.grasps.begin(), result_.grasps.end(), [&](const Grasp& other) {
+          return counts(other) && !are_unlike(grasp, other);
+        });
+    if (is_new) {
       result_.grasps.push_back(std::move(grasp));
     } else {
       ++result_.statistics.duplicates;
@@ -147,9 +161,15 @@ class Search {
       result_.grasps = std::move(ranked);
       return;
     }
+    if (options_.search == SearchRule::Closed) {
+      std::stable_partition(ranked.begin(), ranked.end(), std::mem_fn(&Grasp::is_closed));
+    }
     std::vector<Grasp> selected;
     for (Grasp& grasp : ranked) {
-      if (!is_unlike(grasp, selected)) {
+      const bool is_unlike = std::all_of(selected.begin(), selected.end(), [&](const Grasp& other) {
+        return are_unlike(grasp, other);
+      });
+      if (!is_unlike) {
         ++result_.statistics.duplicates;
       } else if (std::ssize(selected) < options_.count) {
         selected.push_back(std::move(grasp));

@@ -41,7 +41,7 @@ const std::vector<PlannerPreset>& planner_presets() {
         {"keep", named("balanced")},
         {"idle-fingers", named("close")},
         {"count", std::int64_t{5}},
-        {"search", named("first")},
+        {"search", named("closed")},
         {"rank", named("epsilon")}}}};
   return presets;
 }

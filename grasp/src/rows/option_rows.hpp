@@ -319,8 +319,9 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
       "R", "A36"});
   at(options.search,
      {"search", kAny, "search", "", kSearch,
-      "best: use all attempts and return the best grasps; first: stop at the first ones", "R",
-      "A36"});
+      "best: use all attempts and return the best grasps; first: stop at the first ones; closed: "
+      "at the first ones that close, others fill up where attempts end before",
+      "R", "A36"});
   at(options.rank,
      {"rank", kAny, "rank", "", kSearch,
       "what is best among grasps: the largest M; or the largest epsilon at squeeze-friction, how "

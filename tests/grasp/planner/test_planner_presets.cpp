@@ -60,7 +60,7 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   CHECK(strong.kept == KeptCandidate::Balanced);
   CHECK(strong.idle_fingers == IdleFingers::Close);
   CHECK(strong.count == 5);
-  CHECK(strong.search == SearchRule::First);
+  CHECK(strong.search == SearchRule::Closed);
   CHECK(strong.rank == RankRule::Epsilon);
   CHECK(strong.refine);
   CHECK(preset_named("strong")->values.size() == 7);

@@ -64,10 +64,10 @@ ObjectModel prepare_object(const geometry::TriangleMesh& mesh, const hands::Hand
                            const base::ContentCache& cache = {.is_on = false});
 
 /// Makes attempts by the method `options.planner` until `count` grasps are accepted
-/// (`SearchRule::First`) or the budget is used. An attempt of hand-object geometric fitting (paper
-/// section 11) selects target contacts, fits the hand, estimates contacts and measures the grasp.
-/// The object's size is not checked here (`prepare_object` and `size_refusal` do so): with an
-/// object that the hand cannot hold no attempt succeeds.
+/// (`SearchRule::First`; `Closed`: and close) or the budget is used. An attempt of hand-object
+/// geometric fitting (paper section 11) selects target contacts, fits the hand, estimates contacts
+/// and measures the grasp. The object's size is not checked here (`prepare_object` and
+/// `size_refusal` do so): with an object that the hand cannot hold no attempt succeeds.
 ///
 /// @throws InvalidInput for options that the hand cannot meet (unknown finger, more contacts than
 /// it allows).

@@ -52,7 +52,8 @@ inline constexpr std::array kNames<ApproachSource> = {
     NamedValue{ApproachSource::BoxRays, "box-rays"}};
 template <>
 inline constexpr std::array kNames<SearchRule> = {NamedValue{SearchRule::Best, "best"},
-                                                  NamedValue{SearchRule::First, "first"}};
+                                                  NamedValue{SearchRule::First, "first"},
+                                                  NamedValue{SearchRule::Closed, "closed"}};
 template <>
 inline constexpr std::array kNames<RankRule> = {NamedValue{RankRule::M, "m"},
                                                 NamedValue{RankRule::Epsilon, "epsilon"},

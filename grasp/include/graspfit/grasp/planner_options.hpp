@@ -39,10 +39,12 @@ enum class Rejection {
 
 /// When the planner stops searching.
 enum class SearchRule {
-  Best,   ///< Use all attempts and return the best accepted grasps by `RankRule`: the paper's
-          ///< generate, evaluate, select.
-  First,  ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
-          ///< grasps.
+  Best,    ///< Use all attempts and return the best accepted grasps by `RankRule`: the paper's
+           ///< generate, evaluate, select.
+  First,   ///< Stop at the first accepted grasps: unselected sets, as for averages over usable
+           ///< grasps.
+  Closed,  ///< Stop at the first accepted grasps that close (`Grasp::is_closed`). Others fill up
+           ///< where the attempts end before, best first.
 };
 
 /// What is best among a run's grasps: their order, and which of alike ones and of more than were
