@@ -213,7 +213,7 @@ class BadFlags(program.ProgramTest):
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
                      "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
                      "reject", "guard-self", "pre-grasp-open-neutral",
-                     "pre-grasp-leave-pressing", "candidate-order", "keep", "rank"):
+                     "pre-grasp-leave-pressing", "candidate-order", "keep", "search", "rank"):
             with self.subTest(flag):
                 self.refuse(f"--{flag}", "whatever", says=["whatever", f"--{flag}"])
 

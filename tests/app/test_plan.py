@@ -80,7 +80,7 @@ class Plan(program.ProgramTest):
 
     def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
         keys = ("style", "kept_candidate", "count", "search", "rank", "idle_fingers")
-        strong = ("auto", "balanced", 5, "first", "epsilon", "close")
+        strong = ("auto", "firmest", 5, "closed", "epsilon", "close")
         exact = ("precision", "first", 1, "best", "m", "stay")
         for flags, expected_preset, expected in (
                 ((), "strong", strong),
@@ -121,9 +121,10 @@ class Plan(program.ProgramTest):
             self.assertGreater(grasp["wrench"]["epsilon"], 0)
 
     def test_where_no_posture_is_found_targets_are_drawn_at_random(self):
-        # A rod of 16 by 20 mm is not two voxels thick, which the postures of a gripper are too coarse for.
+        # A rod of 16 by 20 mm is not two voxels thick, which the postures of two jaws are too coarse for.
         rod = self.write("rod.off", program.off_text(*program.box(16, 20, 330)))
-        arguments = ["plan", rod, "--mesh-unit", "mm", "--hand", "parallel_gripper", "--out", self.folder / "out"]
+        arguments = ["plan", rod, "--mesh-unit", "mm", "--hand", "parallel_gripper", "--no-palm", "--out",
+                     self.folder / "out"]
         done = program.run(*arguments)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr.splitlines(), [

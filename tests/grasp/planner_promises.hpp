@@ -248,9 +248,13 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   if (result.stop == PlannerStop::Attempts && !used_all) {
     report("stopped by attempts after ", statistics.attempts);
   }
-  if (options.search == SearchRule::First && result.stop == PlannerStop::Attempts &&
-      num_grasps == options.count) {
-    report("had its grasps and went on");
+  const auto num_wanted =
+      std::count_if(result.grasps.begin(), result.grasps.end(), [&](const Grasp& grasp) {
+        return options.search != SearchRule::Closed || grasp.is_closed();
+      });
+  if (options.search != SearchRule::Best &&
+      (num_wanted == options.count) != (result.stop == PlannerStop::Count)) {
+    report("stopped with ", num_wanted, " grasps that count of ", options.count);
   }
   const std::int64_t num_acceptable = std::min<std::int64_t>(
       options.count,
@@ -261,7 +265,11 @@ inline std::vector<std::string> broken_promises(const Run& run, const PlannerRes
   }
   for (std::size_t i = 1; i < result.grasps.size(); ++i) {
     const Grasp &a = result.grasps[i - 1], &b = result.grasps[i];
-    if (a.quality.m < b.quality.m || (a.quality.m == b.quality.m && a.attempt >= b.attempt)) {
+    const bool is_of_one_kind =
+        options.search != SearchRule::Closed || a.is_closed() == b.is_closed();
+    if (is_of_one_kind
+            ? a.quality.m < b.quality.m || (a.quality.m == b.quality.m && a.attempt >= b.attempt)
+            : b.is_closed()) {
       report("grasp ", i, " is out of order");
     }
   }

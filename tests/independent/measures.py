@@ -39,19 +39,30 @@ def merged(points, distance):
 
 
 def shape_index(polygon):
-    """Returns Q of a polygon [Park & Starr; Roa & Suarez]: 0 for a regular one, 1 for a
-    collapsed one."""
+    """Returns Q of a flat polygon [Park & Starr; Roa & Suarez]: 0 for a regular one, 1 for a
+    collapsed one. Corners may bend inward, as where faces of a hull are one face."""
     n = len(polygon)
-    angles = [np.degrees(angle_between(polygon[i - 1] - polygon[i],
-                                       polygon[(i + 1) % n] - polygon[i])) for i in range(n)]
+    polygon = np.column_stack([polygon, np.zeros((n, 3 - polygon.shape[1]))])
+    normal = area_normal(polygon)
+    angles = []
+    for i in range(n):
+        to_next, to_previous = polygon[(i + 1) % n] - polygon[i], polygon[i - 1] - polygon[i]
+        angles.append(np.degrees(np.arctan2(np.dot(np.cross(to_next, to_previous), normal),
+                                            np.dot(to_next, to_previous))) % 360)
     mean = 180 * (n - 2) / n
     return sum(abs(angle - mean) for angle in angles) / ((n - 2) * (180 - mean) + 2 * mean)
 
 
+def area_normal(polygon):
+    """Returns the direction of a polygon's area, zero if it has none."""
+    normal = sum(np.cross(a, b) for a, b in zip(polygon, np.roll(polygon, -1, axis=0)))
+    length = np.linalg.norm(normal)
+    return normal / length if length > 0 else normal
+
+
 def flattened(polygon):
     """Returns a slightly folded polygon as seen along its area vector."""
-    normal = sum(np.cross(a, b) for a, b in zip(polygon, np.roll(polygon, -1, axis=0)))
-    normal = normal / np.linalg.norm(normal)
+    normal = area_normal(polygon)
     return polygon - np.outer((polygon - polygon.mean(axis=0)) @ normal, normal)
 
 

@@ -209,6 +209,13 @@ class Measure(unittest.TestCase):
                     measures.regularity(np.array(points, dtype=float), "combined"), expected,
                     delta=5e-3 if expected in (0.48, 0.84) else 1e-9)
 
+    def test_a_corner_that_bends_inward_has_more_than_180_degrees(self):
+        # A quadrilateral with angles of 90, 18.4, 233.1 and 18.4 degrees.
+        dart = np.array([[0, 0], [4, 0], [1, 1], [0, 4]], dtype=float)
+        expected = 4 * (90 - np.degrees(np.arctan(1 / 3))) / 360
+        for polygon in (dart, dart[::-1], np.roll(dart, 1, axis=0)):
+            self.assertAlmostEqual(measures.shape_index(polygon), expected, 12)
+
     def test_pairs_on_a_ball(self):
         tetrahedron = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) / 3**0.5
         equator = [[np.cos(a), np.sin(a), 0] for a in 2 * np.pi * np.arange(3) / 3]

@@ -25,6 +25,7 @@ std::vector<Experiment> listed_experiments() {
       force_closure(),
       guidance_models(),
       hold_experiment("hold_choices"),
+      hold_experiment("hold_default"),
       hold_prediction(),
       hold_rates(),
       measured_contacts(),

@@ -166,7 +166,7 @@ class FittingGuidance : public GraspGuidance {
         for (TargetSide& side : sides) side.imbalance = set_imbalance;
       }
       std::stable_sort(sides.begin(), sides.end(), by_misfit);
-      if (options.kept == KeptCandidate::Strongest) {
+      if (compares_all_sets(options.kept)) {
         std::move(sides.begin(), sides.end(), std::back_inserter(best));
       } else if (best.empty() || by_misfit(sides.front(), best.front())) {
         best = std::move(sides);

@@ -23,11 +23,7 @@ constexpr int kRollDraws = 6;                               // about the line be
 constexpr double kMostTilt = std::numbers::pi / 6;          // of the palm on its point
 constexpr double kLeanLever = 0.03;                         // [m/rad]: a lean beside a gap
 
-/// Where a pad is and where it faces: of a sample in H, or as a point of the pool in O.
-struct Facing {
-  Vector3d point;
-  Vector3d normal;
-};
+using Facing = HandProposals::Facing;
 
 Facing facing(const hands::PadSamples& samples, std::int32_t sample) {
   return {samples.points_H.col(sample), samples.normals_H.col(sample)};
@@ -87,7 +83,11 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
 HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& object,
                              const TargetPlaces& targets, const HandGrips& grips,
                              const NearestPatches& places)
-    : hand_(hand), object_(object), targets_(targets), grips_(grips), places_(places) {}
+    : hand_(hand), targets_(targets), grips_(grips), places_(places) {
+  for (const geometry::SurfacePatch& patch : object.patches) {
+    surface_.push_back({patch.centroid, -patch.outward_normal});
+  }
+}
 
 std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
                                                 base::Random& random) const {
@@ -200,14 +200,15 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
       const auto sample = static_cast<Index>(number);
       const Vector3d point = X_OH * samples.points_H.col(sample);
       const std::int32_t index = places_.at(point);
-      const geometry::SurfacePatch& patch = object_.patches[index];
-      const double gap = (point - patch.centroid).norm();
-      if (gap >= least) continue;
+      const Facing& place = surface_[index];
+      const double squared = (point - place.point).squaredNorm();
+      if (squared >= least * least) continue;
+      const double gap = std::sqrt(squared);
       const Vector3d normal = X_OH.linear() * samples.normals_H.col(sample);
       // An angle is no less than its chord.
       const double lean_left = (least - gap) / kLeanLever;
-      if (2.0 + 2.0 * normal.dot(patch.outward_normal) >= lean_left * lean_left) continue;
-      const double its_cost = cost(gap, normal, -patch.outward_normal);
+      if (2.0 - 2.0 * normal.dot(place.normal) >= lean_left * lean_left) continue;
+      const double its_cost = cost(gap, normal, place.normal);
       if (its_cost >= least) continue;
       least = its_cost;
       best = number;

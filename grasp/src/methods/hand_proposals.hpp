@@ -26,7 +26,13 @@ struct HandProposal {
 /// the others by looking where they can be then.
 class HandProposals {
  public:
-  /// Refers to all of them. `places` are the pool's.
+  /// Where a pad is and where it faces: of a sample in H, or as a point of the pool in O.
+  struct Facing {
+    Eigen::Vector3d point;
+    Eigen::Vector3d normal;
+  };
+
+  /// Refers to all of them but the object. `places` are the pool's.
   HandProposals(const hands::HandModel& hand, const ObjectModel& object,
                 const TargetPlaces& targets, const HandGrips& grips, const NearestPatches& places);
 
@@ -55,10 +61,11 @@ class HandProposals {
                                   double most) const;
 
   const hands::HandModel& hand_;
-  const ObjectModel& object_;
   const TargetPlaces& targets_;
   const HandGrips& grips_;
   const NearestPatches& places_;
+  /// Per patch of the object, facing inward: beside one another, for speed.
+  std::vector<Facing> surface_;
 };
 
 }  // namespace graspfit::grasp::internal

@@ -7,10 +7,11 @@
 #include <map>
 #include <numbers>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/random.hpp"
-#include "graspfit/contact/epsilon_bound.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
-#include "graspfit/geometry/angle.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
+#include "methods/firmness.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -55,14 +56,34 @@ std::vector<std::vector<std::int32_t>> patches_around(const ObjectModel& object,
   return around;
 }
 
+contact::Contact contact_on(const geometry::SurfacePatch& patch) {
+  contact::Contact contact;
+  contact.point_O = patch.centroid;
+  contact.inward_normal_O = -patch.outward_normal;
+  return contact;
+}
+
 }  // namespace
 
 PlaceStrength::PlaceStrength(const ObjectModel& object, const std::vector<PoolPoint>& pool,
                              double friction)
-    : object_(object),
-      wrench_object_(contact::wrench_object(object.mesh(), object.mass.center_of_mass)),
-      friction_(friction),
-      around_(patches_around(object, pool)) {}
+    : object_(object), friction_(friction), around_(patches_around(object, pool)) {
+  const contact::WrenchConvention convention = contact::wrench_convention(
+      contact::WrenchTool::Graspfit,
+      contact::wrench_object(object.mesh(), object.mass.center_of_mass), {}, friction);
+  num_edges_ = convention.options.num_cone_edges;
+  wrenches_.resize(6, std::ssize(object.patches) * num_edges_);
+  std::vector<bool> is_known(object.patches.size(), false);
+  for (const std::vector<std::int32_t>& around : around_) {
+    for (const std::int32_t patch : around) {
+      if (is_known[patch]) continue;
+      is_known[patch] = true;
+      const contact::Contact contact = contact_on(object.patches[patch]);
+      wrenches_.middleCols(patch * num_edges_, num_edges_) =
+          contact::contact_wrenches({&contact, 1}, convention);
+    }
+  }
+}
 
 double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double least) const {
   const double of_patches = nominal(patches, least);
@@ -87,25 +108,16 @@ double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double 
 }
 
 double PlaceStrength::nominal(const std::vector<std::int32_t>& patches, double least) const {
-  std::vector<contact::Contact> contacts;
-  for (const std::int32_t patch : patches) {
-    contact::Contact contact;
-    contact.point_O = object_.patches[patch].centroid;
-    contact.inward_normal_O = -object_.patches[patch].outward_normal;
-    contacts.push_back(contact);
+  if (patches.size() == 2) {
+    return firmness_of_pinch(contact_on(object_.patches[patches[0]]),
+                             contact_on(object_.patches[patches[1]]), friction_);
   }
-  if (contacts.size() == 2) {
-    const Vector3d line = contacts[1].point_O - contacts[0].point_O;
-    if (line.isZero(0.0)) return -std::numeric_limits<double>::infinity();
-    const double lean = std::max(geometry::angle_between(contacts[0].inward_normal_O, line),
-                                 geometry::angle_between(contacts[1].inward_normal_O, -line));
-    return lean < 0.5 * std::numbers::pi ? friction_ - std::tan(lean) : -lean;
+  contact::Wrenches wrenches(6, base::as_index<Eigen::Index>(patches.size()) * num_edges_);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    wrenches.middleCols(base::as_index<Eigen::Index>(i) * num_edges_, num_edges_) =
+        wrenches_.middleCols(patches[i] * num_edges_, num_edges_);
   }
-  return contact::epsilon_bound(
-      contact::contact_wrenches(
-          contacts, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object_,
-                                               contacts, friction_)),
-      least);
+  return firmness(wrenches, least);
 }
 
 }  // namespace graspfit::grasp::internal

@@ -3,18 +3,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "graspfit/contact/wrench_convention.hpp"
+#include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/grasp/object_model.hpp"
 #include "targets/target_feasibility.hpp"
 
 namespace graspfit::grasp::internal {
 
 /// How strong grasps with contacts on some patches of an object would be, for comparing them by the
-/// thousand: `contact::epsilon_bound` of point contacts at the patches' centroids.
-///
-/// Of two contacts, which cannot close, it is how far their line is within both cones: the friction
-/// less the tangent of the larger lean; of more than a right angle, minus the lean [rad]; of one
-/// place twice, minus infinity.
+/// thousand: `firmness` of point contacts at the patches' centroids.
 class PlaceStrength {
  public:
   /// Of patches in the pool.
@@ -33,11 +29,13 @@ class PlaceStrength {
 
  private:
   const ObjectModel& object_;
-  const contact::WrenchObject wrench_object_;
   const double friction_;
   /// Per patch: those about it that face about the same way, itself among them; empty for one that
   /// is not in the pool.
   std::vector<std::vector<std::int32_t>> around_;
+  Eigen::Index num_edges_ = 0;  ///< Of a friction cone.
+  /// Per patch that is about some other, itself or not, a column per edge of a contact on it.
+  contact::Wrenches wrenches_;
 };
 
 }  // namespace graspfit::grasp::internal

@@ -11,6 +11,7 @@
 #include "graspfit/base/units.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/palm_pose.hpp"
+#include "methods/firmness.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
@@ -121,10 +122,7 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
       search_(scene.hand, scene.object, nearest_, places_),
       clearance_(scene.hand, scene.object, scene.surroundings),
       proposals_(scene.hand.model(), scene.object, targets, grips_, places_),
-      // Between that of closure and that within which a squeeze is to balance: what is strong there
-      // still closes where normals turn out a little different.
-      strength_(scene.object, targets.pool(),
-                0.5 * (scene.options.friction + scene.options.squeeze_friction)),
+      strength_(scene.object, targets.pool(), firmness_friction(scene.options)),
       pool_of_patch_(scene.object.patches.size(), -1) {
   for (std::int32_t p = 0; p < std::ssize(targets.pool()); ++p) {
     pool_of_patch_[*targets.pool()[p].patch] = p;
@@ -425,7 +423,7 @@ TargetSide ReachSides::side_of(const Candidate& candidate) const {
   }
   side.goal = candidate.posture.configuration;
   side.is_at_goal = true;
-  side.misfit = -candidate.strength;
+  side.promised_firmness = candidate.strength;
   side.placement.direction_O = (side.goal->X_OH.linear() * hand.palm.direction_H).normalized();
   return side;
 }

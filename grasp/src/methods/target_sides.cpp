@@ -55,6 +55,7 @@ std::vector<GuidedStart> starts_from(std::vector<TargetSide> sides, const Guidan
     };
     start.targets = std::move(side.targets);
     start.draws_to_targets = !side.is_at_goal;
+    start.promised_firmness = side.promised_firmness;
     start.posture = std::move(side.goal);
     starts.push_back(std::move(start));
   }

@@ -18,6 +18,7 @@ struct TargetSide {
   /// Whether fingers cross at the start from this side, where that counts.
   bool do_fingers_cross = false;
   bool is_at_goal = false;  ///< The goal is a posture from which to refine, without closing.
+  std::optional<double> promised_firmness = {};  ///< As in `GuidedStart`.
 };
 
 /// Sides of sets that balance first where that counts, then those from which fingers need not

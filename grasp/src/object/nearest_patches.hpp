@@ -20,13 +20,14 @@ class NearestPatches {
   /// Index of the patch for the voxel that holds `point_O`, or for the lattice's voxel nearest to
   /// it.
   std::int32_t at(const Eigen::Vector3d& point_O) const {
-    const Eigen::Array3d position = (point_O - lattice_.origin).array() / lattice_.voxel_size;
+    const Eigen::Array3d position = (point_O - lattice_.origin).array() * inverse_size_;
     const Eigen::Array3d inside = position.max(0.0).min(last_voxel_);
     return patch_of_voxel_[lattice_.index(inside.cast<int>().matrix())];
   }
 
  private:
   const geometry::VoxelLattice& lattice_;
+  const double inverse_size_ = 1.0 / lattice_.voxel_size;
   Eigen::Array3d last_voxel_;
   std::vector<std::int32_t> patch_of_voxel_;
 };

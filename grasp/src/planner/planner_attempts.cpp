@@ -12,6 +12,7 @@
 #include "graspfit/grasp/grasp_measure.hpp"
 #include "graspfit/grasp/planner_result.hpp"
 #include "graspfit/hands/palm_pose.hpp"
+#include "methods/firmness.hpp"
 #include "targets/object_size.hpp"
 
 namespace graspfit::grasp::internal {
@@ -179,6 +180,13 @@ double PlannerAttempts::strength(const Grasp& grasp) const {
   return grasp_strength(grasp, scene_.wrench_object, options_.squeeze_friction, scene_.bearing_gap);
 }
 
+double PlannerAttempts::firmness_of(const Grasp& grasp) const {
+  const std::vector<contact::Contact> touching =
+      contact::touching_contacts(grasp.contacts, scene_.bearing_gap);
+  return touching.empty() ? kNoStrength
+                          : firmness(touching, scene_.wrench_object, firmness_friction(options_));
+}
+
 AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserver& observer) const {
   AttemptResult work;  // counters and times of everything that this attempt tries
   GuidedStarts guided;
@@ -198,9 +206,12 @@ AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserve
       observer({number, start, last.outcome, last.grasp ? &*last.grasp : nullptr});
     }
     best = best_of(tried);
-    if (!is_enough(tried[best])) continue;
+    const std::size_t next = tried.size();
+    const std::optional<double> promise =
+        next < guided.starts.size() ? guided.starts[next].promised_firmness : std::nullopt;
+    if (!is_enough(tried[best], promise)) continue;
     best = best_with_way_in(tried);
-    if (is_enough(tried[best])) break;
+    if (is_enough(tried[best], promise)) break;
   }
   if (!tried.empty()) best = best_with_way_in(tried);
   for (const AttemptResult& result : tried) {
@@ -254,17 +265,23 @@ PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result)
       std::get<2>(rank) = is_balanced(result);
       std::get<3>(rank) = result.grasp ? strength(*result.grasp) : kNoStrength;
       break;
+    case KeptCandidate::Firmest:
+      std::get<3>(rank) = result.firmness;
+      break;
   }
   return rank;
 }
 
-/// Whether no further start can be kept instead of this one.
-bool PlannerAttempts::is_enough(const AttemptResult& result) const {
+/// Whether no further start need be tried, of which the next one may promise a firmness.
+bool PlannerAttempts::is_enough(const AttemptResult& result,
+                                const std::optional<double>& promise) const {
   switch (options_.kept) {
     case KeptCandidate::First:
       return result.is_accepted;
     case KeptCandidate::Balanced:
       return result.is_accepted && is_balanced(result);
+    case KeptCandidate::Firmest:
+      return result.is_accepted && promise && result.firmness >= *promise;
     case KeptCandidate::Strongest:
       break;
   }
@@ -340,7 +357,10 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   result.is_way_in_open_question = true;
   result.grasp = std::move(grasp);
   result.X_OL = std::move(measured.X_OL);
-  if (options_.kept != KeptCandidate::First) {
+  if (options_.kept == KeptCandidate::Firmest) {
+    const base::Stopwatch watch(result.timings.measure_s);
+    result.firmness = firmness_of(*result.grasp);
+  } else if (options_.kept != KeptCandidate::First) {
     const base::Stopwatch watch(result.timings.pre_grasp_s);
     result.grasp->squeeze = squeeze_of(result);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,8 @@ struct AttemptResult {
   /// Of the grasp's configuration, while starts of the attempt are compared; empty once it is made.
   std::vector<hands::RigidTransform> X_OL;
   bool is_accepted = false;  ///< Whether the options accept the grasp.
+  /// Of the grasp, where `KeptCandidate::Firmest` compares it.
+  double firmness = -std::numeric_limits<double>::infinity();
   /// The grasp's pre-grasp was not searched for yet, nor perhaps its squeeze; until then it is
   /// assumed to exist.
   bool is_way_in_open_question = false;
@@ -55,6 +58,7 @@ class PlannerAttempts {
   /// the squeeze is balanced, and a number.
   using StartRank = std::tuple<bool, int, bool, double>;
 
+  double firmness_of(const Grasp& grasp) const;
   AttemptResult try_start(const GuidedStart& start, std::int64_t number) const;
   /// How closing or refinement ended.
   struct Reached {
@@ -74,7 +78,7 @@ class PlannerAttempts {
   bool is_accepted(const Grasp& grasp) const;
   StartRank rank_of(const AttemptResult& result) const;
   bool is_rejected(const Grasp& grasp) const;
-  bool is_enough(const AttemptResult& result) const;
+  bool is_enough(const AttemptResult& result, const std::optional<double>& promise) const;
 
   const ObjectModel& object_;
   const hands::HandModel& hand_;

@@ -38,7 +38,7 @@ const std::vector<PlannerPreset>& planner_presets() {
        "its pads lie, those that withstand most first",
        {{"style", named("auto")},
         {"target-search", named("reach")},
-        {"keep", named("balanced")},
+        {"keep", named("firmest")},
         {"idle-fingers", named("close")},
         {"count", std::int64_t{5}},
         {"search", named("closed")},

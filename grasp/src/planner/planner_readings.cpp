@@ -41,9 +41,10 @@ bool is_about_fitting(std::string_view number) {
 /// Which set of targets an attempt takes.
 std::string choice_reading(const PlannerOptions& options) {
   const TargetOptions& targets = options.targets;
-  const std::string kept = options.kept == KeptCandidate::Strongest
-                               ? ", of whose sides the strongest grasp is kept"
-                               : "";
+  std::string kept;
+  if (compares_all_sets(options.kept)) {
+    kept = ", of whose sides the " + std::string(name_of(options.kept)) + " grasp is kept";
+  }
   if (targets.search == TargetSearch::Ranked) {
     return "every feasible set once, those that fit best first" + kept;
   }

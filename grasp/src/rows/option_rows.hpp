@@ -343,7 +343,8 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                     "first accepted one "
                     "whose squeeze balances; or, of the sides of all sets drawn, the one with the "
                     "largest epsilon "
-                    "at squeeze-friction",
+                    "at squeeze-friction; or the firmest (by epsilon and by the force "
+                    "that is borne in every direction), until the next one promises no more",
                     "R"});
   at(options.max_placements, {"max_placements", at_least(1), "max-placements", "1", kTargets,
                               "sides that are fitted, those that suit the fingertips best first: "

@@ -5,8 +5,10 @@
 
 #include "grasp/fitting_scene.hpp"
 #include "graspfit/base/random.hpp"
+#include "graspfit/contact/epsilon_bound.hpp"
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/geometry/shapes.hpp"
+#include "methods/firmness.hpp"
 #include "methods/place_strength.hpp"
 #include "support/catch.hpp"
 
@@ -103,6 +105,7 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
       contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass);
   base::Random random(2);
   int num_closed = 0;
+  int num_by_force = 0;
   for (int trial = 0; trial < 60; ++trial) {
     std::vector<std::int32_t> patches;
     std::vector<contact::Contact> contacts;
@@ -115,16 +118,25 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
     }
     const double nominal = strength.nominal(patches, -kInfinity);
     const double epsilon = contact::signed_epsilon(contacts, object, 0.4);
+    // As firm as point contacts: by epsilon, or by 0.3 of the least force.
+    const double force = contact::least_force(contact::contact_wrenches(
+        contacts,
+        contact::wrench_convention(contact::WrenchTool::Graspfit, object, contacts, 0.4)));
+    const double firm = std::min(epsilon, 0.3 * force);
+    CHECK(internal::firmness(contacts, object, 0.4) == Approx(nominal).margin(1e-12));
     if (epsilon > 0.0) {
       ++num_closed;
-      CHECK(nominal >= epsilon - 1e-9);
-      CHECK(nominal <= 1.5 * epsilon + 1e-3);
+      num_by_force += firm < epsilon ? 1 : 0;
+      CHECK(nominal >= firm - 1e-9);
+      CHECK(nominal <= 1.5 * firm + 1e-3);
     } else {
       CHECK(nominal <= 1e-9);
     }
     CHECK(strength.expected(patches, -kInfinity) <= nominal);
   }
   CHECK(num_closed > 5);
+  CHECK(num_by_force > 0);
+  CHECK(num_by_force < num_closed);
 }
 
 TEST_CASE("What is expected ends early only where it is no more than what is asked",

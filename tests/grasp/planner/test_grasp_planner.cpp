@@ -95,6 +95,65 @@ TEST_CASE("Grasps that miss their targets or their quality are rejected, and cou
   }
 }
 
+TEST_CASE("Open grasps do not count towards a search for closed ones, and fill up where it ends",
+          "[grasp][grasp_planner]") {
+  const geometry::TriangleMesh mesh = geometry::torus(0.05, 0.015);
+  constexpr int kAttempts = 40;
+  const PlannerResult all = Run(mesh, collecting(Acceptance::Valid, 1000, kAttempts)).plan();
+  std::vector<std::int64_t> closed, open;  // attempts
+  for (const Grasp& grasp : all.grasps) {
+    (grasp.is_closed() ? closed : open).push_back(grasp.attempt);
+  }
+  REQUIRE(closed.size() > 3);
+  REQUIRE(open.size() > 3);
+  const auto attempts = [](const PlannerResult& result) {
+    std::vector<std::int64_t> numbers;
+    for (const Grasp& grasp : result.grasps) numbers.push_back(grasp.attempt);
+    return numbers;
+  };
+  {
+    INFO("as many as are asked for");
+    PlannerOptions options = collecting(Acceptance::Valid, 3, kAttempts);
+    options.search = SearchRule::Closed;
+    const Run run(mesh, options);
+    const PlannerResult result = run.plan();
+    CHECK(broken_promises(run, result) == kNothing);
+    CHECK(result.stop == PlannerStop::Count);
+    std::vector<std::int64_t> first = closed;
+    std::sort(first.begin(), first.end());
+    first.resize(3);
+    CHECK(result.statistics.attempts == first.back() + 1);
+    std::vector<std::int64_t> found = attempts(result);
+    std::sort(found.begin(), found.end());
+    CHECK(found == first);
+    CHECK(all_fields(result) == all_fields(run.plan(3)));
+  }
+  {
+    INFO("more than there are: the best open ones fill up");
+    PlannerOptions options =
+        collecting(Acceptance::Valid, static_cast<int>(closed.size()) + 2, kAttempts);
+    options.search = SearchRule::Closed;
+    const Run run(mesh, options);
+    const PlannerResult result = run.plan();
+    CHECK(broken_promises(run, result) == kNothing);
+    CHECK(result.stop == PlannerStop::Attempts);
+    std::vector<std::int64_t> expected = closed;  // as ranked
+    expected.insert(expected.end(), open.begin(), open.begin() + 2);
+    CHECK(attempts(result) == expected);
+  }
+  {
+    INFO("alike ones count once");
+    PlannerOptions options = collecting(Acceptance::Valid, 1000, kAttempts);
+    options.search = SearchRule::Closed;
+    options.distinct = {.translation = 1.0, .rotation = 4.0, .joints = 10.0};
+    const Run run(mesh, options);
+    const PlannerResult result = run.plan();
+    CHECK(broken_promises(run, result) == kNothing);
+    CHECK(attempts(result) == std::vector{*std::min_element(closed.begin(), closed.end())});
+    CHECK(result.statistics.duplicates == static_cast<std::int64_t>(all.grasps.size()) - 1);
+  }
+}
+
 TEST_CASE("Rank epsilon orders grasps by how hard they are to break, and leaves the stronger ones",
           "[grasp][grasp_planner]") {
   PlannerOptions options = collecting(Acceptance::Valid, 1000, 40);

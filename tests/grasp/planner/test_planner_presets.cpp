@@ -57,7 +57,7 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   const PlannerOptions strong = options_of("strong");
   CHECK(strong.style == GraspStyle::Auto);
   CHECK(strong.targets.search == TargetSearch::Reach);
-  CHECK(strong.kept == KeptCandidate::Balanced);
+  CHECK(strong.kept == KeptCandidate::Firmest);
   CHECK(strong.idle_fingers == IdleFingers::Close);
   CHECK(strong.count == 5);
   CHECK(strong.search == SearchRule::Closed);

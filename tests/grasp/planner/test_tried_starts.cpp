@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
+#include "graspfit/contact/contact_estimation.hpp"
+#include "graspfit/contact/epsilon_bound.hpp"
+#include "graspfit/contact/wrench_convention.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/grasp/planner_result.hpp"
@@ -140,6 +145,84 @@ TEST_CASE("Starts that nobody tries are those that a run would try", "[grasp][tr
   visit_starts(fixture.object, fixture.hand, fixture.options, 0,
                [&](const GuidedStart&) { ++num_starts; });
   CHECK(num_starts == 0);
+}
+
+TEST_CASE("Attempts that keep the firmest grasp try no start that promises no more",
+          "[grasp][tried_starts]") {
+  const bool is_by_reach = GENERATE(true, false);
+  const double coefficient = 0.3;  // halfway between friction and squeeze friction
+  const hands::HandModel hand = hands::find_hand("human_hand");
+  PlannerOptions options = few_attempts();
+  options.max_attempts = 1;
+  options.kept = KeptCandidate::Firmest;
+  options.friction = 0.5;
+  options.squeeze_friction = 0.1;
+  options.pre_grasps = false;  // What has no way in is not kept.
+  if (is_by_reach) {
+    options.targets.search = TargetSearch::Reach;
+    options.style = GraspStyle::Auto;
+  }
+  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const contact::WrenchObject wrench_object =
+      contact::wrench_object(object.mesh(), object.mass.center_of_mass);
+  const auto firmness = [&](const Grasp& grasp) {
+    const std::vector<contact::Contact> touching =
+        contact::touching_contacts(grasp.contacts, options.refinement.largest_gap);
+    const contact::Wrenches wrenches = contact::contact_wrenches(
+        touching, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object, touching,
+                                             coefficient));
+    const double epsilon = contact::epsilon_bound(wrenches);
+    return epsilon > 0.0 ? std::min(epsilon, 0.3 * contact::least_force(wrenches)) : epsilon;
+  };
+  int num_later = 0;    // starts tried beside a grasp that is less firm
+  int num_untried = 0;  // starts left out
+  int num_kept = 0;
+  int num_kept_firmest = 0;
+  for (options.seed = 1; options.seed <= 16; ++options.seed) {
+    CAPTURE(is_by_reach, options.seed);
+    std::vector<std::optional<double>> promises;
+    visit_starts(object, hand, options, 1, [&](const GuidedStart& start) {
+      promises.push_back(start.promised_firmness);
+      CHECK(start.promised_firmness.has_value() == is_by_reach);
+    });
+    std::vector<double> tried;  // firmness of valid grasps
+    PlanningRun run;
+    run.num_threads = 1;
+    run.tried_start = [&](const TriedStart& start) {
+      CHECK(start.start.promised_firmness == promises.at(tried.size()));
+      tried.push_back(start.outcome == AttemptOutcome::Valid
+                          ? firmness(*start.grasp)
+                          : -std::numeric_limits<double>::infinity());
+    };
+    const PlannerResult result = plan_grasps(object, hand, options, {}, run);
+    if (!is_by_reach) CHECK(tried.size() == promises.size());
+    if (result.grasps.empty()) {
+      CHECK(tried.size() == promises.size());
+      continue;
+    }
+    const double kept = firmness(result.grasps[0]);
+    ++num_kept;
+    const double margin = 1e-12;
+    num_kept_firmest += kept >= *std::max_element(tried.begin(), tried.end()) - margin ? 1 : 0;
+    if (!is_by_reach) continue;
+    double firmest = tried[0];
+    for (std::size_t i = 1; i < promises.size(); ++i) {
+      if (i >= tried.size()) {
+        CHECK(kept >= *promises[i] - margin);
+        ++num_untried;
+        continue;
+      }
+      CHECK(firmest < *promises[i] + margin);
+      num_later += std::isfinite(firmest) ? 1 : 0;
+      firmest = std::max(firmest, tried[i]);
+    }
+  }
+  CHECK(num_kept >= 8);
+  CHECK(num_kept_firmest == num_kept);
+  if (is_by_reach) {
+    CHECK(num_untried > 0);
+    CHECK(num_later > 0);
+  }
 }
 
 TEST_CASE("Hands are fitted to the first graze with refinement, and closed however far without",

@@ -1,9 +1,11 @@
 #include "graspfit/contact/epsilon_bound.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "graspfit/base/errors.hpp"
 #include "wrench/nearest_wrench.hpp"
@@ -20,6 +22,7 @@ constexpr int kMostNormals = 20;      // of facets, from one ray; two are usual
 constexpr double kTolerance = 1e-11;  // of shares and of products of unit wrenches
 constexpr double kPenalty = 1e4;      // of corners that are no wrenches, beside lengths of about 1
 constexpr double kAside = 0.05;       // entries of a ray along an axis for the other axes
+constexpr double kAsideOfForce = 1e-6;  // entries added to those of a force's ray
 
 /// The ray from the origin along d: the largest t for which t d = Σ λ_j w_j with shares λ_j ≥ 0 of
 /// sum 1, by the simplex method. Basic are six corners and t. Beside the wrenches there are six
@@ -93,6 +96,9 @@ class Ray {
     return false;
   }
 
+  /// How far the ray is in the hull, in lengths of its direction.
+  double length() const { return inverse_(6, 6); }
+
   /// The distance from the origin to the plane along the facet's normal that no wrench is beyond.
   double distance() const { return support(facet().normal.normalized()).height; }
 
@@ -144,11 +150,11 @@ class Ray {
   Column penalty_ = Column::Zero();
 };
 
-/// Length of a point of the hull near the one nearest to the origin; empty if the origin is in the
-/// hull, or nearly so.
-std::optional<double> distance_outside(const Wrenches& wrenches) {
-  const auto is_enough = [](const Wrench& point, double product) {
-    return product > 0.99 * point.squaredNorm();
+/// Length of a point of the hull near the one nearest to the origin, of any point that proves the
+/// origin to be outside if `any` is; empty if the origin is in the hull, or nearly so.
+std::optional<double> distance_outside(const Wrenches& wrenches, bool any) {
+  const auto is_enough = [&](const Wrench& point, double product) {
+    return product > (any ? 0.0 : 0.99 * point.squaredNorm());
   };
   const Wrench nearest = internal::near_wrench(wrenches, is_enough).point;
   const double least = (nearest.transpose() * wrenches).minCoeff();
@@ -156,32 +162,87 @@ std::optional<double> distance_outside(const Wrenches& wrenches) {
   return nearest.norm();
 }
 
+void require_finite(const Wrenches& wrenches, const std::string& function) {
+  if (wrenches.cols() == 0 || !wrenches.allFinite()) {
+    throw base::InvalidInput(function + ": needs at least one wrench, and finite ones");
+  }
+}
+
+/// Along the axes and the diagonals between them.
+std::array<Eigen::Vector3d, 14> force_directions() {
+  std::array<Eigen::Vector3d, 14> directions;
+  auto next = directions.begin();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) *next++ = sign * Eigen::Vector3d::Unit(axis);
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    *next++ =
+        Eigen::Vector3d(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0)
+            .normalized();
+  }
+  return directions;
+}
+
 }  // namespace
 
-double epsilon_bound(const Wrenches& wrenches, double enough) {
-  if (wrenches.cols() == 0 || !wrenches.allFinite()) {
-    throw base::InvalidInput("epsilon_bound: needs at least one wrench, and finite ones");
-  }
+double least_force(const Wrenches& wrenches, double enough) {
+  require_finite(wrenches, "least_force");
+  static const std::array<Eigen::Vector3d, 14> kDirections = force_directions();
   const double longest = wrenches.colwise().norm().maxCoeff();
   if (!(longest > 0.0)) return 0.0;
   const Wrenches unit = wrenches / longest;
-  if (const std::optional<double> outside = distance_outside(unit)) return -*outside * longest;
   double least = std::numeric_limits<double>::infinity();
-  for (Index axis = 0; axis < 6; ++axis) {
-    for (const double sign : {-1.0, 1.0}) {
-      Wrench direction = Wrench::Constant(sign * kAside);
-      direction[axis] = sign;
-      Ray ray(unit, direction);
-      if (!ray.shoot()) return 0.0;
-      double distance = ray.distance();
-      for (int i = 0; i < kMostNormals; ++i) {
-        least = std::min(least, distance);
-        if (least * longest <= enough) return least * longest;
-        if (!ray.turn()) break;
-        const double next = ray.distance();
-        if (!(next < distance)) break;
-        distance = next;
-      }
+  for (const Eigen::Vector3d& force : kDirections) {
+    least = std::min(least, (force.transpose() * unit.topRows<3>()).maxCoeff());
+  }
+  if (least * longest <= enough) return std::max(0.0, least * longest);
+  for (const Eigen::Vector3d& force : kDirections) {
+    Wrench direction = Wrench::Constant(kAsideOfForce);
+    direction.head<3>() += force;
+    Ray ray(unit, direction);
+    if (!ray.shoot()) return 0.0;
+    least = std::min(least, ray.length());
+    if (least * longest <= enough) break;
+  }
+  return std::max(0.0, least * longest);
+}
+
+double epsilon_bound(const Wrenches& wrenches, double enough) {
+  require_finite(wrenches, "epsilon_bound");
+  const double longest = wrenches.colwise().norm().maxCoeff();
+  if (!(longest > 0.0)) return 0.0;
+  const Wrenches unit = wrenches / longest;
+  if (const std::optional<double> outside = distance_outside(unit, enough >= 0.0)) {
+    return -*outside * longest;
+  }
+  // Where wrenches reach least far along an axis, the nearest facet is soonest found.
+  struct Axis {
+    double reach;  // of the wrenches along it, no less than epsilon
+    Index axis;
+    double sign;
+  };
+  std::array<Axis, 12> axes;
+  for (Index i = 0; i < 6; ++i) {
+    axes[2 * i] = {-unit.row(i).minCoeff(), i, -1.0};
+    axes[2 * i + 1] = {unit.row(i).maxCoeff(), i, 1.0};
+  }
+  std::stable_sort(axes.begin(), axes.end(),
+                   [](const Axis& a, const Axis& b) { return a.reach < b.reach; });
+  if (axes.front().reach * longest <= enough) return axes.front().reach * longest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Axis& axis : axes) {
+    Wrench direction = Wrench::Constant(axis.sign * kAside);
+    direction[axis.axis] = axis.sign;
+    Ray ray(unit, direction);
+    if (!ray.shoot()) return 0.0;
+    double distance = ray.distance();
+    for (int i = 0; i < kMostNormals; ++i) {
+      least = std::min(least, distance);
+      if (least * longest <= enough) return least * longest;
+      if (!ray.turn()) break;
+      const double next = ray.distance();
+      if (!(next < distance)) break;
+      distance = next;
     }
   }
   return least * longest;

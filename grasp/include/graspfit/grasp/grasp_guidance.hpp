@@ -42,6 +42,9 @@ struct GuidedStart {
   /// Whether refinement draws the middles of pads toward the targets. Where pads lie at their
   /// targets already, perhaps by an edge, that would move them away again.
   bool draws_to_targets = true;
+  /// How firm a grasp with contacts at the targets would be, as `KeptCandidate::Firmest` has it;
+  /// empty where a method does not know it.
+  std::optional<double> promised_firmness = {};
 };
 
 /// The starts of one attempt, the most promising first: they are tried in turn until one of them

@@ -67,7 +67,8 @@ inline constexpr std::array kNames<CandidateOrder> = {
 template <>
 inline constexpr std::array kNames<KeptCandidate> = {
     NamedValue{KeptCandidate::First, "first"}, NamedValue{KeptCandidate::Balanced, "balanced"},
-    NamedValue{KeptCandidate::Strongest, "strongest"}};
+    NamedValue{KeptCandidate::Strongest, "strongest"},
+    NamedValue{KeptCandidate::Firmest, "firmest"}};
 template <>
 inline constexpr std::array kNames<PenetrationGuard> = {
     NamedValue{PenetrationGuard::Voxels, "voxels"}, NamedValue{PenetrationGuard::Meshes, "meshes"}};

@@ -93,7 +93,17 @@ enum class KeptCandidate {
   /// all sets drawn, or of the next set of a ranked search, or the strongest postures of a search
   /// by the hand's reach.
   Strongest,
+  /// As `Strongest`, but by firmness alone: the lesser of ε and 0.3 of the largest force that the
+  /// contacts bear in each of 14 directions (`contact::least_force`), with friction halfway between
+  /// `friction` and `squeeze_friction`. Of a search by reach, whose candidates promise a firmness,
+  /// the next one is not tried once there is an accepted grasp that is as firm as that.
+  Firmest,
 };
+
+/// Whether sides of all sets that an attempt draws are compared.
+constexpr bool compares_all_sets(KeptCandidate kept) {
+  return kept == KeptCandidate::Strongest || kept == KeptCandidate::Firmest;
+}
 
 /// What fingers do that a refined grasp does not need [R].
 enum class IdleFingers {
@@ -156,7 +166,7 @@ struct PlannerOptions {
   KeptCandidate kept = KeptCandidate::First;
   /// Largest number of sides from which an attempt fits the hand, ≥ 1: sides of one target set,
   /// those with the flattest pads first [R] (three and more targets have two sides, two targets
-  /// sixteen); with `KeptCandidate::Strongest`, sides of all sets drawn.
+  /// sixteen); with `KeptCandidate::Strongest` and `Firmest`, sides of all sets drawn.
   int max_placements = 4;
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.

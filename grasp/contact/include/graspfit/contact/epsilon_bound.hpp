@@ -22,4 +22,14 @@ namespace graspfit::contact {
 double epsilon_bound(const Wrenches& wrenches,
                      double enough = -std::numeric_limits<double>::infinity());
 
+/// The largest force without torque that the hull of the wrenches contains in each of 14
+/// directions, those of the axes and of the diagonals between them: of contacts with wrenches of
+/// normal force 1 the weight, over the sum of normal forces, that they bear however it pulls, a
+/// task wrench space of forces (Borst, Fischer, Hirzinger 2004). 0 where it contains none along
+/// some direction. In double arithmetic, to a hundred-thousandth of the longest wrench, by a linear
+/// program for each direction. `enough` is as above.
+/// @throws InvalidInput unless there is at least one wrench and all are finite.
+double least_force(const Wrenches& wrenches,
+                   double enough = -std::numeric_limits<double>::infinity());
+
 }  // namespace graspfit::contact
