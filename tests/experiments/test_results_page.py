@@ -48,7 +48,7 @@ SECTIONS = {
         hold_statements.hold_choices,
         (*PROTOCOLS, r"of 20 attempts each", r"[Ss]trongest of (4|24)"),
     ),
-    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\be041cc0\b")),
+    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
     "## Special cases": (
         lambda tables: [*statements.special_cases(tables), *statements.force_closure(tables)],

@@ -17,7 +17,7 @@ namespace graspfit::contact {
 /// to a point of the hull near the nearest one [Gilbert 1966], negative.
 ///
 /// The search ends with the first bound that is no more than `enough`, for callers who then need no
-/// better one.
+/// better one; where `enough` is not negative, with any point of a hull that the origin is outside.
 /// @throws InvalidInput unless there is at least one wrench and all are finite.
 double epsilon_bound(const Wrenches& wrenches,
                      double enough = -std::numeric_limits<double>::infinity());
@@ -25,7 +25,7 @@ double epsilon_bound(const Wrenches& wrenches,
 /// The largest force without torque that the hull of the wrenches contains in each of 14
 /// directions, those of the axes and of the diagonals between them: of contacts with wrenches of
 /// normal force 1 the weight, over the sum of normal forces, that they bear however it pulls, a
-/// task wrench space of forces (Borst, Fischer, Hirzinger 2004). 0 where it contains none along
+/// task wrench space of forces [Borst et al. 2004]. 0 where it contains none along
 /// some direction. In double arithmetic, to a hundred-thousandth of the longest wrench, by a linear
 /// program for each direction. `enough` is as above.
 /// @throws InvalidInput unless there is at least one wrench and all are finite.
