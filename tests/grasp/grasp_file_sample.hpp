@@ -71,6 +71,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.candidate_order = grasp::CandidateOrder::Balance;
   options.kept = grasp::KeptCandidate::Balanced;
   options.max_placements = 2;
+  options.max_redraws = 3;
   options.fitting.give_up_distance = 0.02;
   options.fitting.guard = grasp::PenetrationGuard::Voxels;
   options.fitting.guard_self = true;

@@ -54,7 +54,7 @@ internal::PosedGrasp internal::with_self_penetration(const MeasuringScene& scene
   return measured;
 }
 
-internal::PosedGrasp internal::with_all_measures(const MeasuringScene& scene, PosedGrasp measured) {
+internal::PosedGrasp internal::with_penetration(const MeasuringScene& scene, PosedGrasp measured) {
   auto& [grasp, X_OL] = measured;
   const hands::HandCollision::Result with_object =
       scene.collision.against_object(scene.object, X_OL);
@@ -68,6 +68,10 @@ internal::PosedGrasp internal::with_all_measures(const MeasuringScene& scene, Po
         penetration.surroundings_touched ||
         scene.surroundings.touches(scene.collision, link, X_OL[link]);
   }
+  return measured;
+}
+
+Grasp internal::with_wrench_quality(const MeasuringScene& scene, Grasp grasp) {
   const std::vector<contact::Contact> touching =
       contact::touching_contacts(grasp.contacts, scene.bearing_gap);
   if (!touching.empty()) {
@@ -75,15 +79,15 @@ internal::PosedGrasp internal::with_all_measures(const MeasuringScene& scene, Po
         touching, contact::wrench_convention(contact::WrenchTool::GraspIt, scene.wrench_object,
                                              touching, scene.friction)));
   }
-  return measured;
+  return grasp;
 }
 
 Grasp measure_grasp(const MeasuringScene& scene, const hands::HandConfiguration& configuration,
                     const RequestedParts& requested) {
-  return internal::with_all_measures(
-             scene, internal::with_self_penetration(
-                        scene, internal::with_contacts(scene, configuration, requested)))
-      .grasp;
+  internal::PosedGrasp measured = internal::with_contacts(scene, configuration, requested);
+  measured = internal::with_self_penetration(scene, std::move(measured));
+  measured = internal::with_penetration(scene, std::move(measured));
+  return internal::with_wrench_quality(scene, std::move(measured.grasp));
 }
 
 double grasp_strength(const Grasp& grasp, const contact::WrenchObject& object, double friction,

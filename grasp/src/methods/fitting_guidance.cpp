@@ -59,11 +59,13 @@ class FittingGuidance : public GraspGuidance {
   }
 
   GuidedStarts starts(std::int64_t number) const override {
+    if (reach_) {
+      return reach_starts(
+          base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number)), 1.0);
+    }
     GuidedStarts result;
-    result.starts = starts_from(ranked_  ? ranked_sides(number, result)
-                                : reach_ ? reach_sides(number, result)
-                                         : drawn_sides(number, result),
-                                scene_);
+    result.starts =
+        starts_from(ranked_ ? ranked_sides(number, result) : drawn_sides(number, result), scene_);
     return result;
   }
 
@@ -124,16 +126,17 @@ class FittingGuidance : public GraspGuidance {
     return sides;
   }
 
-  std::vector<TargetSide> reach_sides(std::int64_t number, GuidedStarts& result) const {
-    base::Random random =
-        base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number));
-    std::vector<TargetSide> sides = reach_->draw(random);
+  GuidedStarts reach_starts(base::Random random, double work) const {
+    GuidedStarts result;
+    std::vector<TargetSide> sides = reach_->draw(random, work);
     if (sides.empty()) {
       result.failure = failure_name(places_->pool().empty()       ? TargetFailure::NoSeed
                                     : places_->pool().size() == 1 ? TargetFailure::NoSecond
                                                                   : TargetFailure::NoFurther);
     }
-    return sides;
+    result.starts = starts_from(std::move(sides), scene_);
+    result.redraw = [this, random](double more) { return reach_starts(random, more); };
+    return result;
   }
 
   /// The sides of the random set whose best side goes first or, where the strongest grasp is kept,

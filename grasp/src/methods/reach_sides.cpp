@@ -82,13 +82,16 @@ std::vector<bool> have_normal(const std::vector<geometry::SurfacePatch>& patches
   return have;
 }
 
-double wanted_strength(int num_postures) {
+/// What a candidate must promise after so many postures of a draw with so many times the work of
+/// a first one.
+double wanted_strength(int num_postures, double work) {
   if (num_postures < kAims.front().postures) return kEnough;
   const auto next = std::find_if(kAims.begin() + 1, kAims.end() - 1,
                                  [&](const Aim& aim) { return num_postures < aim.postures; });
   const Aim& last = *(next - 1);
-  const double share =
-      static_cast<double>(num_postures - last.postures) / (next->postures - last.postures);
+  const bool is_end = next + 1 == kAims.end();
+  const double end = is_end ? work * next->postures : next->postures;
+  const double share = (num_postures - last.postures) / (end - last.postures);
   return last.strength + share * (next->strength - last.strength);
 }
 
@@ -157,9 +160,9 @@ bool ReachSides::Work::is_done() const {
   return pairs >= kMostPairs || proposals >= most_proposals || postures >= most_postures;
 }
 
-std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
+std::vector<TargetSide> ReachSides::draw(base::Random& random, double work) const {
   if (targets_.pool().size() < 2) return {};
-  std::vector<Candidate> best = strongest(random);
+  std::vector<Candidate> best = strongest(random, work);
   bool is_any_clear = false;
   for (Candidate& candidate : best) is_any_clear = clear(candidate) || is_any_clear;
   std::vector<TargetSide> sides;
@@ -170,12 +173,13 @@ std::vector<TargetSide> ReachSides::draw(base::Random& random) const {
   return sides;
 }
 
-/// The strongest candidates of an attempt, the strongest first.
-std::vector<ReachSides::Candidate> ReachSides::strongest(base::Random& random) const {
+/// The strongest candidates of a draw, the strongest first.
+std::vector<ReachSides::Candidate> ReachSides::strongest(base::Random& random, double share) const {
   std::vector<Candidate> best;
-  Work work{.most_proposals = kMostProposals, .most_postures = kMostPostures};
+  Work work{.most_proposals = kMostProposals,
+            .most_postures = static_cast<int>(share * kMostPostures)};
   const auto is_enough = [&] {
-    return !best.empty() && best.front().strength >= wanted_strength(work.postures);
+    return !best.empty() && best.front().strength >= wanted_strength(work.postures, share);
   };
   std::vector<Tries> tries(shares_.size());
   while (!work.is_done()) {

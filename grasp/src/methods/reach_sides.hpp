@@ -37,7 +37,8 @@ class ReachSides {
   /// asked the more postures were tried, or a budget of work is spent: on thin and jagged objects
   /// even the strongest may not be expected to close, of which about half do. Empty if none was
   /// found.
-  std::vector<TargetSide> draw(base::Random& random) const;
+  /// @param work at most so many times the postures of a first draw
+  std::vector<TargetSide> draw(base::Random& random, double work) const;
 
   const HandGrips& grips() const { return grips_; }
 
@@ -70,7 +71,7 @@ class ReachSides {
 
   std::size_t drawn_grip(const std::vector<Tries>& tries, base::Random& random) const;
   double strength_of(const Grip& grip, base::Random& random) const;
-  std::vector<Candidate> strongest(base::Random& random) const;
+  std::vector<Candidate> strongest(base::Random& random, double share) const;
   std::optional<std::pair<HandProposal, double>> completed(const Grip& grip, HandProposal begun,
                                                            double least) const;
   std::optional<Candidate> drawn(const Grip& grip, double least, base::Random& random,

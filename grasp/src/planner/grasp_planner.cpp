@@ -105,7 +105,7 @@ class Search {
     statistics.refinement_iterations += made.refinement_iterations;
     if (made.grasp && made.is_accepted) keep(std::move(*made.grasp));
     if (run_.progress) {
-      run_.progress(statistics.attempts, static_cast<std::int64_t>(result_.grasps.size()));
+      run_.progress(statistics.attempts, num_counted());
     }
     if (options_.search != SearchRule::Best && num_counted() >= options_.count) {
       end(PlannerStop::Count);

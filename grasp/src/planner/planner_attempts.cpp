@@ -24,9 +24,16 @@ constexpr double kHighQuality = 0.6;  // of M
 constexpr double kIdealShare = 0.5;   // of the targets' own M
 // An angle larger than the one by which refinement may exceed its largest turn [rad].
 constexpr double kAngleSlack = 1e-6;
+// Targets are drawn anew for less: nearly all grasps that are as firm close, and most of them hold
+// in hard mode.
+constexpr double kFirm = 0.04;
+// Of a draw, for every one before it.
+constexpr double kMoreWork = 1.5;
 
 /// That of no grasp, as of one that no contact bears.
 constexpr double kNoStrength = -std::numeric_limits<double>::infinity();
+/// What a start may become that promises nothing.
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// `options`, completed by the planner's rules where they leave a value open.
 PlannerOptions with_planner_rules(const ObjectModel& object, const hands::HandModel& hand,
@@ -189,42 +196,60 @@ double PlannerAttempts::firmness_of(const Grasp& grasp) const {
 
 AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserver& observer) const {
   AttemptResult work;  // counters and times of everything that this attempt tries
-  GuidedStarts guided;
-  {
+  const auto timed = [&](const auto& draw) {
     const base::Stopwatch watch(work.timings.targets_s);
-    guided = guidance_->starts(number);
-  }
-  work.target_failure = std::move(guided.failure);
+    return draw();
+  };
+  GuidedStarts guided = timed([&] { return guidance_->starts(number); });
+  work.target_failure = guided.failure;
   work.is_exhausted = guided.is_exhausted;
   work.seeds_tried = guided.seeds_tried;
   std::vector<AttemptResult> tried;
-  std::size_t best = 0;
-  for (const GuidedStart& start : guided.starts) {
-    tried.push_back(try_start(start, number));
-    if (observer) {
-      const AttemptResult& last = tried.back();
-      observer({number, start, last.outcome, last.grasp ? &*last.grasp : nullptr});
-    }
-    best = best_of(tried);
-    const std::size_t next = tried.size();
-    const std::optional<double> promise =
-        next < guided.starts.size() ? guided.starts[next].promised_firmness : std::nullopt;
-    if (!is_enough(tried[best], promise)) continue;
-    best = best_with_way_in(tried);
-    if (is_enough(tried[best], promise)) break;
+  std::size_t best = try_starts(guided.starts, number, observer, tried);
+  for (int redraws = 1; redraws <= options_.max_redraws && guided.redraw; ++redraws) {
+    if (!tried.empty() && may_be_kept(tried[best])) break;
+    // Where nothing closes, it takes more work to find what does; where something does, more draws.
+    const bool closes = !tried.empty() && tried[best].is_accepted && tried[best].firmness > 0.0;
+    const double share = closes ? 1.0 : 1.0 + kMoreWork * redraws;
+    guided = timed([&] { return guided.redraw(share); });
+    work.seeds_tried += guided.seeds_tried;
+    best = try_starts(guided.starts, number, observer, tried);
   }
-  if (!tried.empty()) best = best_with_way_in(tried);
   for (const AttemptResult& result : tried) {
     work.fitting_iterations += result.fitting_iterations;
     work.refinement_iterations += result.refinement_iterations;
     work.timings += result.timings;
   }
   if (!tried.empty()) {
+    work.target_failure.reset();
     work.outcome = tried[best].outcome;
     work.grasp = std::move(tried[best].grasp);
     work.is_accepted = tried[best].is_accepted;
   }
   return work;
+}
+
+/// Tries starts until one is enough, adds the results to those of earlier draws, and returns the
+/// index of the best of all, its pre-grasp known.
+std::size_t PlannerAttempts::try_starts(const std::vector<GuidedStart>& starts, std::int64_t number,
+                                        const TriedStartObserver& observer,
+                                        std::vector<AttemptResult>& tried) const {
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    tried.push_back(try_start(starts[i], number));
+    if (observer) {
+      const AttemptResult& last = tried.back();
+      std::optional<Grasp> grasp = last.grasp;
+      if (grasp) grasp = with_wrench_quality(scene_, std::move(*grasp));
+      observer({number, starts[i], last.outcome, grasp ? &*grasp : nullptr});
+    }
+    const double promise =
+        i + 1 < starts.size() ? starts[i + 1].promised_firmness.value_or(kUnlimited) : kUnlimited;
+    if (is_enough(tried[best_of(tried)], promise) &&
+        is_enough(tried[best_with_way_in(tried)], promise)) {
+      break;
+    }
+  }
+  return tried.empty() ? 0 : best_with_way_in(tried);
 }
 
 /// Index of the first result of the highest rank; a pre-grasp that was not searched for yet is
@@ -272,20 +297,35 @@ PlannerAttempts::StartRank PlannerAttempts::rank_of(const AttemptResult& result)
   return rank;
 }
 
-/// Whether no further start need be tried, of which the next one may promise a firmness.
-bool PlannerAttempts::is_enough(const AttemptResult& result,
-                                const std::optional<double>& promise) const {
+/// Whether no further start of a draw need be tried, of which the next one promises so much.
+bool PlannerAttempts::is_enough(const AttemptResult& result, double promise) const {
+  if (!result.is_accepted) return false;
   switch (options_.kept) {
     case KeptCandidate::First:
-      return result.is_accepted;
+      return true;
     case KeptCandidate::Balanced:
-      return result.is_accepted && is_balanced(result);
+      return is_balanced(result);
     case KeptCandidate::Firmest:
-      return result.is_accepted && promise && result.firmness >= *promise;
+      return result.firmness >= promise;
     case KeptCandidate::Strongest:
       break;
   }
   return false;
+}
+
+/// Whether the best result of all draws so far is good enough for targets not to be drawn anew.
+bool PlannerAttempts::may_be_kept(const AttemptResult& result) const {
+  if (!result.is_accepted) return false;
+  switch (options_.kept) {
+    case KeptCandidate::First:
+      break;
+    case KeptCandidate::Balanced:
+    case KeptCandidate::Strongest:
+      return is_balanced(result);
+    case KeptCandidate::Firmest:
+      return result.firmness >= kFirm;
+  }
+  return true;
 }
 
 /// One hand closed from one start.
@@ -346,7 +386,7 @@ AttemptResult PlannerAttempts::try_start(const GuidedStart& start, std::int64_t 
   }
   {
     const base::Stopwatch watch(result.timings.measure_s);
-    measured = with_all_measures(scene_, std::move(measured));
+    measured = with_penetration(scene_, std::move(measured));
   }
   // A start that cut something may have been turned before refinement.
   const bool is_as_asked = angle_from_approach(grasp.configuration) <= options_.approach_angle &&
@@ -408,8 +448,8 @@ contact::Squeeze PlannerAttempts::squeeze_of(const AttemptResult& result) const 
                                         options_.squeeze);
 }
 
-/// Completes a grasp by its pre-grasp, without which it fails where one is required, and, if it is
-/// accepted, by its squeeze.
+/// Completes a grasp by its pre-grasp, without which it fails where one is required, by ε and, if
+/// it is accepted, by its squeeze.
 AttemptResult PlannerAttempts::with_way_in(AttemptResult result) const {
   result.is_way_in_open_question = false;
   Grasp& grasp = *result.grasp;
@@ -430,6 +470,10 @@ AttemptResult PlannerAttempts::with_way_in(AttemptResult result) const {
     result.is_accepted = false;
     result.grasp.reset();
     return result;
+  }
+  {
+    const base::Stopwatch watch(result.timings.measure_s);
+    grasp = with_wrench_quality(scene_, std::move(grasp));
   }
   if (result.is_accepted && !grasp.squeeze) {
     const base::Stopwatch watch(result.timings.pre_grasp_s);

@@ -27,8 +27,8 @@ struct AttemptResult {
   bool is_accepted = false;  ///< Whether the options accept the grasp.
   /// Of the grasp, where `KeptCandidate::Firmest` compares it.
   double firmness = -std::numeric_limits<double>::infinity();
-  /// The grasp's pre-grasp was not searched for yet, nor perhaps its squeeze; until then it is
-  /// assumed to exist.
+  /// The grasp's pre-grasp was not searched for yet, and is assumed to exist until then; ε is not
+  /// known yet either, nor perhaps its squeeze.
   bool is_way_in_open_question = false;
   std::int64_t seeds_tried = 0;
   std::int64_t fitting_iterations = 0;
@@ -69,6 +69,9 @@ class PlannerAttempts {
   Reached close(const GuidedStart& start, AttemptResult& work) const;
   Reached refine(const hands::HandConfiguration& closed, const std::vector<int>& pads,
                  const TargetContacts* targets, AttemptResult& work) const;
+  std::size_t try_starts(const std::vector<GuidedStart>& starts, std::int64_t number,
+                         const TriedStartObserver& observer,
+                         std::vector<AttemptResult>& tried) const;
   std::size_t best_of(const std::vector<AttemptResult>& tried) const;
   std::size_t best_with_way_in(std::vector<AttemptResult>& tried) const;
   contact::Squeeze squeeze_of(const AttemptResult& result) const;
@@ -78,7 +81,8 @@ class PlannerAttempts {
   bool is_accepted(const Grasp& grasp) const;
   StartRank rank_of(const AttemptResult& result) const;
   bool is_rejected(const Grasp& grasp) const;
-  bool is_enough(const AttemptResult& result, const std::optional<double>& promise) const;
+  bool is_enough(const AttemptResult& result, double promise) const;
+  bool may_be_kept(const AttemptResult& result) const;
 
   const ObjectModel& object_;
   const hands::HandModel& hand_;

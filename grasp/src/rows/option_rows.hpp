@@ -350,6 +350,12 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
                               "sides that are fitted, those that suit the fingertips best first: "
                               "of one target set, with keep strongest of all sets drawn",
                               "R", "A23"});
+  at(options.max_redraws,
+     {"max_redraws", at_least(0), "max-redraws", "1", kTargets,
+      "how often an attempt of target-search reach may draw targets anew: while no grasp is "
+      "accepted; with keep balanced and strongest, while no squeeze balances; with firmest, while "
+      "no grasp is as firm as 0.04",
+      "R"});
   at(options.approach_O, {"approach_O", kAny, "approach", "", kRequest,
                           "wanted direction of the palm, toward the object, in the object's frame",
                           "P; reading: R", "A23"});

@@ -147,10 +147,34 @@ TEST_CASE("Starts that nobody tries are those that a run would try", "[grasp][tr
   CHECK(num_starts == 0);
 }
 
+/// Firmness of grasps on an object, with friction halfway between that of the options and of their
+/// squeeze.
+class Firmness {
+ public:
+  Firmness(const ObjectModel& object, const PlannerOptions& options)
+      : object_(contact::wrench_object(object.mesh(), object.mass.center_of_mass)),
+        largest_gap_(options.refinement.largest_gap),
+        friction_(0.5 * (options.friction + options.squeeze_friction)) {}
+
+  double operator()(const Grasp& grasp) const {
+    const std::vector<contact::Contact> touching =
+        contact::touching_contacts(grasp.contacts, largest_gap_);
+    const contact::Wrenches wrenches = contact::contact_wrenches(
+        touching,
+        contact::wrench_convention(contact::WrenchTool::Graspfit, object_, touching, friction_));
+    const double epsilon = contact::epsilon_bound(wrenches);
+    return epsilon > 0.0 ? std::min(epsilon, 0.3 * contact::least_force(wrenches)) : epsilon;
+  }
+
+ private:
+  const contact::WrenchObject object_;
+  const double largest_gap_;
+  const double friction_;
+};
+
 TEST_CASE("Attempts that keep the firmest grasp try no start that promises no more",
           "[grasp][tried_starts]") {
   const bool is_by_reach = GENERATE(true, false);
-  const double coefficient = 0.3;  // halfway between friction and squeeze friction
   const hands::HandModel hand = hands::find_hand("human_hand");
   PlannerOptions options = few_attempts();
   options.max_attempts = 1;
@@ -163,17 +187,7 @@ TEST_CASE("Attempts that keep the firmest grasp try no start that promises no mo
     options.style = GraspStyle::Auto;
   }
   const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
-  const contact::WrenchObject wrench_object =
-      contact::wrench_object(object.mesh(), object.mass.center_of_mass);
-  const auto firmness = [&](const Grasp& grasp) {
-    const std::vector<contact::Contact> touching =
-        contact::touching_contacts(grasp.contacts, options.refinement.largest_gap);
-    const contact::Wrenches wrenches = contact::contact_wrenches(
-        touching, contact::wrench_convention(contact::WrenchTool::Graspfit, wrench_object, touching,
-                                             coefficient));
-    const double epsilon = contact::epsilon_bound(wrenches);
-    return epsilon > 0.0 ? std::min(epsilon, 0.3 * contact::least_force(wrenches)) : epsilon;
-  };
+  const Firmness firmness(object, options);
   int num_later = 0;    // starts tried beside a grasp that is less firm
   int num_untried = 0;  // starts left out
   int num_kept = 0;
@@ -223,6 +237,69 @@ TEST_CASE("Attempts that keep the firmest grasp try no start that promises no mo
     CHECK(num_untried > 0);
     CHECK(num_later > 0);
   }
+}
+
+TEST_CASE("Targets are drawn anew while no grasp of an attempt is firm", "[grasp][tried_starts]") {
+  const double firm = 0.04;
+  const int most = 3;
+  const hands::HandModel hand = hands::find_hand("barrett");
+  PlannerOptions options = few_attempts();
+  options.max_attempts = 1;
+  options.kept = KeptCandidate::Firmest;
+  options.targets.search = TargetSearch::Reach;
+  options.style = GraspStyle::Auto;
+  const ObjectModel object =
+      prepare_object(geometry::box(Eigen::Vector3d(0.03, 0.05, 0.14)), hand, options);
+  const Firmness firmness(object, options);
+  struct Made {
+    std::vector<double> tried;
+    std::optional<double> kept;
+  };
+  const auto made_with = [&](int redraws) {
+    options.max_redraws = redraws;
+    Made made;
+    PlanningRun run;
+    run.num_threads = 1;
+    run.tried_start = [&](const TriedStart& start) {
+      made.tried.push_back(start.grasp ? firmness(*start.grasp)
+                                       : -std::numeric_limits<double>::infinity());
+    };
+    const PlannerResult result = plan_grasps(object, hand, options, {}, run);
+    if (!result.grasps.empty()) made.kept = firmness(result.grasps[0]);
+    return made;
+  };
+  int num_firm = 0;
+  int num_redrawn = 0;
+  int num_better = 0;
+  for (options.seed = 1; options.seed <= 12; ++options.seed) {
+    CAPTURE(options.seed);
+    std::vector<Made> by_redraws;
+    for (int redraws = 0; redraws <= most; ++redraws) by_redraws.push_back(made_with(redraws));
+    for (int redraws = 1; redraws <= most; ++redraws) {
+      CAPTURE(redraws);
+      const Made& fewer = by_redraws[redraws - 1];
+      const Made& more = by_redraws[redraws];
+      // What fewer draws give comes first, and is not given up for less.
+      REQUIRE(more.tried.size() >= fewer.tried.size());
+      CHECK(std::equal(fewer.tried.begin(), fewer.tried.end(), more.tried.begin()));
+      if (fewer.kept) CHECK(more.kept.value() >= *fewer.kept);
+      if (fewer.kept && *fewer.kept >= firm) {
+        CHECK(more.tried.size() == fewer.tried.size());
+        ++num_firm;
+      } else {
+        num_redrawn += more.tried.size() > fewer.tried.size() ? 1 : 0;
+        num_better += more.kept.value_or(-1.0) > fewer.kept.value_or(-1.0) ? 1 : 0;
+      }
+    }
+  }
+  CHECK(num_firm > 0);
+  CHECK(num_redrawn > 0);
+  CHECK(num_better > 0);
+  // Other searches have no further draws.
+  options.targets.search = TargetSearch::Random;
+  options.style = GraspStyle::Precision;
+  options.seed = 1;
+  CHECK(made_with(most).tried == made_with(0).tried);
 }
 
 TEST_CASE("Hands are fitted to the first graze with refinement, and closed however far without",

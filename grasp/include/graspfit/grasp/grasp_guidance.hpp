@@ -47,14 +47,18 @@ struct GuidedStart {
   std::optional<double> promised_firmness = {};
 };
 
-/// The starts of one attempt, the most promising first: they are tried in turn until one of them
-/// ends in a grasp that is accepted.
+/// Starts of one attempt, the most promising first: they are tried in turn until one of them ends
+/// in a grasp that is accepted.
 struct GuidedStarts {
   std::vector<GuidedStart> starts = {};  ///< Empty: the attempt fails with `failure`, or there was
                                          ///< nothing left to try.
   std::optional<std::string> failure = {};  ///< Why there is no start, for statistics.
   bool is_exhausted = false;                ///< No later attempt will have starts either.
   std::int64_t seeds_tried = 0;             ///< Work done, for statistics.
+  /// Draws further starts of the same attempt, for `PlannerOptions::max_redraws`, with at most so
+  /// many times the work of a first draw; the same ones at every call with the same number. Const
+  /// and thread-safe; empty where a method has no others.
+  std::function<GuidedStarts(double)> redraw = {};
 };
 
 /// The geometry from which a method derives its starts, as a table of points: its "intermediate
