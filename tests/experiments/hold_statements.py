@@ -72,6 +72,24 @@ def hold_rates(tables):
            f"{lost['lost_before_load']} before it")
 
 
+def hold_default(tables):
+    rows = tables.table("hold_default")
+    details = tables.table("hold_default.details")
+    seconds = tables.table("hold_default.timing").groupby("grip")["plan_s"].sum()
+    for grip, group in rows.groupby("grip", sort=False):
+        attempts = int(group["attempts"].sum())
+        closed = int((details[details["grip"] == grip]["force_closure"] == 1).sum())
+        held = (int(group[f"{protocol}_held"].sum()) for protocol in PROTOCOLS)
+        cells = " | ".join(f"{number} ({percent(number / attempts)}, {interval(number, attempts)})" for number in held)
+        yield (f"| {HANDS[grip]} | {attempts} | {int(group['valid'].sum())} | {closed} | {cells} "
+               f"| {seconds[grip] / attempts:.2f} |")
+    for grip, group in rows.groupby("grip", sort=False):
+        few = group[group["normal_held"] <= group["attempts"] / 2].sort_values("normal_held", kind="stable")
+        named = ", ".join(f"{object_name(row['object'])} {row['normal_held']}" for _, row in few.iterrows())
+        yield f"{HANDS[grip]}: {named}"
+    yield from lost_attempts(rows)
+
+
 def lowest_and_highest(rows):
     """Yields the objects with the lowest two rates under the first protocol and those with the highest."""
     sums = rows.groupby("object", sort=False)[["normal_held", "attempts"]].sum()

@@ -40,6 +40,10 @@ SECTIONS = {
         (*PROTOCOLS, r"32 objects, 2 attempts each", r"20 N", r"coefficient 0\.2", r"24 sides", r"lost without any load|0 where it is", r"95 %",
          r"0\.7 to 4\.8 s", r"MuJoCo's impratio is 1", r"\| (60\.5|27\.2|24\.2|12\.8|88\.1|93\.2|83\.0) %"),
     ),
+    "## How many hold without flags": (
+        hold_statements.hold_default,
+        (*PROTOCOLS, r"256 per hand", r"μ = 0\.4", r"95 % interval", r"8 attempts"),
+    ),
     "## What predicts that a grasp holds": (
         hold_statements.hold_prediction,
         (*PROTOCOLS, r"12 objects", r"\(0\.5: says nothing\)", r"95 % intervals"),
@@ -48,7 +52,7 @@ SECTIONS = {
         hold_statements.hold_choices,
         (*PROTOCOLS, r"of 20 attempts each", r"[Ss]trongest of (4|24)"),
     ),
-    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b")),
+    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b", r"\b40f4895\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
     "## Special cases": (
         lambda tables: [*statements.special_cases(tables), *statements.force_closure(tables)],

@@ -96,7 +96,4 @@ class PlannerAttempts {
   double guidance_s_ = 0.0;
 };
 
-/// How far an attempt that ended so had come, for telling better failures from worse.
-int stage_of(AttemptOutcome outcome);
-
 }  // namespace graspfit::grasp::internal

@@ -170,8 +170,8 @@ struct PlannerOptions {
   int max_placements = 4;
   /// How often an attempt may draw targets anew, ≥ 0, while what it has is not good enough [R]:
   /// while no grasp is accepted; with `KeptCandidate::Balanced` and `Strongest`, while no accepted
-  /// one has a squeeze that balances; with `Firmest`, while none is as firm as 0.04. What is kept is
-  /// chosen among the candidates of all draws. Only the search by the hand's reach draws anew.
+  /// one has a squeeze that balances; with `Firmest`, while none is as firm as 0.04. What is kept
+  /// is chosen among the candidates of all draws. Only the search by the hand's reach draws anew.
   int max_redraws = 0;
   FittingOptions fitting;
   ApproachSamplingOptions sampling;       ///< Of the method gs.
