@@ -79,9 +79,10 @@ class Plan(program.ProgramTest):
         self.assertIn("two fingertips of barrett pinch nothing squarely at friction 0\n", done.stdout)
 
     def test_a_preset_is_recorded_and_flags_beside_it_change_it(self):
-        keys = ("style", "kept_candidate", "count", "search", "rank", "idle_fingers")
-        strong = ("auto", "firmest", 5, "closed", "epsilon", "close")
-        exact = ("precision", "first", 1, "best", "m", "stay")
+        keys = ("style", "kept_candidate", "count", "search", "rank", "idle_fingers",
+                "max_redraws")
+        strong = ("auto", "firmest", 5, "closed", "epsilon", "close", 5)
+        exact = ("precision", "first", 1, "best", "m", "stay", 0)
         for flags, expected_preset, expected in (
                 ((), "strong", strong),
                 (("--preset", "strong"), "strong", strong),

@@ -126,9 +126,9 @@ class FittingGuidance : public GraspGuidance {
     return sides;
   }
 
-  GuidedStarts reach_starts(base::Random random, double work) const {
+  GuidedStarts reach_starts(base::Random random, double effort) const {
     GuidedStarts result;
-    std::vector<TargetSide> sides = reach_->draw(random, work);
+    std::vector<TargetSide> sides = reach_->draw(random, effort);
     if (sides.empty()) {
       result.failure = failure_name(places_->pool().empty()       ? TargetFailure::NoSeed
                                     : places_->pool().size() == 1 ? TargetFailure::NoSecond

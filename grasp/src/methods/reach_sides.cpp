@@ -19,48 +19,49 @@ namespace {
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
-// An attempt ends with a candidate that is strong enough for the postures that were tried, or after
-// so much work. Nearly all candidates of a strength of 0.035 close. To ask for 0.05 after half as
-// many postures takes a quarter less time of planning, and grasps are weaker by a twentieth. Where
-// none is found soon, what hundreds of further postures add is seldom 0.01, so that less is asked.
+// A draw ends with a candidate that is firm enough for the postures that were tried, or after so
+// much work. Nearly all candidates of a firmness of 0.035 close. Where none is found soon, what
+// further postures add is seldom 0.01, so that less is asked: several short draws whose candidates
+// are refined find more than a long one (docs/performance.md).
 constexpr double kEnough = 0.1;
 struct Aim {
   int postures;
-  double strength;
+  double firmness;
 };
-constexpr std::array<Aim, 3> kAims = {{{60, 0.06}, {120, 0.03}, {1000, 0.005}}};
-constexpr int kMostPostures = kAims.back().postures;  // large and small objects need some of them
-constexpr int kMostPairs = 500000;                    // of points, or points for the palm
+constexpr std::array<Aim, 3> kAims = {{{20, 0.06}, {40, 0.03}, {70, 0.005}}};
+constexpr int kMostPostures = kAims.back().postures;
+constexpr int kMostPairs = 500000;     // of points, or points for the palm
 constexpr int kMostProposals = 20000;  // small objects and wide fingertips need most of them
 // Further candidates cost little unless the first ones fail.
-constexpr std::size_t kMostStarts = 3;
+constexpr std::size_t kMostStarts = 2;
 constexpr int kProposals = 16;      // of new candidates, of which one is laid onto the surface
 constexpr double kMostCost = 0.03;  // of one of them [m]
-constexpr int kVariations = 4;      // of the strongest candidate, of which one is laid
+constexpr int kVariations = 4;      // of the firmest candidate, of which one is laid
 
 // A posture that is in the object is lifted off it: refinement closes gaps more often than it frees
 // a hand, and moves contacts less.
 constexpr double kLiftStep = 0.2;  // [voxels]
 constexpr int kMostLifts = 6;
 
-// Grips are drawn by the squares of the strengths that the strongest of some proposals find for
+// Grips are drawn by the squares of the firmness that the firmest of some proposals find for
 // each, in the mean, times the squared share of the attempt's tries that gave a candidate: where
-// the strongest places are such that a hand can never be laid there, as in a small mug, nearly all
-// postures would be spent on them.
-constexpr int kProposalsOfGrip = 200;
-constexpr int kStrongestOfGrip = 5;
-constexpr double kLeastShare = 0.1;  // of the share of the strongest grip
+// the firmest places are such that a hand can never be laid there, as in a small mug, nearly all
+// postures would be spent on them. Of 384 attempts (four objects, two sizes, four hands) all closed
+// with these few as with the firmest five of 200, and were as firm.
+constexpr int kProposalsOfGrip = 64;
+constexpr int kFirmestOfGrip = 2;
+constexpr double kLeastShare = 0.1;  // of the share of the firmest grip
 
-// Variations of the strongest candidate. Two to four times as many of them are good as of new ones.
+// Variations of the firmest candidate. Two to four times as many of them are good as of new ones.
 constexpr double kShareVaried = 0.6;  // of all postures
 constexpr double kLeastScale = 0.1;   // of a variation; drawn, as small and large ones help
 constexpr double kMostShift = 0.012;  // of the palm [m]
 constexpr double kMostTurn = 0.24;    // of the palm and of joints [rad; m of prismatic ones]
 
-// A posture is given up on its way if its places are weaker by more than this share than what it is
-// to exceed, unless that is weak: there, on a mug, many become stronger late.
+// A posture is given up on its way if its places are less firm by more than this share than what it
+// is to exceed, unless that is hardly firm: there, on a mug, many become firmer late.
 constexpr double kLeastHope = 0.1;
-constexpr double kWeak = 0.02;
+constexpr double kHardlyFirm = 0.02;
 
 // Postures. Pads that lean more touch with their edges only. Refinement closes gaps more often than
 // it frees a hand that is in the object, above all one whose links lie around it: lifted off on one
@@ -82,17 +83,16 @@ std::vector<bool> have_normal(const std::vector<geometry::SurfacePatch>& patches
   return have;
 }
 
-/// What a candidate must promise after so many postures of a draw with so many times the work of
-/// a first one.
-double wanted_strength(int num_postures, double work) {
+/// What a candidate must promise after so many postures of a draw of so much effort.
+double wanted_firmness(int num_postures, double effort) {
   if (num_postures < kAims.front().postures) return kEnough;
   const auto next = std::find_if(kAims.begin() + 1, kAims.end() - 1,
                                  [&](const Aim& aim) { return num_postures < aim.postures; });
   const Aim& last = *(next - 1);
   const bool is_end = next + 1 == kAims.end();
-  const double end = is_end ? work * next->postures : next->postures;
+  const double end = is_end ? effort * next->postures : next->postures;
   const double share = (num_postures - last.postures) / (end - last.postures);
-  return last.strength + share * (next->strength - last.strength);
+  return last.firmness + share * (next->firmness - last.firmness);
 }
 
 GripRule grip_rule(const GuidanceScene& scene) {
@@ -125,7 +125,7 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
       search_(scene.hand, scene.object, nearest_, places_),
       clearance_(scene.hand, scene.object, scene.surroundings),
       proposals_(scene.hand.model(), scene.object, targets, grips_, places_),
-      strength_(scene.object, targets.pool(), firmness_friction(scene.options)),
+      firmness_(scene.object, targets.pool(), firmness_friction(scene.options)),
       pool_of_patch_(scene.object.patches.size(), -1) {
   for (std::int32_t p = 0; p < std::ssize(targets.pool()); ++p) {
     pool_of_patch_[*targets.pool()[p].patch] = p;
@@ -135,34 +135,34 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
   if (num_grips == 1 || targets.pool().size() < 2) return;
   base::Random random(scene.options.seed);
   for (std::size_t i = 0; i < num_grips; ++i) {
-    const double strength = strength_of(grips_.grips()[i], random);
-    shares_[i] = strength * strength;
+    const double firmness = firmness_of(grips_.grips()[i], random);
+    shares_[i] = firmness * firmness;
   }
   const double most = *std::max_element(shares_.begin(), shares_.end());
   for (double& share : shares_) share = most > 0.0 ? std::max(share, kLeastShare * most) : 1.0;
 }
 
-/// How strong the places of some proposals of the grip are: the mean of the strongest few, of which
+/// How firm the places of some proposals of the grip are: the mean of the firmest few, of which
 /// none counts for less than 0.
-double ReachSides::strength_of(const Grip& grip, base::Random& random) const {
-  std::array<double, kStrongestOfGrip> strongest{};  // the strongest first
+double ReachSides::firmness_of(const Grip& grip, base::Random& random) const {
+  std::array<double, kFirmestOfGrip> firmest{};  // the firmest first
   Work work{.most_proposals = kProposalsOfGrip, .most_postures = 1};
   while (std::optional<HandProposal> begun = this->proposal(grip, random, work)) {
-    const auto rated = completed(grip, std::move(*begun), strongest.back());
-    if (!rated || rated->second <= strongest.back()) continue;
-    strongest.back() = rated->second;
-    std::sort(strongest.rbegin(), strongest.rend());
+    const auto rated = completed(grip, std::move(*begun), firmest.back());
+    if (!rated || rated->second <= firmest.back()) continue;
+    firmest.back() = rated->second;
+    std::sort(firmest.rbegin(), firmest.rend());
   }
-  return std::accumulate(strongest.begin(), strongest.end(), 0.0) / kStrongestOfGrip;
+  return std::accumulate(firmest.begin(), firmest.end(), 0.0) / kFirmestOfGrip;
 }
 
 bool ReachSides::Work::is_done() const {
   return pairs >= kMostPairs || proposals >= most_proposals || postures >= most_postures;
 }
 
-std::vector<TargetSide> ReachSides::draw(base::Random& random, double work) const {
+std::vector<TargetSide> ReachSides::draw(base::Random& random, double effort) const {
   if (targets_.pool().size() < 2) return {};
-  std::vector<Candidate> best = strongest(random, work);
+  std::vector<Candidate> best = firmest(random, effort);
   bool is_any_clear = false;
   for (Candidate& candidate : best) is_any_clear = clear(candidate) || is_any_clear;
   std::vector<TargetSide> sides;
@@ -173,13 +173,13 @@ std::vector<TargetSide> ReachSides::draw(base::Random& random, double work) cons
   return sides;
 }
 
-/// The strongest candidates of a draw, the strongest first.
-std::vector<ReachSides::Candidate> ReachSides::strongest(base::Random& random, double share) const {
+/// The firmest candidates of a draw, the firmest first.
+std::vector<ReachSides::Candidate> ReachSides::firmest(base::Random& random, double effort) const {
   std::vector<Candidate> best;
   Work work{.most_proposals = kMostProposals,
-            .most_postures = static_cast<int>(share * kMostPostures)};
+            .most_postures = static_cast<int>(effort * kMostPostures)};
   const auto is_enough = [&] {
-    return !best.empty() && best.front().strength >= wanted_strength(work.postures, share);
+    return !best.empty() && best.front().firmness >= wanted_firmness(work.postures, effort);
   };
   std::vector<Tries> tries(shares_.size());
   while (!work.is_done()) {
@@ -194,14 +194,14 @@ std::vector<ReachSides::Candidate> ReachSides::strongest(base::Random& random, d
       continue;
     }
     const double least =
-        best.size() < kMostStarts ? -std::numeric_limits<double>::infinity() : best.back().strength;
+        best.size() < kMostStarts ? -std::numeric_limits<double>::infinity() : best.back().firmness;
     const std::size_t grip = drawn_grip(tries, random);
     std::optional<Candidate> candidate = drawn(grips_.grips()[grip], least, random, work);
     ++tries[grip].all;
     if (!candidate) continue;
     ++tries[grip].good;
     const auto position = std::find_if(best.begin(), best.end(), [&](const Candidate& other) {
-      return candidate->strength > other.strength;
+      return candidate->firmness > other.firmness;
     });
     best.insert(position, std::move(*candidate));
     if (best.size() > kMostStarts) best.pop_back();
@@ -222,25 +222,25 @@ std::size_t ReachSides::drawn_grip(const std::vector<Tries>& tries, base::Random
   return i;
 }
 
-/// Of some proposals that may become a grasp the one whose places are strongest, laid; empty if
-/// there was none, or it is not good or not stronger than `least`.
+/// Of some proposals that may become a grasp the one whose places are firmest, laid; empty if
+/// there was none, or it is not good or not firmer than `least`.
 std::optional<ReachSides::Candidate> ReachSides::drawn(const Grip& grip, double least,
                                                        base::Random& random, Work& work) const {
   std::optional<HandProposal> best;
-  double strongest = -std::numeric_limits<double>::infinity();
+  double firmest = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < kProposals; ++i) {
     std::optional<HandProposal> begun = this->proposal(grip, random, work);
     if (!begun) break;
-    auto rated = completed(grip, std::move(*begun), strongest);
-    if (!rated || (best && rated->second <= strongest)) continue;
+    auto rated = completed(grip, std::move(*begun), firmest);
+    if (!rated || (best && rated->second <= firmest)) continue;
     best = std::move(rated->first);
-    strongest = rated->second;
+    firmest = rated->second;
   }
   if (!best) return std::nullopt;
   return laid(grip, best->configuration, least, work);
 }
 
-/// The proposal with all parts of the grip placed, and how strong its places are (of what is no
+/// The proposal with all parts of the grip placed, and how firm its places are (of what is no
 /// more than `least` only so much is known); empty if that costs too much or cannot become a grasp.
 std::optional<std::pair<HandProposal, double>> ReachSides::completed(const Grip& grip,
                                                                      HandProposal begun,
@@ -250,17 +250,17 @@ std::optional<std::pair<HandProposal, double>> ReachSides::completed(const Grip&
   std::vector<std::int32_t> patches;
   for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
   if (!are_apart(patches) || !has_stable_pair(patches)) return std::nullopt;
-  return std::pair(std::move(*proposal), strength_.nominal(patches, least));
+  return std::pair(std::move(*proposal), firmness_.nominal(patches, least));
 }
 
 /// A candidate's posture moved a little, and laid again: of some such motions the one after which
-/// the places nearest to the pads are strongest.
+/// the places nearest to the pads are firmest.
 std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, base::Random& random,
                                                         Work& work) const {
   const hands::HandModel& hand = scene_.hand.model();
   const std::vector<int> pads = pads_of(*from.grip);
   std::optional<hands::HandConfiguration> best;
-  double strongest = -std::numeric_limits<double>::infinity();
+  double firmest = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < kVariations; ++i) {
     hands::HandConfiguration configuration = moved(from.posture, random);
     const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
@@ -268,12 +268,12 @@ std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, b
     for (const int pad : pads) {
       patches.push_back(places_.at(hands::pad_contact_point(hand, pad, X_OL)));
     }
-    const double strength = strength_.nominal(patches, strongest);
-    if (best && strength <= strongest) continue;
-    strongest = strength;
+    const double firmness = firmness_.nominal(patches, firmest);
+    if (best && firmness <= firmest) continue;
+    firmest = firmness;
     best = std::move(configuration);
   }
-  return laid(*from.grip, *best, from.strength, work);
+  return laid(*from.grip, *best, from.firmness, work);
 }
 
 /// A posture moved a little, palm and joints.
@@ -302,7 +302,7 @@ hands::HandConfiguration ReachSides::moved(const SurfacePosture& posture,
   return configuration;
 }
 
-/// Empty if the posture that is laid from there is not good, or not stronger than `least`.
+/// Empty if the posture that is laid from there is not good, or not firmer than `least`.
 std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
                                                       hands::HandConfiguration start, double least,
                                                       Work& work) const {
@@ -310,14 +310,14 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
   hands::apply_couplings(scene_.hand.model(), start.q);
   const double hopeless = (1.0 - kLeastHope) * least;
   const auto is_hopeful = [&](const std::vector<std::int32_t>& patches) {
-    return least <= kWeak || strength_.nominal(patches, hopeless) > hopeless;
+    return least <= kHardlyFirm || firmness_.nominal(patches, hopeless) > hopeless;
   };
   SurfacePosture posture = search_.lay(pads_of(grip), start, 0.0, is_hopeful);
   if (!is_good(posture)) return std::nullopt;
   if (grip.wraps && posture.largest_depth > kMostDepthOfWraps) return std::nullopt;
-  const double strength = strength_.expected(posture.patches, least);
-  if (!(strength > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
-  return Candidate{&grip, std::move(posture), strength};
+  const double firmness = firmness_.expected(posture.patches, least);
+  if (!(firmness > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
+  return Candidate{&grip, std::move(posture), firmness};
 }
 
 /// Lifts the candidate off the object until it is clear of it, exactly, and says whether that was
@@ -427,7 +427,7 @@ TargetSide ReachSides::side_of(const Candidate& candidate) const {
   }
   side.goal = candidate.posture.configuration;
   side.is_at_goal = true;
-  side.promised_firmness = candidate.strength;
+  side.promised_firmness = candidate.firmness;
   side.placement.direction_O = (side.goal->X_OH.linear() * hand.palm.direction_H).normalized();
   return side;
 }

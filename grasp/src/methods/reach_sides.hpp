@@ -9,7 +9,7 @@
 #include "graspfit/base/random.hpp"
 #include "methods/hand_grips.hpp"
 #include "methods/hand_proposals.hpp"
-#include "methods/place_strength.hpp"
+#include "methods/place_firmness.hpp"
 #include "methods/target_sides.hpp"
 #include "scene/clearance.hpp"
 #include "targets/target_places.hpp"
@@ -17,9 +17,9 @@
 /// \file
 /// Targets that the hand can meet [R]. Many times a hand is proposed that is about where its pads
 /// lie on points that may be targets: by two pads that can face each other as the points do, or by
-/// the palm. Of some such proposals the one whose places are strongest is laid onto the surface,
+/// the palm. Of some such proposals the one whose places are firmest is laid onto the surface,
 /// and where its pads then lie are the targets: the hand meets them before anything is decided
-/// exactly. The strongest such posture is then varied and laid again.
+/// exactly. The firmest such posture is then varied and laid again.
 
 namespace graspfit::grasp::internal {
 
@@ -29,16 +29,16 @@ class ReachSides {
   /// Refers to the scene and the targets.
   ReachSides(const GuidanceScene& scene, const TargetPlaces& targets);
 
-  /// The strongest candidates of an attempt, the strongest first, each with its posture
+  /// The firmest candidates of a draw, the firmest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
   /// Those that cannot be are left out, unless none of them can, and do not end the search.
-  /// Strength is that which `PlaceStrength` expects. New candidates and variations of the strongest
-  /// one take turns, at random, until one that can be clear is strong enough, for which less is
+  /// Firmness is that which `PlaceFirmness` expects. New candidates and variations of the firmest
+  /// one take turns, at random, until one that can be clear is firm enough, for which less is
   /// asked the more postures were tried, or a budget of work is spent: on thin and jagged objects
-  /// even the strongest may not be expected to close, of which about half do. Empty if none was
+  /// even the firmest may not be expected to close, of which about half do. Empty if none was
   /// found.
-  /// @param work at most so many times the postures of a first draw
-  std::vector<TargetSide> draw(base::Random& random, double work) const;
+  /// @param effort at most so many times the postures of a first draw
+  std::vector<TargetSide> draw(base::Random& random, double effort) const;
 
   const HandGrips& grips() const { return grips_; }
 
@@ -49,7 +49,7 @@ class ReachSides {
   struct Candidate {
     const Grip* grip = nullptr;
     SurfacePosture posture;
-    double strength = 0.0;
+    double firmness = 0.0;
     bool is_clear = false;  ///< Of the world and of itself, exactly; false: perhaps not.
   };
 
@@ -70,8 +70,8 @@ class ReachSides {
   };
 
   std::size_t drawn_grip(const std::vector<Tries>& tries, base::Random& random) const;
-  double strength_of(const Grip& grip, base::Random& random) const;
-  std::vector<Candidate> strongest(base::Random& random, double share) const;
+  double firmness_of(const Grip& grip, base::Random& random) const;
+  std::vector<Candidate> firmest(base::Random& random, double effort) const;
   std::optional<std::pair<HandProposal, double>> completed(const Grip& grip, HandProposal begun,
                                                            double least) const;
   std::optional<Candidate> drawn(const Grip& grip, double least, base::Random& random,
@@ -99,7 +99,7 @@ class ReachSides {
   const SurfaceSearch search_;
   const Clearance clearance_;
   const HandProposals proposals_;
-  const PlaceStrength strength_;
+  const PlaceFirmness firmness_;
   std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.
   std::vector<double> shares_;               ///< Per grip: how often it is drawn first.
 };

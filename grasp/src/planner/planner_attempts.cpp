@@ -25,11 +25,11 @@ constexpr double kHighQuality = 0.6;  // of M
 constexpr double kIdealShare = 0.5;   // of the targets' own M
 // An angle larger than the one by which refinement may exceed its largest turn [rad].
 constexpr double kAngleSlack = 1e-6;
-// Targets are drawn anew for less: nearly all grasps that are as firm close, and most of them hold
-// in hard mode.
+// Targets are drawn anew for less. A table in docs/performance.md says what it takes and gains to
+// ask for less or more, and to search longer by another share of a first draw for every draw
+// before.
 constexpr double kFirm = 0.04;
-// Of a draw, for every one before it.
-constexpr double kMoreWork = 1.5;
+constexpr double kMoreEffort = 1.5;
 
 /// That of no grasp, as of one that no contact bears.
 constexpr double kNoStrength = -std::numeric_limits<double>::infinity();
@@ -135,8 +135,8 @@ AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserve
     if (!tried.empty() && may_be_kept(tried[best])) break;
     // Where nothing closes, it takes more work to find what does; where something does, more draws.
     const bool closes = !tried.empty() && tried[best].is_accepted && tried[best].firmness > 0.0;
-    const double share = closes ? 1.0 : 1.0 + kMoreWork * redraws;
-    guided = timed([&] { return guided.redraw(share); });
+    const double effort = closes ? 1.0 : 1.0 + kMoreEffort * redraws;
+    guided = timed([&] { return guided.redraw(effort); });
     work.seeds_tried += guided.seeds_tried;
     best = try_starts(guided.starts, number, observer, tried);
   }

@@ -39,6 +39,7 @@ const std::vector<PlannerPreset>& planner_presets() {
        {{"style", named("auto")},
         {"target-search", named("reach")},
         {"keep", named("firmest")},
+        {"max-redraws", std::int64_t{5}},
         {"idle-fingers", named("close")},
         {"count", std::int64_t{5}},
         {"search", named("closed")},

@@ -58,12 +58,13 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   CHECK(strong.style == GraspStyle::Auto);
   CHECK(strong.targets.search == TargetSearch::Reach);
   CHECK(strong.kept == KeptCandidate::Firmest);
+  CHECK(strong.max_redraws == 5);
   CHECK(strong.idle_fingers == IdleFingers::Close);
   CHECK(strong.count == 5);
   CHECK(strong.search == SearchRule::Closed);
   CHECK(strong.rank == RankRule::Epsilon);
   CHECK(strong.refine);
-  CHECK(preset_named("strong")->values.size() == 7);
+  CHECK(preset_named("strong")->values.size() == 8);
   CHECK(preset_named("fast")->values.size() == 1);
   CHECK(preset_named("exact")->values.empty());
   CHECK(paper.rank == RankRule::M);

@@ -186,7 +186,7 @@ TEST_CASE("Attempts that keep the firmest grasp try no start that promises no mo
     options.targets.search = TargetSearch::Reach;
     options.style = GraspStyle::Auto;
   }
-  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const ObjectModel object = prepare_object(geometry::torus(0.05, 0.015, 48, 24), hand, options);
   const Firmness firmness(object, options);
   int num_later = 0;    // starts tried beside a grasp that is less firm
   int num_untried = 0;  // starts left out

@@ -55,10 +55,10 @@ struct GuidedStarts {
   std::optional<std::string> failure = {};  ///< Why there is no start, for statistics.
   bool is_exhausted = false;                ///< No later attempt will have starts either.
   std::int64_t seeds_tried = 0;             ///< Work done, for statistics.
-  /// Draws further starts of the same attempt, for `PlannerOptions::max_redraws`, with at most so
-  /// many times the work of a first draw; the same ones at every call with the same number. Const
-  /// and thread-safe; empty where a method has no others.
-  std::function<GuidedStarts(double)> redraw = {};
+  /// Draws further starts of the same attempt, for `PlannerOptions::max_redraws`, with an effort of
+  /// at most so many times that of a first draw; the same ones at every call with the same number.
+  /// Const and thread-safe; empty where a method has no others.
+  std::function<GuidedStarts(double effort)> redraw = {};
 };
 
 /// The geometry from which a method derives its starts, as a table of points: its "intermediate

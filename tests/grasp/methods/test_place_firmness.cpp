@@ -9,10 +9,10 @@
 #include "graspfit/contact/grasp_wrench_space.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "methods/firmness.hpp"
-#include "methods/place_strength.hpp"
+#include "methods/place_firmness.hpp"
 #include "support/catch.hpp"
 
-namespace test_place_strength {
+namespace test_place_firmness {
 
 namespace {
 
@@ -49,33 +49,33 @@ std::int32_t patch_at(const std::vector<internal::PoolPoint>& pool, const Vector
 }  // namespace
 
 TEST_CASE("Contacts beside two opposite places lean by no more than their shifts",
-          "[grasp][place_strength]") {
+          "[grasp][place_firmness]") {
   constexpr double kWidth = 0.06;
   constexpr double kFriction = 0.3;
   const testing::Scene scene(geometry::box(Vector3d(kWidth, 0.09, 0.12)));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceStrength strength(scene.object, pool, kFriction);
+  const internal::PlaceFirmness firmness(scene.object, pool, kFriction);
   const Vector3d side(0.5 * kWidth, 0.0, 0.0);
   const std::vector<std::int32_t> patches = {patch_at(pool, side, Vector3d::UnitX()),
                                              patch_at(pool, -side, -Vector3d::UnitX())};
-  const double nominal = strength.nominal(patches, -kInfinity);
+  const double nominal = firmness.nominal(patches, -kInfinity);
   CHECK(nominal == Approx(kFriction).margin(scene.voxel_size() / kWidth));
   // Patches about a place are at most 1.6 voxels from it: the line leans by twice that at most.
-  const double expected = strength.expected(patches, -kInfinity);
+  const double expected = firmness.expected(patches, -kInfinity);
   CHECK(expected < nominal);
   CHECK(expected >= nominal - 3.2 * scene.voxel_size() / kWidth);
-  CHECK(strength.expected(patches, -kInfinity) == expected);
-  CHECK(strength.expected(patches, nominal) == nominal);
+  CHECK(firmness.expected(patches, -kInfinity) == expected);
+  CHECK(firmness.expected(patches, nominal) == nominal);
 }
 
 TEST_CASE("Places where the surface turns count for less than flat ones",
-          "[grasp][place_strength]") {
+          "[grasp][place_firmness]") {
   // Three faces of a hexagonal prism: in their middles, and nearer to the edges, where patches
   // about them face 60 degrees elsewhere.
   const double inner = 0.03 * std::cos(std::acos(-1.0) / 6.0);
   const testing::Scene scene(geometry::cylinder(0.03, 0.10, 6));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceStrength strength(scene.object, pool, 0.9);
+  const internal::PlaceFirmness firmness(scene.object, pool, 0.9);
   const auto places = [&](double beside) {
     std::vector<std::int32_t> patches;
     for (int k = 0; k < 3; ++k) {
@@ -88,19 +88,19 @@ TEST_CASE("Places where the surface turns count for less than flat ones",
   };
   const auto share_left = [&](const std::vector<std::int32_t>& patches) {
     REQUIRE(std::all_of(patches.begin(), patches.end(), [](std::int32_t p) { return p >= 0; }));
-    const double nominal = strength.nominal(patches, -kInfinity);
+    const double nominal = firmness.nominal(patches, -kInfinity);
     REQUIRE(nominal > 0.0);
-    return strength.expected(patches, -kInfinity) / nominal;
+    return firmness.expected(patches, -kInfinity) / nominal;
   };
   const double in_middles = share_left(places(0.0));
   CHECK(in_middles > 0.6);
   CHECK(share_left(places(0.013)) < in_middles);
 }
 
-TEST_CASE("The strength of places is that of point contacts there", "[grasp][place_strength]") {
+TEST_CASE("The firmness of places is that of point contacts there", "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceStrength strength(scene.object, pool, 0.4);
+  const internal::PlaceFirmness firmness(scene.object, pool, 0.4);
   const contact::WrenchObject object =
       contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass);
   base::Random random(2);
@@ -116,7 +116,7 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
       contact.point_O = point.point_O;
       contact.inward_normal_O = point.inward_normal_O;
     }
-    const double nominal = strength.nominal(patches, -kInfinity);
+    const double nominal = firmness.nominal(patches, -kInfinity);
     const double epsilon = contact::signed_epsilon(contacts, object, 0.4);
     // As firm as point contacts: by epsilon, or by 0.3 of the least force.
     const double force = contact::least_force(contact::contact_wrenches(
@@ -132,7 +132,7 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
     } else {
       CHECK(nominal <= 1e-9);
     }
-    CHECK(strength.expected(patches, -kInfinity) <= nominal);
+    CHECK(firmness.expected(patches, -kInfinity) <= nominal);
   }
   CHECK(num_closed > 5);
   CHECK(num_by_force > 0);
@@ -140,22 +140,22 @@ TEST_CASE("The strength of places is that of point contacts there", "[grasp][pla
 }
 
 TEST_CASE("What is expected ends early only where it is no more than what is asked",
-          "[grasp][place_strength]") {
+          "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceStrength strength(scene.object, pool, 0.6);
+  const internal::PlaceFirmness firmness(scene.object, pool, 0.6);
   base::Random random(7);
   int num_exceeding = 0;
   int num_early = 0;
   for (int trial = 0; trial < 300; ++trial) {
     std::vector<std::int32_t> patches;
     for (int i = 0; i < 4; ++i) patches.push_back(*pool[random.index(pool.size())].patch);
-    const double full = strength.expected(patches, -kInfinity);
+    const double full = firmness.expected(patches, -kInfinity);
     if (full <= 0.0) continue;
     for (const double share : {0.2, 0.5, 1.001, 1.1, 2.0}) {
       const double asked = share * full;
-      const double found = strength.expected(patches, asked);
-      // A draw that is stronger than all before it may come too late; where the mean is twice what
+      const double found = firmness.expected(patches, asked);
+      // A draw that is firmer than all before it may come too late; where the mean is twice what
       // is asked, it is seldom.
       if (found > asked) {
         CHECK(found == full);
@@ -170,16 +170,16 @@ TEST_CASE("What is expected ends early only where it is no more than what is ask
   CHECK(num_early <= num_exceeding / 50);
 }
 
-TEST_CASE("Two contacts at one place have the least strength", "[grasp][place_strength]") {
+TEST_CASE("Two contacts at one place have the least firmness", "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::ball(0.03));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceStrength strength(scene.object, pool, 0.6);
+  const internal::PlaceFirmness firmness(scene.object, pool, 0.6);
   const std::int32_t first = *pool.front().patch;
-  const double twice = strength.nominal({first, first}, -kInfinity);
+  const double twice = firmness.nominal({first, first}, -kInfinity);
   for (const internal::PoolPoint& point : pool) {
     if (*point.patch == first) continue;
-    CHECK(strength.nominal({first, *point.patch}, -kInfinity) > twice);
+    CHECK(firmness.nominal({first, *point.patch}, -kInfinity) > twice);
   }
 }
 
-}  // namespace test_place_strength
+}  // namespace test_place_firmness

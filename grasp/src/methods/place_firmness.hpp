@@ -9,12 +9,12 @@
 
 namespace graspfit::grasp::internal {
 
-/// How strong grasps with contacts on some patches of an object would be, for comparing them by the
+/// How firm grasps with contacts on some patches of an object would be, for comparing them by the
 /// thousand: `firmness` of point contacts at the patches' centroids.
-class PlaceStrength {
+class PlaceFirmness {
  public:
   /// Of patches in the pool.
-  PlaceStrength(const ObjectModel& object, const std::vector<PoolPoint>& pool, double friction);
+  PlaceFirmness(const ObjectModel& object, const std::vector<PoolPoint>& pool, double friction);
 
   /// Pads come to touch beside the places that they are meant for, where the surface may face
   /// elsewhere: the mean over contacts that lie on patches about these (the same ones for the same

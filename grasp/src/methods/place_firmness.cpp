@@ -1,4 +1,4 @@
-#include "methods/place_strength.hpp"
+#include "methods/place_firmness.hpp"
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ contact::Contact contact_on(const geometry::SurfacePatch& patch) {
 
 }  // namespace
 
-PlaceStrength::PlaceStrength(const ObjectModel& object, const std::vector<PoolPoint>& pool,
+PlaceFirmness::PlaceFirmness(const ObjectModel& object, const std::vector<PoolPoint>& pool,
                              double friction)
     : object_(object), friction_(friction), around_(patches_around(object, pool)) {
   const contact::WrenchConvention convention = contact::wrench_convention(
@@ -85,7 +85,7 @@ PlaceStrength::PlaceStrength(const ObjectModel& object, const std::vector<PoolPo
   }
 }
 
-double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double least) const {
+double PlaceFirmness::expected(const std::vector<std::int32_t>& patches, double least) const {
   const double of_patches = nominal(patches, least);
   if (of_patches <= least) return of_patches;
   base::Random random(1);
@@ -100,14 +100,14 @@ double PlaceStrength::expected(const std::vector<std::int32_t>& patches, double 
     const double drawn = nominal(beside, -std::numeric_limits<double>::infinity());
     sum += drawn;
     most = std::max(most, drawn);
-    // Further draws are seldom stronger than the strongest so far.
+    // Further draws are seldom firmer than the firmest so far.
     const double at_most = (sum + (kDraws - 1 - draw) * most) / kDraws;
     if (at_most <= least) return at_most;
   }
   return std::min(of_patches, sum / kDraws);
 }
 
-double PlaceStrength::nominal(const std::vector<std::int32_t>& patches, double least) const {
+double PlaceFirmness::nominal(const std::vector<std::int32_t>& patches, double least) const {
   if (patches.size() == 2) {
     return firmness_of_pinch(contact_on(object_.patches[patches[0]]),
                              contact_on(object_.patches[patches[1]]), friction_);
