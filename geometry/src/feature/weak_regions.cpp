@@ -306,7 +306,7 @@ WeakRegions find_weak_regions(const MeshQuery& object, const WeakRegionOptions& 
     result.outcome = WeakOutcome::TooCoarse;
     return result;
   }
-  const VoxelGrid grid = voxelize(object, lattice, surface_patches(mesh, lattice));
+  const VoxelGrid grid = voxelize(object, lattice, surface_voxels(mesh, lattice));
   const auto opening = internal::open_solid(object, grid, 0.5 * options.weak_thickness,
                                             options.shape_diameter.num_threads);
   if (!opening) {

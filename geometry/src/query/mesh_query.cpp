@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <optional>
 #include <string>
@@ -274,8 +275,9 @@ MeshQuery::MeshQuery(TriangleMesh mesh)
 const TriangleMesh& MeshQuery::mesh() const { return indexed_->mesh; }
 
 void MeshQuery::build() const {
+  auto other = std::async(std::launch::async, [&] { indexed_->pair_tree(); });
   indexed_->tree();
-  indexed_->pair_tree();
+  other.get();
 }
 
 const Eigen::AlignedBox3d& MeshQuery::box() const { return indexed_->box; }

@@ -177,6 +177,18 @@ std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelL
   return patches;
 }
 
+std::vector<std::int64_t> surface_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice) {
+  VoxelCutter cutter(mesh, lattice);
+  std::vector<std::int64_t> voxels;
+  cutter.run([&](const CutLayer& layer, std::int64_t first_voxel) {
+    for (const CutPieceName& name : layer.names) {
+      const std::int64_t voxel = first_voxel + name.cell;
+      if (voxels.empty() || voxels.back() != voxel) voxels.push_back(voxel);
+    }
+  });
+  return voxels;
+}
+
 std::vector<VoxelPiece> clip_by_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice) {
   VoxelCutter cutter(mesh, lattice);
   std::vector<VoxelPiece> pieces;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "graspfit/base/errors.hpp"
@@ -63,16 +64,24 @@ std::int64_t VoxelGrid::count(VoxelClass voxel_class) const {
 
 VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
                    const std::vector<SurfacePatch>& patches) {
+  std::vector<std::int64_t> voxels;
+  voxels.reserve(patches.size());
+  for (const SurfacePatch& patch : patches) voxels.push_back(patch.voxel);
+  return voxelize(object, lattice, voxels);
+}
+
+VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
+                   std::span<const std::int64_t> partial_voxels) {
   // Full marks "not seen yet" until every region has got its class; seen ones are labeled at once.
   VoxelGrid grid{lattice, std::vector<VoxelClass>(lattice.num_voxels(), VoxelClass::Full)};
   std::vector<char> is_seen(grid.classes.size(), 0);
-  for (const SurfacePatch& patch : patches) {
-    if (patch.voxel < 0 || patch.voxel >= lattice.num_voxels()) {
-      throw base::InvalidInput("voxelize: a patch is of voxel " + std::to_string(patch.voxel) +
+  for (const std::int64_t voxel : partial_voxels) {
+    if (voxel < 0 || voxel >= lattice.num_voxels()) {
+      throw base::InvalidInput("voxelize: a patch is of voxel " + std::to_string(voxel) +
                                ", outside the lattice");
     }
-    grid.classes[patch.voxel] = VoxelClass::Partial;
-    is_seen[patch.voxel] = 1;
+    grid.classes[voxel] = VoxelClass::Partial;
+    is_seen[voxel] = 1;
   }
 
   // Regions grow by whole runs along x, which is far fewer steps than voxels.

@@ -207,6 +207,26 @@ TEST_CASE("At 256 voxels along the longest axis of a flat body the patches hold 
   CHECK(grid.count(VoxelClass::Partial) == static_cast<std::int64_t>(patches.size()));
 }
 
+TEST_CASE("Surface voxels are those that have a patch", "[geometry][surface_patch]") {
+  for (const TriangleMesh& mesh :
+       {ball(0.07, 3), torus(0.05, 0.02, 48, 24), box({0.3, 0.2, 0.15}), capsule(0.02, 0.1, 24)}) {
+    for (const int resolution : {4, 13, 30}) {
+      const VoxelLattice lattice = lattice_around(bounding_box(mesh), {.resolution = resolution});
+      const auto patches = surface_patches(mesh, lattice);
+      std::vector<std::int64_t> expected;
+      for (const SurfacePatch& patch : patches) expected.push_back(patch.voxel);
+      const auto voxels = surface_voxels(mesh, lattice);
+      CHECK(voxels == expected);
+      const MeshQuery object(mesh);
+      CHECK(voxelize(object, lattice, voxels).classes ==
+            voxelize(object, lattice, patches).classes);
+    }
+  }
+  const TriangleMesh far_away =
+      transformed(box({1.0, 1.0, 1.0}), RigidTransform(Eigen::Translation3d(9.0, 0.0, 0.0)));
+  CHECK_THROWS_AS(surface_voxels(far_away, unit_lattice(3)), InvalidInput);
+}
+
 TEST_CASE("Patches do not depend on the order of the faces", "[geometry][surface_patch]") {
   // The torus is turned, since in a symmetric position two points of a patch can be equally near to
   // its mean.

@@ -55,8 +55,8 @@ class MeshQuery {
 
   const TriangleMesh& mesh() const;
 
-  /// Builds now what the first query of each kind would build, about 1 µs a face: where the first
-  /// answer must not be late, or times are taken.
+  /// Builds now what the first query of each kind would build, on two threads, about 1 µs a face:
+  /// where the first answer must not be late, or times are taken.
   void build() const;
 
   /// Box of all faces. Exact.

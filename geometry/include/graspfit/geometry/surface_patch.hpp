@@ -57,6 +57,10 @@ struct SurfacePatchOptions {
 std::vector<SurfacePatch> surface_patches(const TriangleMesh& mesh, const VoxelLattice& lattice,
                                           const SurfacePatchOptions& options = {});
 
+/// Indices of the voxels that have a patch, ascending: where nothing else of the patches is wanted,
+/// by the same decisions in less time. @throws InvalidInput as `surface_patches`
+std::vector<std::int64_t> surface_voxels(const TriangleMesh& mesh, const VoxelLattice& lattice);
+
 /// A clipped polygon with the voxel that holds it.
 struct VoxelPiece {
   std::int64_t voxel = -1;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "graspfit/geometry/mesh_query.hpp"
@@ -79,5 +80,9 @@ struct VoxelGrid {
 /// the exact containment of one of its voxel centers.
 VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
                    const std::vector<SurfacePatch>& patches);
+
+/// The same by the indices of the voxels that have a patch (`surface_voxels`).
+VoxelGrid voxelize(const MeshQuery& object, const VoxelLattice& lattice,
+                   std::span<const std::int64_t> partial_voxels);
 
 }  // namespace graspfit::geometry
