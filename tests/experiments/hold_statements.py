@@ -86,7 +86,7 @@ def hold_default(tables):
     for grip, group in rows.groupby("grip", sort=False):
         few = group[group["normal_held"] <= group["attempts"] / 2].sort_values("normal_held", kind="stable")
         named = ", ".join(f"{object_name(row['object'])} {row['normal_held']}" for _, row in few.iterrows())
-        yield f"{HANDS[grip]}: {named}"
+        yield f"{HANDS[grip]}: {named or 'none'}"
     yield from lost_attempts(rows)
 
 
@@ -177,6 +177,13 @@ def at_a_glance(tables):
     for name, sentence in (("planner_paper_objects", "{} of {} attempts end in a valid grasp"), ("planner_everyday", "({} of {}:")):
         rows = tables.table(name)
         yield sentence.format(percent(rows["valid"].sum() / rows["attempts"].sum()), int(rows["attempts"].sum()))
+    rows = tables.table("hold_default")
+    closed = int((tables.table("hold_default.details")["force_closure"] == 1).sum())
+    attempts = int(rows["attempts"].sum())
+    yield f"{percent(closed / attempts)} of {attempts} attempts without flags end in a grasp that closes"
+    sums = rows.groupby("grip", sort=False)[["normal_held", "hard_held", "attempts"]].sum()
+    for protocol in ("normal", "hard"):
+        yield ", ".join(f"{HANDS[grip]} {percent(row[f'{protocol}_held'] / row['attempts'])}" for grip, row in sums.iterrows())
     rows = tables.table("hold_rates")[lambda table: table["grip"] == "allegro_precision"]
     attempts = int(rows["attempts"].sum())
     yield f"{percent(rows['normal_held'].sum() / attempts)} of {attempts} attempts end in a fingertip grasp of the Allegro hand"

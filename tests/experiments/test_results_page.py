@@ -52,11 +52,11 @@ SECTIONS = {
         hold_statements.hold_choices,
         (*PROTOCOLS, r"of 20 attempts each", r"[Ss]trongest of (4|24)"),
     ),
-    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b", r"\b40f4895\b")),
+    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b", r"\b7a1e452\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
     "## Special cases": (
         lambda tables: [*statements.special_cases(tables), *statements.force_closure(tables)],
-        (r"20 seeds, 12 attempts each, 40 at the horse, 50", r"12 cm", r"30 cm", r"first 100", r"μ = 0\.4", r"45°", r"21\.8°", r"`--slide-steps` 8", r"0\.6"),
+        (r"20 seeds, 12 attempts each, 40 at the horse, 50", r"12 cm", r"30 cm", r"first 100", r"μ = 0\.4", r"45°", r"21\.8°", r"`--slide-steps` 8", r"--max-redraws 5", r"0\.6"),
     ),
     "### Table 1": (statements.table1, (*TABLE1_NAMES, PAPER_OF_TABLE1, r"above 1\.")),
     "### Table 1, other readings": (statements.table1_readings, (*TABLE1_NAMES, PAPER_OF_TABLE1)),
@@ -66,7 +66,7 @@ SECTIONS = {
         statements.candidate_prediction,
         (r"0\.08, 0\.12 and 0\.20 m", r"seed 1", r"μ = 0\.4", r"5 mm", r"15°", r"\(0\.5: says nothing\)", r"512 per cell", r"valid of 96 \| closed of 96")),
     "## Targets that the hand can meet": (
-        statements.reach_grasps, (r"0\.(08|12|15|20|30) m", r"first 20", r"seed 1", r"μ = 0\.4", r"200 attempts")),
+        statements.reach_grasps, (r"0\.(08|12|15|20|30) m", r"first 20", r"seed 1", r"μ = 0\.4", r"200 attempts", r"--max-redraws 5", r"firm as 0\.04")),
     "## Figures, tables and claims": (
         statements.claims,
         (r"9, 15, 30 cm", r"\d+(\.\d)? cm", r"1, 4 and 20", r"2478", r"27 would", r"30 voxels", r"3\.4 GHz", r"0\.3 to 3\.7 s", r"under 1 s",
