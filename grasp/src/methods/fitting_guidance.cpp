@@ -22,6 +22,9 @@ namespace {
 // Sides of a set that count as one draw: those of a triangle. Two targets have 16, so fewer such
 // sets are drawn.
 constexpr int kSidesPerDraw = 2;
+// Of the only draw of an attempt, in efforts: about a thousand postures, as large and small objects
+// need some of them.
+constexpr double kOnlyDraw = 14.0;
 
 const char* failure_name(TargetFailure failure) {
   switch (failure) {
@@ -61,7 +64,8 @@ class FittingGuidance : public GraspGuidance {
   GuidedStarts starts(std::int64_t number) const override {
     if (reach_) {
       return reach_starts(
-          base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number)), 1.0);
+          base::Random::stream(scene_.options.seed, static_cast<std::uint64_t>(number)),
+          scene_.options.max_redraws > 0 ? 1.0 : kOnlyDraw);
     }
     GuidedStarts result;
     result.starts =

@@ -354,7 +354,7 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
      {"max_redraws", at_least(0), "max-redraws", "1", kTargets,
       "how often an attempt of target-search reach may draw targets anew: while no grasp is "
       "accepted; with keep balanced and strongest, while no squeeze balances; with firmest, while "
-      "no grasp is as firm as 0.04",
+      "no grasp is as firm as 0.04; with 0 the only draw may search as long as many together",
       "R"});
   at(options.approach_O, {"approach_O", kAny, "approach", "", kRequest,
                           "wanted direction of the palm, toward the object, in the object's frame",

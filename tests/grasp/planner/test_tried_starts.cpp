@@ -241,7 +241,7 @@ TEST_CASE("Attempts that keep the firmest grasp try no start that promises no mo
 
 TEST_CASE("Targets are drawn anew while no grasp of an attempt is firm", "[grasp][tried_starts]") {
   const double firm = 0.04;
-  const int most = 3;
+  const int most = 4;
   const hands::HandModel hand = hands::find_hand("barrett");
   PlannerOptions options = few_attempts();
   options.max_attempts = 1;
@@ -274,11 +274,11 @@ TEST_CASE("Targets are drawn anew while no grasp of an attempt is firm", "[grasp
   for (options.seed = 1; options.seed <= 12; ++options.seed) {
     CAPTURE(options.seed);
     std::vector<Made> by_redraws;
-    for (int redraws = 0; redraws <= most; ++redraws) by_redraws.push_back(made_with(redraws));
-    for (int redraws = 1; redraws <= most; ++redraws) {
-      CAPTURE(redraws);
-      const Made& fewer = by_redraws[redraws - 1];
-      const Made& more = by_redraws[redraws];
+    for (int redraws = 1; redraws <= most; ++redraws) by_redraws.push_back(made_with(redraws));
+    for (std::size_t i = 1; i < by_redraws.size(); ++i) {
+      CAPTURE(i);
+      const Made& fewer = by_redraws[i - 1];
+      const Made& more = by_redraws[i];
       // What fewer draws give comes first, and is not given up for less.
       REQUIRE(more.tried.size() >= fewer.tried.size());
       CHECK(std::equal(fewer.tried.begin(), fewer.tried.end(), more.tried.begin()));
