@@ -4,8 +4,9 @@
 Reads DIR/grasps.json and, for each of its grasps, DIR/grasp_NNN.obj: the object (`o object`) and the
 posed links (`o link NAME`), in meters, in the object frame O. Each picture shows the grasp across the
 palm direction and facing the contact polygon, and its pre-grasp, if it has one, across the palm direction;
-all in parallel projection, so that the scale bar holds everywhere. Table and obstacles
-(DIR/obstacle_1.ply, ...) are shown. Pictures are written under a temporary name and renamed.
+all in parallel projection, so that the scale bar holds everywhere. Of an object that is much larger than
+the hand, the views of the grasp show what is near the hand, that of the pre-grasp all. Table and
+obstacles (DIR/obstacle_1.ply, ...) are shown. Pictures are written under a temporary name and renamed.
 
 Uses Debian's python3-vtk9, under xvfb-run where that is installed. Exit code 1 with one line on bad
 input or a missing program.
@@ -34,6 +35,7 @@ from vtk_picture import (  # noqa: E402
 )
 
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
+MUCH_LARGER = 2.5  # An object so many times the size of the hand is not shown whole.
 ROUNDED_EPSILON = 1e-9  # Contacts that are opposite each other but for rounding close with less.
 
 
@@ -260,6 +262,15 @@ def hull_edges(points):
     return edges
 
 
+def points_of(parts, with_object=True):
+    return [v for name, vertices, _ in parts if with_object or name != "object" for v in vertices]
+
+
+def diagonal(points):
+    """Length of the diagonal of the points' box."""
+    return math.dist(*([pick(p[k] for p in points) for k in range(3)] for pick in (min, max)))
+
+
 def pre_grasp_parts(grasp, parts):
     """The parts of the scene with the hand in its pre-grasp."""
     result = []
@@ -307,22 +318,24 @@ class Painter(Canvas):
         if grasp["motions"]:
             # The marks are the grasp's: what the open hand is going to.
             views.append(("pre-grasp", side, pre_grasp_parts(grasp, parts), self.contact_marks))
-        points = [v for _, vertices, _ in parts for v in vertices]
-        size = math.dist(*([pick(p[k] for p in points) for k in range(3)] for pick in (min, max)))
+        near = points_of(parts, with_object=False)
+        if not near or diagonal(points_of(parts)) < MUCH_LARGER * diagonal(near):
+            near = None
         for column, (name, back, shown, make_marks) in enumerate(views):
             left, right = column / len(views), (column + 1) / len(views)
             up = [float(k == self.up) for k in range(3)]
             if abs(dot(up, back)) > 0.97:
                 up = up[-1:] + up[:-1]
             aspect = self.width / (len(views) * (TOP - BOTTOM) * self.height)
-            points = [v for _, vertices, _ in shown for v in vertices]
+            points = near if near and shown is parts else points_of(shown)
             camera, height_m = self.camera(back, up, points, aspect)
+            size = diagonal(points)
             self.add_view(
                 window,
                 (left, BOTTOM, right, TOP),
                 camera,
                 self.solids(shown),
-                lambda make_marks=make_marks: make_marks(grasp, size),
+                lambda make_marks=make_marks, size=size: make_marks(grasp, size),
             )
             self.add_axes(window, (left + 0.008, 0.056), camera)
             view_pixels = (TOP - BOTTOM) * SUPERSAMPLING * self.height
