@@ -12,6 +12,7 @@
 #include "graspfit/geometry/angle.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/used_vertices.hpp"
+#include "hull/support_margin.hpp"
 #include "mesh/input_check.hpp"
 
 namespace graspfit::geometry {
@@ -40,36 +41,6 @@ bool is_plumb_over(const std::array<Vector3d, 3>& triangle, const Vector3d& norm
     if ((b - a).cross(center - a).dot(normal) < -kRounding * (b - a).squaredNorm()) return false;
   }
   return true;
-}
-
-/// Distance of `center` from the border of the convex hull of the supporting corners, all projected
-/// along `up`; negative outside.
-double support_margin(const std::vector<Vector3d>& support, const Vector3d& up,
-                      const Vector3d& center) {
-  const Vector3d x = up.unitOrthogonal();
-  const Vector3d y = up.cross(x);
-  std::vector<Vector3d> seen;
-  for (const Vector3d& corner : support) {
-    seen.emplace_back(x.dot(corner - center), y.dot(corner - center), 0.0);
-  }
-  const ConvexHull3 hull = convex_hull(seen);
-  if (hull.rank != 2) return 0.0;
-  std::vector<Vector2d> around;
-  for (const std::size_t i : hull.vertices) around.emplace_back(seen[i].x(), seen[i].y());
-  double doubled_area = 0.0;
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    const Vector2d& a = around[i];
-    const Vector2d& b = around[(i + 1) % around.size()];
-    doubled_area += a.x() * b.y() - a.y() * b.x();
-  }
-  if (doubled_area < 0.0) std::reverse(around.begin(), around.end());
-  double margin = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    const Vector2d& a = around[i];
-    const Vector2d edge = around[(i + 1) % around.size()] - a;
-    margin = std::min(margin, (edge.y() * a.x() - edge.x() * a.y()) / edge.norm());
-  }
-  return margin;
 }
 
 }  // namespace
@@ -110,7 +81,7 @@ std::vector<RestPose> rest_poses(const TriangleMesh& mesh, const Vector3d& cente
       if (offset - normal.dot(corner) <= options.flatness) support.push_back(corner);
     }
     const RestPose pose{-normal, offset - normal.dot(center_of_mass),
-                        std::max(0.0, support_margin(support, -normal, center_of_mass))};
+                        std::max(0.0, internal::support_margin(support, -normal, center_of_mass))};
     if (pose.margin >= options.least_margin) poses.push_back(pose);
   }
   std::stable_sort(poses.begin(), poses.end(),
