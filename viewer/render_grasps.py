@@ -35,6 +35,7 @@ from vtk_picture import (  # noqa: E402
 )
 
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
+LYING = 0.3  # Upward part of the normal of a polygon that a table hides from below.
 MUCH_LARGER = 2.5  # An object so many times the size of the hand is not shown whole.
 ROUNDED_EPSILON = 1e-9  # Contacts that are opposite each other but for rounding close with less.
 
@@ -210,8 +211,11 @@ def read_parts(path):
 # ------------------------------------------------------------------------------------------ vectors
 
 
-def polygon_normal(grasp):
-    """Unit normal of the contacts' polygon, on the side that the palm does not cover."""
+def polygon_normal(grasp, above=None):
+    """Unit normal of the contacts' polygon, on the side that the palm does not cover.
+
+    Over a table, whose axis `above` is, a polygon that lies is seen from above.
+    """
     points = [contact["point"] for contact in grasp["contacts"]]
     palm = grasp["palm_direction"]
     normal = None
@@ -225,6 +229,8 @@ def polygon_normal(grasp):
         normal = unit(total)
     if normal is None:
         return perpendicular(palm)
+    if above is not None and abs(normal[above]) > LYING:
+        return [-x for x in normal] if normal[above] < 0.0 else normal
     return [-x for x in normal] if dot(normal, palm) < 0.0 else normal
 
 
@@ -311,9 +317,10 @@ class Painter(Canvas):
         window = self.window()
         side = side_direction(grasp, self.up)
         marks = self.marks
+        above = None if self.scene["table_z"] is None else 2
         views = [
             ("across the palm direction", side, parts, marks),
-            ("facing the contact polygon", polygon_normal(grasp), parts, marks),
+            ("facing the contact polygon", polygon_normal(grasp, above), parts, marks),
         ]
         if grasp["motions"]:
             # The marks are the grasp's: what the open hand is going to.
@@ -447,7 +454,9 @@ def main():
     parser.add_argument("--width", type=pixels, default=1400, help="pixels (default 1400)")
     parser.add_argument("--height", type=pixels, default=800, help="pixels (default 800)")
     parser.add_argument(
-        "--up", choices="xyz", default="y", help="axis of O that points up in the picture (default y)"
+        "--up",
+        choices="xyz",
+        help="axis of O that points up in the picture (default: y, over a table z)",
     )
     parser.add_argument("--note", metavar="TEXT", default="", help="a line at the upper right")
     arguments = parser.parse_args()
@@ -467,7 +476,8 @@ def main():
             if not path.is_file():
                 raise BadInput(f"{path}: No such file")
         go_under_xvfb()
-        painter = Painter(arguments.width, arguments.height, "xyz".index(arguments.up), scene, arguments.note)
+        up = arguments.up or ("y" if scene["table_z"] is None else "z")
+        painter = Painter(arguments.width, arguments.height, "xyz".index(up), scene, arguments.note)
         for grasp in scene["grasps"]:
             name = f"grasp_{grasp['number']:03d}"
             picture = painter.paint(grasp, read_parts(file.parent / f"{name}.obj"))

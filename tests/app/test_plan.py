@@ -290,6 +290,56 @@ class Plan(program.ProgramTest):
         obstacle.write_text(obstacle.read_text() + "\n")
         self.assert_refused("evaluate", self.folder / "out/grasps.json", says=["box.off", "SHA-256"])
 
+    def test_an_object_is_laid_on_the_table(self):
+        # The torus has one likely pose, flat on the table, from either side, and none on its edge.
+        def plan(*flags, out):
+            done = program.run("plan", self.folder / "torus.off", "--hand", "human_hand", "--on-table",
+                               "--count", "2", "--out", self.folder / out, *flags)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            return done
+
+        plan("--table-clearance-mm", "2", out="out")
+        file = json.loads((self.folder / "out/grasps.json").read_text())
+        self.assertEqual(file["surroundings"]["table_z_O_m"], 0)
+        self.assertEqual(file["surroundings"]["table_clearance_m"], 0.002)
+        laid = file["object"]["laid"]
+        self.assertEqual(laid["rank"], 1)
+        self.assertAlmostEqual(laid["probability"], 0.5, delta=0.05)
+        lower = file["object"]["mesh"]["bounding_box_m"]["lower"]
+        self.assertAlmostEqual(lower[2], 0, places=12)
+        for grasp in file["results"]["grasps"]:
+            posed = (self.folder / f"out/grasp_{grasp['rank']:03}.obj").read_text()
+            hand = posed[posed.index("o link"):]
+            heights = [float(line.split()[3]) for line in hand.splitlines() if line.startswith("v ")]
+            self.assertGreater(min(heights), 0.002)
+        for arguments in (("evaluate",), ("hold", "--protocol", "tabletop-lift")):
+            done = program.run(*arguments[:1], self.folder / "out/grasps.json", *arguments[1:])
+            if "no physics" in done.stderr:
+                continue
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        # In the file's own frame the second pose is the first one upside down.
+        done = plan("--rest-pose", "all", out="all")
+        folders = sorted(path.name for path in (self.folder / "all").iterdir())
+        self.assertEqual(folders, ["rest_pose_1", "rest_pose_2"])
+        self.assertIn("in rest pose 2, in which it lands in", done.stdout)
+
+    def test_flags_about_the_table_that_make_no_sense_are_refused(self):
+        torus = self.folder / "torus.off"
+        for flags, says in (
+            (("--table", "0", "--on-table"), "--table and --on-table exclude each other"),
+            (("--rest-pose", "2"), "--rest-pose means nothing without --on-table"),
+            (("--table-clearance-mm", "2"), "means nothing without --table or --on-table"),
+            (("--on-table", "--rest-pose", "9"), "graspfit inspect lists them"),
+            (("--on-table", "--rest-pose", "0"), "--rest-pose"),
+            (("--on-table", "--rest-pose", "both"), "--rest-pose"),
+            (("--on-table", "--table-clearance-mm", "-1"), "--table-clearance-mm"),
+        ):
+            with self.subTest(flags):
+                self.assert_refused("plan", torus, *flags, "--out", self.folder / "none", says=[says])
+                self.assertFalse((self.folder / "none").exists())
+        done = program.run("inspect", torus, "--no-thickness")
+        self.assertRegex(done.stdout, r"rest pose 1 +(49|50)(\.\d)? % of falls, up \(")
+
     def test_threads_are_not_recorded_and_do_not_matter(self):
         self.plan("--threads", "1", out="a")
         self.plan("--threads", "2", out="b")

@@ -1,5 +1,10 @@
+#include <fstream>
+
 #include "exchanged_grasps.hpp"
+#include "graspfit/exchange/dexgraspbench.hpp"
 #include "graspfit/exchange/exchange_format.hpp"
+#include "graspfit/exchange/graspit_world.hpp"
+#include "graspfit/exchange/isaac_grasp.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -7,6 +12,7 @@ namespace test_exchange_format {
 
 using namespace graspfit;
 using exchange::ExchangeFormat;
+using testing::TemporaryFolder;
 
 namespace {
 
@@ -62,6 +68,35 @@ TEST_CASE("What a format leaves out of these very grasps is said", "[exchange][e
   for (const ExchangeFormat format : kAll) {
     CHECK(mentions(exchange::limits_of(format, file), "table and obstacles are left out"));
   }
+}
+
+TEST_CASE("Poses around an object that was laid down are written in its file's frame, or with it",
+          "[exchange][exchange_format]") {
+  const TemporaryFolder folder;
+  const grasp::GraspFile usual = testing::random_grasps(hands::find_hand("barrett"), folder, 3);
+  grasp::GraspFile laid = usual;
+  grasp::LaidPose& pose = laid.object.laid.emplace();
+  pose.rotation_wxyz = {0.5, 0.5, -0.5, 0.5};
+  pose.translation = {0.1, -0.2, 0.3};
+  for (grasp::Grasp& grasp : laid.grasps) {
+    for (hands::HandConfiguration* const at :
+         {&grasp.configuration, grasp.pre_grasp ? &grasp.pre_grasp->configuration : nullptr}) {
+      if (at != nullptr) at->X_OH = pose.X_OF() * at->X_OH;
+    }
+  }
+  const auto path = folder.path() / "laid.yaml";
+  std::ofstream(path) << exchange::isaac_grasp_yaml(laid);
+  const auto read = exchange::read_isaac_grasps(path, laid.hand);
+  REQUIRE(read.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const geometry::RigidTransform& X_FH = usual.grasps[i].configuration.X_OH;
+    CHECK((read[i].configuration.X_OH.matrix() - X_FH.matrix()).norm() < 1e-12);
+  }
+  // The others have a pose for the object.
+  CHECK(exchange::dexgraspbench_npz(laid) != exchange::dexgraspbench_npz(usual));
+  const std::string world = exchange::graspit_world_xml(laid, 0);
+  CHECK(world.find("[100 -200 300]") != std::string::npos);
+  CHECK(mentions(exchange::limits_of(ExchangeFormat::PosedGlb, laid), "those of the table"));
 }
 
 }  // namespace test_exchange_format

@@ -14,7 +14,10 @@ from pathlib import Path
 SOURCE = Path(sys.argv[1])
 PAGE = SOURCE / "docs/readings.md"
 OPTION = re.compile(r"(?m)^\| `([a-z0-9-]+)` \| .* \| (.*?) \| `[\w.]+` \| (.*) \|$")
-OTHERS = {"hand", "max-hole", "no-palm", "no-weak", "obstacle", "repair", "table"}
+OTHERS = {
+    "hand", "max-hole", "no-palm", "no-weak", "obstacle", "on-table", "repair", "table",
+    "table-clearance-mm",
+}
 CELL = re.compile(r"(?<!\\) \| ")
 
 

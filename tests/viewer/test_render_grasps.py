@@ -209,6 +209,20 @@ class RenderGrasps(unittest.TestCase):
             self.assertIn(text or "M3 1.000)   valid", shown)
             self.assertEqual("epsilon" in shown, text == "epsilon 0.125")
 
+    def test_a_grasp_of_a_much_larger_object_is_seen_from_near(self):
+        obj = self.folder / "grasp_001.obj"
+        text = obj.read_text()
+        count = text.count("\nv ") + text.startswith("v ")
+        # A wall behind the hand, in the middle of which it is a tenth of the picture's height.
+        lines, _ = box_obj(count + 1, (-0.8, 0.2, -0.8), (0.8, 0.25, 0.8))
+        self.assertEqual(self.run_script("--width", "600", "--height", "400").returncode, 0)
+        usual = Image.open(self.folder / "grasp_001.png").convert("RGB")
+        obj.write_text(text + "\no object\n" + "\n".join(lines) + "\n")
+        self.assertEqual(self.run_script("--width", "600", "--height", "400").returncode, 0)
+        near = Image.open(self.folder / "grasp_001.png").convert("RGB")
+        shares = [share_near(image, (98, 124, 150), 40) for image in (usual, near)]
+        self.assertGreater(shares[1], 0.5 * shares[0], "the hand's part of the picture")
+
     def test_missing_obstacle(self):
         self.change(
             lambda data: data.update(

@@ -11,6 +11,7 @@
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
 #include "graspfit/base/number_text.hpp"
+#include "graspfit/geometry/likely_rest_pose.hpp"
 #include "graspfit/geometry/shape_diameter.hpp"
 #include "graspfit/geometry/weak_regions.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
@@ -119,6 +120,23 @@ void print_mass(const grasp::ObjectModel& object) {
           (object.mass.method == geometry::MassMethod::SolidBoundary ? ", parts united" : ""));
   print_row("center of mass", vector_text(object.mass.center_of_mass, 6) + " m");
   print_row("normalizing radius", fixed_decimal(object.normalizing_radius, 6) + " m");
+}
+
+/// How the solid rests on a table, for `plan --on-table`.
+void print_rest_poses(const grasp::ObjectModel& object) {
+  constexpr std::size_t kMost = 5;
+  const std::vector<geometry::LikelyRestPose> poses =
+      geometry::likely_rest_poses(object.mesh(), object.mass.center_of_mass);
+  for (std::size_t i = 0; i < std::min(kMost, poses.size()); ++i) {
+    const geometry::RestPose& pose = poses[i].pose;
+    print_row("rest pose " + std::to_string(i + 1),
+              probability_text(poses[i].probability) + " of falls, up " +
+                  vector_text(pose.up_O, 3) + ", center of mass " + fixed_decimal(pose.height, 4) +
+                  " m high");
+  }
+  if (poses.size() > kMost) {
+    print_row("", std::to_string(poses.size() - kMost) + " further ones are less likely");
+  }
 }
 
 void print_voxels(const grasp::ObjectModel& object) {
@@ -319,6 +337,7 @@ ExitCode run_inspect(const std::vector<std::string>& arguments) {
   print_mesh(object_file);
   if (object) {
     print_mass(*object);
+    print_rest_poses(*object);
     print_voxels(*object);
     print_scores(*object, options.targets.score_threshold);
     if (weak) {

@@ -79,9 +79,10 @@ Command plan_command() {
       .add(score_map_options())
       .add(hold)
       .add(output);
-  command.basics = {"preset",    "hand",    "style",    "contacts", "fingers",      "approach",
-                    "mesh-unit", "longest", "table",    "count",    "max-attempts", "seed",
-                    "hold",      "out",     "pictures", "page",     "quiet"};
+  command.basics = {"preset",    "hand",      "style",        "contacts", "fingers",
+                    "approach",  "mesh-unit", "longest",      "table",    "on-table",
+                    "rest-pose", "count",     "max-attempts", "seed",     "hold",
+                    "out",       "pictures",  "page",         "quiet"};
   return command;
 }
 
@@ -288,6 +289,103 @@ ExitCode ended_with(ExitCode code) {
   return signal ? static_cast<ExitCode>(kInterrupted + *signal) : code;
 }
 
+/// What a run is asked for, but for the object.
+struct PlanRequest {
+  const Flags& flags;
+  const hands::HandReading& hand;
+  grasp::PlannerOptions options;
+  std::optional<hold_test::HoldProtocol> protocol;
+  int num_threads = 0;
+};
+
+/// Plans for one object, prints and writes.
+ExitCode plan_object(const PlanRequest& request, const grasp::ObjectFile& object_file,
+                     std::optional<OutputFolder>& out) {
+  const Flags& flags = request.flags;
+  const hands::HandModel& hand = request.hand.model;
+  grasp::PlannerOptions options = request.options;
+  ProgressBar progress(!flags.has("quiet"));
+  std::string name = flags.positional();
+  if (const auto& laid = object_file.record.laid) {
+    name += " in rest pose " + std::to_string(laid->rank);
+  }
+  require_solid(object_file);
+  const LoadedSurroundings around = load_surroundings(flags, object_file.mesh);
+  progress.clear();
+  warn_of_differences("plan", object_file.record, around.record.obstacles);
+  progress.show("voxels and contact scores");
+  const grasp::ObjectModel object =
+      grasp::prepare_object(object_file.mesh, hand, options, {.is_on = true});
+  grasp::PlannerResult result;
+  {
+    const StopOnInterrupt stop(
+        "graspfit plan: interrupted: the attempts under way are finished; once more ends at once");
+    const auto planned = [&] {
+      return grasp::plan_grasps(object, hand, options, around.surroundings,
+                                {.num_threads = request.num_threads,
+                                 .progress = shown_by(progress, options),
+                                 .stop = stop.token()});
+    };
+    result = planned();
+    if (result.grasps.empty() && !interrupt_heard() && is_search_of_default(flags, options)) {
+      if (options.style == grasp::GraspStyle::Auto) options.style = grasp::GraspStyle::Precision;
+      options.targets.search = grasp::TargetSearch::Random;
+      result = planned();
+      progress.clear();
+      if (!result.grasps.empty()) {
+        std::fprintf(stderr,
+                     "graspfit plan: %s: no grasp at targets by the hand's reach; these are at "
+                     "random targets (--target-search random)\n",
+                     name.c_str());
+      }
+    }
+  }
+  progress.clear();
+
+  if (result.grasps.empty()) {
+    const std::string accepted(grasp::name_of(options.acceptance));
+    const std::string advice = no_grasp_advice(result, options, object.mesh(), request.hand);
+    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s%s%s\n", name.c_str(),
+                 accepted.c_str(), hand.name.c_str(), attempts_text(result).c_str(),
+                 advice.empty() ? "" : "; ", advice.c_str());
+    return ended_with(kNoGrasp);
+  }
+  std::optional<grasp::HoldRecord> hold;
+  if (request.protocol) {
+    const bool by_margin = flags.is_default("rank") || options.rank == grasp::RankRule::Margin;
+    HeldGrasps held = held_grasps(object.mesh(), hand, *request.protocol, request.num_threads,
+                                  std::move(result.grasps), by_margin, progress);
+    progress.clear();
+    if (held.grasps.empty()) {
+      std::fprintf(stderr, "graspfit plan: %s: no grasp by hand %s holds: %s\n", name.c_str(),
+                   hand.name.c_str(), hold_text(held.record).c_str());
+      return ended_with(kNoGrasp);
+    }
+    result.grasps = std::move(held.grasps);
+    hold = std::move(held.record);
+  }
+  grasp::GraspFile file =
+      grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
+  file.hold = std::move(hold);
+  file.preset = preset_name(flags);
+  if (out) write_files(file, object, around.surroundings, flags, *out, progress);
+  progress.clear();
+  if (!flags.has("quiet")) {
+    if (const auto& laid = object_file.record.laid) {
+      std::printf("on the table in rest pose %d, in which it lands in %s of falls\n", laid->rank,
+                  probability_text(laid->probability).c_str());
+    }
+    std::printf("%s%zu of %d grasps, %s, %s\n", table_of(file, object).c_str(), file.grasps.size(),
+                options.count, closed_text(file).c_str(), attempts_text(result).c_str());
+    if (const std::string grips = grip_text(file); !grips.empty()) {
+      std::printf("%s\n", grips.c_str());
+    }
+    if (file.hold) std::printf("%s\n", hold_text(*file.hold).c_str());
+    if (out) std::printf("written to %s\n", out->target().c_str());
+  }
+  return ended_with(kSuccess);
+}
+
 }  // namespace
 
 ExitCode run_plan(const std::vector<std::string>& arguments) {
@@ -305,8 +403,7 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   }
   require_possible(flags, hand, options);
   const int num_threads = num_threads_of(flags);
-  std::optional<OutputFolder> out;
-  if (flags.has("out")) out.emplace(flags.text("out"), is_plan_file);
+  if (flags.has("out")) OutputFolder(flags.text("out"), is_plan_file);  // refused before any work
   require_means_of_output(flags);
   std::optional<hold_test::HoldProtocol> protocol;
   if (options.rank == grasp::RankRule::Margin && !flags.has("hold")) {
@@ -322,79 +419,21 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   }
   warn_of_findings("plan", reading);
 
-  ProgressBar progress(!flags.has("quiet"));
-  const grasp::ObjectFile object_file = load_object(flags, flags.positional());
-  require_solid(object_file);
-  const LoadedSurroundings around = load_surroundings(flags, object_file.mesh);
-  progress.clear();
-  warn_of_differences("plan", object_file.record, around.record.obstacles);
-  progress.show("voxels and contact scores");
-  const grasp::ObjectModel object =
-      grasp::prepare_object(object_file.mesh, hand, options, {.is_on = true});
-  grasp::PlannerResult result;
-  {
-    const StopOnInterrupt stop(
-        "graspfit plan: interrupted: the attempts under way are finished; once more ends at once");
-    const auto planned = [&] {
-      return grasp::plan_grasps(object, hand, options, around.surroundings,
-                                {.num_threads = num_threads,
-                                 .progress = shown_by(progress, options),
-                                 .stop = stop.token()});
-    };
-    result = planned();
-    if (result.grasps.empty() && !interrupt_heard() && is_search_of_default(flags, options)) {
-      if (options.style == grasp::GraspStyle::Auto) options.style = grasp::GraspStyle::Precision;
-      options.targets.search = grasp::TargetSearch::Random;
-      result = planned();
-      progress.clear();
-      if (!result.grasps.empty()) {
-        std::fprintf(stderr,
-                     "graspfit plan: %s: no grasp at targets by the hand's reach; these are at "
-                     "random targets (--target-search random)\n",
-                     flags.positional().c_str());
-      }
+  const PlanRequest request{flags, reading, std::move(options), std::move(protocol), num_threads};
+  const std::vector<grasp::ObjectFile> objects = load_placed_objects(flags, flags.positional());
+  ExitCode code = kNoGrasp;
+  for (const grasp::ObjectFile& object : objects) {
+    std::optional<OutputFolder> out;
+    if (flags.has("out")) {
+      fs::path folder = flags.text("out");
+      if (objects.size() > 1) folder /= "rest_pose_" + std::to_string(object.record.laid->rank);
+      out.emplace(folder, is_plan_file);
     }
+    const ExitCode found = plan_object(request, object, out);
+    if (found != kNoGrasp) code = found;
+    if (interrupt_heard()) break;
   }
-  progress.clear();
-
-  if (result.grasps.empty()) {
-    const std::string accepted(grasp::name_of(options.acceptance));
-    const std::string advice = no_grasp_advice(result, options, object.mesh(), reading);
-    std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s%s%s\n",
-                 flags.positional().c_str(), accepted.c_str(), hand.name.c_str(),
-                 attempts_text(result).c_str(), advice.empty() ? "" : "; ", advice.c_str());
-    return ended_with(kNoGrasp);
-  }
-  std::optional<grasp::HoldRecord> hold;
-  if (protocol) {
-    const bool by_margin = flags.is_default("rank") || options.rank == grasp::RankRule::Margin;
-    HeldGrasps held = held_grasps(object.mesh(), hand, *protocol, num_threads,
-                                  std::move(result.grasps), by_margin, progress);
-    progress.clear();
-    if (held.grasps.empty()) {
-      std::fprintf(stderr, "graspfit plan: %s: no grasp by hand %s holds: %s\n",
-                   flags.positional().c_str(), hand.name.c_str(), hold_text(held.record).c_str());
-      return ended_with(kNoGrasp);
-    }
-    result.grasps = std::move(held.grasps);
-    hold = std::move(held.record);
-  }
-  grasp::GraspFile file =
-      grasp::make_grasp_file(object_file.record, hand, options, object, result, around.record);
-  file.hold = std::move(hold);
-  file.preset = preset_name(flags);
-  if (out) write_files(file, object, around.surroundings, flags, *out, progress);
-  progress.clear();
-  if (!flags.has("quiet")) {
-    std::printf("%s%zu of %d grasps, %s, %s\n", table_of(file, object).c_str(), file.grasps.size(),
-                options.count, closed_text(file).c_str(), attempts_text(result).c_str());
-    if (const std::string grips = grip_text(file); !grips.empty()) {
-      std::printf("%s\n", grips.c_str());
-    }
-    if (file.hold) std::printf("%s\n", hold_text(*file.hold).c_str());
-    if (out) std::printf("written to %s\n", out->target().c_str());
-  }
-  return ended_with(kSuccess);
+  return code;
 }
 
 }  // namespace graspfit::app

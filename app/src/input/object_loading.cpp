@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/grasp/object_difference.hpp"
@@ -15,6 +16,9 @@ namespace graspfit::app {
 namespace {
 
 using base::shortest_decimal;
+
+constexpr double kLeastProbability = 0.01;  // of a pose that "all" poses include
+constexpr double kMillimetersPerMeter = 1e3;
 
 constexpr std::array<std::pair<const char*, double>, 4> kMeshUnits = {
     {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
@@ -95,6 +99,15 @@ boost::program_options::options_description surroundings_options() {
       option_group("What the hand must not touch");
   add_option(options, "table", "Z", std::nullopt,
              "a table: everything at or below this z of the object's frame is solid [m] [R, A45]");
+  add_switch(options, "on-table",
+             "lay the object down first, on a table at z = 0, in a pose in which it rests; the "
+             "frame is then the table's, with the object's center of mass over its origin");
+  add_option(options, "rest-pose", "N|all", "1",
+             "with --on-table: which pose, 1 the likeliest (inspect lists them); all: in each that "
+             "is at least as likely as 1 %, into DIR/rest_pose_N");
+  add_option(options, "table-clearance-mm", "MM",
+             base::plain_decimal(kMillimetersPerMeter * grasp::kTableClearance),
+             "the hand comes no nearer to the table than this [mm]");
   add_repeatable_option(options, "obstacle", "FILE",
                         "a solid in the object's frame; may be given again for further ones "
                         "[R, A45]");
@@ -104,7 +117,18 @@ boost::program_options::options_description surroundings_options() {
 
 LoadedSurroundings load_surroundings(const Flags& flags, const geometry::TriangleMesh& object_O) {
   LoadedSurroundings loaded;
-  loaded.record.table_z_O = loaded.surroundings.table_z_O = flags.optional_number("table");
+  if (flags.has("table") && flags.has("on-table")) {
+    throw UsageError("--table and --on-table exclude each other: --on-table puts the table there");
+  }
+  std::optional<double> table = flags.optional_number("table");
+  if (flags.has("on-table")) table = 0.0;
+  if (!table && !flags.is_default("table-clearance-mm")) {
+    throw UsageError("--table-clearance-mm means nothing without --table or --on-table");
+  }
+  const double clearance = flags.number("table-clearance-mm", base::at_least(0));
+  loaded.record.table_z_O = loaded.surroundings.table_z_O = table;
+  loaded.record.table_clearance = loaded.surroundings.table_clearance =
+      table ? clearance / kMillimetersPerMeter : 0.0;
   const double top = geometry::bounding_box(object_O).max().z();
   if (loaded.record.table_z_O && top <= *loaded.record.table_z_O) {
     throw UsageError("--table " + flags.text("table") +
@@ -131,6 +155,40 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
 grasp::ObjectFile load_object(const Flags& flags, const std::string& file) {
   const SecondsBar seconds(!flags.has("quiet"), "reading and repairing " + file);
   return grasp::read_object_file(file, object_read_options(flags));
+}
+
+std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std::string& file) {
+  const std::string& wanted = flags.text("rest-pose");
+  if (!flags.has("on-table") && !flags.is_default("rest-pose")) {
+    throw UsageError("--rest-pose means nothing without --on-table");
+  }
+  std::vector<grasp::ObjectFile> objects;
+  grasp::ObjectFile object = load_object(flags, file);
+  if (!flags.has("on-table")) {
+    objects.push_back(std::move(object));
+    return objects;
+  }
+  require_solid(object);
+  const std::vector<geometry::LikelyRestPose> poses =
+      geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
+  if (wanted == "all") {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (poses[i].probability < kLeastProbability) break;
+      objects.push_back(grasp::laid_down(object, poses[i], base::as_index<int>(i + 1)));
+    }
+    return objects;
+  }
+  const int rank = flags.integer("rest-pose", base::at_least(1));
+  if (rank > std::ssize(poses)) {
+    throw UsageError("--rest-pose " + wanted + ": " + file + " has " +
+                     std::to_string(poses.size()) + " (graspfit inspect lists them)");
+  }
+  objects.push_back(grasp::laid_down(std::move(object), poses[rank - 1], rank));
+  return objects;
+}
+
+std::string probability_text(double probability) {
+  return base::plain_decimal(std::round(1e3 * probability) / 10.0) + " %";
 }
 
 void require_solid(const grasp::ObjectFile& object) {

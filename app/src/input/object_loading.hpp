@@ -20,6 +20,14 @@ grasp::ObjectReadOptions object_read_options(const Flags& flags);
 /// The flags of the object's surroundings: table and obstacles.
 boost::program_options::options_description surroundings_options();
 
+/// The object of a file, laid down on a table in every pose that the flags of
+/// `surroundings_options` ask for; as it is where they ask for none. @throws as `load_object`,
+/// UsageError.
+std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std::string& file);
+
+/// "43 %" of a rest pose's probability.
+std::string probability_text(double probability);
+
 /// The object's surroundings, as read and as recorded.
 struct LoadedSurroundings {
   grasp::Surroundings surroundings;

@@ -1,5 +1,6 @@
 #include "graspfit/exchange/dexgraspbench.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -42,12 +43,16 @@ std::string dexgraspbench_npz(const grasp::GraspFile& file) {
 
   const std::array<std::string, 1> object = {file.object.file};
   const std::array<double, 1> scale = {file.object.meters_per_file_unit};
-  const std::array<double, 7> identity = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  std::array<double, 7> object_pose = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  if (const auto& laid = file.object.laid) {
+    std::copy(laid->translation.begin(), laid->translation.end(), object_pose.begin());
+    std::copy(laid->rotation_wxyz.begin(), laid->rotation_wxyz.end(), object_pose.begin() + 3);
+  }
   const std::vector<std::size_t> shape = {file.grasps.size(), 7 + num_joints};
   internal::NpzWriter npz;
   npz.add("obj_path", {}, object);
   npz.add("obj_scale", {}, scale);
-  npz.add("obj_pose", {7}, identity);
+  npz.add("obj_pose", {7}, object_pose);
   npz.add("pregrasp_qpos", shape, before);
   npz.add("grasp_qpos", shape, at);
   npz.add("squeeze_qpos", shape, beyond);

@@ -177,7 +177,8 @@ std::vector<std::string> limits_of(ExchangeFormat format, const grasp::GraspFile
     case ExchangeFormat::PosedGlb:
       limits.push_back(
           "meshes and poses of one grasp, single precision: no joints, no contacts, no measures");
-      limits.push_back("the axes are those of the object's file; viewers take +y as up");
+      limits.push_back(std::string("the axes are those of the ") +
+                       (file.object.laid ? "table" : "object's file") + "; viewers take +y as up");
       break;
   }
   const grasp::SurroundingsRecord& around = file.surroundings;

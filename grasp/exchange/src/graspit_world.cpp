@@ -120,7 +120,8 @@ std::string graspit_world_xml(const grasp::GraspFile& file, std::size_t index,
   } else {
     add(body, "filename", options.body_file);
   }
-  add_transform(body, geometry::RigidTransform::Identity());
+  add_transform(body,
+                file.object.laid ? file.object.laid->X_OF() : geometry::RigidTransform::Identity());
 
   XMLElement& robot = add(*world, "robot");
   add(robot, "filename",

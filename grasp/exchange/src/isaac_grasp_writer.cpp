@@ -36,11 +36,11 @@ std::string isaac_grasp_yaml(const grasp::GraspFile& file) {
                      (file.grasps.empty() ? "\n\ngrasps: {}\n" : "\n\ngrasps:\n");
   for (std::size_t i = 0; i < file.grasps.size(); ++i) {
     const grasp::Grasp& grasp = file.grasps[i];
-    const geometry::RigidTransform& X_OH = grasp.configuration.X_OH;
-    const auto [w, x, y, z] = geometry::rotation_wxyz(X_OH);
+    const geometry::RigidTransform X_FH = object.in_file_frame(grasp.configuration.X_OH);
+    const auto [w, x, y, z] = geometry::rotation_wxyz(X_FH);
     text += "  " + in_quotes("grasp_" + std::to_string(i)) +
             ":\n    confidence: " + yaml_number(grasp.quality.m / (1.0 + grasp.quality.m)) +
-            "\n    position: " + yaml_list(X_OH.translation()) +
+            "\n    position: " + yaml_list(X_FH.translation()) +
             "\n    orientation: {w: " + yaml_number(w) + ", xyz: " + yaml_list({x, y, z}) + "}\n";
     append_joints("cspace_position", file.hand, grasp.configuration.q, text);
     if (grasp.pre_grasp) {

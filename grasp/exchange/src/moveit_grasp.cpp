@@ -47,8 +47,9 @@ std::string message(const grasp::GraspFile& file, std::size_t index) {
   const std::string& base = hand.links[0].name;
   const hands::HandConfiguration* before =
       grasp.pre_grasp ? &grasp.pre_grasp->configuration : nullptr;
-  const Eigen::Vector3d position = grasp.configuration.X_OH.translation();
-  const auto [w, x, y, z] = geometry::rotation_wxyz(grasp.configuration.X_OH);
+  const geometry::RigidTransform X_FH = file.object.in_file_frame(grasp.configuration.X_OH);
+  const Eigen::Vector3d position = X_FH.translation();
+  const auto [w, x, y, z] = geometry::rotation_wxyz(X_FH);
   return "- id: " + in_quotes("grasp_" + std::to_string(index)) + '\n' +
          posture("pre_grasp_posture", hand, base, before ? &before->q : nullptr) +
          posture("grasp_posture", hand, base, &grasp.configuration.q) + "  grasp_pose:\n    " +

@@ -12,6 +12,18 @@ constexpr auto repair_step_fields = [](auto& at, auto& step) {
   at(step.hausdorff_bound, "hausdorff_bound_m");
 };
 
+/// The numbers of a pose, as they are kept.
+constexpr auto laid_pose_fields = [](auto& at, auto& laid) {
+  at(laid.translation, "translation_m");
+  at(laid.rotation_wxyz, "rotation_wxyz");
+};
+
+constexpr auto laid_fields = [](auto& at, auto& laid) {
+  at.group("X_OF", laid, laid_pose_fields);
+  at(laid.rank, "rank");
+  at(laid.probability, "probability");
+};
+
 constexpr auto wrap_fields = [](auto& at, auto& wrap) {
   at(wrap.alpha_rel, "alpha_rel");
   at(wrap.offset_rel, "offset_rel");

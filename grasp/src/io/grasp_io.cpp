@@ -73,6 +73,7 @@ Surroundings read_surroundings(const SurroundingsRecord& record,
                                const std::vector<std::filesystem::path>& files) {
   Surroundings surroundings;
   surroundings.table_z_O = record.table_z_O;
+  surroundings.table_clearance = record.table_clearance;
   for (std::size_t i = 0; i < record.obstacles.size(); ++i) {
     surroundings.obstacles.emplace_back(
         read_object(record.obstacles[i], files.empty() ? std::filesystem::path() : files.at(i)));

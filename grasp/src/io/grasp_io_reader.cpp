@@ -24,6 +24,8 @@ ObjectRecord read_object_record(const JsonValue& node) {
   const JsonReader at(node);
   at(object.sha256, "sha256");
   at(object.meters_per_file_unit, "meters_per_file_unit");
+  // Files of earlier versions lack it.
+  if (node.has("laid")) at.optional_group("laid", object.laid, internal::laid_fields);
   at.group("repair", object, internal::repair_fields);
   at.group("mesh", object.analysis, internal::mesh_fields);
   const JsonValue box = node.at("mesh").at("bounding_box_m");
@@ -36,7 +38,9 @@ ObjectRecord read_object_record(const JsonValue& node) {
 
 SurroundingsRecord read_surroundings_record(const JsonValue& node) {
   SurroundingsRecord surroundings;
-  JsonReader{node}(surroundings.table_z_O, "table_z_O_m");
+  const JsonReader at(node);
+  at(surroundings.table_z_O, "table_z_O_m");
+  if (node.has("table_clearance_m")) at(surroundings.table_clearance, "table_clearance_m");
   for (const JsonValue& obstacle : node.at("obstacles").items()) {
     surroundings.obstacles.push_back(read_object_record(obstacle));
   }

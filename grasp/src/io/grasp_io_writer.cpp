@@ -24,7 +24,9 @@ Json conventions() {
   return {
       {"units", "meters, radians, square meters, seconds unless a key names another unit"},
       {"frames",
-       "O: object, the axes and origin of the object's file after scaling. H: hand base, the frame "
+       "O: object, the axes and origin of the object's file after scaling, unless it was laid "
+       "down. "
+       "H: hand base, the frame "
        "of the root link. L: a link. C: a pad, z leaving the link. X_AB is the pose of frame B in "
        "frame A: p_A = X_AB p_B."},
       {"rotation_wxyz", "unit quaternion, scalar first: [w, x, y, z]"},
@@ -40,7 +42,12 @@ Json conventions() {
       {"used_mesh_file",
        "the mesh as it was used, beside this file: scaled, repaired, closed, in meters, as PLY; of "
        "object and obstacles in O, of links in L"},
-      {"surroundings", "solid: everything at or below table_z_O_m, and the obstacles, all in O"},
+      {"surroundings",
+       "solid: everything at or below table_z_O_m, and the obstacles, all in O; the hand stays "
+       "table_clearance_m above the table"},
+      {"laid",
+       "where it is not null, O is not the file's own frame F (each coordinate times "
+       "meters_per_file_unit): the mesh was repaired in F, then moved by X_OF"},
       {"m",
        "m1^w1 * m2^w2 * m3^w3; 0 if there are fewer than two contacts, no stable pair, or m3 <= 0"},
       {"m1",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -110,6 +111,7 @@ class JsonWriter {
     return json;
   }
   static Json json_of(const Eigen::Vector3d& value) { return to_json(value); }
+  static Json json_of(const std::array<double, 4>& value) { return value; }
   template <class Value>
   static Json json_of(const std::optional<Value>& value) {
     return value ? json_of(*value) : Json(nullptr);
@@ -243,6 +245,9 @@ class JsonReader {
     value = node.texts();
   }
   static void read(const base::JsonValue& node, Eigen::Vector3d& value) { value = vector3(node); }
+  static void read(const base::JsonValue& node, std::array<double, 4>& value) {
+    value = node.numbers<4>();
+  }
   template <class Value>
   static void read(const base::JsonValue& node, std::optional<Value>& value) {
     value.reset();

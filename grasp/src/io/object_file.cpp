@@ -82,6 +82,33 @@ ObjectFile read_object_file(const std::filesystem::path& file, const ObjectReadO
   });
 }
 
+geometry::RigidTransform LaidPose::X_OF() const {
+  return geometry::rigid_transform(translation, rotation_wxyz);
+}
+
+geometry::RigidTransform ObjectRecord::in_file_frame(const geometry::RigidTransform& X_OB) const {
+  return laid ? geometry::relative_pose(laid->X_OF(), X_OB) : X_OB;
+}
+
+ObjectFile laid_down(ObjectFile object, const geometry::LikelyRestPose& pose, int rank) {
+  ObjectRecord& record = object.record;
+  if (record.laid) throw base::InvalidInput(record.file + ": is laid down already");
+  LaidPose& laid = record.laid.emplace();
+  laid.rank = rank;
+  laid.probability = pose.probability;
+  const Eigen::Vector3d center_F = record.center_of_mass_O;
+  laid.rotation_wxyz = geometry::rotation_wxyz(
+      geometry::standing_pose(object.mesh, pose.pose.up_O, 0.0, center_F, Eigen::Vector2d::Zero()));
+  const geometry::TriangleMesh turned = geometry::transformed(object.mesh, laid.X_OF());
+  const Eigen::Vector3d center = laid.X_OF() * center_F;
+  laid.translation << -center.x(), -center.y(), -geometry::bounding_box(turned).min().z();
+  object.mesh = geometry::transformed(object.mesh, laid.X_OF());
+  record.center_of_mass_O = laid.X_OF() * center_F;
+  record.analysis.box = geometry::bounding_box(object.mesh);
+  record.normalizing_radius = contact::normalizing_radius(record.analysis.box);
+  return object;
+}
+
 geometry::TriangleMesh read_object(const ObjectRecord& record, const std::filesystem::path& file) {
   const std::filesystem::path found = file.empty() ? std::filesystem::path(record.file) : file;
   const std::string sha256 = base::sha256_hex(base::read_file(found));
@@ -92,7 +119,8 @@ geometry::TriangleMesh read_object(const ObjectRecord& record, const std::filesy
   ObjectReadOptions options;
   options.meters_per_file_unit = record.meters_per_file_unit;
   options.repair = record.repair;
-  return read_object_file(found, options).mesh;
+  geometry::TriangleMesh mesh = read_object_file(found, options).mesh;
+  return record.laid ? geometry::transformed(mesh, record.laid->X_OF()) : mesh;
 }
 
 }  // namespace graspfit::grasp

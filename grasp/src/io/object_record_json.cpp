@@ -9,6 +9,7 @@ Json object_json(const ObjectRecord& object, const std::optional<std::string>& u
                {"meters_per_file_unit", object.meters_per_file_unit},
                {"used_mesh_file", or_null(used_mesh_file)}};
   JsonWriter at(json);
+  at.optional_group("laid", object.laid, laid_fields);
   at.group("repair", object, repair_fields);
   at.group("mesh", object.analysis, mesh_fields);
   json["mesh"]["bounding_box_m"] = {{"lower", to_json(Eigen::Vector3d(object.analysis.box.min()))},
@@ -26,7 +27,9 @@ Json surroundings_json(const GraspFile& file) {
         file.surroundings.obstacles[i],
         file.used_meshes ? std::optional(file.used_meshes->obstacles.at(i)) : std::nullopt));
   }
-  return {{"table_z_O_m", or_null(file.surroundings.table_z_O)}, {"obstacles", obstacles}};
+  return {{"table_z_O_m", or_null(file.surroundings.table_z_O)},
+          {"table_clearance_m", file.surroundings.table_clearance},
+          {"obstacles", obstacles}};
 }
 
 }  // namespace graspfit::grasp::internal

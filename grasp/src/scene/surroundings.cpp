@@ -41,6 +41,8 @@ void Surroundings::validate() const {
   if (table_z_O) {
     base::require(std::isfinite(*table_z_O), "surroundings", "table_z_O", *table_z_O, "finite [m]");
   }
+  base::require(table_clearance >= 0.0 && std::isfinite(table_clearance), "surroundings",
+                "table_clearance", table_clearance, "finite and >= 0 [m]");
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::string which = "surroundings: obstacle " + std::to_string(i);
     const geometry::TriangleMesh& mesh = obstacles[i].mesh();
@@ -71,14 +73,12 @@ SurroundingsCollision::SurroundingsCollision(const hands::HandModel& hand,
   }
 }
 
-SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
-                                                                       const RigidTransform& X_OL,
-                                                                       double enough) const {
-  Lowest lowest{internal::kInfinity, Vector3d::Zero()};
-  if (!surroundings_.table_z_O) return lowest;
+std::optional<SurroundingsCollision::OverTable> SurroundingsCollision::over_table(
+    int link, const RigidTransform& X_OL, double enough) const {
+  if (!surroundings_.table_z_O) return std::nullopt;
   const auto& corners = corners_L_.at(link);
-  if (corners.empty()) return lowest;
-  const double table = *surroundings_.table_z_O;
+  if (corners.empty()) return std::nullopt;
+  const double table = *surroundings_.table_z_O + surroundings_.table_clearance;
   const Eigen::AlignedBox3d& box = boxes_L_[link];
   if (!X_OL.matrix().allFinite()) {
     throw InvalidInput("SurroundingsCollision: the pose of a link is not finite");
@@ -86,21 +86,19 @@ SurroundingsCollision::Lowest SurroundingsCollision::lowest_over_table(int link,
   const double box_height = (X_OL * box.center()).z() -
                             X_OL.linear().row(2).cwiseAbs().dot(0.5 * box.sizes().transpose()) -
                             table;
-  if (box_height > enough + internal::kBoxSlack) return lowest;
-  double least_z =
-      internal::kInfinity;  // compared with the table itself: differences can round to zero
+  if (box_height > enough + internal::kBoxSlack) return std::nullopt;
+  Vector3d lowest(0.0, 0.0, internal::kInfinity);
   for (const Vector3d& corner : corners) {
     const Vector3d corner_O = X_OL * corner;
-    if (corner_O.z() >= least_z) continue;
-    least_z = corner_O.z();
-    lowest = {least_z <= table ? 0.0 : least_z - table, corner_O};
+    if (corner_O.z() < lowest.z()) lowest = corner_O;
   }
-  return lowest;
+  return OverTable{lowest.z() - table, lowest};
 }
 
 bool SurroundingsCollision::touches(const hands::HandCollision& collision, int link,
                                     const RigidTransform& X_OL) const {
-  if (lowest_over_table(link, X_OL, 0.0).height <= 0.0) return true;
+  const std::optional<OverTable> lowest = over_table(link, X_OL, 0.0);
+  if (lowest && lowest->height <= 0.0) return true;
   for (const geometry::MeshQuery& obstacle : surroundings_.obstacles) {
     if (collision.link_intersects(obstacle, link, X_OL)) return true;
   }
@@ -111,8 +109,10 @@ SurroundingsDistance SurroundingsCollision::distance(const hands::HandCollision&
                                                      int link, const RigidTransform& X_OL,
                                                      double enough) const {
   SurroundingsDistance nearest{internal::kInfinity, Vector3d::Zero(), Vector3d::UnitZ()};
-  const Lowest lowest = lowest_over_table(link, X_OL, enough);
-  if (lowest.height <= enough) nearest = {lowest.height, lowest.corner_O, Vector3d::UnitZ()};
+  const std::optional<OverTable> lowest = over_table(link, X_OL, enough);
+  if (lowest && lowest->height <= enough) {
+    nearest = {std::max(0.0, lowest->height), lowest->corner_O, Vector3d::UnitZ()};
+  }
   const auto& solid = collision.link_solid(link);
   if (!solid) return nearest;
   for (const geometry::MeshQuery& obstacle : surroundings_.obstacles) {

@@ -84,6 +84,35 @@ TEST_CASE("A link touches the table exactly from its lowest vertex on", "[grasp]
   }
 }
 
+TEST_CASE("A table's clearance counts as the table", "[grasp][surroundings]") {
+  const hands::HandModel hand = block_hand();
+  const hands::HandCollision collision(hand);
+  Surroundings with_clearance = with_table(-0.05);
+  with_clearance.table_clearance = 0.02;
+  const SurroundingsCollision surroundings(hand, with_clearance);
+  RigidTransform X = RigidTransform::Identity();  // The block reaches down to -0.03.
+  X.translation().z() = -1e-9;
+  CHECK(surroundings.touches(collision, 0, X));
+  X.translation().z() = -0.015;
+  const auto below = surroundings.over_table(0, X, 0.0);
+  REQUIRE(below);
+  CHECK(below->height == Approx(-0.015));
+  X.translation().z() = 0.004;
+  CHECK_FALSE(surroundings.touches(collision, 0, X));
+  CHECK(surroundings.distance(collision, 0, X, 0.01).distance == Approx(0.004));
+  const auto over = surroundings.over_table(0, X, 0.01);
+  REQUIRE(over);
+  CHECK(over->height == Approx(0.004));
+  CHECK(over->corner_O.z() == Approx(-0.026));
+  CHECK_FALSE(surroundings.over_table(0, X, 0.003));
+  CHECK_FALSE(SurroundingsCollision(hand, {}).over_table(0, X, 1.0));
+  for (const double bad : {-1e-3, std::nan(""), kInfinity}) {
+    with_clearance.table_clearance = bad;
+    CHECK_THROWS_WITH(SurroundingsCollision(hand, with_clearance),
+                      testing::Contains("table_clearance"));
+  }
+}
+
 TEST_CASE("Hull corners answer for all vertices over a table", "[grasp][surroundings]") {
   const hands::HandModel hand = hands::find_hand("human_hand");
   const hands::HandCollision collision(hand);

@@ -26,6 +26,7 @@ const char* library_version();
 struct SurroundingsRecord {
   std::optional<double> table_z_O;      ///< Everything at or below z = this is solid [m].
   std::vector<ObjectRecord> obstacles;  ///< Files in frame O; `center_of_mass_O` and the like too.
+  double table_clearance = 0.0;         ///< As `Surroundings::table_clearance` [m].
 };
 
 /// Names of files beside a grasp file that hold the meshes as they were used: scaled, repaired,

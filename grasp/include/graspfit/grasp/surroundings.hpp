@@ -10,15 +10,21 @@
 
 namespace graspfit::grasp {
 
+/// The usual `Surroundings::table_clearance` of planning [m].
+inline constexpr double kTableClearance = 0.001;
+
 /// What stands around the object and must not be touched, in the object frame O.
 struct Surroundings {
   std::optional<double> table_z_O;             ///< Everything at or below z = this is solid [m].
   std::vector<geometry::MeshQuery> obstacles;  ///< Closed solids in O.
+  /// The hand comes no nearer to the table than this [m], ≥ 0, finite: what is lower counts as the
+  /// table.
+  double table_clearance = 0.0;
 
   bool is_empty() const { return !table_z_O && obstacles.empty(); }
 
-  /// Throws InvalidInput (which, what, what to do) for a table that is not finite and an obstacle
-  /// that is not finite or not closed.
+  /// Throws InvalidInput (which, what, what to do) for a table or clearance that is not finite, a
+  /// clearance below 0 and an obstacle that is not finite or not closed.
   void validate() const;
 };
 
@@ -49,6 +55,20 @@ class SurroundingsCollision {
   bool touches(const hands::HandCollision& collision, int link,
                const hands::RigidTransform& X_OL) const;
 
+  /// The corners of a link's convex hull; there are none without a table.
+  const std::vector<Eigen::Vector3d>& corners_L(int link) const { return corners_L_.at(link); }
+
+  /// The lowest corner of a link's convex hull over the table.
+  struct OverTable {
+    double height = 0.0;  ///< Above what must not be touched: the table and its clearance [m];
+                          ///< negative below.
+    Eigen::Vector3d corner_O;
+  };
+  /// Empty without a table and where the link is surely higher than `enough` [m]. Rounded.
+  /// @throws InvalidInput for a pose that is not finite.
+  std::optional<OverTable> over_table(int link, const hands::RigidTransform& X_OL,
+                                      double enough) const;
+
   /// Distance of one link from the surroundings, where it is at most `enough` [m] ≥ 0; infinite
   /// where it is more. Approximate, to rounding; zero where `touches`, and where it rounds to zero.
   /// Of equal distances the table counts first, then obstacles in order.
@@ -57,14 +77,6 @@ class SurroundingsCollision {
                                 const hands::RigidTransform& X_OL, double enough) const;
 
  private:
-  /// The lowest corner of a link over the table; its height is infinite if the box of the link is
-  /// surely higher than `enough`, and if there is no table.
-  struct Lowest {
-    double height;
-    Eigen::Vector3d corner_O;
-  };
-  Lowest lowest_over_table(int link, const hands::RigidTransform& X_OL, double enough) const;
-
   Surroundings surroundings_;
   std::vector<std::vector<Eigen::Vector3d>> corners_L_;  ///< Per link: those of its convex hull.
   std::vector<Eigen::AlignedBox3d> boxes_L_;             ///< Per link: of those corners.
