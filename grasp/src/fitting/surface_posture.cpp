@@ -46,6 +46,7 @@ constexpr double kContactDepth = 0.25;  // [voxels]
 constexpr double kPointSpacing = 2.0;   // of points that show how deep a link is [voxels]
 constexpr double kGroupSpacing = 8.0;   // of groups of them [voxels]
 constexpr double kSelfMargin = 0.001;   // between links of different fingers [m]
+constexpr double kTableMargin = 0.001;  // of links above the table and its clearance [m]
 constexpr double kFirstDamping = 0.01;
 constexpr double kMostDamping = 100.0;
 
@@ -152,11 +153,13 @@ CoarseDistances::CoarseDistances(const geometry::SignedDistanceMap& map)
 }
 
 SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
-                             const NearestPatches& nearest, const NearestPatches& places)
+                             const NearestPatches& nearest, const NearestPatches& places,
+                             const SurroundingsCollision& surroundings)
     : hand_(hand),
       object_(object),
       nearest_(nearest),
       places_(places),
+      surroundings_(surroundings),
       distances_(object.distance),
       entries_(hand.model(), true, true, MotionEntries::Breakaway::Beyond) {
   for (const geometry::SurfacePatch& patch : object.patches) {
@@ -408,6 +411,11 @@ SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
     if (deep.depth + depth_margin > 0.0) {
       add({link, deep.point_O, deep.outward_O, deep.depth + depth_margin, kDepthWeight});
     }
+  }
+  for (int link = 0; link < std::ssize(model.links) && result.sum < most; ++link) {
+    const auto lowest = surroundings_.over_table(link, posture.X_OL[link], kTableMargin);
+    if (!lowest || lowest->height >= kTableMargin) continue;
+    add({link, lowest->corner_O, Vector3d::UnitZ(), kTableMargin - lowest->height, kDepthWeight});
   }
   for (const auto& [a, b] : neighbors_) {
     if (const std::optional<Wish> apart = overlap(a, b, posture.X_OL)) add(*apart);

@@ -8,6 +8,7 @@
 
 #include "graspfit/grasp/fitting_hand.hpp"
 #include "graspfit/grasp/object_model.hpp"
+#include "graspfit/grasp/surroundings.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "object/nearest_patches.hpp"
 #include "scene/hand_motion.hpp"
@@ -43,14 +44,15 @@ class CoarseDistances {
 };
 
 /// Lays the contact points of `pads` onto the surface near where they are at `start`, and the pads
-/// flat there, while links leave the object: damped Gauss-Newton steps of palm and joints on the
-/// object's patches and its distance map. Approximate: to a fraction of a voxel; nothing is decided
-/// exactly here.
+/// flat there, while links leave the object and the table: damped Gauss-Newton steps of palm and
+/// joints on the object's patches and its distance map. Approximate: to a fraction of a voxel;
+/// nothing is decided exactly here.
 class SurfaceSearch {
  public:
-  /// Refers to hand, object, the nearest of all its patches and of those on which pads may lie.
+  /// Refers to hand, object, the nearest of all its patches and of those on which pads may lie, and
+  /// to the surroundings, of which only the table counts.
   SurfaceSearch(const FittingHand& hand, const ObjectModel& object, const NearestPatches& nearest,
-                const NearestPatches& places);
+                const NearestPatches& places, const SurroundingsCollision& surroundings);
 
   /// Whether pads on these patches would be worth the work.
   using IsWorthIt = std::function<bool(const std::vector<std::int32_t>& patches)>;
@@ -94,6 +96,7 @@ class SurfaceSearch {
   const ObjectModel& object_;
   const NearestPatches& nearest_;  ///< Of all patches with a normal.
   const NearestPatches& places_;   ///< Of those on which pads may lie.
+  const SurroundingsCollision& surroundings_;
   const CoarseDistances distances_;
   const MotionEntries entries_;
   std::vector<Plane> planes_;                               ///< Per patch.

@@ -14,6 +14,7 @@
 #include "graspfit/grasp/ranked_targets.hpp"
 #include "methods/guidance_list.hpp"
 #include "methods/reach_sides.hpp"
+#include "methods/table_reach.hpp"
 #include "methods/target_sides.hpp"
 
 namespace graspfit::grasp::internal {
@@ -48,7 +49,9 @@ class FittingGuidance : public GraspGuidance {
             geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)) {
     const TargetOptions& targets = scene.options.targets;
     if (targets.search == TargetSearch::Reach) {
-      places_.emplace(scene.object, scene.parts, targets, pool_of(scene.object, targets));
+      places_.emplace(scene.object, scene.parts, targets,
+                      touchable_above_table(pool_of(scene.object, targets), scene.hand.model(),
+                                            scene.surroundings));
       reach_.emplace(scene_, *places_);
       return;
     }

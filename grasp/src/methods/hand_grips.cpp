@@ -83,7 +83,8 @@ std::optional<int> pad_before_tip(const hands::HandModel& hand, int finger) {
 }  // namespace
 
 PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
-    : least_lean_(kDistanceClasses, std::numeric_limits<double>::infinity()),
+    : are_jaws_(a.joints == b.joints),
+      least_lean_(kDistanceClasses, std::numeric_limits<double>::infinity()),
       classes_(static_cast<std::size_t>((kDistanceClasses + 1) * kLeanClasses * kLeanClasses)) {
   // Every n-th sample; sizes are products of the counts of joints' positions, so that an n without
   // a common divisor leaves no joint at some of its positions.
@@ -123,10 +124,22 @@ PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
 
 std::optional<std::pair<std::int32_t, std::int32_t>> PinchTable::draw(double distance,
                                                                       double lean_a, double lean_b,
-                                                                      base::Random& random) const {
-  const std::optional<std::size_t> number = class_of(distance, lean_a, lean_b);
-  if (!number || classes_[*number].empty()) return std::nullopt;
-  return classes_[*number][random.index(classes_[*number].size())];
+                                                                      base::Random& random,
+                                                                      bool may_lean) const {
+  const int most_less = may_lean && are_jaws_ ? 2 : 0;
+  for (int less = 0; less <= most_less; ++less) {
+    for (int of_a = less; of_a >= 0; --of_a) {
+      for (int of_b = less; of_b >= 0; --of_b) {
+        if (std::max(of_a, of_b) < less) continue;
+        const std::optional<std::size_t> number =
+            class_of(distance, std::max(0.0, lean_a - of_a * kLeanStep),
+                     std::max(0.0, lean_b - of_b * kLeanStep));
+        if (!number || classes_[*number].empty()) continue;
+        return classes_[*number][random.index(classes_[*number].size())];
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<hands::OpeningRange> PinchTable::distances_up_to(double lean) const {
@@ -158,7 +171,7 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
       if (const std::optional<int> pad = pad_before_tip(hand, finger)) pads.push_back(*pad);
     }
   }
-  for (hands::PadSamples& samples : hands::pad_samples(hand, pads, kMostSamples)) {
+  for (hands::PadSamples& samples : hands::pad_samples(hand, pads, kMostSamples, rule.along_pads)) {
     Part& part = parts_.emplace_back();
     part.finger = hand.pads[samples.pad].finger;
     if (parts_.size() > num_usual) part.other_pad = samples.pad;
@@ -195,7 +208,7 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
     wrap.push_back(palm);
     add(std::move(wrap));
   }
-  if (!rule.may_add_finger && !rule.may_add_palm) return;
+  if (rule.may_pair || (!rule.may_add_finger && !rule.may_add_palm)) return;
   const auto cannot_close = [](const Grip& grip) { return grip.parts.size() == 2; };
   if (!std::all_of(grips_.begin(), grips_.end(), cannot_close)) {
     std::erase_if(grips_, cannot_close);

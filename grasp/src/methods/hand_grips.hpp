@@ -23,16 +23,18 @@ class PinchTable {
   PinchTable(const hands::PadSamples& a, const hands::PadSamples& b);
 
   /// A pair, sample of a and of b, of about this distance [m] and these leans [rad] (within 5 mm
-  /// and 9 degrees); empty if there is none.
+  /// and 9 degrees); empty if there is none. @param may_lean where there is none, one of jaws
+  /// that leans by up to 18 degrees less may do: they always face each other
   std::optional<std::pair<std::int32_t, std::int32_t>> draw(double distance, double lean_a,
-                                                            double lean_b,
-                                                            base::Random& random) const;
+                                                            double lean_b, base::Random& random,
+                                                            bool may_lean = false) const;
 
   /// The smallest and largest distance at which neither pad need lean more than `lean` [rad], to
   /// 5 mm; between them it may not be so everywhere. Empty if there is none.
   std::optional<hands::OpeningRange> distances_up_to(double lean) const;
 
  private:
+  bool are_jaws_;                   ///< Moved by the same joints.
   std::vector<double> least_lean_;  ///< Per class of distances: of the pad that leans more [rad].
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> classes_;
 };
@@ -42,6 +44,11 @@ struct GripRule {
   bool may_add_finger = false;
   bool may_add_palm = false;
   bool may_exchange = false;  ///< Other fingers instead of the requested ones but the first.
+  /// Long pads may touch anywhere from their middles to their ends.
+  bool along_pads = false;
+  /// Grips of two parts stay beside those that can close: by its palm, a gripper that stands above
+  /// a table does not reach what is low.
+  bool may_pair = false;
   /// The palm together with the pads behind the requested fingers' tips instead of these, where the
   /// palm may touch.
   bool may_wrap = false;
@@ -72,7 +79,8 @@ class HandGrips {
   /// pads: with the palm or a finger more, not both, or wrapped around the object: with the palm
   /// and, of each requested finger that has one, the last pad before its tip's link. No more than
   /// `kMostParts` parts. Two contacts cannot close, so that where parts may be added there are
-  /// grips of two only if the hand has no others. At least one finger is requested.
+  /// grips of two only if the hand has no others or the rule allows them. At least one finger is
+  /// requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }

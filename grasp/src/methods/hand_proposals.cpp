@@ -82,8 +82,8 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
 
 HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& object,
                              const TargetPlaces& targets, const HandGrips& grips,
-                             const NearestPatches& places)
-    : hand_(hand), targets_(targets), grips_(grips), places_(places) {
+                             const NearestPatches& places, const TableReach& table)
+    : hand_(hand), targets_(targets), grips_(grips), places_(places), table_(table) {
   for (const geometry::SurfacePatch& patch : object.patches) {
     surface_.push_back({patch.centroid, -patch.outward_normal});
   }
@@ -91,8 +91,14 @@ HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& ob
 
 std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
                                                 base::Random& random) const {
-  if (grip.has_palm) return palm_first(grip, random);
-  return pinch(grip, random);
+  std::optional<HandProposal> drawn =
+      grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
+  if (drawn && !is_above_table(*drawn)) return std::nullopt;
+  return drawn;
+}
+
+bool HandProposals::is_above_table(const HandProposal& proposal) const {
+  return table_.is_above(proposal.configuration, proposal.is_fixed);
 }
 
 std::optional<HandProposal> HandProposals::completed(const HandGrips::Grip& grip, double most,
@@ -117,9 +123,14 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
   const Facing a_O = facing(a);
   const Facing b_O = facing(b);
   const Vector3d line = b_O.point - a_O.point;
-  if (!(line.norm() > 0.0) || targets_.is_too_near(line.norm())) return std::nullopt;
-  const auto samples = pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
-                                        geometry::angle_between(b_O.normal, -line), random);
+  if (!(line.norm() > 0.0)) return std::nullopt;
+  // Pads that face each other need no space beside one another. Without a table that makes no
+  // difference to what is found, but to its course.
+  const bool may_be_near = table_.has_table() && a.inward_normal_O.dot(b.inward_normal_O) < 0.0;
+  if (!may_be_near && targets_.is_too_near(line.norm())) return std::nullopt;
+  const auto samples =
+      pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
+                       geometry::angle_between(b_O.normal, -line), random, table_.has_table());
   if (!samples) return std::nullopt;
   const std::optional<RigidTransform> X_OH =
       aligned(facing(grips_.parts()[pinch.part_a].samples, samples->first),
@@ -210,6 +221,11 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
       if (2.0 - 2.0 * normal.dot(place.normal) >= lean_left * lean_left) continue;
       const double its_cost = cost(gap, normal, place.normal);
       if (its_cost >= least) continue;
+      if (table_.has_table() &&
+          !is_above_table(
+              with(proposal, {part, base::as_index<std::int32_t>(number), index, 0.0}))) {
+        continue;
+      }
       least = its_cost;
       best = number;
       best_patch = index;

@@ -8,6 +8,7 @@
 #include "graspfit/grasp/object_model.hpp"
 #include "graspfit/hands/hand_configuration.hpp"
 #include "methods/hand_grips.hpp"
+#include "methods/table_reach.hpp"
 #include "object/nearest_patches.hpp"
 #include "targets/target_places.hpp"
 
@@ -34,7 +35,8 @@ class HandProposals {
 
   /// Refers to all of them but the object. `places` are the pool's.
   HandProposals(const hands::HandModel& hand, const ObjectModel& object,
-                const TargetPlaces& targets, const HandGrips& grips, const NearestPatches& places);
+                const TargetPlaces& targets, const HandGrips& grips, const NearestPatches& places,
+                const TableReach& table);
 
   /// With the palm of the grip on a point, or two of its fingers on two points; empty where the
   /// hand's tables do not know that they can be there. Most draws are.
@@ -46,6 +48,7 @@ class HandProposals {
                                         HandProposal proposal) const;
 
  private:
+  bool is_above_table(const HandProposal& proposal) const;
   std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal palm_first(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
@@ -64,6 +67,7 @@ class HandProposals {
   const TargetPlaces& targets_;
   const HandGrips& grips_;
   const NearestPatches& places_;
+  const TableReach& table_;
   /// Per patch of the object, facing inward: beside one another, for speed.
   std::vector<Facing> surface_;
 };

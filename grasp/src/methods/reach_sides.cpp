@@ -98,6 +98,7 @@ double wanted_firmness(int num_postures, double effort) {
 GripRule grip_rule(const GuidanceScene& scene) {
   const PlannerOptions& options = scene.options;
   GripRule rule;
+  rule.along_pads = rule.may_pair = scene.surroundings.surroundings().table_z_O.has_value();
   // Without refinement hands are fitted, which only fingertips' pads can be.
   rule.may_wrap = options.style != GraspStyle::Precision && options.refine &&
                   scene.contact_options.pads == contact::CountedPads::All;
@@ -122,9 +123,10 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
       grips_(scene.hand.model(), scene.parts, grip_rule(scene)),
       nearest_(scene.object, have_normal(scene.object.patches)),
       places_(scene.object, is_in_pool(targets, scene.object.patches.size())),
-      search_(scene.hand, scene.object, nearest_, places_),
+      search_(scene.hand, scene.object, nearest_, places_, scene.surroundings),
       clearance_(scene.hand, scene.object, scene.surroundings),
-      proposals_(scene.hand.model(), scene.object, targets, grips_, places_),
+      table_(scene.hand.model(), scene.surroundings),
+      proposals_(scene.hand.model(), scene.object, targets, grips_, places_, table_),
       firmness_(scene.object, targets.pool(), firmness_friction(scene.options)),
       pool_of_patch_(scene.object.patches.size(), -1) {
   for (std::int32_t p = 0; p < std::ssize(targets.pool()); ++p) {

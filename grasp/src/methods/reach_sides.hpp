@@ -10,6 +10,7 @@
 #include "methods/hand_grips.hpp"
 #include "methods/hand_proposals.hpp"
 #include "methods/place_firmness.hpp"
+#include "methods/table_reach.hpp"
 #include "methods/target_sides.hpp"
 #include "scene/clearance.hpp"
 #include "targets/target_places.hpp"
@@ -98,6 +99,7 @@ class ReachSides {
   const NearestPatches places_;  ///< The pool's.
   const SurfaceSearch search_;
   const Clearance clearance_;
+  const TableReach table_;
   const HandProposals proposals_;
   const PlaceFirmness firmness_;
   std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.

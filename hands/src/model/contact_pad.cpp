@@ -113,6 +113,24 @@ Eigen::Vector3d pad_contact_point_C(const ContactPad& pad) {
   return {0.0, 0.0, std::max(0.0, -height_over_pad(pad, Eigen::Vector3d::Zero()))};
 }
 
+Eigen::Vector3d pad_point_toward_end_C(const ContactPad& pad, double share) {
+  constexpr double kBorder = 0.002;  // [m]
+  const Eigen::Vector3d touching = pad_contact_point_C(pad);
+  if (!pad.surface.empty()) return touching;
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& corner : pad.outline) box.extend(corner);
+  const Eigen::Vector2d size = box.sizes();
+  constexpr double kLonger = 1.2;  // than wide
+  const int along = size.x() > size.y() ? 0 : 1;
+  if (size[along] < kLonger * size[1 - along]) return touching;
+  // Away from the link's origin, whose place in C is the inverse pose's translation.
+  const Eigen::Vector3d origin_C = geometry::inverted(pad.X_LC).translation();
+  const double end = origin_C[along] < 0.0 ? box.max()[along] : box.min()[along];
+  Eigen::Vector3d point = touching;
+  point[along] += share * std::copysign(std::max(0.0, std::abs(end) - kBorder), end);
+  return point;
+}
+
 geometry::ConvexVolume clip_volume_C(const ContactPad& pad, double thickness) {
   require_thickness("clip_volume_C", pad, thickness);
   geometry::ConvexVolume volume;

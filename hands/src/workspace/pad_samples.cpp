@@ -5,6 +5,7 @@
 #include <map>
 
 #include "graspfit/base/option_check.hpp"
+#include "graspfit/hands/contact_pad.hpp"
 #include "graspfit/hands/kinematic_chain.hpp"
 #include "workspace/tip_pair.hpp"
 
@@ -13,6 +14,9 @@ namespace {
 
 /// Of a joint: steps of two degrees of a finger that closes by 130.
 constexpr int kMostPositions = 64;
+
+/// Multiples of it are spread evenly between whole numbers.
+constexpr double kGoldenShare = 0.6180339887498949;
 
 /// Largest n ≥ 2 with nᵏ ≤ most, and no more than the most positions of a joint.
 int per_joint(std::size_t num_joints, int most) {
@@ -24,7 +28,7 @@ int per_joint(std::size_t num_joints, int most) {
 }  // namespace
 
 std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<int>& pads,
-                                    int max_samples) {
+                                    int max_samples, bool along_pads) {
   validate(model);
   base::require(max_samples >= 1, "pad_samples", "max_samples", max_samples, ">= 1");
   const internal::SampledHand hand(model);
@@ -82,8 +86,16 @@ std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<in
         q[samples.joints[j]] = joint.lower + share * (joint.upper - joint.lower);
         samples.positions(j, sample) = q[samples.joints[j]];
       }
-      const internal::Tip tip = hand.tip(samples.pad, hand.poses(q));
+      const std::vector<RigidTransform> X_HL = hand.poses(q);
+      const internal::Tip tip = hand.tip(samples.pad, X_HL);
       samples.points_H.col(sample) = tip.point;
+      if (along_pads) {
+        const ContactPad& pad = model.pads[samples.pad];
+        double whole = 0.0;
+        const double share = std::modf(kGoldenShare * static_cast<double>(sample), &whole);
+        samples.points_H.col(sample) =
+            X_HL[pad.link] * (pad.X_LC * pad_point_toward_end_C(pad, share));
+      }
       samples.normals_H.col(sample) = tip.normal;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "methods/hand_grips.hpp"
 #include "methods/hand_proposals.hpp"
+#include "methods/table_reach.hpp"
 #include "object/nearest_patches.hpp"
 #include "support/catch.hpp"
 
@@ -93,6 +95,33 @@ TEST_CASE("A pair of pads from the table is as far apart and leans as it was ask
   CHECK_FALSE(pinch.table.draw(0.05, 3.0, 0.0, random));
 }
 
+TEST_CASE("Jaws may lean where that is allowed, fingers face what they pinch",
+          "[grasp][hand_grips]") {
+  const hands::HandModel gripper = hands::find_hand("parallel_gripper");
+  const internal::HandGrips jaws(gripper, {{0, 1}, false}, {});
+  const internal::PinchTable& table = jaws.pinches().at(0).table;
+  base::Random random(1);
+  const double step = 9.0 * std::numbers::pi / 180.0;
+  CHECK(table.draw(0.03, 0.0, 0.0, random));
+  for (const auto& [lean_a, lean_b] :
+       {std::pair(1.5, 0.5), {0.5, 1.5}, {1.5, 1.5}, {2.5, 0.5}, {2.5, 2.5}}) {
+    CHECK_FALSE(table.draw(0.03, lean_a * step, lean_b * step, random));
+    CHECK(table.draw(0.03, lean_a * step, lean_b * step, random, true));
+  }
+  CHECK_FALSE(table.draw(0.03, 3.5 * step, 0.0, random, true));
+  // Two fingers of the Barrett hand find the same with and without.
+  const hands::HandModel barrett = hands::find_hand("barrett");
+  const internal::HandGrips fingers(barrett, {{0, 1}, false}, {});
+  const internal::PinchTable& pinch = fingers.pinches().at(0).table;
+  for (int lean = 0; lean < 7; ++lean) {
+    const auto found = [&](bool may_lean) {
+      base::Random own(1);
+      return pinch.draw(0.08, (lean + 0.5) * step, 0.5 * step, own, may_lean);
+    };
+    CHECK(found(true) == found(false));
+  }
+}
+
 TEST_CASE("The cheapest hand is found with or without knowing what another costs",
           "[grasp][hand_proposals]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
@@ -101,7 +130,9 @@ TEST_CASE("The cheapest hand is found with or without knowing what another costs
   const internal::TargetPlaces targets(scene.object, scene.parts, TargetOptions(),
                                        internal::pool_of(scene.object, TargetOptions()));
   const internal::HandGrips grips(scene.hand, scene.parts, internal::GripRule());
-  const internal::HandProposals proposals(scene.hand, scene.object, targets, grips, places);
+  const SurroundingsCollision nothing(scene.hand, {});
+  const internal::TableReach table(scene.hand, nothing);
+  const internal::HandProposals proposals(scene.hand, scene.object, targets, grips, places, table);
   const internal::HandGrips::Grip& grip = grips.grips().front();
   base::Random random(4);
   int num_drawn = 0;
@@ -235,7 +266,8 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
   const testing::Scene scene(geometry::capsule(0.04, 0.08));
   const std::vector<bool> all(scene.object.patches.size(), true);
   const internal::NearestPatches nearest(scene.object, all);
-  const internal::SurfaceSearch search(scene.fitting_hand, scene.object, nearest, nearest);
+  const SurroundingsCollision nothing(scene.hand, {});
+  const internal::SurfaceSearch search(scene.fitting_hand, scene.object, nearest, nearest, nothing);
   const std::vector<int> pads = requested_pads(scene.hand, scene.parts);
   base::Random random(1);
   int num_laid = 0;

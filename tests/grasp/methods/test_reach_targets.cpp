@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grasp/planner_promises.hpp"
+#include "grasp/reach_options.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
@@ -31,16 +32,7 @@ namespace {
 
 using namespace graspfit;
 using namespace graspfit::grasp;
-
-PlannerOptions reach_options(GraspStyle style, int max_attempts) {
-  PlannerOptions options;
-  options.targets.search = TargetSearch::Reach;
-  options.style = style;
-  options.max_attempts = max_attempts;
-  options.count = max_attempts;
-  options.weak.reset();
-  return options;
-}
+using testing::reach_options;
 
 /// Distances of the contacts of requested parts from the targets of these parts [m].
 std::vector<double> misses(const Grasp& grasp) {

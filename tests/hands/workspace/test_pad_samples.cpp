@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <vector>
 
 #include "graspfit/base/errors.hpp"
+#include "graspfit/hands/contact_pad.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "graspfit/hands/pad_samples.hpp"
@@ -39,6 +41,42 @@ TEST_CASE("Samples are where forward kinematics puts the pad", "[hands][pad_samp
                   .norm() < 1e-12);
       }
     }
+  }
+}
+
+TEST_CASE("Contact points lie all along long flat pads where that is asked for",
+          "[hands][pad_samples]") {
+  const HandModel hand = hands::find_hand("barrett");
+  const std::vector<int> pads = {*hand.fingers[0].tip_pad, *hand.fingers[1].tip_pad,
+                                 *hand.palm.pad};
+  const std::vector<PadSamples> middle = hands::pad_samples(hand, pads, 400);
+  const std::vector<PadSamples> along = hands::pad_samples(hand, pads, 400, true);
+  for (std::size_t i = 0; i < pads.size(); ++i) {
+    CHECK(along[i].positions == middle[i].positions);
+    CHECK(along[i].normals_H == middle[i].normals_H);
+    double nearest = 1.0;
+    double farthest = 0.0;
+    for (Eigen::Index sample = 0; sample < middle[i].points_H.cols(); ++sample) {
+      const Eigen::Vector3d shift = along[i].points_H.col(sample) - middle[i].points_H.col(sample);
+      CHECK(std::abs(shift.dot(middle[i].normals_H.col(sample))) < 1e-12);
+      nearest = std::min(nearest, shift.norm());
+      farthest = std::max(farthest, shift.norm());
+    }
+    if (i == 2) continue;  // the palm's one sample
+    // The distal pads are 52 mm long; their ends are left free by 2 mm.
+    CHECK(farthest <= 0.024 + 1e-12);
+    CHECK(farthest > 0.022);
+    CHECK(nearest < 0.002);
+  }
+  // Toward the fingertip, away from the joint: farther from the link's origin.
+  const hands::ContactPad& pad = hand.pads[pads[0]];
+  CHECK((pad.X_LC * hands::pad_point_toward_end_C(pad, 1.0)).norm() >
+        (pad.X_LC * hands::pad_point_toward_end_C(pad, 0.0)).norm() + 0.01);
+  // A bulging tip touches where it bulges.
+  const HandModel human = hands::find_hand("human_hand");
+  for (const hands::ContactPad& other : human.pads) {
+    if (other.surface.empty()) continue;
+    CHECK(hands::pad_point_toward_end_C(other, 1.0) == hands::pad_contact_point_C(other));
   }
 }
 

@@ -64,6 +64,11 @@ double pad_height(const ContactPad& pad);
 /// over the origin, it is the origin itself. Rounded.
 Eigen::Vector3d pad_contact_point_C(const ContactPad& pad);
 
+/// On a flat pad that is longer than wide, the point this share of the way from its contact point
+/// to the pad's end that lies farther from the origin of the link's frame, the fingertip's mostly;
+/// on others the contact point. In C. Share 1 is 2 mm inside the outline.
+Eigen::Vector3d pad_point_toward_end_C(const ContactPad& pad, double share);
+
 /// The paper's clip volume in frame C, as half-spaces: the pad's surface offset by `thickness`
 /// (> 0, else InvalidInput) along its normal. For a flat pad it is the prism over the outline; for
 /// a bulging pad it is the hull of the surface and of the surface moved by `thickness` along z. The

@@ -28,7 +28,9 @@ struct PadSamples {
 /// The samples of some pads, at most `max_samples` each (at least two per joint, however many that
 /// is, and at most 64 per joint), in the order of `pads`. @throws InvalidInput as the model's
 /// `validate`, and for `max_samples` < 1.
+/// @param along_pads the contact points of long flat pads lie all along them, from their middles to
+/// their ends (`pad_point_toward_end_C`), from sample to sample elsewhere
 std::vector<PadSamples> pad_samples(const HandModel& model, const std::vector<int>& pads,
-                                    int max_samples);
+                                    int max_samples, bool along_pads = false);
 
 }  // namespace graspfit::hands

@@ -1,0 +1,149 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "fitting/surface_posture.hpp"
+#include "grasp/reach_options.hpp"
+#include "graspfit/base/random.hpp"
+#include "graspfit/geometry/shapes.hpp"
+#include "graspfit/grasp/grasp_planner.hpp"
+#include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_library.hpp"
+#include "methods/table_reach.hpp"
+#include "support/catch.hpp"
+
+// These tests are about hands above a table on which a low object lies.
+namespace test_table_reach {
+
+namespace {
+
+using namespace graspfit;
+using namespace graspfit::grasp;
+using Eigen::Vector3d;
+using internal::PoolPoint;
+using testing::reach_options;
+
+/// Returns a bar of 34 x 160 x 36 mm that lies on z = 0.
+geometry::TriangleMesh bar() {
+  geometry::TriangleMesh mesh = geometry::box({0.034, 0.16, 0.036});
+  for (Vector3d& vertex : mesh.vertices) vertex.z() += 0.018;
+  return mesh;
+}
+
+Surroundings table() {
+  Surroundings surroundings;
+  surroundings.table_z_O = 0.0;
+  surroundings.table_clearance = 0.001;
+  return surroundings;
+}
+
+double lowest_of(const hands::HandModel& hand, const hands::HandConfiguration& configuration) {
+  double lowest = 1.0;
+  const auto X_OL = hands::forward_kinematics(hand, configuration);
+  for (std::size_t link = 0; link < X_OL.size(); ++link) {
+    for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
+      lowest = std::min(lowest, (X_OL[link] * vertex).z());
+    }
+  }
+  return lowest;
+}
+
+}  // namespace
+
+TEST_CASE("Hands pick up a low bar from a table, with room below them", "[grasp][table_reach]") {
+  // The gripper's palm does not get so low: without pairs of jaws alone no attempt is valid.
+  for (const char* const name : {"parallel_gripper", "human_hand"}) {
+    CAPTURE(name);
+    const hands::HandModel hand = hands::find_hand(name);
+    PlannerOptions options = reach_options(GraspStyle::Auto, 8);
+    options.num_contacts = std::min(3, static_cast<int>(hand.fingers.size()));
+    const ObjectModel object = prepare_object(bar(), hand, options);
+    const PlannerResult result = plan_grasps(object, hand, options, table(), {.num_threads = 1});
+    CHECK(result.statistics.outcomes.at(AttemptOutcome::Valid) >= 7);
+    for (const Grasp& grasp : result.grasps) {
+      CHECK(lowest_of(hand, grasp.configuration) > 0.001);
+      REQUIRE(grasp.pre_grasp);
+      CHECK(lowest_of(hand, grasp.pre_grasp->configuration) > 0.001);
+    }
+  }
+}
+
+TEST_CASE("Places that no pad reaches above the table are no targets", "[grasp][table_reach]") {
+  const hands::HandModel hand = hands::find_hand("human_hand");
+  const SurroundingsCollision above(hand, table());
+  const auto place = [](const Vector3d& point, const Vector3d& inward_normal) {
+    return PoolPoint{point, inward_normal, 0};
+  };
+  const std::vector<PoolPoint> pool = {place({0.0, 0.0, 0.036}, {0.0, 0.0, -1.0}),  // the top
+                                       place({0.017, 0.0, 0.018}, {-1.0, 0.0, 0.0}),
+                                       place({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}),  // the bottom
+                                       place({0.017, 0.0, 0.001}, {-1.0, 0.0, 0.0})};
+  const std::vector<PoolPoint> left = internal::touchable_above_table(pool, hand, above);
+  REQUIRE(left.size() == 2);
+  CHECK(left[0].point_O == pool[0].point_O);
+  CHECK(left[1].point_O == pool[1].point_O);
+  const SurroundingsCollision nothing(hand, {});
+  CHECK(internal::touchable_above_table(pool, hand, nothing).size() == pool.size());
+}
+
+TEST_CASE("Proposals below the table are seen by the links whose places are settled",
+          "[grasp][table_reach]") {
+  const hands::HandModel hand = hands::find_hand("barrett");
+  const SurroundingsCollision above(hand, table());
+  const internal::TableReach reach(hand, above);
+  hands::HandConfiguration configuration = hands::open_configuration(hand);
+  // Fingers up: the palm's link is the lowest.
+  std::vector<bool> is_fixed(hand.joints.size(), false);
+  configuration.X_OH.translation().z() = 0.2;
+  CHECK(reach.is_above(configuration, is_fixed));
+  configuration.X_OH.translation().z() = -0.1;
+  CHECK_FALSE(reach.is_above(configuration, is_fixed));
+  // Fingers down and too low, but nobody knows yet where they will be.
+  configuration.X_OH.linear() = Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  configuration.X_OH.translation().z() = 0.01;
+  REQUIRE(lowest_of(hand, configuration) < -0.01);
+  CHECK(reach.is_above(configuration, is_fixed));
+  std::fill(is_fixed.begin(), is_fixed.end(), true);
+  CHECK_FALSE(reach.is_above(configuration, is_fixed));
+  const SurroundingsCollision nothing(hand, {});
+  CHECK(internal::TableReach(hand, nothing).is_above(configuration, is_fixed));
+}
+
+TEST_CASE("Links leave the table while pads are laid", "[grasp][surface_posture]") {
+  const hands::HandModel hand = hands::find_hand("human_hand");
+  const PlannerOptions options = reach_options(GraspStyle::Precision, 1);
+  const ObjectModel object = prepare_object(bar(), hand, options);
+  const FittingHand fitting_hand(hand, 0.5 * object.grid.lattice.voxel_size);
+  const internal::NearestPatches nearest(object, std::vector<bool>(object.patches.size(), true));
+  const SurroundingsCollision nothing(hand, {});
+  const SurroundingsCollision above(hand, table());
+  const internal::SurfaceSearch free_search(fitting_hand, object, nearest, nearest, nothing);
+  const internal::SurfaceSearch search(fitting_hand, object, nearest, nearest, above);
+  const std::vector<int> pads = {*hand.fingers[0].tip_pad, *hand.fingers[1].tip_pad};
+  base::Random random(1);
+  int num_free_below = 0;
+  int num_below = 0;
+  constexpr int kTrials = 60;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    // From above, with the tips a little below the table.
+    hands::HandConfiguration start = hands::open_configuration(hand);
+    for (std::size_t j = 0; j < hand.joints.size(); ++j) {
+      const hands::Joint& joint = hand.joints[j];
+      if (joint.closing_sign == 0 || joint.coupling) continue;
+      start.q[static_cast<Eigen::Index>(j)] =
+          joint.open_limit() + 0.5 * (joint.closed_limit() - joint.open_limit());
+    }
+    hands::apply_couplings(hand, start.q);
+    start.X_OH.linear() =
+        (Eigen::AngleAxisd(random.uniform(-3.0, 3.0), Vector3d::UnitZ()) *
+         Eigen::Quaterniond::FromTwoVectors(hand.palm.direction_H, -Vector3d::UnitZ()))
+            .toRotationMatrix();
+    start.X_OH.translation().z() -= lowest_of(hand, start) + 0.004;
+    num_free_below += lowest_of(hand, free_search.lay(pads, start).configuration) < 0.001 ? 1 : 0;
+    num_below += lowest_of(hand, search.lay(pads, start).configuration) < 0.001 ? 1 : 0;
+  }
+  CAPTURE(num_free_below, num_below);
+  CHECK(num_free_below > kTrials / 2);
+  CHECK(3 * num_below < 2 * num_free_below);
+}
+
+}  // namespace test_table_reach
