@@ -19,6 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using hold_test::HoldStage;
+using Protocols = std::span<const TestedProtocol>;
 
 std::vector<sweep::Column> own_settings() {
   return {{"margins", "1", "grasps of a cell whose margins are searched for, the first found"}};
@@ -72,7 +73,7 @@ std::vector<sweep::Column> protocol_columns(const TestedProtocol& protocol) {
           {prefix + "lost_under_load", "1", "grasps lost under load"}};
 }
 
-std::vector<sweep::Column> columns() {
+std::vector<sweep::Column> columns(Protocols protocols, const HoldColumns& more) {
   std::vector<sweep::Column> all = {
       {"object_pieces", "1", "convex pieces that stand for the object"},
       {"object_outward_deviation_m", "m", "farthest that a piece reaches out of the object"},
@@ -80,11 +81,12 @@ std::vector<sweep::Column> columns() {
       {"object_volume_error", "1", "volume of all pieces together over the object's, less 1"},
       {"hand_pieces", "1", "convex pieces that stand for the hand"},
       {"hand_outward_deviation_m", "m", "farthest that a piece reaches out of its link"}};
-  for (const TestedProtocol& protocol : kTestedProtocols) {
+  for (const TestedProtocol& protocol : protocols) {
     for (sweep::Column& column : protocol_columns(protocol)) all.push_back(std::move(column));
   }
   for (sweep::Column& column : margin_columns()) all.push_back(std::move(column));
   for (sweep::Column& column : planning_columns()) all.push_back(std::move(column));
+  all.insert(all.end(), more.columns.begin(), more.columns.end());
   return all;
 }
 
@@ -98,12 +100,12 @@ std::vector<sweep::Column> timings() {
   return all;
 }
 
-std::vector<sweep::Column> details() {
+std::vector<sweep::Column> details(Protocols protocols) {
   std::vector<sweep::Column> all = {{"attempt", "1", "of the planner, from 0"}};
   for (sweep::Column& column : grasp_measure_columns()) all.push_back(std::move(column));
   all.push_back(
       {"squeeze_residual", "1", "unbalanced wrench of the squeeze over its normal forces"});
-  for (const TestedProtocol& protocol : kTestedProtocols) {
+  for (const TestedProtocol& protocol : protocols) {
     all.push_back({std::string(protocol.prefix) + kStageColumn, "",
                    std::string("how far it came under ") + protocol.name +
                        ": rejected, approach, load (lost there) or held"});
@@ -163,17 +165,18 @@ std::vector<TestedGrasp> grasps_as_found(const Planned& planned) {
   return tested;
 }
 
-void test_all(const hold_test::HoldHand& hand, const hold_test::HoldObject& object, int num_margins,
+void test_all(Protocols protocols, const hold_test::HoldHand& hand,
+              const hold_test::HoldObject& object, int num_margins,
               std::vector<TestedGrasp>& grasps, sweep::ResultRow& timings) {
   double test_s = 0.0;
   double margins_s = 0.0;
-  for (const TestedProtocol& protocol : kTestedProtocols) {
+  for (const TestedProtocol& protocol : protocols) {
     if (grasps.empty()) break;
     const Clock::time_point start = Clock::now();
     hold_test::HoldTest test(hand, object, hold_test::hold_protocol(protocol.name));
     for (TestedGrasp& tested : grasps) tested.verdicts.push_back(test.test(*tested.grasp));
     test_s += base::seconds_since(start);
-    if (&protocol != &kTestedProtocols.front()) continue;
+    if (&protocol != &protocols.front()) continue;
     const Clock::time_point margins_start = Clock::now();
     const auto count = std::min(grasps.size(), static_cast<std::size_t>(num_margins));
     for (std::size_t i = 0; i < count; ++i) grasps[i].margin = test.margin(*grasps[i].grasp);
@@ -183,10 +186,10 @@ void test_all(const hold_test::HoldHand& hand, const hold_test::HoldObject& obje
   timings.set("margins_s", margins_s);
 }
 
-void fill_verdicts(const std::vector<TestedGrasp>& grasps, std::int64_t attempts,
-                   sweep::ResultRow& row) {
-  for (std::size_t p = 0; p < kTestedProtocols.size(); ++p) {
-    const std::string prefix = kTestedProtocols[p].prefix;
+void fill_verdicts(Protocols protocols, const std::vector<TestedGrasp>& grasps,
+                   std::int64_t attempts, sweep::ResultRow& row) {
+  for (std::size_t p = 0; p < protocols.size(); ++p) {
+    const std::string prefix = protocols[p].prefix;
     const auto count = [&](HoldStage stage) {
       return static_cast<std::int64_t>(std::count_if(
           grasps.begin(), grasps.end(),
@@ -223,16 +226,16 @@ void fill_margins(const std::vector<TestedGrasp>& grasps, sweep::ResultRow& row)
   }
 }
 
-sweep::ResultRow detail_of(const TestedGrasp& tested) {
+sweep::ResultRow detail_of(Protocols protocols, const TestedGrasp& tested) {
   const grasp::Grasp& grasp = *tested.grasp;
-  sweep::ResultRow row(details());
+  sweep::ResultRow row(details(protocols));
   row.set("attempt", grasp.attempt);
   for (const auto& [name, value] : tested.measures) row.set(name, field(value));
   if (grasp.squeeze) row.set("squeeze_residual", grasp.squeeze->residual);
   std::string reason;
-  for (std::size_t p = 0; p < kTestedProtocols.size(); ++p) {
+  for (std::size_t p = 0; p < protocols.size(); ++p) {
     const hold_test::HoldVerdict& verdict = tested.verdicts[p];
-    row.set(std::string(kTestedProtocols[p].prefix) + kStageColumn, stage_name(verdict.stage));
+    row.set(std::string(protocols[p].prefix) + kStageColumn, stage_name(verdict.stage));
     if (reason.empty()) reason = verdict.reason;
   }
   row.set("reason", reason);
@@ -245,30 +248,32 @@ sweep::ResultRow detail_of(const TestedGrasp& tested) {
   return row;
 }
 
-sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path& folder) {
+sweep::CellResult run(Protocols protocols, const HoldColumns& more, const sweep::Cell& cell,
+                      const std::filesystem::path& folder) {
   if (!hold_test::is_available()) {
     throw sweep::MissingData("this build has no physics engine; build with MuJoCo");
   }
   const Planned planned = plan(settings_of(cell));
-  sweep::CellResult result{sweep::ResultRow(columns()), sweep::ResultRow(timings())};
+  sweep::CellResult result{sweep::ResultRow(columns(protocols, more)), sweep::ResultRow(timings())};
   const Clock::time_point start = Clock::now();
   const std::shared_ptr<const hold_test::HoldHand> hand = hold_hand(planned);
   const std::shared_ptr<const hold_test::HoldObject> object = hold_object(planned);
   result.timings.set("pieces_s", base::seconds_since(start));
 
   std::vector<TestedGrasp> grasps = grasps_as_found(planned);
-  test_all(*hand, *object, num_margins(cell), grasps, result.timings);
+  test_all(protocols, *hand, *object, num_margins(cell), grasps, result.timings);
   double measures_s = 0.0;
   for (TestedGrasp& tested : grasps) {
     tested.measures = measures_of(planned, *tested.grasp, measures_s);
   }
   result.timings.set("measures_s", measures_s);
   fill_pieces(*hand, *object, result.row);
-  fill_verdicts(grasps, planned.result.statistics.attempts, result.row);
+  fill_verdicts(protocols, grasps, planned.result.statistics.attempts, result.row);
   fill_margins(grasps, result.row);
   fill_planning_columns(planned, result.row);
+  if (more.fill) more.fill(planned, result.row);
   fill_planning_timings(planned, result.timings);
-  for (const TestedGrasp& tested : grasps) result.details.push_back(detail_of(tested));
+  for (const TestedGrasp& tested : grasps) result.details.push_back(detail_of(protocols, tested));
   write_best_grasps(folder, planned, grasps.size());
   return result;
 }
@@ -319,19 +324,24 @@ std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> cel
   return groups;
 }
 
-sweep::Experiment hold_experiment(const std::string& slug) {
+sweep::Experiment hold_experiment(const std::string& slug,
+                                  std::span<const TestedProtocol> protocols,
+                                  const HoldColumns& more) {
   using namespace hold_cell_parts;
   return {.slug = slug,
-          .columns = columns(),
+          .columns = columns(protocols, more),
           .timings = timings(),
           .settings = own_settings(),
-          .details = details(),
+          .details = details(protocols),
           .check =
               [](const sweep::Cell& cell) {
                 num_margins(cell);
                 settings_of(cell);
               },
-          .run = run,
+          .run =
+              [protocols, more](const sweep::Cell& cell, const std::filesystem::path& folder) {
+                return run(protocols, more, cell, folder);
+              },
           .inputs = [](const sweep::Cell& cell) { return planning_inputs(settings_of(cell)); }};
 }
 

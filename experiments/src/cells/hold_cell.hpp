@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cells/planning_table.hpp"
 #include "graspfit/sweep/experiment.hpp"
 
 namespace graspfit::experiments::internal {
@@ -18,6 +21,16 @@ inline constexpr std::array<TestedProtocol, 3> kTestedProtocols = {
     {{"dexgraspbench-100g", "normal_"},
      {"dexonomy-hard", "hard_"},
      {"multidex-0.05g", "multidex_"}}};
+
+/// Those of objects that lie on a table.
+inline constexpr std::array<TestedProtocol, 2> kTableProtocols = {
+    {{"dexgraspbench-100g", "normal_"}, {"tabletop-lift", "lift_"}}};
+
+/// What a table of this kind has beside what all have.
+struct HoldColumns {
+  std::vector<sweep::Column> columns = {};
+  std::function<void(const Planned&, sweep::ResultRow&)> fill = {};
+};
 
 /// Column names of a grasp's details that others read.
 inline constexpr const char* kStageColumn = "stage";  ///< After a protocol's prefix.
@@ -40,7 +53,10 @@ std::vector<std::pair<std::string, std::vector<const sweep::FinishedCell*>>> cel
 
 /// An experiment whose cell plans with a fixed number of attempts and puts every valid grasp to the
 /// hold test; nothing is filtered by the simulator. A row per cell, and one per grasp in its
-/// details. Cells are skipped in builds without a physics engine.
-sweep::Experiment hold_experiment(const std::string& slug);
+/// details. Cells are skipped in builds without a physics engine. Margins are those under the first
+/// of the protocols, which outlive the experiment.
+sweep::Experiment hold_experiment(const std::string& slug,
+                                  std::span<const TestedProtocol> protocols = kTestedProtocols,
+                                  const HoldColumns& more = {});
 
 }  // namespace graspfit::experiments::internal

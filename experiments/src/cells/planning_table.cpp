@@ -129,8 +129,7 @@ Planned plan(const PlanningSettings& settings, const StartObserver& observer) {
     };
   }
   planned.result =
-      grasp::plan_grasps(planned.object, *planned.hand, settings.options,
-                         {.table_z_O = settings.table_z_O, .obstacles = {}},
+      grasp::plan_grasps(planned.object, *planned.hand, settings.options, surroundings_of(settings),
                          {.num_threads = 1,
                           .progress =
                               [&](std::int64_t, std::int64_t grasps) {
@@ -301,6 +300,7 @@ void write_best_grasps(const std::filesystem::path& folder, const Planned& plann
   const ObjectSettings& object = planned.settings.object;
   if (planned.result.grasps.empty() || !object.shape.empty()) return;
   if (!object.rotation_xyz.isZero(0.0)) return;
+  const grasp::Surroundings around = surroundings_of(planned.settings);
   grasp::PlannerResult best = planned.result;
   best.grasps.resize(std::min(count, best.grasps.size()));
   std::error_code error;
@@ -308,7 +308,7 @@ void write_best_grasps(const std::filesystem::path& folder, const Planned& plann
   if (error) throw base::IoError(folder.string() + ": " + error.message());
   grasp::GraspFile file = grasp::make_grasp_file(
       planned.object_file->record, *planned.hand, planned.settings.options, planned.object, best,
-      {.table_z_O = planned.settings.table_z_O, .obstacles = {}});
+      {.table_z_O = around.table_z_O, .obstacles = {}, .table_clearance = around.table_clearance});
   file.preset = planned.settings.preset;
   grasp::write_grasps(folder / "grasps.json", file);
 }

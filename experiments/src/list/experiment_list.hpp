@@ -11,6 +11,7 @@ sweep::Experiment candidate_prediction();
 sweep::Experiment contacts_and_time();
 sweep::Experiment fitting_stages();
 sweep::Experiment force_closure();
+sweep::Experiment from_table();
 sweep::Experiment guidance_models();
 sweep::Experiment hold_prediction();
 sweep::Experiment hold_rates();

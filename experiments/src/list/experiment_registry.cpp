@@ -23,6 +23,7 @@ std::vector<Experiment> listed_experiments() {
       contacts_and_time(),
       fitting_stages(),
       force_closure(),
+      from_table(),
       guidance_models(),
       hold_experiment("hold_choices"),
       hold_experiment("hold_default"),

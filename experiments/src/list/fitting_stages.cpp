@@ -78,7 +78,7 @@ class Loop {
         targets_(grasp.targets),
         hand_(*planned.hand, planned.settings.options.fitting.sample_spacing *
                                  planned.object.grid.lattice.voxel_size),
-        surroundings_(*planned.hand, {.table_z_O = planned.settings.table_z_O, .obstacles = {}}) {}
+        surroundings_(*planned.hand, surroundings_of(planned.settings)) {}
 
   grasp::FittingResult fit(const grasp::PalmPlacement& placement,
                            std::optional<int> max_iterations = {}) const {

@@ -126,8 +126,8 @@ sweep::CellResult run(const sweep::Cell& cell, const std::filesystem::path&) {
       grasp::prepare_object(file->mesh, *hand, settings.options, {.is_on = true});
   result.timings.set("prepare_s", base::seconds_since(start));
   const Clock::time_point guidance_start = Clock::now();
-  const grasp::GuidanceModel model = grasp::guidance_model(
-      object, *hand, settings.options, {.table_z_O = settings.table_z_O, .obstacles = {}});
+  const grasp::GuidanceModel model =
+      grasp::guidance_model(object, *hand, settings.options, surroundings_of(settings));
   result.timings.set("guidance_s", base::seconds_since(guidance_start));
   result.row.set("object_extent_m", geometry::longest_extent(object.mesh()));
   fill(model, result.row);

@@ -1,5 +1,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
+#include "graspfit/geometry/likely_rest_pose.hpp"
+#include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/named_shapes.hpp"
 #include "graspfit/hands/hand_io.hpp"
@@ -64,6 +66,19 @@ void turn(const ObjectSettings& settings, grasp::ObjectFile& object) {
   object.mesh = geometry::transformed(object.mesh, X_TO);
 }
 
+/// Lays the object down as `rest_pose` says; without it, the mesh is untouched.
+void lay_down(const ObjectSettings& settings, grasp::ObjectFile& object) {
+  if (!settings.rest_pose) return;
+  object.record.center_of_mass_O = geometry::mass_properties(object.mesh).center_of_mass;
+  const std::vector<geometry::LikelyRestPose> poses =
+      geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
+  if (*settings.rest_pose > std::ssize(poses)) {
+    throw base::InvalidInput(object.record.file + ": has " + std::to_string(poses.size()) +
+                             " rest poses, not " + std::to_string(*settings.rest_pose));
+  }
+  object = grasp::laid_down(std::move(object), poses[*settings.rest_pose - 1], *settings.rest_pose);
+}
+
 /// The file that a cell's object comes from; none for a shape or where it is not there.
 std::optional<fs::path> object_file_of(const ObjectSettings& settings) {
   if (!settings.file.empty()) return sweep::find_data_file(settings.file);
@@ -85,7 +100,14 @@ std::string ObjectSettings::key() const {
   return file + '\n' + packaged + '\n' + shape + '\n' + text(size) + '\n' +
          (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness) +
          '\n' + text(rotation_xyz.x()) + ' ' + text(rotation_xyz.y()) + ' ' +
-         text(rotation_xyz.z());
+         text(rotation_xyz.z()) + '\n' + (rest_pose ? std::to_string(*rest_pose) : "");
+}
+
+grasp::Surroundings surroundings_of(const PlanningSettings& settings) {
+  grasp::Surroundings surroundings;
+  surroundings.table_z_O = settings.object.rest_pose ? std::optional(0.0) : settings.table_z_O;
+  if (surroundings.table_z_O) surroundings.table_clearance = grasp::kTableClearance;
+  return surroundings;
 }
 
 std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& settings) {
@@ -94,6 +116,7 @@ std::shared_ptr<const grasp::ObjectFile> load_object(const ObjectSettings& setti
     grasp::ObjectFile object =
         settings.shape.empty() ? file_object(settings) : shape_object(settings);
     turn(settings, object);
+    lay_down(settings, object);
     return object;
   });
 }

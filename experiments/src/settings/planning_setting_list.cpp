@@ -66,6 +66,12 @@ std::vector<PlanningSetting> object_and_hand_settings() {
        [](PlanningSettings& s, const JsonValue& v) {
          s.object.rotation_xyz = sweep::vector_of(v) * base::kRadiansPerDegree;
        }},
+      {{"rest_pose", "1",
+        "the object is laid down on a table at z = 0, in the pose of this rank among its rest "
+        "poses, the likeliest being 1"},
+       of_type("integer"),
+       [](PlanningSettings& s, const JsonValue& v) { s.object.rest_pose = v.small_integer(); },
+       base::at_least(1)},
       {{"hand", "", "a shipped hand, or a description in the data folder"},
        text(),
        [](PlanningSettings& s, const JsonValue& v) { s.hand = v.name(); }},

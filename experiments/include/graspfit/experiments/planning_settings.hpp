@@ -29,6 +29,10 @@ struct ObjectSettings {
   /// [rad]: planning sees it in that pose.
   Eigen::Vector3d rotation_xyz = Eigen::Vector3d::Zero();
 
+  /// Rank among `geometry::likely_rest_poses`, the likeliest being 1: planning sees the object laid
+  /// down on the plane z = 0. Empty: as it is.
+  std::optional<int> rest_pose;
+
   std::string key() const;  ///< Differs between different objects.
 };
 
@@ -41,10 +45,14 @@ struct PlanningSettings {
   grasp::PlannerOptions options;
 };
 
+/// What stands around the object: a table under an object that was laid down, or where `table_z_O`
+/// has it, with the usual clearance.
+grasp::Surroundings surroundings_of(const PlanningSettings& settings);
+
 /// Names of all settings with their units and meanings:
 ///
 ///     file, packaged or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
-///     rotation_deg, hand, preset
+///     rotation_deg, rest_pose, hand, preset
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.
