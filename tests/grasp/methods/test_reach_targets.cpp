@@ -159,15 +159,15 @@ TEST_CASE("Targets by reach are the same for any number of threads", "[grasp][re
 TEST_CASE("The palm of targets by reach comes from where it is asked to, and keeps off a table",
           "[grasp][reach_targets]") {
   const hands::HandModel hand = hands::find_hand("barrett");
-  // Three fingertips pinch nothing so narrow squarely: few attempts are valid.
-  PlannerOptions options = reach_options(GraspStyle::Precision, 40);
+  PlannerOptions options = reach_options(GraspStyle::Precision, 12);
   options.approach_O = Eigen::Vector3d(0.0, 0.0, -1.0);
   options.approach_angle = 0.9;
-  const ObjectModel object = prepare_object(geometry::capsule(0.035, 0.10), hand, options);
+  const ObjectModel object = prepare_object(geometry::ball(0.08, 3), hand, options);
   Surroundings surroundings;
   surroundings.table_z_O = geometry::bounding_box(object.mesh()).min().z() - 1e-3;
   const PlannerResult result = plan_grasps(object, hand, options, surroundings, {.num_threads = 1});
-  REQUIRE_FALSE(result.grasps.empty());
+  // On a capsule as thin as fingertips do not pinch squarely it was 4 of 200.
+  CHECK(result.statistics.outcomes.at(AttemptOutcome::Valid) >= 6);
   for (const Grasp& grasp : result.grasps) {
     const Eigen::Vector3d palm = grasp.configuration.X_OH.linear() * hand.palm.direction_H;
     CHECK(std::acos(-palm.z()) <= options.approach_angle + 1e-12);
