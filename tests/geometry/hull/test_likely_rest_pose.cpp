@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "geometry/hull/random_solid.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/angle.hpp"
@@ -21,6 +22,8 @@ namespace test_likely_rest_pose {
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
+using graspfit::testing::random_solid;
+using graspfit::testing::random_unit;
 
 namespace {
 
@@ -35,26 +38,6 @@ double share_of_rectangle(double a, double b, double distance) {
   const double ra = std::hypot(a, 2.0 * distance);
   const double rb = std::hypot(b, 2.0 * distance);
   return std::asin(a * b / (ra * rb)) / std::numbers::pi;
-}
-
-Vector3d random_unit(Random& random) {
-  for (;;) {
-    const Vector3d v(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-                     random.uniform(-1.0, 1.0));
-    if (v.norm() > 0.1 && v.norm() < 1.0) return v.normalized();
-  }
-}
-
-TriangleMesh random_solid(Random& random) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 25; ++i) {
-    mesh.vertices.push_back(random_unit(random).cwiseProduct(Vector3d(0.1, 0.06, 0.04)));
-  }
-  for (const HullFacet& facet : convex_hull(mesh.vertices).facets) {
-    mesh.faces.push_back({static_cast<std::int32_t>(facet[0]), static_cast<std::int32_t>(facet[1]),
-                          static_cast<std::int32_t>(facet[2])});
-  }
-  return mesh;
 }
 
 Vector3d outward_normal(const TriangleMesh& mesh, const Face& face) {

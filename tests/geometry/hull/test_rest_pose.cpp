@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/hull/random_solid.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/convex_hull.hpp"
@@ -18,6 +19,8 @@ namespace test_rest_pose {
 using namespace graspfit::base;
 using namespace graspfit::geometry;
 using Eigen::Vector3d;
+using graspfit::testing::random_solid;
+using graspfit::testing::random_unit;
 
 namespace {
 
@@ -27,27 +30,6 @@ double height_of_center(const TriangleMesh& mesh, const Vector3d& center, const 
   double height = -std::numeric_limits<double>::infinity();
   for (const Vector3d& vertex : mesh.vertices) height = std::max(height, up.dot(center - vertex));
   return height;
-}
-
-Vector3d random_unit(Random& random) {
-  for (;;) {
-    const Vector3d v(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-                     random.uniform(-1.0, 1.0));
-    if (v.norm() > 0.1 && v.norm() < 1.0) return v.normalized();
-  }
-}
-
-/// Returns a convex solid with corners on an ellipsoid.
-TriangleMesh random_solid(Random& random) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 40; ++i) {
-    mesh.vertices.push_back(random_unit(random).cwiseProduct(Vector3d(0.1, 0.07, 0.05)));
-  }
-  for (const HullFacet& facet : convex_hull(mesh.vertices).facets) {
-    mesh.faces.push_back({static_cast<std::int32_t>(facet[0]), static_cast<std::int32_t>(facet[1]),
-                          static_cast<std::int32_t>(facet[2])});
-  }
-  return mesh;
 }
 
 /// Returns a prism over the triangle (0, 0), (0.1, 0), (0, 0.1), leaning by `lean` along x over its
